@@ -1,0 +1,55 @@
+"""Symbolic bond graphs: declared with networkx, derived into ``A x' = J x + B u``, slip ``= F x``."""
+
+from bondgraph.causality import CausalGraph, assign_causality
+from bondgraph.elements import GY, TF, C, I, Kind, One, R, Se, Sf, Zero
+from bondgraph.equations import StateEquations, derive, state_equations
+from bondgraph.errors import (
+    AlgebraicLoopError,
+    BondGraphError,
+    CausalityError,
+    DependentSourceError,
+    ExpressionError,
+    ParameterError,
+    SignalError,
+    SimulationError,
+    SingularStorageError,
+    StructureError,
+)
+from bondgraph.expressions import expression
+from bondgraph.graph import validate
+from bondgraph.junction import JunctionStructure, junction_structure
+from bondgraph.laws import DryFriction, ExpressionLaw
+
+__all__ = [
+    "GY",
+    "TF",
+    "AlgebraicLoopError",
+    "BondGraphError",
+    "C",
+    "CausalGraph",
+    "CausalityError",
+    "DependentSourceError",
+    "DryFriction",
+    "ExpressionError",
+    "ExpressionLaw",
+    "I",
+    "JunctionStructure",
+    "Kind",
+    "One",
+    "ParameterError",
+    "R",
+    "Se",
+    "Sf",
+    "SignalError",
+    "SimulationError",
+    "SingularStorageError",
+    "StateEquations",
+    "StructureError",
+    "Zero",
+    "assign_causality",
+    "derive",
+    "expression",
+    "junction_structure",
+    "state_equations",
+    "validate",
+]

@@ -1,0 +1,158 @@
+"""The nine kinds of node, their constructors, and what each kind is, as data."""
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+from enum import StrEnum
+
+import sympy as sp
+
+from bondgraph.laws import Law
+
+Node = tuple[Hashable, dict[str, object]]
+"""What networkx's ``add_nodes_from`` takes: a name and its attributes."""
+
+
+class Kind(StrEnum):
+    """The kinds of node; the plain-dict form has their text as ``kind``."""
+
+    SE = "Se"
+    SF = "Sf"
+    I = "I"  # noqa: E741  the field's own letter
+    C = "C"
+    R = "R"
+    TF = "TF"
+    GY = "GY"
+    ZERO = "Zero"
+    ONE = "One"
+
+
+SOURCES = frozenset({Kind.SE, Kind.SF})
+STORAGES = frozenset({Kind.I, Kind.C})
+TWO_PORTS = frozenset({Kind.TF, Kind.GY})
+JUNCTIONS = frozenset({Kind.ZERO, Kind.ONE})
+POWER_INTO = frozenset({Kind.I, Kind.C, Kind.R})
+"""Power counts into these whichever way the arrow points."""
+
+KEYS: dict[Kind, frozenset[str]] = {
+    Kind.SE: frozenset({"value", "flow", "unit"}),
+    Kind.SF: frozenset({"value", "effort", "unit"}),
+    Kind.I: frozenset({"value", "effort", "flow", "law", "priority", "unit"}),
+    Kind.C: frozenset({"value", "effort", "flow", "law", "priority", "unit"}),
+    Kind.R: frozenset({"value", "effort", "flow", "law", "gives", "unit"}),
+    Kind.TF: frozenset({"value", "unit"}),
+    Kind.GY: frozenset({"value", "unit"}),
+    Kind.ZERO: frozenset({"effort"}),
+    Kind.ONE: frozenset({"flow"}),
+}
+"""The attributes a node of each kind may carry beside ``kind``."""
+
+
+@dataclass(frozen=True)
+class Element:
+    """One node, checked: what it is, its value or law, and the names of its effort and flow.
+
+    A source's ``value`` is None: what it gives is its input, closed by ``law`` if it is known.
+    ``gives`` is "effort" or "flow" where the causality is fixed: sources, open ports, laws.
+    """
+
+    name: Hashable
+    kind: Kind
+    value: sp.Expr | None
+    effort: sp.Symbol | None
+    flow: sp.Symbol | None
+    law: Law | None = None
+    priority: float = 0
+    gives: str | None = None
+    unit: str | None = None
+
+    @property
+    def one_port(self) -> bool:
+        """True for everything but transformers, gyrators and junctions."""
+        return self.kind not in JUNCTIONS and self.kind not in TWO_PORTS
+
+    @property
+    def given(self) -> sp.Symbol | None:
+        """The variable the element imposes, where that is fixed: an input of the equations."""
+        return {"effort": self.effort, "flow": self.flow, None: None}[self.gives]
+
+    @property
+    def received(self) -> sp.Symbol | None:
+        """The variable the structure imposes on the element, where that is fixed."""
+        return {"effort": self.flow, "flow": self.effort, None: None}[self.gives]
+
+
+def Se(name: Hashable, value: object, **more: object) -> Node:  # noqa: N802
+    """An effort source. A bare name as value is an input of that name, anything else is known.
+
+    >>> Se("engine", "tau_e")
+    ('engine', {'kind': 'Se', 'value': 'tau_e'})
+    """
+    return _node(name, Kind.SE, value=value, **more)
+
+
+def Sf(name: Hashable, value: object, **more: object) -> Node:  # noqa: N802
+    """A flow source. A bare name as value is an input of that name, anything else is known."""
+    return _node(name, Kind.SF, value=value, **more)
+
+
+def I(  # noqa: E743, N802
+    name: Hashable, value: object = None, flow: object = None, law: object = None,
+    priority: float = 0, **more: object,
+) -> Node:  # fmt: skip
+    """An inertia ``e = (value * f)'``, or the law ``f = law(p_<name>)`` of its momentum.
+
+    The higher ``priority`` is tried first for integral causality.
+    """
+    return _node(name, Kind.I, value=value, flow=flow, law=law, priority=priority, **more)
+
+
+def C(  # noqa: N802
+    name: Hashable, value: object = None, effort: object = None, law: object = None,
+    priority: float = 0, **more: object,
+) -> Node:  # fmt: skip
+    """A compliance ``f = (value * e)'``, value = 1/stiffness, or the law ``e = law(q_<name>)``."""
+    return _node(name, Kind.C, value=value, effort=effort, law=law, priority=priority, **more)
+
+
+def R(  # noqa: N802
+    name: Hashable, value: object = None, effort: object = None, flow: object = None,
+    law: object = None, gives: str = "effort", **more: object,
+) -> Node:  # fmt: skip
+    """A resistance ``e = value * f``; a law; or, with neither, an open port.
+
+    An open port gives an input (its effort, or its flow with ``gives="flow"``) and receives an
+    output.
+    """
+    return _node(
+        name, Kind.R, value=value, effort=effort, flow=flow, law=law, gives=gives, **more
+    )  # fmt: skip
+
+
+def TF(name: Hashable, m: object, **more: object) -> Node:  # noqa: N802
+    """A transformer: ``e_in = m e_out``, ``f_out = m f_in``; a gear of ratio w_in/w_out is m = 1/ratio."""
+    return _node(name, Kind.TF, value=m, **more)
+
+
+def GY(name: Hashable, r: object, **more: object) -> Node:  # noqa: N802
+    """A gyrator: ``e_in = r f_out``, ``e_out = r f_in``."""
+    return _node(name, Kind.GY, value=r, **more)
+
+
+def Zero(name: Hashable, effort: object = None, **more: object) -> Node:  # noqa: N802
+    """A 0-junction: one effort, flows that sum to zero. ``effort`` names the common effort."""
+    return _node(name, Kind.ZERO, effort=effort, **more)
+
+
+def One(name: Hashable, flow: object = None, **more: object) -> Node:  # noqa: N802
+    """A 1-junction: one flow, efforts that sum to zero. ``flow`` names the common flow."""
+    return _node(name, Kind.ONE, flow=flow, **more)
+
+
+def _node(name: Hashable, kind: Kind, **attributes: object) -> Node:
+    """The node with the attributes that say something; defaults are left out."""
+    if attributes.get("priority") == 0:
+        del attributes["priority"]
+    if attributes.get("gives") == "effort":
+        del attributes["gives"]
+    given = {key: value for key, value in attributes.items() if value is not None}
+    return name, {"kind": str(kind), **given}

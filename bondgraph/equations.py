@@ -1,0 +1,226 @@
+"""`state_equations` and `derive`: the graph as ``A x' = J x + B u + E u'``, ``y = F x + D u + G u'``."""
+
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+import sympy as sp
+
+from bondgraph.causality import assign_causality
+from bondgraph.elements import Kind
+from bondgraph.errors import SingularStorageError, StructureError
+from bondgraph.exact import Row, add_scaled, matrix_of, solve, tidy
+from bondgraph.junction import JunctionStructure, Port, junction_structure
+from bondgraph.laws import Law
+from bondgraph.readings import check_laws, check_readings
+from bondgraph.reduction import Reading, Reduction, reduce_ports
+from bondgraph.residues import ResidueRows, is_zero, residues
+
+LARGEST_TIDIED = 2_000
+"""Matrices with more entries in all are left as they were derived."""
+
+
+@dataclass(frozen=True)
+class StateEquations:
+    """A bond graph's equations, exact and symbolic; the matrices are immutable and sparse.
+
+        A x' = J x + B u + E u'
+           y = F x + D u + G u'
+
+    States are flows of inertias and efforts of compliances; A is symmetric. Power counts into open
+    ports, so in a structure without resistances their columns of B are ``-F^T``.
+    """
+
+    states: tuple[sp.Symbol, ...]
+    inputs: tuple[sp.Symbol, ...]
+    outputs: tuple[sp.Symbol, ...]
+    A: sp.ImmutableSparseMatrix
+    J: sp.ImmutableSparseMatrix
+    B: sp.ImmutableSparseMatrix
+    E: sp.ImmutableSparseMatrix
+    F: sp.ImmutableSparseMatrix
+    D: sp.ImmutableSparseMatrix
+    G: sp.ImmutableSparseMatrix
+    #: Node to the law that closes its port, as declared.
+    laws: Mapping[Hashable, Law]
+    #: The ports that give inputs, in declaration order.
+    ports: tuple[Port, ...]
+    #: Every known signal, shown as an output or not, as ``F x + D u + H x' + K u'``.
+    readings: Mapping[sp.Symbol, Reading] = field(repr=False)
+
+    @property
+    def parameters(self) -> tuple[sp.Symbol, ...]:
+        """The names that the matrices need numbers for, sorted."""
+        used: set[sp.Symbol] = set()
+        for matrix in (self.A, self.J, self.B, self.E, self.F, self.D, self.G):
+            used |= matrix.free_symbols
+        for reading in self.readings.values():
+            for row in (reading.F, reading.D, reading.H, reading.K):
+                used.update(*(entry.free_symbols for entry in row.values()))
+        return tuple(sorted(used, key=str))
+
+
+def derive(graph: Any, outputs: Iterable[Hashable] | None = None) -> StateEquations:
+    """The equations of a declared graph, with causality assigned and dependent storages resolved.
+
+    ``outputs``: nodes whose signal the rows of F, D and G show: of a one-port the variable it
+    receives, of a junction its common variable; left out, all open ports.
+
+    Raises the `BondGraphError` of the stage that refuses.
+
+    >>> import bondgraph as bg
+    >>> import networkx as nx
+    >>> g = nx.DiGraph()
+    >>> g.add_nodes_from([bg.Se("force", "F_0"), bg.One("mass"), bg.I("m", "m", flow="v"),
+    ...                   bg.C("spring", "1/k", effort="F_s"), bg.R("damper", "b")])
+    >>> g.add_edges_from([("force", "mass"), ("mass", "m"), ("mass", "spring"), ("mass", "damper")])
+    >>> equations = derive(g, outputs=["damper"])
+    >>> equations.states, equations.J, equations.B
+    ((v, F_s), Matrix([
+    [-b, -1],
+    [ 1,  0]]), Matrix([
+    [1],
+    [0]]))
+    """
+    return state_equations(junction_structure(assign_causality(graph)), outputs)
+
+
+def state_equations(
+    structure: JunctionStructure, outputs: Iterable[Hashable] | None = None
+) -> StateEquations:
+    """Fold resistances and dependent storages into A, J, B, E and the outputs' F, D, G.
+
+    With the ports' laws ``w_x = M_x x'``, ``z_d = (M_d w_d)'``, ``z_r = L w_r`` this gives
+    ``A = M_x + S_xd M_d S_xd^T``.
+
+    Raises `SingularStorageError` if A is singular, `DependentSourceError` if a law would have to be
+    differentiated, `StructureError` for an output that does not exist.
+    """
+    reduction = reduce_ports(structure)
+    ports = structure.ports
+    balances = [reduction.reading(structure.rows[port]) for port in reduction.states]
+    A = [_rates(ports[port].element.value, at, balances[at].H)
+         for at, port in enumerate(reduction.states)]  # fmt: skip
+    states = tuple(ports[port].given for port in reduction.states)
+    _check_regular(A, states)
+    shown = _shown(reduction, outputs)
+    readings = {
+        ports[port].received: reduction.reading(structure.rows[port]) for port in reduction.imposed
+    }
+    rows = [(symbol, reduction.reading(row)) for symbol, row in shown]
+    check_readings(states, reduction.inputs, [*readings.items(), *rows])
+    readings |= dict(rows)
+    resolved = [_resolved(A, balances, readings[symbol]) for symbol, _ in shown]
+    imposed = tuple(ports[port] for port in reduction.imposed)
+    E = [row.K for row in balances]
+    laws = {port.element.name: port.element.law for port in imposed if port.element.law is not None}
+    check_laws(laws, states, imposed, E, readings)
+    n, m = len(states), len(reduction.inputs)
+    parts = [
+        (A, n), ([row.F for row in balances], n), ([row.D for row in balances], m), (E, m),
+        ([row.F for row in resolved], n), ([row.D for row in resolved], m),
+        ([row.K for row in resolved], m),
+    ]  # fmt: skip
+    matrices = _matrices(parts)
+    return StateEquations(
+        states, reduction.inputs, tuple(symbol for symbol, _ in shown), *matrices,
+        laws=MappingProxyType(laws), ports=imposed, readings=MappingProxyType(readings),
+    )  # fmt: skip
+
+
+def _rates(value: sp.Expr, at: int, dependent: Mapping[int, sp.Expr]) -> Row:
+    """One row of A: the storage's own value, less what dependent storages give back."""
+    row: Row = {at: value}
+    add_scaled(row, dependent, sp.Integer(-1))
+    return row
+
+
+def _matrices(parts: Sequence[tuple[list[Row], int]]) -> list[sp.ImmutableSparseMatrix]:
+    """Immutable matrices from rows, entries in their shortest form while there are few."""
+    count = sum(len(row) for rows, _ in parts for row in rows)
+    if count <= LARGEST_TIDIED:
+        parts = [
+            ([{j: tidy(entry) for j, entry in row.items()} for row in rows], width)
+            for rows, width in parts
+        ]
+    return [matrix_of(rows, width) for rows, width in parts]
+
+
+def _check_regular(A: list[Row], states: tuple[sp.Symbol, ...]) -> None:
+    """Refuse an A whose determinant vanishes: exactly for its diagonal part, by residues for the rest."""
+    coupled = {i for i, row in enumerate(A) for j in row if i != j}
+    coupled |= {j for i, row in enumerate(A) for j in row if i != j}
+    for i, row in enumerate(A):
+        if i not in coupled and (i not in row or (not row[i].is_Symbol and is_zero(row[i]))):
+            raise SingularStorageError(
+                f"the storages that rule {states[i]}' cancel each other; change a value"
+            )
+    value = residues()
+    rows = ResidueRows(
+        {j: entry for j, expr in A[i].items() if (entry := value(expr))} for i in sorted(coupled)
+    )
+    for i in sorted(coupled):
+        if not rows.pivot(i, jordan=False):
+            raise SingularStorageError(
+                f"the matrix A is singular: {states[i]}' is not determined by the storages' values; "
+                "change a value, or leave out a storage that cancels another"
+            )
+
+
+def _shown(
+    reduction: Reduction, outputs: Iterable[Hashable] | None
+) -> list[tuple[sp.Symbol, Mapping[int, sp.Expr]]]:
+    """The outputs' symbols and their rows over the ports."""
+    structure = reduction.structure
+    if outputs is None:
+        outputs = [
+            port.element.name
+            for port in structure.ports
+            if port.element.kind is Kind.R and port.element.gives and port.element.law is None
+        ]
+    numbers = {port.element.name: at for at, port in enumerate(structure.ports)}
+    result: list[tuple[sp.Symbol, Mapping[int, sp.Expr]]] = []
+    for name in outputs:
+        element = structure.elements.get(name)
+        if element is None:
+            raise StructureError(f"output {name!r} is not a node of the graph")
+        if name in numbers:
+            result.append((structure.ports[numbers[name]].received, structure.rows[numbers[name]]))
+        elif name in structure.common:
+            symbol = element.effort if element.kind is Kind.ZERO else element.flow
+            if symbol is None:
+                raise StructureError(
+                    f"output {name!r}: the junction's name makes no symbol; name its variable with "
+                    "effort=... or flow=..."
+                )
+            result.append((symbol, structure.common[name]))
+        else:
+            raise StructureError(
+                f"output {name!r} is a {element.kind}, which has two efforts and two flows; "
+                "name a junction or a one-port beside it"
+            )
+    return result
+
+
+def _resolved(A: list[Row], balances: Sequence[Reading], reading: Reading) -> Reading:
+    """A reading with x' substituted: one solve with A^T, on the block of A that it touches."""
+    if not reading.H:
+        return reading
+    block = sorted(reading.H)
+    for state in block:
+        block += [j for j in A[state] if j not in block]
+    block.sort()
+    place = {state: at for at, state in enumerate(block)}
+    transposed: list[Row] = [{} for _ in block]
+    for i in block:
+        for j, entry in A[i].items():
+            transposed[place[j]][place[i]] = entry
+    right = [{0: reading.H[i]} if i in reading.H else {} for i in block]
+    result = Reading(dict(reading.F), dict(reading.D), {}, dict(reading.K))
+    for i, solved in zip(block, solve(transposed, right), strict=True):
+        if 0 in solved:
+            add_scaled(result.F, balances[i].F, solved[0])
+            add_scaled(result.D, balances[i].D, solved[0])
+            add_scaled(result.K, balances[i].K, solved[0])
+    return result

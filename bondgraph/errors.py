@@ -1,0 +1,41 @@
+"""What can be refused, one class per stage; every message names the place, the rule and the way out."""
+
+
+class BondGraphError(ValueError):
+    """Base of every refusal of this toolkit."""
+
+
+class StructureError(BondGraphError):
+    """The declaration is not a bond graph: a node, a bond or a name breaks a rule."""
+
+
+class ExpressionError(StructureError):
+    """A value or a law is not an expression the toolkit accepts."""
+
+
+class CausalityError(BondGraphError):
+    """No causality exists: what sources and fixed ports impose contradicts itself."""
+
+
+class AlgebraicLoopError(BondGraphError):
+    """A loop of bonds or resistances has a determinant that vanishes identically."""
+
+
+class SingularStorageError(BondGraphError):
+    """The storages do not determine their rates: the matrix A is singular."""
+
+
+class DependentSourceError(BondGraphError):
+    """A law or a step would have to be differentiated in time."""
+
+
+class ParameterError(BondGraphError):
+    """A parameter is missing, is not a number, or leaves the equations without a solution."""
+
+
+class SignalError(BondGraphError):
+    """An input, an initial value or the time axis of a run is not usable."""
+
+
+class SimulationError(BondGraphError):
+    """A run cannot go on; the message gives the time and the numbers."""

@@ -1,0 +1,102 @@
+"""Exact linear algebra on small systems of expressions, in the field that their entries generate."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import sympy as sp
+from sympy.polys.constructor import construct_domain
+from sympy.polys.matrices import DomainMatrix
+
+from bondgraph.residues import is_rational_function, is_zero
+
+Row = dict[int, sp.Expr]
+"""A sparse row: column to expression, no zeros."""
+
+TIDY_OPERATIONS = 60
+"""An entry with more operations than this is left as it came."""
+
+
+class SingularError(ArithmeticError):
+    """The matrix of a linear system has a determinant that vanishes identically."""
+
+
+def add_scaled(target: Row, row: Mapping[int, sp.Expr], factor: sp.Expr) -> None:
+    """Add ``factor * row`` to a sparse row in place, dropping entries that cancel exactly."""
+    for column, entry in row.items():
+        if column in target:
+            total = cancelled(target[column] + factor * entry)
+            if total.is_zero:
+                del target[column]
+            else:
+                target[column] = total
+        else:
+            target[column] = factor * entry
+
+
+def cancelled(expr: sp.Expr) -> sp.Expr:
+    """The expression with common factors cancelled; 0 exactly when it vanishes identically."""
+    if expr.is_Rational or expr.is_Symbol:
+        return expr
+    if is_zero(expr):
+        return sp.Integer(0)
+    return sp.cancel(expr) if expr.is_Add and expr.count_ops() <= TIDY_OPERATIONS else expr
+
+
+def solve(matrix: Sequence[Row], right: Sequence[Row]) -> list[Row]:
+    """Solve ``matrix * X = right`` exactly, both given as sparse rows; the columns of X as in ``right``.
+
+    Entries are fractions in lowest terms. Raises `SingularError` if the determinant vanishes.
+
+    >>> a, b = sp.symbols("a b")
+    >>> solve([{0: a, 1: sp.Integer(1)}, {1: b}], [{}, {0: sp.Integer(1)}])
+    [{0: -1/(a*b)}, {0: 1/b}]
+    """
+    size = len(matrix)
+    columns = sorted({column for row in right for column in row})
+    place = {column: size + at for at, column in enumerate(columns)}
+    entries = [(i, j, entry) for i, row in enumerate(matrix) for j, entry in row.items()]
+    entries += [(i, place[j], entry) for i, row in enumerate(right) for j, entry in row.items()]
+    if not entries:
+        raise SingularError
+    domain, elements = construct_domain(
+        [entry for _, _, entry in entries], field=True, extension=True
+    )
+    rows: dict[int, dict[int, Any]] = {}
+    for (i, j, _), element in zip(entries, elements, strict=True):
+        if element:
+            rows.setdefault(i, {})[j] = element
+    system = DomainMatrix(rows, (size, size + len(columns)), domain)
+    reduced, pivots = system.rref()
+    if tuple(pivots) != tuple(range(size)):
+        raise SingularError
+    result: list[Row] = [{} for _ in range(size)]
+    for i, row in reduced.to_sparse().rep.items():
+        for j, element in row.items():
+            if j >= size:
+                result[i][columns[j - size]] = domain.to_sympy(element)
+    return result
+
+
+def tidy(expr: sp.Expr) -> sp.Expr:
+    """The shortest of an expression's plain, cancelled and factored forms; long ones stay as they are."""
+    if expr.is_Atom or not is_rational_function(expr) or expr.count_ops() > TIDY_OPERATIONS:
+        return expr
+    if any(power.exp > 4 for power in expr.atoms(sp.Pow)):
+        return expr
+    if is_zero(expr):
+        return sp.Integer(0)
+    return min((expr, sp.cancel(expr), sp.factor(expr)), key=lambda form: form.count_ops())
+
+
+def rows_of(matrix: sp.Matrix) -> list[Row]:
+    """The sparse rows of a sympy matrix."""
+    result: list[Row] = [{} for _ in range(matrix.rows)]
+    for (i, j), entry in matrix.todok().items():
+        result[i][j] = entry
+    return result
+
+
+def matrix_of(rows: Sequence[Mapping[int, sp.Expr]], columns: int) -> sp.ImmutableSparseMatrix:
+    """The immutable sparse sympy matrix of sparse rows."""
+    entries = {(i, j): entry for i, row in enumerate(rows) for j, entry in sorted(row.items())}
+    return sp.ImmutableSparseMatrix(len(rows), columns, entries)

@@ -1,0 +1,215 @@
+"""Text, numbers and sympy expressions become exact sympy expressions; nothing is ever evaluated as Python."""
+
+import ast
+import keyword
+import math
+from collections.abc import Callable
+from fractions import Fraction
+from numbers import Integral, Rational, Real
+from typing import Any
+
+import sympy as sp
+
+from bondgraph.errors import ExpressionError
+
+TIME = sp.Symbol("t")
+"""The time, in laws and known sources."""
+
+MAX_LENGTH = 4_000
+MAX_DEPTH = 100
+MAX_EXPONENT = 1_000
+MAX_DIGITS = 400
+
+_NOT_REAL = (sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I)
+
+FUNCTIONS: dict[str, tuple[int, int, Callable[..., Any]]] = {
+    "sin": (1, 1, sp.sin),
+    "cos": (1, 1, sp.cos),
+    "tan": (1, 1, sp.tan),
+    "asin": (1, 1, sp.asin),
+    "acos": (1, 1, sp.acos),
+    "atan": (1, 1, sp.atan),
+    "atan2": (2, 2, sp.atan2),
+    "sinh": (1, 1, sp.sinh),
+    "cosh": (1, 1, sp.cosh),
+    "tanh": (1, 1, sp.tanh),
+    "exp": (1, 1, sp.exp),
+    "log": (1, 1, sp.log),
+    "sqrt": (1, 1, sp.sqrt),
+    "abs": (1, 1, sp.Abs),
+    "Abs": (1, 1, sp.Abs),
+    "sign": (1, 1, sp.sign),
+    "min": (2, 16, sp.Min),
+    "max": (2, 16, sp.Max),
+    "Min": (2, 16, sp.Min),
+    "Max": (2, 16, sp.Max),
+}
+"""Functions that text may use: least and most number of arguments, and what is built."""
+
+_BINARY: dict[type, Callable[[Any, Any], Any]] = {
+    ast.Add: lambda a, b: a + b,
+    ast.Sub: lambda a, b: a - b,
+    ast.Mult: lambda a, b: a * b,
+    ast.Div: lambda a, b: a / b,
+    ast.Pow: lambda a, b: _power(a, b),
+}
+
+
+def symbol(name: object, where: str) -> sp.Symbol:
+    """A plain symbol of that name, refused if generated code could not carry the name.
+
+    >>> symbol("omega_1", "node 'left'")
+    omega_1
+    """
+    if not isinstance(name, str) or not name.isidentifier() or keyword.iskeyword(name):
+        raise ExpressionError(
+            f"{where}: {name!r} cannot be a symbol; use letters, digits and underscores, "
+            "not starting with a digit and not a Python keyword"
+        )
+    return sp.Symbol(name)
+
+
+def expression(value: object, where: str) -> sp.Expr:
+    """The exact expression that a number, a text or a sympy expression stands for.
+
+    Text may hold numbers, names, ``+ - * / **``, parentheses and the functions in `FUNCTIONS`;
+    names become plain symbols. A float counts as the rational of its shortest decimal form.
+
+    Raises `ExpressionError`, naming ``where``, for anything else: text that calls or imports,
+    numbers that are not finite and real, names that cannot be symbols.
+
+    >>> expression("h1/(h1 - 1)", "node 'gear'"), expression(0.1, "node 'gear'")
+    (h1/(h1 - 1), 1/10)
+    """
+    if isinstance(value, str):
+        result = _from_text(value, where)
+    elif isinstance(value, sp.Expr):
+        floats = value.atoms(sp.Float)
+        result = (
+            value.xreplace({part: _decimal(part, where) for part in floats}) if floats else value
+        )
+    else:
+        result = number(value, where)
+    if not isinstance(result, sp.Symbol) and (result.has(*_NOT_REAL) or result.is_real is False):
+        raise ExpressionError(f"{where}: {value!r} is not a finite real expression")
+    for part in result.free_symbols:
+        if not isinstance(part, sp.Symbol):
+            raise ExpressionError(f"{where}: {part!r} is not a plain symbol")
+        symbol(part.name, where)
+    return result
+
+
+def number(value: object, where: str) -> sp.Rational:
+    """The exact rational that a Python or numpy number stands for, floats by their shortest decimal.
+
+    >>> number(0.3, "parameter 'r'")
+    3/10
+    """
+    if isinstance(value, bool) or not isinstance(value, Real | sp.Number):
+        raise ExpressionError(f"{where}: {value!r} is neither a number, a text nor an expression")
+    if isinstance(value, Integral):
+        return sp.Integer(int(value))
+    if isinstance(value, Rational):
+        return sp.Rational(int(value.numerator), int(value.denominator))
+    if not math.isfinite(float(value)):
+        raise ExpressionError(f"{where}: {value!r} is not a finite number")
+    return _decimal(value, where)
+
+
+def _decimal(value: Any, where: str) -> sp.Rational:
+    if not math.isfinite(float(value)):
+        raise ExpressionError(f"{where}: {value!r} is not a finite number")
+    exact = Fraction(repr(float(value)))
+    return sp.Rational(exact.numerator, exact.denominator)
+
+
+def _from_text(text: str, where: str) -> sp.Expr:
+    if len(text) > MAX_LENGTH:
+        raise ExpressionError(f"{where}: text of {len(text)} characters, at most {MAX_LENGTH}")
+    if _nesting(text) > MAX_DEPTH:
+        raise ExpressionError(f"{where}: parentheses nested deeper than {MAX_DEPTH}")
+    try:
+        tree = ast.parse(text.strip(), mode="eval").body
+        return _build(tree, where, 0)
+    except ExpressionError:
+        raise
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        raise ExpressionError(f"{where}: {_short(text)} is not an expression ({error})") from None
+
+
+def _nesting(text: str) -> int:
+    depth = deepest = 0
+    for character in text:
+        depth += (character in "([{") - (character in ")]}")
+        deepest = max(deepest, depth)
+    return deepest
+
+
+def _build(node: ast.AST, where: str, depth: int) -> sp.Expr:
+    """The expression of one syntax node; only the listed kinds of node exist here.
+
+    A chain of sums and products is deep in the syntax tree without being nested, so it is walked in a loop.
+    """
+    if depth > MAX_DEPTH:
+        raise ExpressionError(f"{where}: expression nested deeper than {MAX_DEPTH}")
+    pending: list[tuple[type, ast.AST]] = []
+    while isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
+        pending.append((type(node.op), node.right))
+        node = node.left
+    result = _leaf(node, where, depth)
+    for operator, right in reversed(pending):
+        operand = _build(right, where, depth + 1)
+        if operator is ast.Div and operand.is_zero:
+            raise ExpressionError(f"{where}: division by zero")
+        try:
+            result = _BINARY[operator](result, operand)
+        except ExpressionError as error:
+            raise ExpressionError(f"{where}: {error}") from None
+    return result
+
+
+def _leaf(node: ast.AST, where: str, depth: int) -> sp.Expr:
+    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+        if isinstance(node.value, int) and node.value.bit_length() > 4 * MAX_DIGITS:
+            raise ExpressionError(f"{where}: a number of more than {MAX_DIGITS} digits")
+        return number(node.value, where)
+    if isinstance(node, ast.Name):
+        return symbol(node.id, where)
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd | ast.USub):
+        operand = _build(node.operand, where, depth + 1)
+        return -operand if isinstance(node.op, ast.USub) else operand
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
+        return _call(node.func.id, node.args, where, depth)
+    raise ExpressionError(
+        f"{where}: {_short(ast.unparse(node))} is not allowed; an expression holds numbers, names, "
+        f"+ - * / ** and the functions {', '.join(sorted(FUNCTIONS))}"
+    )
+
+
+def _call(name: str, arguments: list[ast.expr], where: str, depth: int) -> sp.Expr:
+    if name not in FUNCTIONS:
+        raise ExpressionError(
+            f"{where}: {name!r} is not a function an expression may use; "
+            f"there are {', '.join(sorted(FUNCTIONS))}"
+        )
+    least, most, build = FUNCTIONS[name]
+    if not least <= len(arguments) <= most:
+        raise ExpressionError(f"{where}: {name} takes {least} argument(s), not {len(arguments)}")
+    return build(*(_build(argument, where, depth + 1) for argument in arguments))
+
+
+def _power(base: Any, exponent: Any) -> sp.Expr:
+    """A power, unless writing it out would take more than a sensible number of digits."""
+    if exponent.is_Rational and abs(exponent) > MAX_EXPONENT:
+        raise ExpressionError(f"an exponent of more than {MAX_EXPONENT}")
+    if base.is_Rational and exponent.is_Rational:
+        digits = max(len(str(abs(base.p))), len(str(base.q))) * abs(exponent)
+        if digits > MAX_DIGITS:
+            raise ExpressionError(f"a power of more than {MAX_DIGITS} digits")
+        if base.is_zero and exponent.is_negative:
+            raise ExpressionError("division by zero")
+    return base**exponent
+
+
+def _short(text: str) -> str:
+    return repr(text if len(text) <= 60 else text[:57] + "...")

@@ -1,0 +1,113 @@
+"""Rules that hold between elements: names that must differ, and parts that must belong together."""
+
+from collections.abc import Hashable, Iterable, Sequence
+from itertools import combinations, pairwise
+from typing import Any
+
+import networkx as nx
+import sympy as sp
+
+from bondgraph.elements import SOURCES, Element
+from bondgraph.errors import StructureError
+from bondgraph.expressions import TIME
+from bondgraph.laws import ExpressionLaw
+
+
+def check_names(elements: Sequence[Element]) -> None:
+    """Refuse one name for two things: two quantities, a quantity and a value, two sets of assumptions."""
+    owners: dict[sp.Symbol, Element] = {}
+    for element in elements:
+        for name in _owned(element):
+            _check_owner(owners, name, element)
+    signals = set(owners) | {name for element in elements for name in named_by(element)}
+    if TIME in signals:
+        owner = next(element for element in elements if TIME in named_by(element))
+        raise StructureError(
+            f"node {owner.name!r}: 't' is the time; give its variable another name"
+        )
+    _check_values(elements, signals)
+    _check_assumptions(elements, signals)
+
+
+def _owned(element: Element) -> Iterable[sp.Symbol]:
+    """The quantities that this element alone imposes or keeps: its input and its law's state."""
+    own = [element.given] if element.given is not None else []
+    if isinstance(element.law, ExpressionLaw) and element.law.state is not None:
+        own.append(element.law.state)
+    return own
+
+
+def _check_owner(owners: dict[sp.Symbol, Element], name: sp.Symbol, element: Element) -> None:
+    other = owners.setdefault(name, element)
+    shared_input = all(one.kind in SOURCES and one.law is None for one in (other, element))
+    if other is not element and not shared_input:
+        raise StructureError(
+            f"nodes {other.name!r} and {element.name!r} both impose a variable {name}; "
+            "two names may be equal only where the quantities are"
+        )
+
+
+def named_by(element: Element) -> tuple[sp.Symbol, ...]:
+    """The signals an element names: its effort, its flow, and the state its law owns."""
+    named = [name for name in (element.effort, element.flow) if name is not None]
+    if isinstance(element.law, ExpressionLaw) and element.law.state is not None:
+        named.append(element.law.state)
+    return tuple(named)
+
+
+def _check_values(elements: Sequence[Element], signals: set[sp.Symbol]) -> None:
+    for element in elements:
+        used = element.value.free_symbols if element.value is not None else set()
+        for name in sorted(used, key=str):
+            if sp.Symbol(name.name) in signals:
+                raise StructureError(
+                    f"node {element.name!r}: its value uses {name}, which names a signal of the "
+                    "graph; a value must be constant, and a parameter needs a name of its own"
+                )
+
+
+def _check_assumptions(elements: Sequence[Element], signals: set[sp.Symbol]) -> None:
+    seen: dict[str, sp.Symbol] = {name.name: name for name in signals}
+    for element in elements:
+        used: set[sp.Symbol] = set()
+        for part in (element.value, element.law):
+            used |= part.free_symbols if part is not None else set()
+        for name in sorted(used, key=str):
+            if seen.setdefault(name.name, name) != name:
+                raise StructureError(
+                    f"node {element.name!r}: the symbol {name} is used elsewhere with different "
+                    "assumptions; use one symbol for one name, or plain text"
+                )
+
+
+def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:
+    """Refuse parts that share neither a bond nor a signal: most often a bond was forgotten."""
+    parts = list(nx.weakly_connected_components(graph))
+    if len(parts) == 1:
+        return
+    position = {name: at for at, name in enumerate(graph)}
+    parts.sort(key=lambda part: min(position[name] for name in part))
+    together: nx.Graph[int] = nx.Graph()
+    together.add_nodes_from(range(len(parts)))
+    for first, second in combinations(range(len(parts)), 2):
+        if _share_a_signal(graph, parts[first], parts[second]):
+            together.add_edge(first, second)
+    groups = list(nx.connected_components(together))
+    for one, other in pairwise(sorted(groups, key=min)):
+        names = [min(parts[min(group)], key=lambda name: position[name]) for group in (one, other)]
+        raise StructureError(
+            f"the part of node {names[0]!r} and the part of node {names[1]!r} share neither a bond "
+            "nor a signal; bond them, or derive each on its own"
+        )
+
+
+def _share_a_signal(graph: Any, one: set[Hashable], other: set[Hashable]) -> bool:
+    """Whether a law of one part reads a signal of the other, or both have an input of one name."""
+    named, inputs, read = [], [], []
+    for part in (one, other):
+        elements = [graph.nodes[name]["element"] for name in part]
+        named.append({name for element in elements for name in named_by(element)})
+        inputs.append({element.given for element in elements if element.given is not None})
+        laws = [element.law for element in elements if element.law is not None]
+        read.append({name for law in laws for name in law.free_symbols})
+    return bool(inputs[0] & inputs[1] or read[0] & named[1] or read[1] & named[0])

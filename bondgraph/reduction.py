@@ -1,0 +1,180 @@
+"""Resistances and dependent storages folded away: any row over the ports as ``F x + D u + H x' + K u'``."""
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
+
+import networkx as nx
+import sympy as sp
+
+from bondgraph.elements import STORAGES, Kind
+from bondgraph.errors import AlgebraicLoopError, CausalityError
+from bondgraph.exact import Row, SingularError, add_scaled, solve
+from bondgraph.junction import JunctionStructure, Port
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One signal as ``F x + D u + H x' + K u'``: sparse rows over the states and the inputs."""
+
+    F: Row
+    D: Row
+    H: Row
+    K: Row
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """The ports of a junction structure, sorted into states, inputs and what follows from them.
+
+    ``states``, ``dependent``, ``resistive``, ``imposed``: port numbers. ``inputs``: the symbols that
+    imposed ports give, each once.
+    """
+
+    structure: JunctionStructure
+    states: tuple[int, ...]
+    dependent: tuple[int, ...]
+    resistive: tuple[int, ...]
+    imposed: tuple[int, ...]
+    inputs: tuple[sp.Symbol, ...]
+    _columns: Mapping[int, Reading]
+
+    def reading(self, row: Mapping[int, sp.Expr]) -> Reading:
+        """A row over what the ports give, rewritten over states, inputs and their rates."""
+        result = Reading({}, {}, {}, {})
+        for port, factor in row.items():
+            column = self._columns[port]
+            add_scaled(result.F, column.F, factor)
+            add_scaled(result.D, column.D, factor)
+            add_scaled(result.H, column.H, factor)
+            add_scaled(result.K, column.K, factor)
+        return result
+
+
+def reduce_ports(structure: JunctionStructure) -> Reduction:
+    """Sort the ports, close the linear resistances, and differentiate what drives dependent storages.
+
+    Raises `AlgebraicLoopError` for resistances whose loop determinant ``|1 - S_rr L|`` vanishes.
+    """
+    ports = structure.ports
+    states = tuple(i for i, port in enumerate(ports) if is_storage(port) and _integral(port))
+    dependent = tuple(i for i, port in enumerate(ports) if is_storage(port) and not _integral(port))
+    resistive = tuple(
+        i for i, port in enumerate(ports) if port.element.kind is Kind.R and not _fixed(port)
+    )
+    imposed = tuple(i for i, port in enumerate(ports) if _fixed(port))
+    inputs = tuple(dict.fromkeys(ports[i].given for i in imposed))
+    one = sp.Integer(1)
+    columns = {port: Reading({at: one}, {}, {}, {}) for at, port in enumerate(states)}
+    columns |= {i: Reading({}, {inputs.index(ports[i].given): one}, {}, {}) for i in imposed}
+    found = Reduction(structure, states, dependent, resistive, imposed, inputs, columns)
+    columns |= _resistances(found)
+    columns |= {port: _dependent(found, port) for port in dependent}
+    return found
+
+
+def is_storage(port: Port) -> bool:
+    """Whether the port is a linear storage; one with a law counts as an imposed port."""
+    return port.element.kind in STORAGES and not _fixed(port)
+
+
+def _fixed(port: Port) -> bool:
+    return port.element.gives is not None
+
+
+def _integral(port: Port) -> bool:
+    return port.gives == ("flow" if port.element.kind is Kind.I else "effort")
+
+
+def _dependent(reduction: Reduction, port: int) -> Reading:
+    """What a dependent storage gives: ``(M_d w_d)'``, w_d being ruled by states and inputs alone."""
+    structure = reduction.structure
+    row = structure.rows[port]
+    strangers = [i for i in row if i in reduction.dependent or i in reduction.resistive]
+    if strangers:
+        names = [structure.ports[i].element.name for i in (port, *strangers)]
+        raise CausalityError(
+            f"storages and resistances {names} determine each other although one of them could "
+            "have integral causality; please report this graph"
+        )
+    value, ruled = structure.ports[port].element.value, reduction.reading(row)
+    return Reading({}, {}, _scaled(ruled.F, value), _scaled(ruled.D, value))
+
+
+def _resistances(reduction: Reduction) -> dict[int, Reading]:
+    """What each linear resistance gives, ``z_r = L (1 - S_rr L)^-1 (S_rx x + S_ru u)``, loop by loop."""
+    structure, resistive = reduction.structure, set(reduction.resistive)
+    loops: nx.Graph[int] = nx.Graph()
+    loops.add_nodes_from(reduction.resistive)
+    for port in reduction.resistive:
+        loops.add_edges_from((port, i) for i in structure.rows[port] if i in resistive)
+    result: dict[int, Reading] = {}
+    for members in nx.connected_components(loops):
+        group = sorted(members)
+        for port, given in zip(group, _closed(reduction, group), strict=True):
+            result[port] = given
+    return result
+
+
+def _closed(reduction: Reduction, group: Sequence[int]) -> list[Reading]:
+    """What the resistances of one loop give."""
+    structure = reduction.structure
+    place = {port: at for at, port in enumerate(group)}
+    laws = [_conductance(structure.ports[port]) for port in group]
+    outside = [
+        reduction.reading({i: s for i, s in structure.rows[port].items() if i not in place})
+        for port in group
+    ]
+    inside: list[Row] = []
+    for at, port in enumerate(group):
+        line: Row = {at: sp.Integer(1)}
+        for i, entry in structure.rows[port].items():
+            if i in place:
+                add_scaled(line, {place[i]: sp.Integer(1)}, -entry * laws[place[i]])
+        inside.append(line)
+    if all(len(line) == 1 for line in inside):
+        received = [(row.F, row.D) for row in outside]
+    else:
+        received = _solved(structure, group, inside, outside, len(reduction.states))
+    return [
+        Reading(_scaled(F, law), _scaled(D, law), {}, {})
+        for law, (F, D) in zip(laws, received, strict=True)
+    ]
+
+
+def _solved(
+    structure: JunctionStructure,
+    group: Sequence[int],
+    inside: list[Row],
+    outside: list[Reading],
+    states: int,
+) -> list[tuple[Row, Row]]:
+    right = [row.F | {states + j: entry for j, entry in row.D.items()} for row in outside]
+    try:
+        rows = solve(inside, right)
+    except SingularError:
+        names = ", ".join(repr(structure.ports[port].element.name) for port in group)
+        raise AlgebraicLoopError(
+            f"the resistances {names} form a loop whose determinant vanishes; "
+            "change a value, or put a storage between them"
+        ) from None
+    return [
+        (
+            {j: entry for j, entry in row.items() if j < states},
+            {j - states: entry for j, entry in row.items() if j >= states},
+        )
+        for row in rows
+    ]
+
+
+def _conductance(port: Port) -> sp.Expr:
+    """What a linear resistance gives per unit of what it receives: R, or 1/R where it gives flow."""
+    return port.element.value if port.gives == "effort" else 1 / port.element.value
+
+
+def _scaled(row: Row, factor: sp.Expr) -> Row:
+    return {column: factor * entry for column, entry in row.items()}
+
+
+def named(reduction: Reduction, name: Hashable) -> int:
+    """The number of the port that a node is."""
+    return next(i for i, p in enumerate(reduction.structure.ports) if p.element.name == name)

@@ -1,0 +1,1 @@
+"""Reference solutions, written apart from the package, that the tests compare it with."""
