@@ -73,7 +73,7 @@ def _two_port(strokes: Strokes, node: int) -> Iterator[tuple[int, tuple[Term, ..
     """TF: e_in = m e_out, f_out = m f_in. GY: e_in = r f_out, e_out = r f_in."""
     inward = next(b for b in strokes.at[node] if strokes.bonds[b][1] == node)
     outward = next(b for b in strokes.at[node] if strokes.bonds[b][0] == node)
-    value = strokes.elements[node].value
+    value = strokes.elements[node].constant
     e_in, f_in, e_out, f_out = 2 * inward, 2 * inward + 1, 2 * outward, 2 * outward + 1
     gives_e_in = strokes.end[inward] != node
     if strokes.elements[node].kind is Kind.TF:

@@ -71,6 +71,13 @@ class Element:
         return self.kind not in JUNCTIONS and self.kind not in TWO_PORTS
 
     @property
+    def constant(self) -> sp.Expr:
+        """The value of an element that has one: a linear storage or resistance, TF, GY."""
+        if self.value is None:
+            raise AttributeError(f"{self.kind} {self.name!r} has no constant value")
+        return self.value
+
+    @property
     def given(self) -> sp.Symbol | None:
         """The variable the element imposes, where that is fixed: an input of the equations."""
         return {"effort": self.effort, "flow": self.flow, None: None}[self.gives]
@@ -81,7 +88,7 @@ class Element:
         return {"effort": self.flow, "flow": self.effort, None: None}[self.gives]
 
 
-def Se(name: Hashable, value: object, **more: object) -> Node:  # noqa: N802
+def Se(name: Hashable, value: object, **more: object) -> Node:
     """An effort source. A bare name as value is an input of that name, anything else is known.
 
     >>> Se("engine", "tau_e")
@@ -90,12 +97,12 @@ def Se(name: Hashable, value: object, **more: object) -> Node:  # noqa: N802
     return _node(name, Kind.SE, value=value, **more)
 
 
-def Sf(name: Hashable, value: object, **more: object) -> Node:  # noqa: N802
+def Sf(name: Hashable, value: object, **more: object) -> Node:
     """A flow source. A bare name as value is an input of that name, anything else is known."""
     return _node(name, Kind.SF, value=value, **more)
 
 
-def I(  # noqa: E743, N802
+def I(  # noqa: E743
     name: Hashable, value: object = None, flow: object = None, law: object = None,
     priority: float = 0, **more: object,
 ) -> Node:  # fmt: skip
@@ -106,7 +113,7 @@ def I(  # noqa: E743, N802
     return _node(name, Kind.I, value=value, flow=flow, law=law, priority=priority, **more)
 
 
-def C(  # noqa: N802
+def C(
     name: Hashable, value: object = None, effort: object = None, law: object = None,
     priority: float = 0, **more: object,
 ) -> Node:  # fmt: skip
@@ -114,7 +121,7 @@ def C(  # noqa: N802
     return _node(name, Kind.C, value=value, effort=effort, law=law, priority=priority, **more)
 
 
-def R(  # noqa: N802
+def R(
     name: Hashable, value: object = None, effort: object = None, flow: object = None,
     law: object = None, gives: str = "effort", **more: object,
 ) -> Node:  # fmt: skip
@@ -128,22 +135,22 @@ def R(  # noqa: N802
     )  # fmt: skip
 
 
-def TF(name: Hashable, m: object, **more: object) -> Node:  # noqa: N802
+def TF(name: Hashable, m: object, **more: object) -> Node:
     """A transformer: ``e_in = m e_out``, ``f_out = m f_in``; a gear of ratio w_in/w_out is m = 1/ratio."""
     return _node(name, Kind.TF, value=m, **more)
 
 
-def GY(name: Hashable, r: object, **more: object) -> Node:  # noqa: N802
+def GY(name: Hashable, r: object, **more: object) -> Node:
     """A gyrator: ``e_in = r f_out``, ``e_out = r f_in``."""
     return _node(name, Kind.GY, value=r, **more)
 
 
-def Zero(name: Hashable, effort: object = None, **more: object) -> Node:  # noqa: N802
+def Zero(name: Hashable, effort: object = None, **more: object) -> Node:
     """A 0-junction: one effort, flows that sum to zero. ``effort`` names the common effort."""
     return _node(name, Kind.ZERO, effort=effort, **more)
 
 
-def One(name: Hashable, flow: object = None, **more: object) -> Node:  # noqa: N802
+def One(name: Hashable, flow: object = None, **more: object) -> Node:
     """A 1-junction: one flow, efforts that sum to zero. ``flow`` names the common flow."""
     return _node(name, Kind.ONE, flow=flow, **more)
 

@@ -100,7 +100,7 @@ def state_equations(
     reduction = reduce_ports(structure)
     ports = structure.ports
     balances = [reduction.reading(structure.rows[port]) for port in reduction.states]
-    A = [_rates(ports[port].element.value, at, balances[at].H)
+    A = [_rates(ports[port].element.constant, at, balances[at].H)
          for at, port in enumerate(reduction.states)]  # fmt: skip
     states = tuple(ports[port].given for port in reduction.states)
     _check_regular(A, states)
@@ -123,8 +123,10 @@ def state_equations(
         ([row.K for row in resolved], m),
     ]  # fmt: skip
     matrices = _matrices(parts)
+    shown_names = tuple(symbol for symbol, _ in shown)
+    named = dict(zip("AJBEFDG", matrices, strict=True))
     return StateEquations(
-        states, reduction.inputs, tuple(symbol for symbol, _ in shown), *matrices,
+        states, reduction.inputs, shown_names, **named,
         laws=MappingProxyType(laws), ports=imposed, readings=MappingProxyType(readings),
     )  # fmt: skip
 

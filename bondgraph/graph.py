@@ -1,7 +1,7 @@
 """`validate`: the only reader of the user's attributes; what passes is complete, checked and frozen."""
 
 from collections.abc import Hashable, Mapping
-from typing import Any
+from typing import Any, cast
 
 import networkx as nx
 import sympy as sp
@@ -38,7 +38,7 @@ def validate(graph: Any) -> "nx.DiGraph[Hashable]":
             f"a bond graph is a networkx.DiGraph with one edge a bond, not a {type(graph).__name__}"
         )
     if graph.graph.get("validated") and nx.is_frozen(graph):
-        return graph
+        return cast("nx.DiGraph[Hashable]", graph)
     if len(graph) == 0:
         raise StructureError("the graph has no nodes; add elements and bonds first")
     result: nx.DiGraph[Hashable] = nx.DiGraph(validated=True)
@@ -52,7 +52,8 @@ def validate(graph: Any) -> "nx.DiGraph[Hashable]":
         _check_degree(result, name)
     check_names([result.nodes[name]["element"] for name in result])
     check_one_whole(result)
-    return nx.freeze(result)
+    nx.freeze(result)
+    return result
 
 
 def _check_bond(graph: Any, tail: Hashable, head: Hashable, attributes: dict[str, Any]) -> None:
@@ -106,12 +107,9 @@ def _element(name: Hashable, attributes: Mapping[str, Any]) -> Element:
         raise StructureError(f"{where}: unit {unit!r} must be a text")
     if kind in JUNCTIONS:
         common = "effort" if kind is Kind.ZERO else "flow"
-        names = {
-            "effort": None,
-            "flow": None,
-            common: _name(attributes, common, name, strict=False),
-        }
-        return Element(name, kind, None, **names)
+        variable = _name(attributes, common, name, strict=False)
+        effort, flow = (variable, None) if kind is Kind.ZERO else (None, variable)
+        return Element(name, kind, None, effort, flow)
     if kind in TWO_PORTS:
         return Element(name, kind, _value(attributes, where), None, None, unit=unit)
     if kind in SOURCES:
@@ -179,10 +177,10 @@ def _source(name: Hashable, kind: Kind, attributes: Mapping[str, Any], unit: str
     given = sp.Symbol(value.name) if bare else _name({}, gives, name)
     if bare and value != given:
         raise StructureError(f"{where}: the input {value} must be a symbol without assumptions")
-    names = {gives: given, receives: _name(attributes, receives, name)}
-    return Element(
-        name, kind, None, **names, law=None if bare else law(value, where), gives=gives, unit=unit
-    )
+    received = _name(attributes, receives, name)
+    effort, flow = (given, received) if kind is Kind.SE else (received, given)
+    known = None if bare else law(value, where)
+    return Element(name, kind, None, effort, flow, law=known, gives=gives, unit=unit)
 
 
 def _passive(

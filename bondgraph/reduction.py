@@ -1,6 +1,6 @@
 """Resistances and dependent storages folded away: any row over the ports as ``F x + D u + H x' + K u'``."""
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import networkx as nx
@@ -96,7 +96,7 @@ def _dependent(reduction: Reduction, port: int) -> Reading:
             f"storages and resistances {names} determine each other although one of them could "
             "have integral causality; please report this graph"
         )
-    value, ruled = structure.ports[port].element.value, reduction.reading(row)
+    value, ruled = structure.ports[port].element.constant, reduction.reading(row)
     return Reading({}, {}, _scaled(ruled.F, value), _scaled(ruled.D, value))
 
 
@@ -168,13 +168,8 @@ def _solved(
 
 def _conductance(port: Port) -> sp.Expr:
     """What a linear resistance gives per unit of what it receives: R, or 1/R where it gives flow."""
-    return port.element.value if port.gives == "effort" else 1 / port.element.value
+    return port.element.constant if port.gives == "effort" else 1 / port.element.constant
 
 
 def _scaled(row: Row, factor: sp.Expr) -> Row:
     return {column: factor * entry for column, entry in row.items()}
-
-
-def named(reduction: Reduction, name: Hashable) -> int:
-    """The number of the port that a node is."""
-    return next(i for i, p in enumerate(reduction.structure.ports) if p.element.name == name)

@@ -20,7 +20,9 @@ def regular_ports(
 ) -> dict[int, str]:
     """What each port gives ("effort" or "flow") so that the bond equations have one solution.
 
-    Ports bonded directly to a port are left out: their stroke alone decides. ``order``: the one-ports' node numbers, most important first. ``preferred``: what each should
+    Ports bonded directly to a port are left out: their stroke alone decides.
+
+    ``order``: the one-ports' node numbers, most important first. ``preferred``: what each should
     give; a port whose element fixes it must.
 
     Raises `CausalityError` if fixed ports exclude each other, `AlgebraicLoopError` if the structure
