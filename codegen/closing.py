@@ -1,0 +1,201 @@
+"""Which law closes which port, and in which order laws can be evaluated."""
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
+
+import networkx as nx
+import sympy as sp
+
+from bondgraph import DryFriction, ParameterError, StateEquations, StructureError
+from bondgraph.exact import rows_of
+from bondgraph.expressions import TIME
+from bondgraph.junction import Port
+from bondgraph.laws import ExpressionLaw, Law, law
+from bondgraph.readings import check_laws, depends_on_signals
+
+
+@dataclass(frozen=True)
+class Closing:
+    """The laws by the input they give, sorted by what they depend on.
+
+    ``known``: of time, parameters and external inputs. ``order``: groups of the others in the order of
+    their evaluation, with whether each is a loop. ``friction``: inputs given by dry friction.
+    ``coupled``: laws that depend on friction, solved together with it. ``law_states``: each law's own
+    state and the reading that is its rate.
+    """
+
+    inputs: tuple[sp.Symbol, ...]
+    readings: tuple[sp.Symbol, ...]
+    laws: Mapping[sp.Symbol, Law]
+    port_names: Mapping[sp.Symbol, Hashable]
+    received: Mapping[sp.Symbol, sp.Symbol]
+    law_states: Mapping[sp.Symbol, sp.Symbol]
+    external: tuple[sp.Symbol, ...]
+    known: tuple[sp.Symbol, ...]
+    order: tuple[tuple[tuple[sp.Symbol, ...], bool], ...]
+    friction: tuple[sp.Symbol, ...]
+    coupled: tuple[sp.Symbol, ...]
+
+
+def close_ports(
+    equations: StateEquations, overrides: Mapping[Hashable, object], parameters: set[str]
+) -> Closing:
+    """Merge declared and given laws, sort their names, and find an order of evaluation."""
+    by_port = _merged(equations, overrides)
+    ports = {port.element.name: port for port in equations.ports}
+    _check_parameters(equations, by_port, parameters)
+    for name, port in ports.items():
+        # An open input that parameters name is held at that number.
+        if name not in by_port and port.given.name in parameters:
+            by_port[name] = ExpressionLaw(port.given)
+    laws: dict[sp.Symbol, Law] = {}
+    for name, closed in by_port.items():
+        if laws.setdefault(ports[name].given, closed) != closed:
+            raise StructureError(f"input {ports[name].given} is closed by two different laws")
+    owner = {ports[name].given: name for name in by_port}
+    received = {given: ports[name].received for given, name in owner.items()}
+    states = {
+        closed.state: received[given]
+        for given, closed in laws.items()
+        if isinstance(closed, ExpressionLaw) and closed.state is not None
+    }
+    sorted_laws = _sort(equations, laws, set(states), parameters)
+    known, order, friction, coupled = sorted_laws
+    return Closing(
+        equations.inputs,
+        tuple(equations.readings),
+        laws,
+        owner,
+        received,
+        states,
+        _external(equations, laws, set(states), parameters),
+        known,
+        order,
+        friction,
+        coupled,
+    )
+
+
+def _merged(
+    equations: StateEquations, overrides: Mapping[Hashable, object]
+) -> dict[Hashable, Law]:
+    """Every closed port's law; a key of the overrides is a node, or the input it gives."""
+    merged = dict(equations.laws)
+    for key, value in overrides.items():
+        port = _port(equations.ports, key)
+        name = port.element.name
+        declared = equations.laws.get(name)
+        state = declared.state if isinstance(declared, ExpressionLaw) else None
+        closed = law(value, f"law at {name!r}", state)
+        if isinstance(closed, DryFriction) and port.gives != "effort":
+            raise StructureError(f"law at {name!r}: dry friction gives an effort, this port a flow")
+        merged[name] = closed
+    matrix_rows = rows_of(equations.E)
+    check_laws(merged, equations.states, equations.ports, matrix_rows, equations.readings)
+    return merged
+
+
+def _port(ports: Sequence[Port], key: Hashable) -> Port:
+    named = [port for port in ports if port.element.name == key]
+    giving = [port for port in ports if port.given.name == str(key)]
+    found = named or giving
+    if not found:
+        raise StructureError(
+            f"no open port or source is called {key!r}; there are "
+            f"{', '.join(repr(port.element.name) for port in ports) or 'none'}"
+        )
+    if named and giving and named != giving:
+        raise StructureError(f"law at {key!r}: that names a node and another node's input")
+    return found[0]
+
+
+def _check_parameters(
+    equations: StateEquations, laws: Mapping[Hashable, Law], parameters: set[str]
+) -> None:
+    """Refuse a parameter that names a signal, or an input that a law gives already."""
+    closed = {port.given for port in equations.ports if port.element.name in laws}
+    own = {part.state for part in laws.values() if isinstance(part, ExpressionLaw) and part.state}
+    taken = {*equations.states, *closed, *own, TIME} | (
+        set(equations.readings) - set(equations.inputs)
+    )
+    for name in sorted(taken, key=str):
+        if name.name in parameters:
+            raise ParameterError(f"parameter {name} names a signal of the model; rename it")
+
+
+def _external(
+    equations: StateEquations,
+    laws: Mapping[sp.Symbol, Law],
+    law_states: set[sp.Symbol],
+    parameters: set[str],
+) -> tuple[sp.Symbol, ...]:
+    """Inputs nothing in the model gives: open ports and sources first, then what laws ask for."""
+    known = {*equations.states, *equations.readings, *equations.inputs, *law_states, TIME}
+    asked: set[sp.Symbol] = set()
+    for closed in laws.values():
+        asked |= {name for name in closed.free_symbols - known if name.name not in parameters}
+    return tuple(name for name in equations.inputs if name not in laws) + tuple(
+        sorted(asked, key=str)
+    )
+
+
+Sorted = tuple[
+    tuple[sp.Symbol, ...],
+    tuple[tuple[tuple[sp.Symbol, ...], bool], ...],
+    tuple[sp.Symbol, ...],
+    tuple[sp.Symbol, ...],
+]
+
+
+def _sort(
+    equations: StateEquations,
+    laws: Mapping[sp.Symbol, Law],
+    law_states: set[sp.Symbol],
+    parameters: set[str],
+) -> Sorted:
+    signals = {*equations.states, *equations.readings, *law_states}
+    signals |= {given for given, closed in laws.items() if closed != ExpressionLaw(given)}
+    friction = tuple(name for name in laws if isinstance(laws[name], DryFriction))
+    known = tuple(name for name in laws if not depends_on_signals(laws[name], signals))
+    needs: nx.DiGraph[sp.Symbol] = nx.DiGraph()
+    needs.add_nodes_from(name for name in laws if name not in known)
+    for name in needs:
+        for source in _reads(equations, laws, name):
+            if source in needs:
+                needs.add_edge(source, name)
+    after: set[sp.Symbol] = set().union(*(nx.descendants(needs, name) for name in friction))
+    coupled = tuple(name for name in laws if name in after and name not in friction)
+    rest = needs.subgraph(set(needs) - set(friction) - set(coupled))
+    return known, _groups(rest, list(laws)), friction, coupled
+
+
+def _reads(
+    equations: StateEquations, laws: Mapping[sp.Symbol, Law], name: sp.Symbol
+) -> set[sp.Symbol]:
+    """The inputs a law's value depends on, by name or through the readings it uses."""
+    used = laws[name].free_symbols
+    if isinstance(laws[name], DryFriction):
+        used = used | {port.received for port in equations.ports if port.given == name}
+    result = {symbol for symbol in used if symbol in laws}
+    for symbol in used & set(equations.readings):
+        reading = equations.readings[symbol]
+        # A reading of x' depends on whatever drives the storages: on every input, to be safe.
+        result |= set(laws) if reading.H else {equations.inputs[j] for j in reading.D}
+    return result
+
+
+def _groups(
+    needs: "nx.DiGraph[sp.Symbol]", order: Sequence[sp.Symbol]
+) -> tuple[tuple[tuple[sp.Symbol, ...], bool], ...]:
+    """Laws that determine one another together, each group after those it needs."""
+    position = {name: at for at, name in enumerate(order)}
+    condensed = nx.condensation(needs)
+    members = {
+        group: tuple(sorted(condensed.nodes[group]["members"], key=position.__getitem__))
+        for group in condensed
+    }
+    in_turn = nx.lexicographical_topological_sort(condensed, lambda group: position[members[group][0]])
+    return tuple(
+        (members[group], len(members[group]) > 1 or needs.has_edge(members[group][0], members[group][0]))
+        for group in in_turn
+    )

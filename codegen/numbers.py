@@ -1,0 +1,138 @@
+"""A program with numbers for its parameters: dense arrays, checked exactly before floats are trusted."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+import sympy as sp
+
+from bondgraph import ParameterError, StateEquations
+from bondgraph.exact import Row, rows_of
+from bondgraph.expressions import number
+from bondgraph.residues import ResidueRows, residues
+from codegen.numpy_backend import Array, compiled
+from codegen.program import Program
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """The equations in numbers, solved for the rates; n states, m inputs, p readings.
+
+        x' = P x + Q u + R u'
+         y = F x + D u + G u'
+    """
+
+    #: n x n, n x m, n x m: A^-1 J, A^-1 B, A^-1 E
+    P: Array
+    Q: Array
+    R: Array
+    #: n x n
+    A: Array
+    #: p x n, p x m, p x m
+    F: Array
+    D: Array
+    G: Array
+
+
+def exact_parameters(parameters: Mapping[str, object]) -> dict[str, sp.Rational]:
+    """Every parameter as the rational it stands for; `ParameterError` for what is not a number."""
+    result: dict[str, sp.Rational] = {}
+    for name, value in parameters.items():
+        if not isinstance(name, str):
+            raise ParameterError(f"parameter {name!r}: a parameter's name must be a text")
+        try:
+            result[name] = number(value, f"parameter {name!r}")
+        except ValueError as error:
+            raise ParameterError(str(error)) from None
+    return result
+
+
+def numbers(
+    program: Program, equations: StateEquations, parameters: Mapping[str, sp.Rational]
+) -> Numbers:
+    """Evaluate the coefficients and solve for the rates once.
+
+    Raises `ParameterError` if a coefficient is not finite or A is singular at these parameters;
+    the latter is decided exactly.
+    """
+    matrices = _matrices(program, equations, parameters)
+    _check_regular(equations, parameters)
+    A = matrices["A"]
+    solved = np.zeros((len(A), 0))
+    right = np.hstack([matrices["J"], matrices["B"], matrices["E"]])
+    if len(A):
+        solved = scipy.linalg.solve(A, right)
+    n, m = len(program.states), len(program.inputs)
+    P, Q, R = solved[:, :n], solved[:, n : n + m], solved[:, n + m :]
+    H = matrices["H"]
+    return Numbers(
+        P,
+        Q,
+        R,
+        A,
+        F=matrices["F"] + H @ P,
+        D=matrices["D"] + H @ Q,
+        G=matrices["K"] + H @ R,
+    )
+
+
+def _matrices(
+    program: Program, equations: StateEquations, parameters: Mapping[str, sp.Rational]
+) -> dict[str, Array]:
+    code = program.coefficients
+    arguments = [float(parameters[name.name]) for name in code.arguments]
+    try:
+        with np.errstate(all="ignore"):
+            values = np.array([float(value) for value in compiled(code)(*arguments)])
+        finite = bool(np.isfinite(values).all())
+    except (ArithmeticError, TypeError):
+        finite = False
+    if not finite:
+        raise ParameterError(_not_finite(equations, parameters))
+    result: dict[str, Array] = {}
+    start = 0
+    for name, pattern in program.layout.items():
+        matrix = np.zeros(pattern.shape)
+        end = start + len(pattern.rows)
+        matrix[list(pattern.rows), list(pattern.columns)] = values[start:end]
+        result[name], start = matrix, end
+    return result
+
+
+def _not_finite(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> str:
+    """Which entry of which matrix has no finite real number at these parameters."""
+    for name in "AJBEFDG":
+        for (i, j), entry in sorted(getattr(equations, name).todok().items()):
+            value = at_parameters(entry, parameters)
+            if value.has(sp.zoo, sp.nan, sp.oo) or value.is_real is False:
+                used = ", ".join(
+                    f"{s} = {float(parameters[s.name]):g}"
+                    for s in sorted(entry.free_symbols, key=str)
+                )
+                return f"{name}[{i}, {j}] = {entry} has no finite real value at {used}"
+    return "a coefficient has no finite real value at these parameters"
+
+
+def at_parameters(expr: sp.Expr, parameters: Mapping[str, sp.Rational]) -> sp.Expr:
+    """An expression with exact numbers for its parameters."""
+    return expr.xreplace(
+        {name: parameters[name.name] for name in expr.free_symbols if name.name in parameters}
+    )
+
+
+def _check_regular(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
+    """Refuse parameters at which A has no inverse, by exact rank."""
+    value = residues()
+    rows: list[dict[int, int]] = []
+    exact: list[Row] = rows_of(equations.A)
+    for row in exact:
+        found = {j: value(at_parameters(entry, parameters)) for j, entry in row.items()}
+        rows.append({j: entry for j, entry in found.items() if entry})
+    eliminated = ResidueRows(rows)
+    for i, state in enumerate(equations.states):
+        if not eliminated.pivot(i, jordan=False):
+            raise ParameterError(
+                f"at these parameters the matrix A is singular: {state}' is not determined; "
+                "a storage is zero, or storages cancel each other"
+            )

@@ -1,0 +1,228 @@
+"""`simulator` and what it returns: a model with numbers, ready to run, and the record of a run."""
+
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bondgraph import SignalError, SimulationError, StateEquations
+from codegen.closed import ClosedModel
+from codegen.hybrid import METHODS, Event, Settings, Track, run_hybrid
+from codegen.modes import LOOK_AHEAD, decide
+from codegen.numbers import Array
+from codegen.program import lower
+from codegen.signals import Constant, Signal, as_signal
+
+BACKENDS = ("numpy",)
+
+
+@dataclass(frozen=True)
+class Result:
+    """The record of a run: ``result["omega_1"]`` is any state, input or output over ``result.time``.
+
+    ``events``: what happened at friction ports, in order. At a step or an event a sample shows the
+    instant just after.
+    """
+
+    time: Array
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    events: tuple[Event, ...]
+    columns: Mapping[str, Array]
+
+    def __getitem__(self, name: str) -> Array:
+        """The values of one signal; `KeyError` naming what there is."""
+        try:
+            return self.columns[name]
+        except KeyError:
+            raise KeyError(f"no signal {name!r}; there are {', '.join(self.columns)}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        """The signals' names."""
+        return iter(self.columns)
+
+    def write_csv(self, path: str | PathLike[str]) -> None:
+        """Write time and every signal as comma-separated columns with one line of names."""
+        table = np.column_stack([self.time, *self.columns.values()])
+        header = ",".join(["t", *self.columns])
+        np.savetxt(path, table, delimiter=",", header=header, comments="", fmt="%.17g")
+
+
+@dataclass(frozen=True)
+class Simulator:
+    """A model with numbers for its parameters; every call returns fresh arrays.
+
+    ``states``: names in the order of ``x``, states that laws own last. ``inputs``: names in the order
+    of ``u``, what the model must be given. ``signals``: every name a `Result` holds.
+    """
+
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    closed: ClosedModel
+
+    def rhs(self, t: float, x: ArrayLike, u: ArrayLike = ()) -> Array:
+        """The rate of the states at one instant, inputs held; friction sticks where it can.
+
+        Raises `SignalError` for arrays of another length than ``states`` and ``inputs``.
+        """
+        state, given = np.array(x, dtype=float), np.array(u, dtype=float)
+        for array, names, what in ((state, self.states, "states"), (given, self.inputs, "inputs")):
+            if array.shape != (len(names),):
+                raise SignalError(f"{what} must have shape ({len(names)},), not {array.shape}: {names}")
+        pieces = [Constant(float(value)).pieces[0] for value in given]
+        s = self._vector(t, state, given)
+        with np.errstate(all="ignore"):
+            mode = decide(self.closed, t, s, pieces, self._all_slipping(), frozenset(), LOOK_AHEAD * 1e-3)
+            now = self.closed.at(t, s, pieces, mode)
+        n = len(self.closed.program.states)
+        rate = now.rate[: len(self.states)].copy()
+        rate[:n] += self.closed.model.R @ now.du
+        return rate
+
+    def run(
+        self,
+        time: ArrayLike,
+        initial: Mapping[str, float] | None = None,
+        inputs: Mapping[str, object] | None = None,
+        method: str = "auto",
+        rtol: float = 1e-9,
+        atol: float = 1e-11,
+    ) -> Result:
+        """Integrate over the given times [s] and sample every signal at them.
+
+        ``initial``: states by name, the rest start at 0. ``inputs``: a signal or a number for each
+        of ``inputs``. ``method``: "DOP853", "Radau" (stiff models), or "auto".
+
+        Raises `SignalError` for unusable arguments, `SimulationError` if the run can't go on.
+        """
+        times = _times(time)
+        signals = self._signals(inputs or {})
+        if method != "auto" and method not in METHODS:
+            raise SignalError(f"unknown method {method!r}; there are auto, {', '.join(METHODS)}")
+        self._check_steps(signals, times)
+        at_start = np.array([signal(times[0]) for signal in signals])
+        start = self._vector(float(times[0]), self._initial(initial or {}), at_start)
+        with np.errstate(all="ignore"):
+            track = run_hybrid(self.closed, times, start, signals, Settings(method, rtol, atol))
+            columns = self._columns(times, signals, track)
+        return Result(
+            times, self.states, self.inputs, self.outputs, tuple(track.events), MappingProxyType(columns)
+        )
+
+    def _all_slipping(self) -> tuple[int, ...]:
+        return tuple(1 for _ in self.closed.program.friction)
+
+    def _vector(self, t: float, state: Array, given: Array) -> Array:
+        """The integrated vector at a state: x less what inputs that drive dependent storages add."""
+        s = np.zeros(self.closed.size)
+        s[: len(state)] = state
+        zeros = np.zeros(len(given))
+        if self.closed.model.R.any():
+            known = self.closed.evaluate(t, s, given, zeros, self._all_slipping())
+            n = len(self.closed.program.states)
+            s[:n] -= self.closed.model.R @ known.u
+        return s
+
+    def _initial(self, initial: Mapping[str, float]) -> Array:
+        state = np.zeros(len(self.states))
+        for name, value in initial.items():
+            if name not in self.states:
+                raise SignalError(f"{name!r} is not a state; there are {', '.join(self.states)}")
+            if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+                raise SignalError(f"initial {name}: {value!r} is not a number")
+            if not np.isfinite(value):
+                raise SignalError(f"initial {name}: {value!r} is not finite")
+            state[self.states.index(name)] = value
+        return state
+
+    def _signals(self, inputs: Mapping[str, object]) -> list[Signal]:
+        for name in inputs:
+            if name not in self.inputs:
+                known = ", ".join(self.inputs) or "none"
+                raise SignalError(f"unknown input {name!r}; the model's inputs are {known}")
+        missing = [name for name in self.inputs if name not in inputs]
+        if missing:
+            raise SignalError(
+                f"missing input(s) {', '.join(missing)}: give each a signal or a number in inputs, "
+                "a law in laws, or, if it is a parameter, a number in parameters"
+            )
+        return [as_signal(inputs[name], name) for name in self.inputs]
+
+    def _check_steps(self, signals: Sequence[Signal], times: Array) -> None:
+        """Refuse steps of inputs whose rate an output shows: it would be an impulse."""
+        program, G = self.closed.program, self.closed.model.G
+        for name, signal in zip(self.inputs, signals, strict=True):
+            columns = [j for j, symbol in enumerate(program.inputs) if symbol.name == name]
+            rows = [i for i in range(len(G)) if any(G[i, j] for j in columns)]
+            if not rows:
+                continue
+            for b, one, other in zip(signal.breakpoints, signal.pieces, signal.pieces[1:], strict=False):
+                jump = abs(one(b) - other(b))
+                if times[0] < b <= times[-1] and jump > 1e-12 * (abs(one(b)) + abs(other(b))):
+                    raise SimulationError(
+                        f"input {name!r} steps at t = {b:g}, where {program.readings[rows[0]]} shows its "
+                        "rate and would be an impulse; smooth it with Lag or Ramp"
+                    )
+
+    def _columns(self, times: Array, signals: Sequence[Signal], track: Track) -> dict[str, Array]:
+        program = self.closed.program
+        shots = [
+            self.closed.at(t, s, [signal.piece(t) for signal in signals], mode)
+            for t, s, mode in zip(times.tolist(), track.vectors, track.modes, strict=True)
+        ]
+        groups = (
+            (program.states, [shot.x for shot in shots]),
+            (program.law_states, [shot.z for shot in shots]),
+            (program.inputs, [shot.u for shot in shots]),
+            (program.external, [shot.external for shot in shots]),
+            (program.readings, [shot.y for shot in shots]),
+        )
+        columns: dict[str, Array] = {}
+        for names, rows in groups:
+            table = np.array(rows)
+            for at, name in enumerate(names):
+                columns.setdefault(name.name, table[:, at].copy())
+        return columns
+
+
+def simulator(
+    equations: StateEquations,
+    parameters: Mapping[str, object],
+    laws: Mapping[Hashable, object] | None = None,
+    backend: str = "numpy",
+) -> Simulator:
+    """A simulator of these equations with these numbers.
+
+    ``parameters``: name to number. ``laws``: node (or the input it gives) to an expression or
+    `DryFriction`, over the laws declared in the graph. A name in a law that parameters don't have is
+    an input.
+
+    Raises `ParameterError`, `StructureError` or `DependentSourceError` for what cannot be used.
+    """
+    if backend not in BACKENDS:
+        raise SignalError(f"unknown backend {backend!r}; there is {', '.join(BACKENDS)}")
+    program = lower(equations, laws, parameters)
+    closed = ClosedModel(program, equations, parameters)
+    return Simulator(
+        tuple(name.name for name in (*program.states, *program.law_states)),
+        tuple(name.name for name in program.external),
+        tuple(name.name for name in program.outputs),
+        closed,
+    )
+
+
+def _times(time: ArrayLike) -> Array:
+    times = np.array(time, dtype=float)
+    if times.ndim != 1 or len(times) < 2:
+        raise SignalError(f"time must be a list of two or more points, not of shape {times.shape}")
+    if not np.isfinite(times).all():
+        raise SignalError("time: a point is not finite")
+    if not (np.diff(times) > 0).all():
+        at = int(np.argmin(np.diff(times)))
+        raise SignalError(f"time must increase; {times[at]:g} is followed by {times[at + 1]:g}")
+    return times
