@@ -37,5 +37,9 @@ class SignalError(BondGraphError):
     """An input, an initial value or the time axis of a run is not usable."""
 
 
+class MissingExtraError(BondGraphError):
+    """A package that only an optional extra installs is missing."""
+
+
 class SimulationError(BondGraphError):
     """A run cannot go on; the message gives the time and the numbers."""

@@ -14,8 +14,10 @@ import sympy as sp
 
 from bondgraph import SimulationError, StateEquations
 from bondgraph.expressions import TIME
+from codegen.affine import AffineMap
+from codegen.arrays import Array
 from codegen.friction import Hold, exact_rows, fair_share, hold
-from codegen.numbers import Array, Numbers, exact_parameters, numbers
+from codegen.numbers import Numbers, exact_parameters, numbers
 from codegen.numpy_backend import compiled
 from codegen.program import Block, Group, Program
 from codegen.signals import Piece
@@ -66,6 +68,8 @@ class ClosedModel:
         self._rated = bool(self.model.R.any() or self.model.G.any() or self.model.D.any())
         self._known_rates = self._function(program.known_rates) if self._rated else None
         self.joint = bool(program.coupled.inputs) or bool(self._exact_D.todok())
+        self.affine = program.affine and not self.joint
+        self._maps: dict[Mode, AffineMap | None] = {}
         self._holds: dict[tuple[int, ...], Hold] = {}
 
     @property
@@ -89,13 +93,50 @@ class ClosedModel:
     def at(self, t: float, s: Array, pieces: Sequence[Piece], mode: Mode) -> Snapshot:
         """Every variable at one time, with the inputs' pieces and the friction mode given."""
         w = np.array([piece(t) for piece in pieces])
+        if self.affine:
+            return self._at_affine(t, s, w, pieces, mode)
         dw = np.zeros(len(w))
         if self._rated:
             dw = np.array([piece.derivative(t) for piece in pieces])
         return self.evaluate(t, s, w, dw, mode)
 
-    def evaluate(self, t: float, s: Array, w: Array, dw: Array, mode: Mode) -> Snapshot:
-        """As `at`, from the values and rates of the external inputs."""
+    def _at_affine(
+        self, t: float, s: Array, w: Array, pieces: Sequence[Piece], mode: Mode
+    ) -> Snapshot:
+        dw = np.array([piece.derivative(t) for piece in pieces]) if self._rated else 0.0 * w
+        if mode not in self._maps:
+            self._maps[mode] = self._affine_map(mode, len(w))
+        found = self._maps[mode]
+        if found is None:
+            return self.evaluate(t, s, w, dw, mode)
+        x, z, u, du, y, rate, caps = found(s, w, dw)
+        if mode and min(caps) < 0:
+            return self.evaluate(t, s, w, dw, mode)
+        return Snapshot(x, z, u, du, y, rate, caps, w)
+
+    def _affine_map(self, mode: Mode, inputs: int) -> AffineMap | None:
+        """The mode's matrix, column by column; None where redundant ports share a load, unequally."""
+        if 0 in mode and len(self.hold(mode).share):
+            return None
+        zero = np.zeros(self.size + 2 * inputs)
+
+        def point(v: Array) -> Array:
+            s, w, dw = np.split(v, [self.size, self.size + inputs])
+            now = self.evaluate(0.0, s, w, dw, mode, checked=False)
+            return np.concatenate([now.x, now.z, now.u, now.du, now.y, now.rate, now.caps])
+
+        origin = point(zero)
+        columns = [point(row) - origin for row in np.eye(len(zero))]
+        sizes = (
+            len(self.program.states), len(self.program.law_states), len(self.program.inputs),
+            len(self.program.inputs), len(self.program.readings), self.size, len(mode),
+        )  # fmt: skip
+        return AffineMap(sizes, np.column_stack([*columns, origin]))
+
+    def evaluate(
+        self, t: float, s: Array, w: Array, dw: Array, mode: Mode, checked: bool = True
+    ) -> Snapshot:
+        """As `at`, from the values and rates of the external inputs; ``checked``: levels, for sign."""
         program, model = self.program, self.model
         n = len(program.states)
         xi, z = s[:n], s[n : n + len(program.law_states)]
@@ -112,7 +153,7 @@ class ClosedModel:
         y = model.F @ x + model.D @ u + model.G @ du
         for group, function in zip(program.groups, self._groups, strict=True):
             self._give(group, function, t, x, z, y, u, w, dw)
-        caps = self._rub(t, x, z, y, u, w, du, dw, mode)
+        caps = self._rub(t, x, z, y, u, w, du, dw, mode, checked)
         rate = np.zeros(self.size)
         rate[:n] = model.P @ x + model.Q @ u
         if len(z):
@@ -133,7 +174,7 @@ class ClosedModel:
         y += self.model.D[:, columns] @ values
 
     def _rub(self, t: float, x: Array, z: Array, y: Array, u: Array, w: Array, du: Array,
-             dw: Array, mode: Mode) -> Array:  # fmt: skip
+             dw: Array, mode: Mode, checked: bool) -> Array:  # fmt: skip
         """The friction efforts of a mode into u and y; returns the breakaway efforts."""
         if not self.friction_inputs:
             return np.zeros(0)
@@ -145,7 +186,8 @@ class ClosedModel:
             values = np.array(
                 self._friction(self._pool(t, x, z, at_y, at_u, w, dw)), dtype=float
             ).reshape(-1, 3)
-            self._check_levels(values, t)
+            if checked:
+                self._check_levels(values, t)
             return values[:, 0] * values[:, 2] * signs, values[:, 1]
 
         if self.joint:

@@ -76,9 +76,7 @@ def close_ports(
     )
 
 
-def _merged(
-    equations: StateEquations, overrides: Mapping[Hashable, object]
-) -> dict[Hashable, Law]:
+def _merged(equations: StateEquations, overrides: Mapping[Hashable, object]) -> dict[Hashable, Law]:
     """Every closed port's law; a key of the overrides is a node, or the input it gives."""
     merged = dict(equations.laws)
     for key, value in overrides.items():
@@ -194,8 +192,13 @@ def _groups(
         group: tuple(sorted(condensed.nodes[group]["members"], key=position.__getitem__))
         for group in condensed
     }
-    in_turn = nx.lexicographical_topological_sort(condensed, lambda group: position[members[group][0]])
+    in_turn = nx.lexicographical_topological_sort(
+        condensed, lambda group: position[members[group][0]]
+    )
     return tuple(
-        (members[group], len(members[group]) > 1 or needs.has_edge(members[group][0], members[group][0]))
+        (
+            members[group],
+            len(members[group]) > 1 or needs.has_edge(members[group][0], members[group][0]),
+        )
         for group in in_turn
     )

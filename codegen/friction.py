@@ -15,7 +15,8 @@ import scipy.optimize
 import sympy as sp
 
 from bondgraph import StateEquations
-from codegen.numbers import Array, Numbers, at_parameters
+from codegen.arrays import Array
+from codegen.numbers import Numbers, at_parameters
 from codegen.program import Program
 
 
@@ -87,12 +88,13 @@ def hold(
     U = np.vstack([D_s[direct], slip_x @ model.Q])
     V = np.vstack([G_s[direct], slip_x @ model.R + slip_u])
     system = np.vstack([U[:, inputs], _array(share)])
+    inverse: Array = np.linalg.inv(system) if len(system) else np.zeros((0, 0))
     return Hold(
         ports,
         X,
         U,
         V,
-        inverse=np.linalg.inv(system) if len(system) else np.zeros((0, 0)),
+        inverse=inverse,
         share=_array(share),
         slip_x=slip_x,
         slip_u=slip_u,
@@ -104,7 +106,7 @@ def _take_away(model: Numbers, slip_x: Array) -> Array:
     """``-A^-1 S^T (S A^-1 S^T)^-1``: the impulse that stops the slips S x, and moves nothing else."""
     if not len(slip_x):
         return np.zeros((slip_x.shape[1], 0))
-    moved = np.linalg.solve(model.A, slip_x.T)
+    moved: Array = np.linalg.solve(model.A, slip_x.T)
     result: Array = -moved @ np.linalg.inv(slip_x @ moved)
     return result
 

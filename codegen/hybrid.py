@@ -9,9 +9,9 @@ from scipy.integrate import DOP853, Radau
 from scipy.optimize import brentq, minimize_scalar
 
 from bondgraph import SimulationError
+from codegen.arrays import Array
 from codegen.closed import ClosedModel, Mode, Snapshot
 from codegen.modes import LOOK_AHEAD, Scales, decide, scales
-from codegen.numbers import Array
 from codegen.signals import Piece, Signal
 
 METHODS = {"DOP853": DOP853, "Radau": Radau}
@@ -89,7 +89,9 @@ def run_hybrid(
         loose = touched | {i for i, sign in enumerate(mode) if sign == 0 and not first}
         lam = _fastest(model, t, s, pieces, mode)
         ahead = LOOK_AHEAD / max(lam, 100.0 / (end - t))
-        new = decide(model, t, s, pieces, mode, frozenset(_still(model, t, s, pieces, mode, loose)), ahead)
+        new = decide(
+            model, t, s, pieces, mode, frozenset(_still(model, t, s, pieces, mode, loose)), ahead
+        )
         if not first:
             _note(model, track.events, t, mode, new, guard)
         mode, first = new, False
@@ -103,7 +105,12 @@ def run_hybrid(
 
 
 def _still(
-    model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode, ports: frozenset[int]
+    model: ClosedModel,
+    t: float,
+    s: Array,
+    pieces: Sequence[Piece],
+    mode: Mode,
+    ports: frozenset[int],
 ) -> set[int]:
     """Those of the ports that are at rest, or close enough for it to be the event's own rounding."""
     if not ports:
@@ -114,9 +121,7 @@ def _still(
     return {i for i in ports if slips[i] <= limits[i] or model.coupled_directly(i)}
 
 
-def _at_rest(
-    model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode
-) -> Array:
+def _at_rest(model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode) -> Array:
     """Remove what slip is left at sticking ports, along ``A^-1 F^T``: no energy but the slip's own."""
     if all(mode):
         return s
@@ -217,7 +222,9 @@ class _Leg:
                 return until, dense(until), found[1]
         return self.stop, solver.y, frozenset()
 
-    def _sample(self, times: Array, track: Track, until: float, dense: Callable[[float], Array]) -> None:
+    def _sample(
+        self, times: Array, track: Track, until: float, dense: Callable[[float], Array]
+    ) -> None:
         """Record the samples before ``until``: at it, the next leg shows the instant after."""
         while track.recorded < len(times) and times[track.recorded] < until:
             track.record(dense(times[track.recorded]), self.mode)
@@ -256,14 +263,19 @@ class _Leg:
             roots: dict[int, float] = {}
             for i in self.watched:
                 root = self._root(i, grid[k], grid[k + 1], values[k][i], values[k + 1][i], dense)
-                if root is None and 0 < k and self.armed[i]:
-                    root = self._dip(i, grid[k - 1 : k + 2], [v[i] for v in values[k - 1 : k + 2]], dense)
+                if root is None and k > 0 and self.armed[i]:
+                    root = self._dip(
+                        i, grid[k - 1 : k + 2], [v[i] for v in values[k - 1 : k + 2]], dense
+                    )
                 if root is not None:
                     roots[i] = root
             if roots:
                 time = min(roots.values())
                 near = 1e-12 * max(abs(time), t_new - t_old)
-                return (time, frozenset(i for i, root in roots.items() if root <= time + near)), values[-1]
+                return (
+                    time,
+                    frozenset(i for i, root in roots.items() if root <= time + near),
+                ), values[-1]
         return None, values[-1]
 
     def _root(

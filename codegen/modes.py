@@ -7,8 +7,8 @@ from itertools import product
 import numpy as np
 
 from bondgraph import SimulationError
+from codegen.arrays import Array
 from codegen.closed import ClosedModel, Mode, Snapshot
-from codegen.numbers import Array
 from codegen.signals import Piece
 
 TOLERANCE = 1e-10
@@ -32,7 +32,9 @@ def scales(model: ClosedModel, now: Snapshot) -> Scales:
     readings, numbers = model.friction_readings, model.model
     x, u = np.abs(now.x), np.abs(now.u)
     slip = np.abs(numbers.F[readings]) @ x + np.abs(numbers.D[readings]) @ u
-    moved = np.abs(numbers.F[readings] @ numbers.P) @ x + np.abs(numbers.F[readings] @ numbers.Q) @ u
+    moved = (
+        np.abs(numbers.F[readings] @ numbers.P) @ x + np.abs(numbers.F[readings] @ numbers.Q) @ u
+    )
     efforts = np.abs(now.u[model.friction_inputs]) + now.caps
     inertia = np.array([
         abs(numbers.F[r] @ numbers.Q[:, c]) + abs(numbers.D[r, c])

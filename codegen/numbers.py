@@ -11,7 +11,8 @@ from bondgraph import ParameterError, StateEquations
 from bondgraph.exact import Row, rows_of
 from bondgraph.expressions import number
 from bondgraph.residues import ResidueRows, residues
-from codegen.numpy_backend import Array, compiled
+from codegen.arrays import Array
+from codegen.numpy_backend import compiled
 from codegen.program import Program
 
 
@@ -19,8 +20,8 @@ from codegen.program import Program
 class Numbers:
     """The equations in numbers, solved for the rates; n states, m inputs, p readings.
 
-        x' = P x + Q u + R u'
-         y = F x + D u + G u'
+    x' = P x + Q u + R u'
+     y = F x + D u + G u'
     """
 
     #: n x n, n x m, n x m: A^-1 J, A^-1 B, A^-1 E

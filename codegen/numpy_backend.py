@@ -3,13 +3,9 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from codegen.program import Block
-
-Array = NDArray[np.float64]
 
 
 def compiled(code: Block) -> Callable[..., list[Any]]:
@@ -24,7 +20,7 @@ def compiled(code: Block) -> Callable[..., list[Any]]:
     def shared(expressions: Sequence[sp.Expr]) -> tuple[list[Any], list[Any]]:
         return list(code.assignments), list(expressions)
 
-    function = sp.lambdify(
+    function: Callable[..., list[Any]] = sp.lambdify(
         list(code.arguments), list(code.results), modules="numpy", cse=shared, dummify=True
     )
-    return function  # type: ignore[no-any-return]
+    return function

@@ -3,12 +3,14 @@
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Any
 
 import sympy as sp
 
 from bondgraph import DryFriction, ParameterError, StateEquations
 from bondgraph.expressions import TIME
 from bondgraph.laws import SLIP, ExpressionLaw, Law
+from codegen.affine import is_affine
 from codegen.closing import Closing, close_ports
 
 TEMPORARY = "c"
@@ -83,11 +85,13 @@ class Program:
     friction: tuple[FrictionPort, ...]
     friction_values: Block
     coupled: Group
+    #: Whether each friction mode is an affine system with constant coefficients.
+    affine: bool
 
 
 def lower(
     equations: StateEquations,
-    laws: Mapping[Hashable, object] | None = None,
+    laws: Mapping[Any, object] | None = None,
     parameters: Iterable[str] = (),
 ) -> Program:
     """Sort names into parameters and inputs, order the laws, and share common subexpressions.
@@ -128,6 +132,7 @@ def lower(
         friction=friction,
         friction_values=block(values, taken),
         coupled=_group(closing, closing.coupled, True, taken),
+        affine=_is_affine(closing, values, given),
     )
 
 
@@ -138,9 +143,7 @@ def block(expressions: Sequence[sp.Expr], taken: Iterable[sp.Symbol] = ()) -> Bl
     for expr in expressions:
         used |= expr.free_symbols
     avoided = {name.name for name in used} | {name.name for name in taken}
-    temporaries = (
-        name for name in sp.numbered_symbols(TEMPORARY) if name.name not in avoided
-    )
+    temporaries = (name for name in sp.numbered_symbols(TEMPORARY) if name.name not in avoided)
     assignments, results = sp.cse(expressions, symbols=temporaries, order="none")
     arguments = tuple(sorted(used, key=str))
     return Block(arguments, tuple(assignments), tuple(results))
@@ -188,6 +191,15 @@ def _group(
     expressions = [_expression(closing.laws[name]) for name in names]
     ports = tuple(closing.port_names[name] for name in names)
     return Group(inputs, ports, loop, block(expressions, taken))
+
+
+def _is_affine(closing: Closing, friction: list[sp.Expr], parameters: set[str]) -> bool:
+    """Whether all laws are affine and none has to be solved for; curves must be constant."""
+    if closing.coupled or any(loop for _, loop in closing.order):
+        return False
+    given = [law.expression for law in closing.laws.values() if isinstance(law, ExpressionLaw)]
+    curves = all(isinstance(c, sp.Expr) and c.is_number for c in friction[2::3])
+    return curves and is_affine([*given, *friction], parameters)
 
 
 def _expression(law: Law) -> sp.Expr:

@@ -211,7 +211,10 @@ class Sampled(Signal):
             Piece(t, ((0, (v, float(slope))),))
             for t, v, slope in zip(self.times, self.values, slopes, strict=False)
         ]
-        first, last = _constant(self.times[0], self.values[0]), _constant(self.times[-1], self.values[-1])
+        first, last = (
+            _constant(self.times[0], self.values[0]),
+            _constant(self.times[-1], self.values[-1]),
+        )
         return (first, *lines, last)
 
 
@@ -258,7 +261,7 @@ class _Sum(Signal):
     other: Signal
 
     @cached_property
-    def breakpoints(self) -> tuple[float, ...]:  # type: ignore[override]
+    def breakpoints(self) -> tuple[float, ...]:
         """Those of both."""
         return tuple(sorted({*self.one.breakpoints, *self.other.breakpoints}))
 

@@ -1,18 +1,19 @@
 """`simulator` and what it returns: a model with numbers, ready to run, and the record of a run."""
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bondgraph import SignalError, SimulationError, StateEquations
+from codegen.arrays import Array
 from codegen.closed import ClosedModel
 from codegen.hybrid import METHODS, Event, Settings, Track, run_hybrid
 from codegen.modes import LOOK_AHEAD, decide
-from codegen.numbers import Array
 from codegen.program import lower
 from codegen.signals import Constant, Signal, as_signal
 
@@ -73,11 +74,15 @@ class Simulator:
         state, given = np.array(x, dtype=float), np.array(u, dtype=float)
         for array, names, what in ((state, self.states, "states"), (given, self.inputs, "inputs")):
             if array.shape != (len(names),):
-                raise SignalError(f"{what} must have shape ({len(names)},), not {array.shape}: {names}")
+                raise SignalError(
+                    f"{what} must have shape ({len(names)},), not {array.shape}: {names}"
+                )
         pieces = [Constant(float(value)).pieces[0] for value in given]
         s = self._vector(t, state, given)
         with np.errstate(all="ignore"):
-            mode = decide(self.closed, t, s, pieces, self._all_slipping(), frozenset(), LOOK_AHEAD * 1e-3)
+            mode = decide(
+                self.closed, t, s, pieces, self._all_slipping(), frozenset(), LOOK_AHEAD * 1e-3
+            )
             now = self.closed.at(t, s, pieces, mode)
         n = len(self.closed.program.states)
         rate = now.rate[: len(self.states)].copy()
@@ -90,7 +95,7 @@ class Simulator:
         initial: Mapping[str, float] | None = None,
         inputs: Mapping[str, object] | None = None,
         method: str = "auto",
-        rtol: float = 1e-9,
+        rtol: float = 1e-10,
         atol: float = 1e-11,
     ) -> Result:
         """Integrate over the given times [s] and sample every signal at them.
@@ -111,7 +116,12 @@ class Simulator:
             track = run_hybrid(self.closed, times, start, signals, Settings(method, rtol, atol))
             columns = self._columns(times, signals, track)
         return Result(
-            times, self.states, self.inputs, self.outputs, tuple(track.events), MappingProxyType(columns)
+            times,
+            self.states,
+            self.inputs,
+            self.outputs,
+            tuple(track.events),
+            MappingProxyType(columns),
         )
 
     def _all_slipping(self) -> tuple[int, ...]:
@@ -161,7 +171,9 @@ class Simulator:
             rows = [i for i in range(len(G)) if any(G[i, j] for j in columns)]
             if not rows:
                 continue
-            for b, one, other in zip(signal.breakpoints, signal.pieces, signal.pieces[1:], strict=False):
+            for b, one, other in zip(
+                signal.breakpoints, signal.pieces, signal.pieces[1:], strict=False
+            ):
                 jump = abs(one(b) - other(b))
                 if times[0] < b <= times[-1] and jump > 1e-12 * (abs(one(b)) + abs(other(b))):
                     raise SimulationError(
@@ -193,7 +205,7 @@ class Simulator:
 def simulator(
     equations: StateEquations,
     parameters: Mapping[str, object],
-    laws: Mapping[Hashable, object] | None = None,
+    laws: Mapping[Any, object] | None = None,
     backend: str = "numpy",
 ) -> Simulator:
     """A simulator of these equations with these numbers.

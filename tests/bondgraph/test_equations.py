@@ -91,7 +91,13 @@ def test_graph_without_storages_has_equations_without_states() -> None:
 
 
 def test_outputs_of_storages_and_resistances_are_what_they_receive() -> None:
-    nodes = [bg.Se("s", "u"), bg.One("j", flow="v"), bg.I("m", "m"), bg.C("k", "1/k"), bg.R("b", "b")]
+    nodes = [
+        bg.Se("s", "u"),
+        bg.One("j", flow="v"),
+        bg.I("m", "m"),
+        bg.C("k", "1/k"),
+        bg.R("b", "b"),
+    ]
     names = ["k", "m", "b", "j", "s"]
     equations = bg.derive(bond_graph(nodes, "s>j j>m j>k j>b"), outputs=names)
     assert equations.outputs == sp.symbols("f_k e_m f_b v f_s")

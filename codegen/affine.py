@@ -1,0 +1,42 @@
+"""Models whose laws are affine: in each friction mode everything is one matrix times one vector."""
+
+from collections.abc import Iterable
+
+import numpy as np
+import sympy as sp
+
+from bondgraph.expressions import TIME
+from codegen.arrays import Array
+
+
+def is_affine(expressions: Iterable[sp.Expr], parameters: set[str]) -> bool:
+    """Whether every expression is a constant plus constants times signals, and free of time.
+
+    >>> k, x, y = sp.symbols("k x y")
+    >>> is_affine([k*x + y - 1], {"k"}), is_affine([x*y], set()), is_affine([abs(x)], set())
+    (True, False, False)
+    """
+    for expr in expressions:
+        signals = {name for name in expr.free_symbols if name.name not in parameters}
+        if TIME in signals:
+            return False
+        for name in sorted(signals, key=str):
+            if sp.diff(expr, name).free_symbols & signals:
+                return False
+        if signals and expr.atoms(sp.Abs, sp.sign, sp.Min, sp.Max, sp.Piecewise):
+            return False
+    return True
+
+
+class AffineMap:
+    """``v = T [s, w, dw, 1]``, cut into the parts of ``v``."""
+
+    def __init__(self, sizes: tuple[int, ...], matrix: Array) -> None:
+        self.matrix = matrix
+        ends = np.cumsum(sizes).tolist()
+        self.parts = [slice(end - size, end) for end, size in zip(ends, sizes, strict=True)]
+
+    def __call__(self, *vectors: Array) -> list[Array]:
+        """The parts at one point."""
+        values = self.matrix @ np.concatenate((*vectors, (1.0,)))
+        return [values[part] for part in self.parts]

@@ -1,0 +1,116 @@
+"""Equal names mean equal quantities; no law has to be differentiated."""
+
+import pytest
+import sympy as sp
+from references.build import Graph, bond_graph
+from references.matrices import differences
+
+import bondgraph as bg
+
+
+def _two_masses(**names: str) -> Graph:
+    """Mass m at junction j and mass n at junction k, a damper b between them at z."""
+    nodes = [
+        bg.Se("s", "u"), bg.One("j", flow=names.get("j")), bg.I("m", "m", flow="v"), bg.Zero("z"),
+        bg.R("b", "b", flow=names.get("b")), bg.One("k", flow=names.get("k")),
+        bg.I("n", "n", flow=names.get("n", "w")),
+    ]  # fmt: skip
+    return bond_graph(nodes, "s>j>m j>z>b z>k>n")
+
+
+def test_equal_names_of_equal_quantities_are_accepted() -> None:
+    equations = bg.derive(_two_masses(j="v", k="w"), outputs=["j", "k"])
+    assert equations.outputs == equations.states == sp.symbols("v w")
+    assert differences(equations.F, [[1, 0], [0, 1]]) == {}
+
+
+def test_equal_names_of_equal_dependent_quantities_are_accepted() -> None:
+    """Two masses on one shaft: one is dependent, and their speeds are one."""
+    nodes = [bg.Se("s", "u"), bg.One("j"), bg.I("m", "m", flow="v"), bg.I("n", "n", flow="v")]
+    equations = bg.derive(bond_graph(nodes, "s>j j>m j>n"), outputs=["n"])
+    assert equations.states == equations.outputs == sp.symbols("v,")
+
+
+@pytest.mark.parametrize("names", [{"j": "w"}, {"k": "v"}, {"j": "u"}])
+def test_equal_names_of_different_shown_quantities_are_refused(names: dict[str, str]) -> None:
+    (output, name), = names.items()  # fmt: skip
+    with pytest.raises(bg.StructureError, match=f"different quantities are called {name}"):
+        bg.derive(_two_masses(**names), outputs=[output])
+
+
+@pytest.mark.parametrize("names", [{"j": "w"}, {"b": "v"}, {"k": "v"}])
+def test_equal_names_of_different_quantities_are_refused_without_being_shown(
+    names: dict[str, str],
+) -> None:
+    with pytest.raises(bg.StructureError, match="different quantities"):
+        bg.derive(_two_masses(**names))
+
+
+def test_two_states_of_one_name_are_refused() -> None:
+    with pytest.raises(bg.StructureError, match="two storages have a state v"):
+        bg.derive(_two_masses(n="v"))
+
+
+def test_state_with_the_name_of_an_input_is_refused() -> None:
+    nodes = [bg.Se("s", "v"), bg.One("j"), bg.I("m", "m", flow="v")]
+    with pytest.raises(bg.StructureError, match="v names both a state and an input"):
+        bg.derive(bond_graph(nodes, "s>j>m"))
+
+
+def test_two_ports_that_receive_one_name_must_receive_one_quantity() -> None:
+    nodes = [bg.One("j"), bg.I("m", "m"), bg.R("p", flow="y"), bg.R("q", flow="y")]
+    assert bg.derive(bond_graph(nodes, "j>m j>p j>q")).outputs == sp.symbols("y y")
+    nodes = [bg.TF("g", "n"), *nodes]
+    with pytest.raises(bg.StructureError, match="different quantities are called y"):
+        bg.derive(bond_graph(nodes, "j>m j>p j>g>q"))
+
+
+def _clutch_on_a_spring(law: object, gives: str = "effort") -> Graph:
+    """A port between a driven shaft and a spring without an inertia between."""
+    nodes = [bg.Zero("z"), bg.C("k", "1/k"), bg.R("p", law=law, gives=gives), bg.Sf("w", "w")]
+    return bond_graph(nodes, "w>z>k z>p")
+
+
+@pytest.mark.parametrize("law", ["c*f_p", "c*w*f_p", bg.DryFriction("mu")])
+def test_law_that_drives_a_dependent_storage_is_refused(law: object) -> None:
+    with pytest.raises(bg.DependentSourceError, match=r"law at 'p'.*gives='flow'"):
+        bg.derive(_clutch_on_a_spring(law))
+
+
+def test_law_that_gives_the_flow_instead_is_accepted() -> None:
+    equations = bg.derive(_clutch_on_a_spring("e_p/c", gives="flow"))
+    assert equations.states == sp.symbols("e_k,")
+    assert differences(equations.B, [[-1, 1]]) == {}
+
+
+def test_known_source_may_drive_a_dependent_storage() -> None:
+    equations = bg.derive(_clutch_on_a_spring("a*sin(t)"), outputs=["p"])
+    assert differences(equations.G, [[-1 / sp.Symbol("k"), 0]]) == {}
+
+
+def _law_over_a_spring(law: str) -> Graph:
+    """The law's port imposes the effort of a spring, which is dependent, and drives a mass."""
+    nodes = [
+        bg.Sf("s", "u"), bg.Zero("z"), bg.C("k", "1/k"), bg.R("p", law=law),
+        bg.One("j", flow="v_j"), bg.I("m", "m", flow="v"), bg.R("d", "d", flow="v_d"),
+    ]  # fmt: skip
+    return bond_graph(nodes, "s>z z>k p>z z>j j>m j>d")
+
+
+@pytest.mark.parametrize("name", ["v", "v_j", "v_d"])
+def test_law_of_any_signal_of_the_graph_that_drives_a_dependent_storage_is_refused(
+    name: str,
+) -> None:
+    """State, junction and damper have one speed under three names."""
+    with pytest.raises(bg.DependentSourceError, match="law at 'p'"):
+        bg.derive(_law_over_a_spring(f"c*{name}"))
+
+
+@pytest.mark.parametrize("name", ["v", "v_j", "v_d"])
+def test_signal_that_a_law_reads_is_known(name: str) -> None:
+    nodes = [
+        bg.Se("s", "u"), bg.One("j", flow="v_j"), bg.I("m", "m", flow="v"),
+        bg.R("d", "d", flow="v_d"), bg.R("p", law=f"c*{name}**2"),
+    ]  # fmt: skip
+    equations = bg.derive(bond_graph(nodes, "s>j j>m j>d j>p"))
+    assert sp.Symbol(name) in {*equations.states, *equations.inputs, *equations.readings}

@@ -1,0 +1,90 @@
+"""Refusals of causality in words: who, where, why."""
+
+import pytest
+from references.brute_force import regular, regular_port_choices, valid_strokes
+from references.build import Graph, bond_graph
+
+import bondgraph as bg
+
+
+def _refused(graph: Graph, message: str) -> str:
+    """The refusal's text; the refusal is genuine by both judges."""
+    assert not regular(graph)
+    assert regular_port_choices(graph) == []
+    with pytest.raises(bg.CausalityError, match=message) as caught:
+        bg.derive(graph)
+    return str(caught.value)
+
+
+def test_two_effort_sources_on_a_0_junction() -> None:
+    graph = bond_graph(
+        [bg.Se("a", "u"), bg.Se("b", "v"), bg.Zero("n"), bg.R("r", "r")], "a>n b>n n>r"
+    )
+    assert valid_strokes(graph) == []
+    text = _refused(graph, "sources 'a' and 'b' both impose the effort of 0-junction 'n'")
+    assert "Zero 'n' takes its effort from one bond only" in text
+    assert "but Se 'b' imposes its effort" in text
+    assert "Remove one of them" in text
+
+
+def test_two_flow_sources_on_a_1_junction() -> None:
+    graph = bond_graph(
+        [bg.Sf("a", "u"), bg.Sf("b", "v"), bg.One("n"), bg.I("m", "m")], "a>n b>n n>m"
+    )
+    _refused(graph, "sources 'a' and 'b' both impose the flow of 1-junction 'n'")
+
+
+def test_open_port_against_a_source() -> None:
+    graph = bond_graph(
+        [bg.Sf("s", "u"), bg.One("n"), bg.R("p", gives="flow"), bg.I("m", "m")], "s>n n>p n>m"
+    )
+    _refused(graph, "nodes 's' and 'p' both impose the flow of 1-junction 'n'")
+
+
+def test_two_sources_bonded_to_each_other() -> None:
+    text = _refused(bond_graph([bg.Se("a", "u"), bg.Se("b", "v")], "a>b"), "'a' and 'b'")
+    assert "Se 'a' imposes its effort" in text
+
+
+def test_efforts_that_meet_through_a_transformer_and_a_gyrator() -> None:
+    nodes = [
+        bg.Se("a", "u"), bg.TF("gear", "n"), bg.Zero("z"), bg.GY("motor", "r"), bg.Sf("b", "v"),
+        bg.R("r", "r"),
+    ]  # fmt: skip
+    graph = bond_graph(nodes, "a>gear>z>r b>motor>z")
+    text = _refused(graph, "sources 'a' and 'b'")
+    assert "TF 'gear' passes causality through" in text
+    assert "GY 'motor' gyrates what it receives" in text
+
+
+@pytest.mark.parametrize(
+    ("source", "junction", "text"),
+    [
+        (bg.Se, bg.Zero, "a 0-junction has its effort twice"),
+        (bg.Sf, bg.One, "a 1-junction has its flow twice"),
+    ],
+)
+def test_chain_of_many_nodes_between_two_sources_is_told_briefly(source, junction, text) -> None:
+    count = 3_000
+    names = [f"j{k}" for k in range(count)]
+    nodes = [source("a", "u"), source("b", "v"), *(junction(name) for name in names)]
+    graph = bond_graph(nodes, ">".join(["a", *names, "b"]))
+    with pytest.raises(bg.CausalityError, match="sources 'a' and 'b'") as caught:
+        bg.assign_causality(graph)
+    assert len(str(caught.value)) < 3_000, text
+
+
+def test_ports_that_exclude_each_other_only_by_rank_are_refused() -> None:
+    """Strokes are valid here; the flows of the sources, open to choose, would have to be one.
+
+    j0 and j1 share the bond between them, so the flows that a and b impose are equal.
+    """
+    nodes = [
+        bg.Sf("a", "u"), bg.Sf("b", "v"), bg.Zero("z"), bg.One("j"), bg.One("k"), bg.I("m", "m"),
+        bg.TF("g", 1),
+    ]  # fmt: skip
+    graph = bond_graph(nodes, "a>z z>j z>g>k k>j j>m b>k")
+    if regular(graph):
+        pytest.fail("the example is regular")
+    with pytest.raises(bg.BondGraphError, match="'(a|b|m)'"):
+        bg.derive(graph)
