@@ -1,6 +1,6 @@
 """From state equations to simulators: signals, programs, and the event-driven hybrid loop."""
 
-from codegen.hybrid import Event
+from codegen.events import Event
 from codegen.program import Block, Program, lower
 from codegen.signals import Constant, Lag, Ramp, Sampled, Signal, Sine, Step
 from codegen.simulate import Result, Simulator, simulator

@@ -1,6 +1,6 @@
 """Models whose laws are affine: in each friction mode everything is one matrix times one vector."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import sympy as sp
@@ -31,7 +31,7 @@ def is_affine(expressions: Iterable[sp.Expr], parameters: set[str]) -> bool:
 class AffineMap:
     """``v = T [s, w, dw, 1]``, cut into the parts of ``v``."""
 
-    def __init__(self, sizes: tuple[int, ...], matrix: Array) -> None:
+    def __init__(self, sizes: Sequence[int], matrix: Array) -> None:
         self.matrix = matrix
         ends = np.cumsum(sizes).tolist()
         self.parts = [slice(end - size, end) for end, size in zip(ends, sizes, strict=True)]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
 import numpy as np
+import scipy.linalg
 import scipy.optimize
 import sympy as sp
 
@@ -88,13 +89,12 @@ def hold(
     U = np.vstack([D_s[direct], slip_x @ model.Q])
     V = np.vstack([G_s[direct], slip_x @ model.R + slip_u])
     system = np.vstack([U[:, inputs], _array(share)])
-    inverse: Array = np.linalg.inv(system) if len(system) else np.zeros((0, 0))
     return Hold(
         ports,
         X,
         U,
         V,
-        inverse=inverse,
+        inverse=_inverse(system),
         share=_array(share),
         slip_x=slip_x,
         slip_u=slip_u,
@@ -106,9 +106,12 @@ def _take_away(model: Numbers, slip_x: Array) -> Array:
     """``-A^-1 S^T (S A^-1 S^T)^-1``: the impulse that stops the slips S x, and moves nothing else."""
     if not len(slip_x):
         return np.zeros((slip_x.shape[1], 0))
-    moved: Array = np.linalg.solve(model.A, slip_x.T)
-    result: Array = -moved @ np.linalg.inv(slip_x @ moved)
-    return result
+    moved = np.asarray(scipy.linalg.solve(model.A, slip_x.T), dtype=float)
+    return np.asarray(-moved @ _inverse(slip_x @ moved), dtype=float)
+
+
+def _inverse(matrix: Array) -> Array:
+    return np.asarray(np.linalg.inv(matrix), dtype=float)
 
 
 def _array(matrix: sp.Matrix) -> Array:
@@ -125,7 +128,7 @@ def fair_share(efforts: Array, share: Array, caps: Array) -> Array:
     array([10., 20.])
     """
     if len(share) == 1:
-        return efforts + _one_way(efforts, share[0], caps) * share[0]
+        return np.asarray(efforts + _one_way(efforts, share[0], caps) * share[0], dtype=float)
     free = len(share)
     bound = np.hstack([share.T, -caps[:, None]])
     other = np.hstack([-share.T, -caps[:, None]])
@@ -135,10 +138,9 @@ def fair_share(efforts: Array, share: Array, caps: Array) -> Array:
         b_ub=np.concatenate([-efforts, efforts]),
         bounds=[(None, None)] * free + [(0, None)],
     )
-    if found.status != 0:
+    if found.x is None:
         return efforts
-    result: Array = efforts + share.T @ found.x[:free]
-    return result
+    return np.asarray(efforts + share.T @ found.x[:free], dtype=float)
 
 
 def _one_way(efforts: Array, direction: Array, caps: Array) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.closed import ClosedModel, Mode, Snapshot
-from codegen.signals import Piece
+from codegen.pieces import Piece
 
 TOLERANCE = 1e-10
 """Slips and efforts count as zero below this fraction of the terms that make them up."""
@@ -29,7 +29,7 @@ class Scales:
 
 def scales(model: ClosedModel, now: Snapshot) -> Scales:
     """The rounding to be expected, from the magnitude of the terms that cancel."""
-    readings, numbers = model.friction_readings, model.model
+    readings, numbers = model.friction_readings, model.numbers
     x, u = np.abs(now.x), np.abs(now.u)
     slip = np.abs(numbers.F[readings]) @ x + np.abs(numbers.D[readings]) @ u
     moved = (
@@ -150,7 +150,7 @@ def _later_verdict(model: ClosedModel, later: Snapshot, size: Scales, i: int, si
 
 def slip_rates(model: ClosedModel, now: Snapshot) -> Array:
     """How fast each friction port's slip changes, inputs that cannot be differentiated held."""
-    readings, numbers = model.friction_readings, model.model
+    readings, numbers = model.friction_readings, model.numbers
     x_rate = numbers.P @ now.x + numbers.Q @ now.u + numbers.R @ now.du
     result: Array = numbers.F[readings] @ x_rate + numbers.D[readings] @ now.du
     return result

@@ -9,7 +9,6 @@ import cmath
 import math
 from abc import ABC, abstractmethod
 from bisect import bisect_right
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,43 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bondgraph import SignalError
-
-Term = tuple[complex, tuple[complex, ...]]
-"""A rate [1/s] and a polynomial's coefficients, lowest power first."""
-
-RESONANCE = 1e-12
-"""A lag driven at its own rate, to this relative distance, answers with a higher power of time."""
-
-
-@dataclass(frozen=True)
-class Piece:
-    """The real part of ``sum_j p_j(tau) exp(rate_j tau)``, ``tau = t - start``."""
-
-    start: float
-    terms: tuple[Term, ...]
-
-    def __call__(self, t: float) -> float:
-        """The value at one time."""
-        tau = t - self.start
-        total = 0.0
-        for rate, polynomial in self.terms:
-            value: complex = 0.0
-            for coefficient in reversed(polynomial):
-                value = value * tau + coefficient
-            if rate:
-                value *= cmath.exp(rate * tau) if rate.imag else math.exp(rate.real * tau)
-            total += value.real
-        return total
-
-    @cached_property
-    def derivative(self) -> "Piece":
-        """The rate of change in time, as a piece."""
-        return Piece(self.start, tuple((rate, _slope(rate, poly)) for rate, poly in self.terms))
-
-    @property
-    def fastest(self) -> float:
-        """The largest magnitude of a rate [1/s]."""
-        return max((abs(rate) for rate, _ in self.terms), default=0.0)
+from codegen.pieces import Piece, collected, constant_piece, lagged_terms, moved
 
 
 class Signal(ABC):
@@ -96,7 +59,7 @@ class Constant(Signal):
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """The single piece."""
-        return (_constant(0.0, self.value),)
+        return (constant_piece(0.0, self.value),)
 
 
 @dataclass(frozen=True)
@@ -122,7 +85,7 @@ class Step(Signal):
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """Before and after."""
-        return _constant(self.time, self.initial), _constant(self.time, self.value)
+        return constant_piece(self.time, self.initial), constant_piece(self.time, self.value)
 
 
 @dataclass(frozen=True)
@@ -148,8 +111,8 @@ class Ramp(Signal):
     def pieces(self) -> tuple[Piece, ...]:
         """Level, rise and, if it ends, level again."""
         rise = Piece(self.time, ((0, (self.initial, self.slope)),))
-        parts = (_constant(self.time, self.initial), rise)
-        return parts if self.end is None else (*parts, _constant(self.end, rise(self.end)))
+        parts = (constant_piece(self.time, self.initial), rise)
+        return parts if self.end is None else (*parts, constant_piece(self.end, rise(self.end)))
 
 
 @dataclass(frozen=True)
@@ -212,8 +175,8 @@ class Sampled(Signal):
             for t, v, slope in zip(self.times, self.values, slopes, strict=False)
         ]
         first, last = (
-            _constant(self.times[0], self.values[0]),
-            _constant(self.times[-1], self.values[-1]),
+            constant_piece(self.times[0], self.values[0]),
+            constant_piece(self.times[-1], self.values[-1]),
         )
         return (first, *lines, last)
 
@@ -245,13 +208,12 @@ class Lag(Signal):
     def pieces(self) -> tuple[Piece, ...]:
         """The answer to each piece in turn, continuous where they meet."""
         driven = self.signal.pieces
-        answers = [Piece(driven[0].start, _answer(driven[0], self.time_constant))]
+        answers = [Piece(driven[0].start, lagged_terms(driven[0], self.time_constant))]
         for time, piece in zip(self.breakpoints, driven[1:], strict=True):
-            moved = _moved(piece, time)
-            forced = Piece(time, _answer(moved, self.time_constant))
+            forced = Piece(time, lagged_terms(moved(piece, time), self.time_constant))
             missing = answers[-1](time) - forced(time)
             decay = (complex(-1 / self.time_constant), (complex(missing),))
-            answers.append(Piece(time, _collected([*forced.terms, decay])))
+            answers.append(Piece(time, collected([*forced.terms, decay])))
         return tuple(answers)
 
 
@@ -271,8 +233,8 @@ class _Sum(Signal):
         times = self.breakpoints
         starts = (times[0] - 1.0 if times else 0.0, *times)
         return tuple(
-            Piece(at, _collected([*_moved(self.one.piece(at), at).terms,
-                                  *_moved(self.other.piece(at), at).terms]))
+            Piece(at, collected([*moved(self.one.piece(at), at).terms,
+                                  *moved(self.other.piece(at), at).terms]))
             for at in starts
         )  # fmt: skip
 
@@ -296,63 +258,9 @@ def sampled_values(signal: Signal, times: NDArray[np.float64]) -> NDArray[np.flo
     return np.array([signal(t) for t in times.tolist()])
 
 
-def _constant(start: float, value: float) -> Piece:
-    return Piece(float(start), ((0, (float(value),)),))
-
-
 def _check_finite(signal: Signal, *numbers: float) -> None:
     for number in numbers:
         if isinstance(number, bool) or not isinstance(number, int | float | np.number):
             raise SignalError(f"{type(signal).__name__}: {number!r} is not a number")
         if not math.isfinite(number):
             raise SignalError(f"{type(signal).__name__}: {number!r} is not finite")
-
-
-def _slope(rate: complex, polynomial: Sequence[complex]) -> tuple[complex, ...]:
-    """The polynomial of the derivative of ``p(tau) exp(rate tau)``: ``p' + rate p``."""
-    raised = [(k + 1) * c for k, c in enumerate(polynomial[1:])] + [0.0]
-    return tuple(rate * c + up for c, up in zip(polynomial, raised, strict=True))
-
-
-def _answer(piece: Piece, T: float) -> tuple[Term, ...]:
-    """The forced answer of ``T y' + y = piece``: no decaying part of its own."""
-    terms: list[Term] = []
-    for rate, polynomial in piece.terms:
-        gain = 1 + rate * T
-        if abs(gain) <= RESONANCE:
-            terms.append((rate, (0.0, *(c / (T * (k + 1)) for k, c in enumerate(polynomial)))))
-            continue
-        solved: list[complex] = []
-        above: complex = 0.0
-        for k in reversed(range(len(polynomial))):
-            above = (polynomial[k] - T * (k + 1) * above) / gain
-            solved.append(above)
-        terms.append((rate, tuple(reversed(solved))))
-    return tuple(terms)
-
-
-def _moved(piece: Piece, start: float) -> Piece:
-    """The same piece written from another start."""
-    shift = start - piece.start
-    if shift == 0:
-        return piece
-    terms: list[Term] = []
-    for rate, polynomial in piece.terms:
-        moved = [
-            sum(math.comb(n, k) * c * shift ** (n - k) for n, c in enumerate(polynomial) if n >= k)
-            for k in range(len(polynomial))
-        ]
-        factor = cmath.exp(rate * shift)
-        terms.append((rate, tuple(factor * c for c in moved)))
-    return Piece(start, tuple(terms))
-
-
-def _collected(terms: Sequence[Term]) -> tuple[Term, ...]:
-    """Terms of one rate added up."""
-    result: dict[complex, list[complex]] = {}
-    for rate, polynomial in terms:
-        total = result.setdefault(complex(rate), [])
-        total += [0.0] * (len(polynomial) - len(total))
-        for k, c in enumerate(polynomial):
-            total[k] += c
-    return tuple((rate, tuple(polynomial)) for rate, polynomial in result.items())

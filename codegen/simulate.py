@@ -12,7 +12,9 @@ from numpy.typing import ArrayLike
 from bondgraph import SignalError, SimulationError, StateEquations
 from codegen.arrays import Array
 from codegen.closed import ClosedModel
-from codegen.hybrid import METHODS, Event, Settings, Track, run_hybrid
+from codegen.events import Event
+from codegen.hybrid import run_hybrid
+from codegen.legs import METHODS, Settings, Track
 from codegen.modes import LOOK_AHEAD, decide
 from codegen.program import lower
 from codegen.signals import Constant, Signal, as_signal
@@ -86,7 +88,7 @@ class Simulator:
             now = self.closed.at(t, s, pieces, mode)
         n = len(self.closed.program.states)
         rate = now.rate[: len(self.states)].copy()
-        rate[:n] += self.closed.model.R @ now.du
+        rate[:n] += self.closed.numbers.R @ now.du
         return rate
 
     def run(
@@ -132,10 +134,10 @@ class Simulator:
         s = np.zeros(self.closed.size)
         s[: len(state)] = state
         zeros = np.zeros(len(given))
-        if self.closed.model.R.any():
+        if self.closed.numbers.R.any():
             known = self.closed.evaluate(t, s, given, zeros, self._all_slipping())
             n = len(self.closed.program.states)
-            s[:n] -= self.closed.model.R @ known.u
+            s[:n] -= self.closed.numbers.R @ known.u
         return s
 
     def _initial(self, initial: Mapping[str, float]) -> Array:
@@ -165,7 +167,7 @@ class Simulator:
 
     def _check_steps(self, signals: Sequence[Signal], times: Array) -> None:
         """Refuse steps of inputs whose rate an output shows: it would be an impulse."""
-        program, G = self.closed.program, self.closed.model.G
+        program, G = self.closed.program, self.closed.numbers.G
         for name, signal in zip(self.inputs, signals, strict=True):
             columns = [j for j, symbol in enumerate(program.inputs) if symbol.name == name]
             rows = [i for i in range(len(G)) if any(G[i, j] for j in columns)]

@@ -57,34 +57,19 @@ def test_efforts_that_meet_through_a_transformer_and_a_gyrator() -> None:
     assert "GY 'motor' gyrates what it receives" in text
 
 
-@pytest.mark.parametrize(
-    ("source", "junction", "text"),
-    [
-        (bg.Se, bg.Zero, "a 0-junction has its effort twice"),
-        (bg.Sf, bg.One, "a 1-junction has its flow twice"),
-    ],
-)
-def test_chain_of_many_nodes_between_two_sources_is_told_briefly(source, junction, text) -> None:
+@pytest.mark.parametrize(("source", "junction"), [(bg.Se, bg.Zero), (bg.Sf, bg.One)])
+def test_long_chain_between_two_sources_is_told_briefly(source, junction) -> None:
     count = 3_000
     names = [f"j{k}" for k in range(count)]
     nodes = [source("a", "u"), source("b", "v"), *(junction(name) for name in names)]
     graph = bond_graph(nodes, ">".join(["a", *names, "b"]))
     with pytest.raises(bg.CausalityError, match="sources 'a' and 'b'") as caught:
         bg.assign_causality(graph)
-    assert len(str(caught.value)) < 3_000, text
+    assert len(str(caught.value)) < 3_000
 
 
-def test_ports_that_exclude_each_other_only_by_rank_are_refused() -> None:
-    """Strokes are valid here; the flows of the sources, open to choose, would have to be one.
-
-    j0 and j1 share the bond between them, so the flows that a and b impose are equal.
-    """
-    nodes = [
-        bg.Sf("a", "u"), bg.Sf("b", "v"), bg.Zero("z"), bg.One("j"), bg.One("k"), bg.I("m", "m"),
-        bg.TF("g", 1),
-    ]  # fmt: skip
-    graph = bond_graph(nodes, "a>z z>j z>g>k k>j j>m b>k")
-    if regular(graph):
-        pytest.fail("the example is regular")
-    with pytest.raises(bg.BondGraphError, match="'(a|b|m)'"):
-        bg.derive(graph)
+def test_bond_is_told_as_it_was_declared() -> None:
+    """A one-port drawn as the tail of its bond is counted the other way, not drawn the other way."""
+    nodes = [bg.Zero("z"), bg.R("p"), bg.R("q"), bg.R("r", "r")]
+    text = _refused(bond_graph(nodes, "p>z q>z r>z"), "'p' and 'q'")
+    assert "bond 'p' -> 'z'" in text

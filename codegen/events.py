@@ -1,0 +1,126 @@
+"""Events inside one integration step: where a slip or a margin falls through zero."""
+
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from codegen.arrays import Array
+from codegen.closed import ClosedModel, Mode, Snapshot
+from codegen.modes import scales
+from codegen.pieces import Piece
+
+CHECKS = 6
+"""Points inside each step at which events are looked for."""
+
+Dense = Callable[[float], Array]
+"""The integrated vector anywhere inside a step."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """What happened at a friction port: "stick", "slip" (it was released) or "cross" (through zero)."""
+
+    time: float
+    port: Hashable
+    kind: str
+
+
+class Watch:
+    """Watches the friction ports through one leg.
+
+    Each port has a trigger that is positive while the mode holds: the magnitude of its slip, or, where
+    it sticks, the margin to its breakaway effort. A trigger that starts at zero is armed once it has
+    risen above rounding; until then only a fall well below zero counts.
+    """
+
+    def __init__(
+        self, model: ClosedModel, pieces: Sequence[Piece], mode: Mode, t: float, s: Array
+    ) -> None:
+        self._model, self._pieces, self._mode = model, pieces, mode
+        now = self._snapshot(t, s)
+        self._limits = np.zeros(0)
+        if mode:
+            size = scales(model, now)
+            self._limits = np.where(np.array(mode) == 0, size.effort, size.slip)
+        self._armed = [False] * len(mode)
+        self._before = self._triggers(now)
+
+    def first_event(
+        self, t_old: float, t_new: float, dense: Dense
+    ) -> tuple[float, frozenset[int]] | None:
+        """The first time in a step at which the mode ends, and the ports that end it."""
+        if not self._mode:
+            return None
+        grid = np.linspace(t_old, t_new, CHECKS + 2).tolist()
+        values = [self._before, *(self._triggers(self._snapshot(t, dense(t))) for t in grid[1:])]
+        self._before = values[-1]
+        for k in range(len(grid) - 1):
+            roots: dict[int, float] = {}
+            for i in range(len(self._mode)):
+                root = self._fall(i, grid[k], grid[k + 1], values[k][i], values[k + 1][i], dense)
+                if root is None and k > 0 and self._armed[i]:
+                    three = [value[i] for value in values[k - 1 : k + 2]]
+                    root = self._dip(i, grid[k - 1 : k + 2], three, dense)
+                if root is not None:
+                    roots[i] = root
+            if roots:
+                time = min(roots.values())
+                near = time + 1e-12 * max(abs(time), t_new - t_old)
+                return time, frozenset(i for i, root in roots.items() if root <= near)
+        return None
+
+    def _snapshot(self, t: float, s: Array) -> Snapshot:
+        return self._model.at(t, s, self._pieces, self._mode)
+
+    def _triggers(self, now: Snapshot) -> Array:
+        efforts, slips = now.u[self._model.friction_inputs], now.y[self._model.friction_readings]
+        return np.array([
+            sign * slips[i] if sign else now.caps[i] - abs(efforts[i])
+            for i, sign in enumerate(self._mode)
+        ])  # fmt: skip
+
+    def _fall(
+        self, i: int, t_a: float, t_b: float, a: float, b: float, dense: Dense
+    ) -> float | None:
+        """Where trigger i falls through zero between two points, if it does."""
+        limit = self._limits[i]
+        if not self._armed[i] and max(a, b) > limit:
+            self._armed[i] = True
+            if a <= limit:
+                return None
+        if self._armed[i]:
+            return self._crossing(i, t_a, t_b, 0.0, dense) if b <= 0 else None
+        return self._crossing(i, t_a, t_b, -2 * limit, dense) if b < -2 * limit else None
+
+    def _crossing(self, i: int, t_a: float, t_b: float, level: float, dense: Dense) -> float:
+        def above(t: float) -> float:
+            return float(self._triggers(self._snapshot(t, dense(t)))[i] - level)
+
+        if above(t_a) <= 0:
+            return t_a
+        if above(t_b) >= 0:
+            return t_b
+        return float(brentq(above, t_a, t_b, xtol=1e-15, rtol=4 * np.finfo(float).eps))
+
+    def _dip(
+        self, i: int, grid: Sequence[float], values: Sequence[float], dense: Dense
+    ) -> float | None:
+        """The first of two roots between points, where a trigger dips below zero and comes back.
+
+        The parabola through three points tells whether there is a dip worth a closer look.
+        """
+        a, b, c = values
+        curve, slope = a - 2 * b + c, (c - a) / 2
+        if min(values) <= 0 or curve <= 0 or abs(slope) > 1.25 * curve:
+            return None
+        if b - slope**2 / (2 * curve) > 0.5 * min(values):
+            return None
+        lowest = minimize_scalar(
+            lambda t: float(self._triggers(self._snapshot(t, dense(t)))[i]),
+            bounds=(grid[0], grid[2]), method="bounded", options={"xatol": 1e-9 * (grid[2] - grid[0])},
+        )  # fmt: skip
+        if lowest.fun > 0:
+            return None
+        return self._crossing(i, grid[0], float(lowest.x), 0.0, dense)

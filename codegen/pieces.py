@@ -1,0 +1,99 @@
+"""Smooth pieces of signals: sums of polynomials times exponentials, and what a lag makes of them."""
+
+import cmath
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+Term = tuple[complex, tuple[complex, ...]]
+"""A rate [1/s] and a polynomial's coefficients, lowest power first."""
+
+RESONANCE = 1e-12
+"""A lag driven at its own rate, to this relative distance, answers with a higher power of time."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """The real part of ``sum_j p_j(tau) exp(rate_j tau)``, ``tau = t - start``."""
+
+    start: float
+    terms: tuple[Term, ...]
+
+    def __call__(self, t: float) -> float:
+        """The value at one time."""
+        tau = t - self.start
+        total = 0.0
+        for rate, polynomial in self.terms:
+            value: complex = 0.0
+            for coefficient in reversed(polynomial):
+                value = value * tau + coefficient
+            if rate:
+                value *= cmath.exp(rate * tau) if rate.imag else math.exp(rate.real * tau)
+            total += value.real
+        return total
+
+    @cached_property
+    def derivative(self) -> "Piece":
+        """The rate of change in time, as a piece."""
+        return Piece(self.start, tuple((rate, _slope(rate, poly)) for rate, poly in self.terms))
+
+    @property
+    def fastest(self) -> float:
+        """The largest magnitude of a rate [1/s]."""
+        return max((abs(rate) for rate, _ in self.terms), default=0.0)
+
+
+def constant_piece(start: float, value: float) -> Piece:
+    """One value for ever."""
+    return Piece(float(start), ((0, (float(value),)),))
+
+
+def _slope(rate: complex, polynomial: Sequence[complex]) -> tuple[complex, ...]:
+    """The polynomial of the derivative of ``p(tau) exp(rate tau)``: ``p' + rate p``."""
+    raised = [(k + 1) * c for k, c in enumerate(polynomial[1:])] + [0.0]
+    return tuple(rate * c + up for c, up in zip(polynomial, raised, strict=True))
+
+
+def lagged_terms(piece: Piece, T: float) -> tuple[Term, ...]:
+    """The forced answer of ``T y' + y = piece``: no decaying part of its own."""
+    terms: list[Term] = []
+    for rate, polynomial in piece.terms:
+        gain = 1 + rate * T
+        if abs(gain) <= RESONANCE:
+            terms.append((rate, (0.0, *(c / (T * (k + 1)) for k, c in enumerate(polynomial)))))
+            continue
+        solved: list[complex] = []
+        above: complex = 0.0
+        for k in reversed(range(len(polynomial))):
+            above = (polynomial[k] - T * (k + 1) * above) / gain
+            solved.append(above)
+        terms.append((rate, tuple(reversed(solved))))
+    return tuple(terms)
+
+
+def moved(piece: Piece, start: float) -> Piece:
+    """The same piece written from another start."""
+    shift = start - piece.start
+    if shift == 0:
+        return piece
+    terms: list[Term] = []
+    for rate, polynomial in piece.terms:
+        shifted = [
+            sum(math.comb(n, k) * c * shift ** (n - k) for n, c in enumerate(polynomial) if n >= k)
+            for k in range(len(polynomial))
+        ]
+        factor = cmath.exp(rate * shift)
+        terms.append((rate, tuple(factor * c for c in shifted)))
+    return Piece(start, tuple(terms))
+
+
+def collected(terms: Sequence[Term]) -> tuple[Term, ...]:
+    """Terms of one rate added up."""
+    result: dict[complex, list[complex]] = {}
+    for rate, polynomial in terms:
+        total = result.setdefault(complex(rate), [])
+        total += [0.0] * (len(polynomial) - len(total))
+        for k, c in enumerate(polynomial):
+            total[k] += c
+    return tuple((rate, tuple(polynomial)) for rate, polynomial in result.items())
