@@ -1,7 +1,8 @@
 """`junction_structure`: what every port receives, as an exact linear function of what all ports give."""
 
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from types import MappingProxyType
 
 import sympy as sp
@@ -10,7 +11,7 @@ from bondgraph.causal_order import CausalEquations, causal_equations, causal_gro
 from bondgraph.causality import CausalGraph
 from bondgraph.elements import SOURCES, Element, Kind
 from bondgraph.errors import AlgebraicLoopError
-from bondgraph.exact import Row, SingularError, add_scaled, solve
+from bondgraph.exact import Row, SingularError, add_scaled, matrix_of, solve
 from bondgraph.strokes import Strokes
 
 
@@ -40,16 +41,20 @@ class Port:
 class JunctionStructure:
     """``w = S z``: what the ports receive from what they give, power-conserving.
 
-    ``ports`` in declaration order; ``S`` (ports x ports) holds moduli only, and with power counted
+    ``ports`` in declaration order; S (ports x ports) holds moduli only, and with power counted
     into every port it is skew-symmetric. ``common``: each junction's common variable as a row over z.
     """
 
     ports: tuple[Port, ...]
-    S: sp.ImmutableSparseMatrix
+    #: For each port the row of S, sparse: port number to modulus.
+    rows: tuple[Mapping[int, sp.Expr], ...]
     common: Mapping[Hashable, Mapping[int, sp.Expr]]
     elements: Mapping[Hashable, Element]
-    #: The rows of S, sparse.
-    rows: tuple[Mapping[int, sp.Expr], ...] = field(repr=False, compare=False)
+
+    @cached_property
+    def S(self) -> sp.ImmutableSparseMatrix:
+        """The matrix that ``rows`` hold, ports x ports."""
+        return matrix_of(self.rows, len(self.rows))
 
 
 def junction_structure(causal: CausalGraph) -> JunctionStructure:
@@ -71,13 +76,11 @@ def junction_structure(causal: CausalGraph) -> JunctionStructure:
         for node, element in enumerate(strokes.elements)
         if element.kind in (Kind.ZERO, Kind.ONE)
     }
-    entries = {(i, j): entry for i, row in enumerate(rows) for j, entry in sorted(row.items())}
     return JunctionStructure(
         ports=tuple(_port(strokes, node) for node in one_ports),
-        S=sp.ImmutableSparseMatrix(len(rows), len(rows), entries),
+        rows=tuple(rows),
         common=MappingProxyType(common),
         elements=MappingProxyType(dict(zip(strokes.names, strokes.elements, strict=True))),
-        rows=tuple(rows),
     )
 
 

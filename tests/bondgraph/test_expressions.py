@@ -1,0 +1,153 @@
+"""Numbers and text become exact expressions."""
+
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import bondgraph as bg
+from bondgraph.expressions import number, symbol
+
+x, y = sp.symbols("x y")
+tenth = sp.Rational(1, 10)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("x", x),
+        (" x ", x),
+        ("x + 2*y - 3", x + 2 * y - 3),
+        ("-x**2", -(x**2)),
+        ("2**-1", sp.Rational(1, 2)),
+        ("x**2**3", x**8),
+        ("1/3", sp.Rational(1, 3)),
+        ("0.1", tenth),
+        ("0.1 + 0.2", 3 * tenth),
+        ("1e-3", sp.Rational(1, 1000)),
+        ("1.5e3", sp.Integer(1500)),
+        ("123456789.123456789", sp.Rational(12345678912345679, 10**8)),
+        ("h1/(h1 - 1)", sp.Symbol("h1") / (sp.Symbol("h1") - 1)),
+        ("sqrt(4*x**2/x**2)", sp.Integer(2)),
+        ("sin(x)*cos(y)", sp.sin(x) * sp.cos(y)),
+        ("atan2(x, y)", sp.atan2(x, y)),
+        ("abs(x) + Abs(x)", 2 * sp.Abs(x)),
+        ("min(x, y, 1) + max(x, 2)", sp.Min(x, y, 1) + sp.Max(x, 2)),
+        ("sign(-3)", sp.Integer(-1)),
+        ("+x", x),
+    ],
+)
+def test_text_is_read_exactly(text: str, expected: sp.Expr) -> None:
+    assert bg.expression(text, "here") == expected
+
+
+@pytest.mark.parametrize("name", ["E", "I", "N", "O", "Q", "S", "pi", "oo", "nan", "beta", "gamma"])
+def test_names_are_plain_symbols_whatever_sympy_calls_so(name: str) -> None:
+    result = bg.expression(name, "here")
+    assert result == sp.Symbol(name)
+    assert result.is_real is None
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [
+        (2, sp.Integer(2)),
+        (0.1, tenth),
+        (-2.5, sp.Rational(-5, 2)),
+        (Fraction(1, 3), sp.Rational(1, 3)),
+        (np.float64(0.1), tenth),
+        (np.int64(3), sp.Integer(3)),
+        (sp.Float("0.1") * x, x / 10),
+        (sp.Float("0.3"), 3 * tenth),
+        (sp.pi * x, sp.pi * x),
+        (1e22, sp.Integer(10) ** 22),
+    ],
+)
+def test_values_become_exact(value: object, expected: sp.Expr) -> None:
+    result = bg.expression(value, "here")
+    assert result == expected
+    assert not result.has(sp.Float)
+
+
+def test_single_precision_counts_by_its_own_shortest_decimal() -> None:
+    assert bg.expression(np.float32(0.1), "here") == tenth
+
+
+@pytest.mark.parametrize("value", [0.1, 1 / 3, 2.0**-40, 1e300, 5e-324, 0.1 + 0.2])
+def test_exact_number_is_the_float_again(value: float) -> None:
+    assert float(number(value, "here")) == value
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        True, np.bool_(True), None, 1j, float("nan"), float("inf"), -float("inf"), np.nan, [1], b"x",
+        sp.nan, sp.oo, sp.zoo, sp.I, sp.I * x, sp.true, x > 1, sp.Matrix([x]), sp.sqrt(-2),
+        sp.Float("nan"), sp.Float("inf"), "1e999", "sqrt(-1)", "log(0)", "log(-1)", "asin(2)",
+    ],
+)  # fmt: skip
+def test_values_that_are_not_finite_and_real_are_refused(value: object) -> None:
+    with pytest.raises(bg.ExpressionError, match=r"^node 'q': "):
+        bg.expression(value, "node 'q'")
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        sp.Symbol("x", imaginary=True),
+        sp.Symbol("x", commutative=False),
+        sp.Function("f")(x),
+        sp.Integral(x, x),
+        sp.Derivative(sp.Function("f")(x), x),
+    ],
+    ids=str,
+)
+def test_sympy_expressions_that_numbers_for_their_symbols_do_not_make_real_are_refused(
+    value: sp.Expr,
+) -> None:
+    with pytest.raises(bg.ExpressionError, match=r"^node 'q': "):
+        bg.expression(value, "node 'q'")
+
+
+@pytest.mark.parametrize(
+    "text", ["1/0", "x/(y - y)", "0**-1", "1/sin(0)", "x**-1/0", "(x - x)**-2"]
+)
+def test_division_by_zero_is_refused(text: str) -> None:
+    with pytest.raises(bg.ExpressionError, match="node 'q': .*division by zero"):
+        bg.expression(text, "node 'q'")
+
+
+@pytest.mark.parametrize(
+    "name", ["", "2x", "a b", "a-b", "a.b", "class", "lambda", "None", 5, None]
+)
+def test_names_that_generated_code_could_not_carry_are_refused(name: object) -> None:
+    with pytest.raises(bg.ExpressionError, match="node 'q': .*cannot be a symbol"):
+        symbol(name, "node 'q'")
+
+
+@pytest.mark.parametrize("text", ["", "  ", "x +", "x y", "(x", "x)", "#", "x;y", "x\ny", "\x00"])
+def test_text_that_is_no_expression_is_refused(text: str) -> None:
+    with pytest.raises(bg.ExpressionError, match="node 'q': .*is not an expression"):
+        bg.expression(text, "node 'q'")
+
+
+def test_wrong_number_of_arguments_is_refused() -> None:
+    with pytest.raises(bg.ExpressionError, match="sin takes 1"):
+        bg.expression("sin(x, y)", "node 'q'")
+    with pytest.raises(bg.ExpressionError, match="min takes 2"):
+        bg.expression("min(x)", "node 'q'")
+
+
+def test_nothing_is_evaluated(tmp_path: Path) -> None:
+    target = tmp_path / "made"
+    for text in (
+        f"open({str(target)!r}, 'w')",
+        f"__import__('pathlib').Path({str(target)!r}).touch()",
+        f"[x for x in (1,) if open({str(target)!r}, 'w')]",
+        f"(lambda: open({str(target)!r}, 'w'))()",
+    ):
+        with pytest.raises(bg.ExpressionError, match=r"^node 'q': "):
+            bg.expression(text, "node 'q'")
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,78 @@
+"""What closes a port: expressions, and dry friction after Eq. (17) of the paper."""
+
+import dataclasses
+
+import pytest
+import sympy as sp
+
+import bondgraph as bg
+from bondgraph.laws import law
+
+slip, v_s = sp.symbols("slip v_s")
+
+
+def test_coulomb_friction_has_one_level() -> None:
+    friction = bg.DryFriction("tau_h")
+    assert (friction.level, friction.curve, friction.breakaway) == (sp.Symbol("tau_h"), 1, 1)
+    assert friction.free_symbols == {sp.Symbol("tau_h")}
+
+
+def test_breakaway_is_the_curve_at_standstill() -> None:
+    """The normalised Stribeck curve: T_S/T_C at zero slip."""
+    friction = bg.DryFriction("tau_h", "1 + (T_S/T_C - 1)*exp(-slip/v_s)")
+    T_S, T_C = sp.symbols("T_S T_C")
+    assert sp.simplify(friction.breakaway - T_S / T_C) == 0
+    assert friction.free_symbols == {sp.Symbol("tau_h"), v_s, T_S, T_C}
+
+
+def test_breakaway_may_lie_above_the_curve() -> None:
+    assert bg.DryFriction(100, breakaway=1.25).breakaway == sp.Rational(5, 4)
+
+
+def test_breakaway_below_the_curve_is_refused() -> None:
+    with pytest.raises(bg.ExpressionError, match="breakaway 9/10 is below the curve"):
+        bg.DryFriction(100, "1 + 0*slip", 0.9)
+
+
+@pytest.mark.parametrize("curve", ["1/slip", "log(slip)"])
+def test_curve_that_is_infinite_at_standstill_is_refused(curve: str) -> None:
+    with pytest.raises(bg.ExpressionError, match="not finite at slip = 0"):
+        bg.DryFriction(100, curve)
+
+
+@pytest.mark.parametrize("level", [None, "open('f')", float("inf"), [1]])
+def test_level_that_is_no_expression_is_refused(level: object) -> None:
+    with pytest.raises(bg.ExpressionError, match="level of dry friction"):
+        bg.DryFriction(level)
+
+
+def test_constant_level_below_zero_is_refused() -> None:
+    """Friction that drives is no friction."""
+    with pytest.raises(bg.ExpressionError, match="level of dry friction"):
+        bg.DryFriction(-1)
+
+
+def test_friction_is_a_frozen_value() -> None:
+    friction = bg.DryFriction("mu")
+    assert friction == bg.DryFriction("mu", 1, 1)
+    with pytest.raises(dataclasses.FrozenInstanceError, match="cannot assign"):
+        friction.level = sp.Integer(2)  # type: ignore[misc]
+
+
+def test_law_of_text_number_or_expression() -> None:
+    assert law("2*x", "here") == bg.ExpressionLaw(2 * sp.Symbol("x"))
+    assert law(0.5, "here") == bg.ExpressionLaw(sp.Rational(1, 2))
+    assert law(slip**2, "here") == bg.ExpressionLaw(slip**2)
+
+
+def test_ready_law_is_kept() -> None:
+    for ready in (bg.DryFriction("mu"), bg.ExpressionLaw(slip)):
+        assert law(ready, "here") is ready
+
+
+def test_law_with_a_state_names_it() -> None:
+    twist = sp.Symbol("q_k")
+    assert law("k*q_k", "node 'k'", twist).free_symbols == {sp.Symbol("k"), twist}
+    for ready in (bg.DryFriction("mu"), bg.ExpressionLaw(slip), bg.ExpressionLaw(slip, slip)):
+        with pytest.raises(bg.ExpressionError, match="node 'k': a storage takes .* q_k"):
+            law(ready, "node 'k'", twist)

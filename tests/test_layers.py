@@ -1,0 +1,60 @@
+"""Imports go one way: between the packages, and inside each down a list of its files."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+#: Each package may import the ones before it; each file of a package the files before it.
+ORDER = {
+    "bondgraph": [
+        "errors", "expressions", "laws", "elements", "residues", "names", "graph", "strokes",
+        "causal_order", "regularity", "stories", "causality", "exact", "junction", "reduction",
+        "readings", "equations",
+    ],
+    "codegen": [],
+    "differentials": [],
+}  # fmt: skip
+
+
+def _imports(path: Path) -> Iterator[str]:
+    """The full name of every module that a file imports, anywhere in it."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}:{node.lineno} imports relatively"
+            module = str(node.module)
+            yield from (
+                (f"{module}.{alias.name}" for alias in node.names) if module in ORDER else [module]
+            )
+
+
+def _files(package: str) -> dict[str, Path]:
+    folder = ROOT / package
+    files = {path.relative_to(folder): path for path in folder.rglob("*.py")}
+    return {".".join(name.with_suffix("").parts): path for name, path in files.items()}
+
+
+CASES = [(package, module) for package, modules in ORDER.items() for module in modules]
+
+
+@pytest.mark.parametrize(("package", "module"), CASES)
+def test_file_imports_only_what_is_above_it(package: str, module: str) -> None:
+    packages = list(ORDER)
+    below = {*packages[packages.index(package) + 1 :]}
+    above = ORDER[package][: ORDER[package].index(module)]
+    for name in _imports(_files(package)[module]):
+        top, _, rest = name.partition(".")
+        assert top not in below, f"{package}.{module} imports {name}"
+        if top == package:
+            assert rest in above, f"{package}.{module} imports {name}"
+
+
+@pytest.mark.parametrize("package", [package for package, modules in ORDER.items() if modules])
+def test_every_file_has_its_place(package: str) -> None:
+    entries = {"__init__", "__main__"}
+    assert sorted(_files(package).keys() - entries) == sorted(ORDER[package])
