@@ -175,6 +175,8 @@ def _shown(
 ) -> list[tuple[sp.Symbol, Mapping[int, sp.Expr]]]:
     """The outputs' symbols and their rows over the ports."""
     structure = reduction.structure
+    if isinstance(outputs, str):
+        raise StructureError(f"outputs must be a list of nodes; for one node write [{outputs!r}]")
     if outputs is None:
         outputs = [
             port.element.name
@@ -205,14 +207,22 @@ def _shown(
     return result
 
 
+def _reached(A: list[Row], start: Iterable[int]) -> list[int]:
+    """The states that A couples, however indirectly, to some of them."""
+    found = set(start)
+    pending = list(found)
+    while pending:
+        new = A[pending.pop()].keys() - found
+        found |= new
+        pending += new
+    return sorted(found)
+
+
 def _resolved(A: list[Row], balances: Sequence[Reading], reading: Reading) -> Reading:
     """A reading with x' substituted: one solve with A^T, on the block of A that it touches."""
     if not reading.H:
         return reading
-    block = sorted(reading.H)
-    for state in block:
-        block += [j for j in A[state] if j not in block]
-    block.sort()
+    block = _reached(A, reading.H)
     place = {state: at for at, state in enumerate(block)}
     transposed: list[Row] = [{} for _ in block]
     for i in block:

@@ -88,8 +88,10 @@ def expression(value: object, where: str) -> sp.Expr:
         result = (
             value.xreplace({part: _decimal(part, where) for part in floats}) if floats else value
         )
-    else:
+    elif isinstance(value, Real | sp.Number) and not isinstance(value, bool):
         result = number(value, where)
+    else:
+        raise ExpressionError(f"{where}: {value!r} is neither a number, a text nor an expression")
     if not isinstance(result, sp.Symbol) and (result.has(*_NOT_REAL) or result.is_real is False):
         raise ExpressionError(f"{where}: {value!r} is not a finite real expression")
     for part in result.free_symbols:
@@ -106,20 +108,20 @@ def number(value: object, where: str) -> sp.Rational:
     3/10
     """
     if isinstance(value, bool) or not isinstance(value, Real | sp.Number):
-        raise ExpressionError(f"{where}: {value!r} is neither a number, a text nor an expression")
+        raise ExpressionError(f"{where}: {value!r} is not a number")
     if isinstance(value, Integral):
         return sp.Integer(int(value))
     if isinstance(value, Rational):
         return sp.Rational(int(value.numerator), int(value.denominator))
-    if not math.isfinite(float(value)):
-        raise ExpressionError(f"{where}: {value!r} is not a finite number")
     return _decimal(value, where)
 
 
 def _decimal(value: Any, where: str) -> sp.Rational:
     if not math.isfinite(float(value)):
         raise ExpressionError(f"{where}: {value!r} is not a finite number")
-    exact = Fraction(repr(float(value)))
+    # numpy writes a short float as the decimal it was meant to be; sympy would pad it.
+    text = repr(float(value)) if isinstance(value, float | sp.Float) else str(value)
+    exact = Fraction(text)
     return sp.Rational(exact.numerator, exact.denominator)
 
 
@@ -133,8 +135,12 @@ def _from_text(text: str, where: str) -> sp.Expr:
         return _build(tree, where, 0)
     except ExpressionError:
         raise
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        raise ExpressionError(f"{where}: {_short(text)} is not an expression ({error})") from None
+    except SyntaxError as error:
+        raise ExpressionError(
+            f"{where}: {_short(text)} is not an expression: {error.msg}"
+        ) from None
+    except (ValueError, RecursionError, MemoryError) as error:
+        raise ExpressionError(f"{where}: {_short(text)} is not an expression: {error}") from None
 
 
 def _nesting(text: str) -> int:

@@ -92,7 +92,7 @@ def _check_degree(graph: "nx.DiGraph[Hashable]", name: Hashable) -> None:
     if kind not in JUNCTIONS and kind not in TWO_PORTS and count != 1:
         raise StructureError(
             f"{kind} {name!r} has {count} bonds; it needs exactly one"
-            + ("; put a junction between" if count else "")
+            + ("; put a junction between" if count else "; bond it or remove it")
         )
 
 
@@ -132,7 +132,9 @@ def _check_keys(kind: Kind, attributes: Mapping[str, Any], where: str) -> None:
     for key in attributes:
         if key != "kind" and key not in KEYS[kind]:
             allowed = ", ".join(sorted(KEYS[kind]))
-            raise StructureError(f"{where}: unknown attribute {key!r}; a {kind} may have {allowed}")
+            raise StructureError(
+                f"{where}: unknown attribute {key!r}; kind {kind} may have {allowed}"
+            )
 
 
 def _name(

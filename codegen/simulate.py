@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bondgraph import SignalError, SimulationError, StateEquations
+from bondgraph import ParameterError, SignalError, SimulationError, StateEquations
 from codegen.arrays import Array
 from codegen.closed import ClosedModel
 from codegen.events import Event
@@ -73,7 +73,7 @@ class Simulator:
 
         Raises `SignalError` for arrays of another length than ``states`` and ``inputs``.
         """
-        state, given = np.array(x, dtype=float), np.array(u, dtype=float)
+        state, given = _numbers(x, "x"), _numbers(u, "u")
         for array, names, what in ((state, self.states, "states"), (given, self.inputs, "inputs")):
             if array.shape != (len(names),):
                 raise SignalError(
@@ -108,6 +108,9 @@ class Simulator:
         Raises `SignalError` for unusable arguments, `SimulationError` if the run can't go on.
         """
         times = _times(time)
+        for given, what in ((initial, "initial"), (inputs, "inputs")):
+            if given is not None and not isinstance(given, Mapping):
+                raise SignalError(f"{what} must map names to values, not be {given!r}")
         signals = self._signals(inputs or {})
         if method != "auto" and method not in METHODS:
             raise SignalError(f"unknown method {method!r}; there are auto, {', '.join(METHODS)}")
@@ -220,6 +223,8 @@ def simulator(
     """
     if backend not in BACKENDS:
         raise SignalError(f"unknown backend {backend!r}; there is {', '.join(BACKENDS)}")
+    if not isinstance(parameters, Mapping):
+        raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
     program = lower(equations, laws, parameters)
     closed = ClosedModel(program, equations, parameters)
     return Simulator(
@@ -230,8 +235,16 @@ def simulator(
     )
 
 
+def _numbers(values: ArrayLike, what: str) -> Array:
+    """A fresh array of floats; `SignalError` for what makes none."""
+    try:
+        return np.array(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise SignalError(f"{what} must be numbers: {error}") from None
+
+
 def _times(time: ArrayLike) -> Array:
-    times = np.array(time, dtype=float)
+    times = _numbers(time, "time")
     if times.ndim != 1 or len(times) < 2:
         raise SignalError(f"time must be a list of two or more points, not of shape {times.shape}")
     if not np.isfinite(times).all():
