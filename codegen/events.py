@@ -1,7 +1,7 @@
 """Events inside one integration step: where a slip or a margin falls through zero."""
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
@@ -18,8 +18,7 @@ Dense = Callable[[float], Array]
 """The integrated vector anywhere inside a step."""
 
 
-@dataclass(frozen=True)
-class Event:
+class Event(NamedTuple):
     """What happened at a friction port: "stick", "slip" (it was released) or "cross" (through zero)."""
 
     time: float

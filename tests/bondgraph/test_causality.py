@@ -9,8 +9,6 @@ from references.random_graphs import chain, random_graph
 
 import bondgraph as bg
 
-I, C, One, Zero = bg.I, bg.C, bg.One, bg.Zero
-
 
 def _assert_obeyed(graph: Graph, causal: bg.CausalGraph) -> None:
     """The rule of every node: how many of its bonds bring it their effort."""
@@ -53,7 +51,14 @@ def test_strokes_of_a_small_graph_are_among_all_valid_ones(seed: int) -> None:
 
 def test_first_valid_strokes_may_be_singular_and_are_then_given_up() -> None:
     """Strokes allow C0 in integral causality, but the loop of the three junctions is then singular."""
-    nodes = [One("j0"), One("j1"), Zero("j2"), C("C0", "c0"), C("C2", "c2"), bg.Se("Se", "u")]
+    nodes = [
+        bg.One("j0"),
+        bg.One("j1"),
+        bg.Zero("j2"),
+        bg.C("C0", "c0"),
+        bg.C("C2", "c2"),
+        bg.Se("Se", "u"),
+    ]
     graph = bond_graph(nodes, "j1>j0 j2>j0 j1>j2 j0>C0 Se>j1 j2>C2")
     causal = bg.assign_causality(graph)
     assert (causal.integral, causal.derivative) == (("C2",), ("C0",))
@@ -64,8 +69,8 @@ def test_first_valid_strokes_may_be_singular_and_are_then_given_up() -> None:
 def test_first_declared_storage_may_be_the_dependent_one_in_a_mesh() -> None:
     """The bond between j0 and j1 makes their flows equal, so that none is left for I4 at z."""
     nodes = [
-        bg.Se("Se", "u"), One("j1"), One("j0"), Zero("z"), I("I4", "i4"), I("I3", "i3"),
-        I("I6", "i6"),
+        bg.Se("Se", "u"), bg.One("j1"), bg.One("j0"), bg.Zero("z"), bg.I("I4", "i4"), bg.I("I3", "i3"),
+        bg.I("I6", "i6"),
     ]  # fmt: skip
     causal = bg.assign_causality(bond_graph(nodes, "Se>j1>I6 j1>z I3>j0 z>j0 z>I4 j0>j1"))
     assert (causal.integral, causal.derivative) == (("I3",), ("I4", "I6"))
@@ -73,7 +78,7 @@ def test_first_declared_storage_may_be_the_dependent_one_in_a_mesh() -> None:
 
 def test_compliance_in_a_mesh_that_an_open_port_drives_is_dependent() -> None:
     nodes = [
-        bg.R("R", "r"), C("C", "c"), bg.TF("TF", "m"), One("j0"), Zero("z"), One("j2"),
+        bg.R("R", "r"), bg.C("C", "c"), bg.TF("TF", "m"), bg.One("j0"), bg.Zero("z"), bg.One("j2"),
         bg.R("open"),
     ]  # fmt: skip
     causal = bg.assign_causality(bond_graph(nodes, "R>z C>TF>j0 z>j0 j2>z j2>open j2>j0"))
@@ -81,21 +86,21 @@ def test_compliance_in_a_mesh_that_an_open_port_drives_is_dependent() -> None:
 
 
 def _shaft(*inertias: object) -> Graph:
-    nodes = [bg.Se("s", "u"), One("j"), *inertias]
+    nodes = [bg.Se("s", "u"), bg.One("j"), *inertias]
     return bond_graph(nodes, "s>j " + " ".join(f"j>{name}" for name, _ in inertias))
 
 
 def test_earlier_storage_is_the_state_of_two_that_move_together() -> None:
-    causal = bg.assign_causality(_shaft(I("a", "a"), I("b", "b")))
+    causal = bg.assign_causality(_shaft(bg.I("a", "a"), bg.I("b", "b")))
     assert (causal.integral, causal.derivative) == (("a",), ("b",))
 
 
 @pytest.mark.parametrize(
     "inertias",
     [
-        (I("a", "a"), I("b", "b", priority=1)),
-        (I("a", "a", priority=-0.5), I("b", "b")),
-        (I("a", "a", priority=-2), I("b", "b", priority=-1)),
+        (bg.I("a", "a"), bg.I("b", "b", priority=1)),
+        (bg.I("a", "a", priority=-0.5), bg.I("b", "b")),
+        (bg.I("a", "a", priority=-2), bg.I("b", "b", priority=-1)),
     ],
 )
 def test_higher_priority_is_the_state_of_two_that_move_together(inertias: tuple) -> None:
@@ -135,8 +140,8 @@ def test_number_of_states_does_not_depend_on_the_order_of_declaration() -> None:
 
 def test_why_tells_the_chain_of_reasons_choices_first() -> None:
     nodes = [
-        bg.Se("engine", "u"), One("in"), bg.TF("gear", "n"), Zero("mid"), bg.GY("motor", "r"),
-        I("wheel", "m"), I("shaft", "i"),
+        bg.Se("engine", "u"), bg.One("in"), bg.TF("gear", "n"), bg.Zero("mid"), bg.GY("motor", "r"),
+        bg.I("wheel", "m"), bg.I("shaft", "i"),
     ]  # fmt: skip
     causal = bg.assign_causality(bond_graph(nodes, "engine>in>shaft in>gear>mid>motor>wheel"))
     assert causal.integral == ("wheel", "shaft")
@@ -156,7 +161,7 @@ def test_why_tells_the_chain_of_reasons_choices_first() -> None:
 
 
 def test_why_names_the_storage_that_took_the_place() -> None:
-    causal = bg.assign_causality(_shaft(I("first", "a"), I("second", "b")))
+    causal = bg.assign_causality(_shaft(bg.I("first", "a"), bg.I("second", "b")))
     assert causal.why("second") == (
         "I 'first' is tried in integral causality first, so on bond 'j' -> 'first' "
         "'first' receives the effort",
@@ -176,7 +181,9 @@ def test_long_story_is_shortened() -> None:
     count = 2_000
     gears = [bg.TF(f"g{k}", "n") for k in range(count)]
     path = ">".join(["s", *(f"g{k}" for k in range(count)), "m"])
-    story = bg.assign_causality(bond_graph([bg.Se("s", "u"), *gears, I("m", "m")], path)).why("m")
+    story = bg.assign_causality(bond_graph([bg.Se("s", "u"), *gears, bg.I("m", "m")], path)).why(
+        "m"
+    )
     assert len(story) < 20
     assert story[0].startswith("Se 's' imposes its effort")
     assert any(f"({count + 1 - 12} more strokes)" in line for line in story)
@@ -184,6 +191,6 @@ def test_long_story_is_shortened() -> None:
 
 
 def test_result_can_not_be_changed() -> None:
-    causal = bg.assign_causality(_shaft(I("a", "a")))
+    causal = bg.assign_causality(_shaft(bg.I("a", "a")))
     with pytest.raises(TypeError, match="does not support item assignment"):
         causal.strokes["s", "j"] = "s"  # type: ignore[index]

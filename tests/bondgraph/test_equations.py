@@ -180,3 +180,9 @@ def test_output_that_cannot_be_shown_is_refused(output: str, message: str) -> No
     nodes = [bg.Se("s", "u"), bg.TF("g", "n"), bg.One("a-b"), bg.I("m", "m")]
     with pytest.raises(bg.StructureError, match=message):
         bg.derive(bond_graph(nodes, "s>g>a-b>m"), outputs=[output])
+
+
+def test_name_alone_is_not_a_list_of_outputs() -> None:
+    graph = bond_graph([bg.One("j"), bg.I("m", "m"), bg.R("p")], "j>m j>p")
+    with pytest.raises(bg.StructureError, match=r"outputs must be a list .* \['p'\]"):
+        bg.derive(graph, outputs="p")

@@ -29,7 +29,7 @@ NO_EXPRESSION = [
 
 @pytest.mark.parametrize("text", NOT_ALLOWED + NO_FUNCTION + NO_EXPRESSION)
 def test_text_beyond_expressions_is_refused(text: str) -> None:
-    with pytest.raises(bg.ExpressionError, match="^node 'q': "):
+    with pytest.raises(bg.ExpressionError, match=r"^node 'q': "):
         bg.expression(text, "node 'q'")
 
 
@@ -47,14 +47,14 @@ def test_unknown_function_is_named(text: str) -> None:
     ],
 )  # fmt: skip
 def test_numbers_of_too_many_digits_are_refused(text: str) -> None:
-    with pytest.raises(bg.ExpressionError, match="node 'q': .*(digits|exponent)"):
+    with pytest.raises(bg.ExpressionError, match=r"node 'q': .*(digits|exponent)"):
         bg.expression(text, "node 'q'")
 
 
 @pytest.mark.parametrize("text", ["((2*x)**1000)**1000", "(x**1000)**1000"])
 def test_powers_of_powers_are_refused_too(text: str) -> None:
     """sympy multiplies the exponents, and writes out the numbers."""
-    with pytest.raises(bg.ExpressionError, match="node 'q': .*(digits|exponent)"):
+    with pytest.raises(bg.ExpressionError, match=r"node 'q': .*(digits|exponent)"):
         bg.expression(text, "node 'q'")
 
 

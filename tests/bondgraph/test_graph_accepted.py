@@ -36,7 +36,7 @@ def test_refused_graph_is_not_changed() -> None:
 def test_validated_graph_is_frozen() -> None:
     checked = bg.validate(alsd_graph())
     assert nx.is_frozen(checked)
-    with pytest.raises(nx.NetworkXError, match="[Ff]rozen"):
+    with pytest.raises(nx.NetworkXError, match=r"[Ff]rozen"):
         checked.add_node("x")
 
 

@@ -74,5 +74,5 @@ def test_law_with_a_state_names_it() -> None:
     twist = sp.Symbol("q_k")
     assert law("k*q_k", "node 'k'", twist).free_symbols == {sp.Symbol("k"), twist}
     for ready in (bg.DryFriction("mu"), bg.ExpressionLaw(slip), bg.ExpressionLaw(slip, slip)):
-        with pytest.raises(bg.ExpressionError, match="node 'k': a storage takes .* q_k"):
+        with pytest.raises(bg.ExpressionError, match=r"node 'k': a storage takes .* q_k"):
             law(ready, "node 'k'", twist)

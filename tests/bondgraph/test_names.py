@@ -29,7 +29,7 @@ def test_variable_that_two_ports_impose_is_refused(first: tuple, second: tuple) 
 
 
 def test_state_of_a_law_is_a_variable_of_its_own() -> None:
-    with pytest.raises(bg.StructureError, match="'[ak]' and '[ak]' both impose a variable q_k"):
+    with pytest.raises(bg.StructureError, match=r"'[ak]' and '[ak]' both impose a variable q_k"):
         bg.derive(_graph(bg.C("k", law="q_k/c"), bg.R("a", effort="q_k")))
 
 
@@ -47,12 +47,12 @@ def test_one_symbol_object_for_one_name_is_accepted() -> None:
 @pytest.mark.parametrize("given", [sp.Symbol("J"), "J", sp.Symbol("J", real=True)])
 def test_one_name_with_different_assumptions_is_refused(given: object) -> None:
     graph = _graph(bg.R("b", sp.Symbol("J", positive=True)), bg.C("k", given))
-    with pytest.raises(bg.StructureError, match="'k': the symbol J .* different assumptions"):
+    with pytest.raises(bg.StructureError, match=r"'k': the symbol J .* different assumptions"):
         bg.derive(graph)
 
 
 def test_signal_of_a_law_with_assumptions_is_refused() -> None:
-    with pytest.raises(bg.StructureError, match="'b': the symbol v .* different assumptions"):
+    with pytest.raises(bg.StructureError, match=r"'b': the symbol v .* different assumptions"):
         bg.derive(_graph(bg.R("b", law=sp.Symbol("v", real=True) ** 2)))
 
 
