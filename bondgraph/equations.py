@@ -9,13 +9,14 @@ import sympy as sp
 
 from bondgraph.causality import assign_causality
 from bondgraph.elements import Kind
+from bondgraph.elimination import ResidueRows
 from bondgraph.errors import SingularStorageError, StructureError
 from bondgraph.exact import Row, add_scaled, matrix_of, solve, tidy
 from bondgraph.junction import JunctionStructure, Port, junction_structure
 from bondgraph.laws import Law
 from bondgraph.readings import check_laws, check_readings
 from bondgraph.reduction import Reading, Reduction, reduce_ports
-from bondgraph.residues import ResidueRows, is_zero, residues
+from bondgraph.residues import is_zero, residues
 
 LARGEST_TIDIED = 2_000
 """Matrices with more entries in all are left as they were derived."""

@@ -10,8 +10,9 @@ import heapq
 from collections.abc import Iterator, Sequence
 
 from bondgraph.elements import Kind
+from bondgraph.elimination import ResidueRows, Row
 from bondgraph.errors import AlgebraicLoopError, CausalityError
-from bondgraph.residues import PRIME, ResidueRows, Row, residues
+from bondgraph.residues import PRIME, residues
 from bondgraph.strokes import Strokes
 
 

@@ -1,58 +1,137 @@
-"""Expressions as residues modulo a large prime: exact structure decisions at the price of integer arithmetic.
+"""Expressions as residues modulo a large prime: exact structure decisions at the price of integers.
 
 Every symbol stands for a random residue, the same in all places. A residue that is not zero proves
 that the expression is not zero; a zero is wrong with a probability of about degree/2**61.
+
+The prime is 1 modulo 8 and modulo every odd prime below 32. So the residues hold i = sqrt(-1) and the
+roots of small integers, and functions keep their identities: with ``u = exp(i x)`` a random residue,
+``cos x = (u + 1/u)/2`` and ``sin x = (u - 1/u)/(2 i)``, whatever multiples of x and sums of angles occur.
 """
 
 import random
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterator
 
 import sympy as sp
+from sympy.ntheory import factorint, sqrt_mod
 
-PRIME = 2**61 - 1
+PRIME = 2874246 * 802241960520 + 1
+"""The largest prime below 2**61 of the form ``k * 8 * 3 * 5 * 7 * 11 * 13 * 17 * 19 * 23 * 29 * 31 + 1``."""
 
-Row = dict[int, int]
-"""A sparse row of residues: column to entry, no zeros."""
+PARTS = 2**4 * 3**2 * 5 * 7
+"""Angles and exponents are counted in this fraction of a symbol, so that x/2 and x/3 agree with x."""
+
+KNOWN_FUNCTIONS = (sp.sin, sp.cos, sp.tan, sp.sinh, sp.cosh, sp.tanh, sp.exp)
 
 
 def residues(seed: int = 0) -> Callable[[sp.Expr], int]:
     """A function from expressions to residues; equal seeds give equal functions.
 
-    What is not built from numbers, symbols, sums, products and integer powers counts as a symbol of
-    its own. Raises `ZeroDivisionError` where a denominator vanishes.
+    Sums, products, powers with integer or half exponents and the functions in `KNOWN_FUNCTIONS` keep
+    their identities; any other function counts as a symbol of its own. Raises `ZeroDivisionError` where
+    a denominator vanishes.
 
     >>> value = residues()
     >>> h = sp.Symbol("h")
-    >>> value(h/(h - 1) - 1/(h - 1)), value(h - 2) == 0
-    (1, False)
+    >>> value(h/(h - 1) - 1/(h - 1)), value(h - 2) == 0, value(sp.sin(h)**2 + sp.cos(h)**2)
+    (1, False, 1)
     """
-    known: dict[sp.Expr, int] = {}
+    return _Residues(seed)
 
-    def value(expr: sp.Expr) -> int:
+
+class _Residues:
+    def __init__(self, seed: int) -> None:
+        self._seed = seed
+        self._imaginary = int(sqrt_mod(PRIME - 1, PRIME))
+        self._known: dict[sp.Expr, int] = {}
+
+    def __call__(self, expr: sp.Expr) -> int:
         if expr.is_Rational:
             return int(expr.p) * _inverse(int(expr.q)) % PRIME
         if expr.is_Add:
-            return sum(value(part) for part in expr.args) % PRIME
+            return sum(map(self, expr.args)) % PRIME
         if expr.is_Mul:
-            product = 1
-            for part in expr.args:
-                product = product * value(part) % PRIME
-            return product
+            return prod_mod(map(self, expr.args))
         if expr.is_Pow and expr.exp.is_Integer:
-            exponent = int(expr.exp)
-            base = value(expr.base)
-            return pow(_inverse(base) if exponent < 0 else base, abs(exponent), PRIME)
-        if expr not in known:
-            known[expr] = random.Random(f"{seed} {sp.srepr(expr)}").randrange(1, PRIME)
-        return known[expr]
+            return _power(self(expr.base), int(expr.exp))
+        if expr not in self._known:
+            self._known[expr] = self._new(expr)
+        return self._known[expr]
 
-    return value
+    def _new(self, expr: sp.Expr) -> int:
+        """The residue of a symbol, a root or a function."""
+        if expr.is_Symbol:
+            # A square, so that the symbol has a root.
+            return pow(self._random(expr), 2, PRIME)
+        if expr.is_Pow and expr.exp.is_Rational and expr.exp.q == 2:
+            return _power(self._root(expr.base), int(expr.exp.p))
+        if isinstance(expr, KNOWN_FUNCTIONS):
+            return self._function(expr)
+        return self._random(expr)
+
+    def _random(self, expr: sp.Expr, kind: str = "") -> int:
+        return random.Random(f"{self._seed} {kind} {sp.srepr(expr)}").randrange(1, PRIME)
+
+    def _root(self, base: sp.Expr) -> int:
+        """A square root, the root of a product being the product of roots."""
+        if base.is_Symbol:
+            return self._random(base)
+        if base.is_Mul:
+            return prod_mod(map(self._root, base.args))
+        if base.is_Rational and not base.is_Integer:
+            return self._root(sp.Integer(base.p)) * _inverse(self._root(sp.Integer(base.q))) % PRIME
+        if base.is_Integer and base.p > 0:
+            powers = factorint(base.p).items()
+            return prod_mod(_power(_smaller_root(q) or self._random(base), n) for q, n in powers)
+        return _smaller_root(self(base)) or self._random(base, "root")
+
+    def _function(self, expr: sp.Expr) -> int:
+        (argument,) = expr.args
+        hyperbolic = isinstance(expr, sp.exp | sp.sinh | sp.cosh | sp.tanh)
+        u = self._exponential(argument, "" if hyperbolic else "i")
+        if isinstance(expr, sp.exp):
+            return u
+        v, half = _inverse(u), _inverse(2)
+        even, odd = (u + v) * half % PRIME, (u - v) * half % PRIME
+        if not hyperbolic:
+            odd = odd * _inverse(self._imaginary) % PRIME
+        if isinstance(expr, sp.sin | sp.sinh):
+            return odd
+        if isinstance(expr, sp.cos | sp.cosh):
+            return even
+        return odd * _inverse(even) % PRIME
+
+    def _exponential(self, argument: sp.Expr, kind: str) -> int:
+        """``exp(argument)``, or ``exp(i argument)``: the product over the terms of the argument."""
+        result = 1
+        for term, factor in sp.expand(argument).as_coefficients_dict().items():
+            parts = factor * PARTS
+            base = self._random(term if parts.is_Integer else term * factor, f"exp{kind}")
+            result = result * _power(base, int(parts) if parts.is_Integer else 1) % PRIME
+        return result
+
+
+def prod_mod(values: Iterator[int]) -> int:
+    """The product of residues."""
+    result = 1
+    for value in values:
+        result = result * value % PRIME
+    return result
+
+
+def _power(base: int, exponent: int) -> int:
+    return pow(_inverse(base) if exponent < 0 else base, abs(exponent), PRIME)
 
 
 def _inverse(residue: int) -> int:
     if residue % PRIME == 0:
         raise ZeroDivisionError("a denominator vanishes")
     return pow(residue, -1, PRIME)
+
+
+def _smaller_root(residue: int) -> int | None:
+    """The smaller of the two square roots, if there are any."""
+    root = sqrt_mod(residue % PRIME, PRIME)
+    return None if root is None else int(root)
 
 
 def is_zero(expr: sp.Expr) -> bool:
@@ -81,51 +160,3 @@ def is_rational_function(expr: sp.Expr) -> bool:
     if expr.is_Pow:
         return bool(expr.exp.is_Integer) and is_rational_function(expr.base)
     return bool(expr.is_Add or expr.is_Mul) and all(map(is_rational_function, expr.args))
-
-
-class ResidueRows:
-    """Sparse rows modulo the prime, eliminated column by column."""
-
-    def __init__(self, rows: Iterable[Row]) -> None:
-        self.rows = list(rows)
-        self.columns: dict[int, set[int]] = {}
-        self.pivots: dict[int, int] = {}
-        for at, row in enumerate(self.rows):
-            for column in row:
-                self.columns.setdefault(column, set()).add(at)
-
-    def pivot(self, column: int, jordan: bool = True) -> bool:
-        """Eliminate a column with its shortest free row; False if it depends on earlier ones.
-
-        With ``jordan`` the column also leaves the rows of earlier pivots; without, the pivot's row
-        is done with and forgotten.
-        """
-        free = [at for at in self.columns.get(column, ()) if at not in self.pivots]
-        if not free:
-            return False
-        best = min(free, key=lambda at: (len(self.rows[at]), at))
-        scale = pow(self.rows[best][column], -1, PRIME)
-        for at in list(self.columns[column] - {best}):
-            self._subtract(at, best, self.rows[at][column] * scale % PRIME)
-        if jordan:
-            self.pivots[best] = column
-        else:
-            for other in self.rows[best]:
-                self.columns[other].discard(best)
-            self.rows[best] = {}
-        return True
-
-    def pivots_meeting(self, column: int) -> list[int]:
-        """The pivot columns whose rows hold this column."""
-        return [self.pivots[at] for at in self.columns.get(column, ()) if at in self.pivots]
-
-    def _subtract(self, at: int, source: int, factor: int) -> None:
-        row = self.rows[at]
-        for column, entry in self.rows[source].items():
-            left = (row.get(column, 0) - factor * entry) % PRIME
-            if left:
-                row[column] = left
-                self.columns.setdefault(column, set()).add(at)
-            elif column in row:
-                del row[column]
-                self.columns[column].discard(at)

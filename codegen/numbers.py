@@ -8,9 +8,10 @@ import scipy.linalg
 import sympy as sp
 
 from bondgraph import ParameterError, StateEquations
+from bondgraph.elimination import ResidueRows
 from bondgraph.exact import Row, rows_of
 from bondgraph.expressions import number
-from bondgraph.residues import ResidueRows, residues
+from bondgraph.residues import residues
 from codegen.arrays import Array
 from codegen.numpy_backend import compiled
 from codegen.program import Program

@@ -11,12 +11,17 @@ ROOT = Path(__file__).parents[1]
 #: Each package may import the ones before it; each file of a package the files before it.
 ORDER = {
     "bondgraph": [
-        "errors", "expressions", "laws", "elements", "residues", "names", "graph", "strokes",
+        "errors", "expressions", "laws", "elements", "residues", "elimination", "names", "graph", "strokes",
         "causal_order", "regularity", "stories", "causality", "exact", "junction", "reduction",
         "readings", "equations",
     ],
-    "codegen": [],
-    "differentials": [],
+    "codegen": [
+        "arrays", "pieces", "signals", "affine", "closing", "program", "numpy_backend", "numbers",
+        "friction", "instant", "loops", "closed", "modes", "events", "legs", "hybrid", "simulate",
+    ],
+    "differentials": [
+        "laws", "parts", "parameters", "topologies", "scenarios", "figures", "report",
+    ],
 }  # fmt: skip
 
 

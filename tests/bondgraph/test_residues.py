@@ -5,7 +5,8 @@ import random
 import pytest
 import sympy as sp
 
-from bondgraph.residues import PRIME, ResidueRows, is_rational_function, is_zero, residues
+from bondgraph.elimination import ResidueRows
+from bondgraph.residues import PRIME, is_rational_function, is_zero, residues
 
 a, b, h, x = sp.symbols("a b h x")
 
