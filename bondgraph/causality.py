@@ -62,7 +62,7 @@ def assign_causality(graph: Any) -> CausalGraph:
     if not found or _has_loop(strokes):
         chosen = regular_ports(strokes, order, preferred)
         if not found or any(strokes.gives(node) != gives for node, gives in chosen.items()):
-            _search_with(strokes, order, chosen)
+            _search_with(strokes, order, preferred, chosen)
     return _causal_graph(checked, strokes)
 
 
@@ -164,12 +164,12 @@ def _turn_back(
 
 
 def _has_loop(strokes: Strokes) -> bool:
-    if len(strokes.bonds) < len(strokes.names):
-        return False
     return any(len(group) > 1 for group in causal_groups(causal_equations(strokes).terms))
 
 
-def _search_with(strokes: Strokes, order: list[int], chosen: dict[int, str]) -> None:
+def _search_with(
+    strokes: Strokes, order: list[int], preferred: dict[int, str], chosen: dict[int, str]
+) -> None:
     """Strokes again, with every port's causality given."""
     strokes.undo(0)
     conflict: Contradiction | None = None
@@ -181,7 +181,7 @@ def _search_with(strokes: Strokes, order: list[int], chosen: dict[int, str]) -> 
             text = f"imposes its {chosen[node]}"
         end = strokes.end_for(node, chosen[node])
         conflict = conflict or strokes.assign(strokes.at[node][0], end, Reason(node, text))
-    if conflict or not _search(strokes, order, chosen):
+    if conflict or not _search(strokes, order, preferred | chosen):
         raise CausalityError(
             "no complete set of causal strokes was found, though the equations are regular; "
             "please report this graph"

@@ -1,20 +1,21 @@
 """`state_equations` and `derive`: the graph as ``A x' = J x + B u + E u'``, ``y = F x + D u + G u'``."""
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
 import sympy as sp
 
 from bondgraph.causality import assign_causality
-from bondgraph.elements import Kind
+from bondgraph.elements import Element
 from bondgraph.elimination import ResidueRows
-from bondgraph.errors import SingularStorageError, StructureError
+from bondgraph.errors import SingularStorageError
 from bondgraph.exact import Row, add_scaled, matrix_of, solve, tidy
 from bondgraph.junction import JunctionStructure, Port, junction_structure
 from bondgraph.laws import Law
-from bondgraph.readings import check_laws, check_readings
+from bondgraph.outputs import PortRow, named_signals, shown_signals
+from bondgraph.readings import check_laws
 from bondgraph.reduction import Reading, Reduction, reduce_ports
 from bondgraph.residues import is_zero, residues
 
@@ -47,8 +48,12 @@ class StateEquations:
     laws: Mapping[Hashable, Law]
     #: The ports that give inputs, in declaration order.
     ports: tuple[Port, ...]
-    #: Every known signal, shown as an output or not, as ``F x + D u + H x' + K u'``.
+    #: What ports of inputs receive, and the outputs, as ``F x + D u + H x' + K u'``.
     readings: Mapping[sp.Symbol, Reading] = field(repr=False)
+    #: Every named signal of the graph as a row over its ports; see `with_readings`.
+    signals: Mapping[sp.Symbol, PortRow] = field(repr=False)
+    #: The ports' reduction, which turns such a row into a reading.
+    reduction: Reduction = field(repr=False)
 
     @property
     def parameters(self) -> tuple[sp.Symbol, ...]:
@@ -60,6 +65,20 @@ class StateEquations:
             for row in (reading.F, reading.D, reading.H, reading.K):
                 used.update(*(entry.free_symbols for entry in row.values()))
         return tuple(sorted(used, key=str))
+
+    @property
+    def elements(self) -> Mapping[Hashable, Element]:
+        """The graph's nodes, checked."""
+        return self.reduction.structure.elements
+
+    def with_readings(self, names: Iterable[sp.Symbol]) -> "StateEquations":
+        """The same equations that also know these signals as readings."""
+        known = {*self.states, *self.inputs, *self.readings}
+        new = sorted({name for name in names if name in self.signals} - known, key=str)
+        if not new:
+            return self
+        more = {name: self.reduction.reading(self.signals[name]) for name in new}
+        return replace(self, readings=MappingProxyType({**self.readings, **more}))
 
 
 def derive(graph: Any, outputs: Iterable[Hashable] | None = None) -> StateEquations:
@@ -105,18 +124,15 @@ def state_equations(
          for at, port in enumerate(reduction.states)]  # fmt: skip
     states = tuple(ports[port].given for port in reduction.states)
     _check_regular(A, states)
-    shown = _shown(reduction, outputs)
-    readings = {
-        ports[port].received: reduction.reading(structure.rows[port]) for port in reduction.imposed
-    }
-    rows = [(symbol, reduction.reading(row)) for symbol, row in shown]
-    check_readings(states, reduction.inputs, [*readings.items(), *rows])
-    readings |= dict(rows)
+    signals = named_signals(reduction)
+    shown = shown_signals(structure, outputs)
+    rows = [(ports[port].received, structure.rows[port]) for port in reduction.imposed]
+    readings = {symbol: reduction.reading(row) for symbol, row in [*rows, *shown]}
     resolved = [_resolved(A, balances, readings[symbol]) for symbol, _ in shown]
     imposed = tuple(ports[port] for port in reduction.imposed)
     E = [row.K for row in balances]
     laws = {port.element.name: port.element.law for port in imposed if port.element.law is not None}
-    check_laws(laws, states, imposed, E, readings)
+    check_laws(laws, set(signals), imposed, E, readings)
     n, m = len(states), len(reduction.inputs)
     parts = [
         (A, n), ([row.F for row in balances], n), ([row.D for row in balances], m), (E, m),
@@ -129,6 +145,7 @@ def state_equations(
     return StateEquations(
         states, reduction.inputs, shown_names, **named,
         laws=MappingProxyType(laws), ports=imposed, readings=MappingProxyType(readings),
+        signals=MappingProxyType(signals), reduction=reduction,
     )  # fmt: skip
 
 
@@ -169,43 +186,6 @@ def _check_regular(A: list[Row], states: tuple[sp.Symbol, ...]) -> None:
                 f"the matrix A is singular: {states[i]}' is not determined by the storages' values; "
                 "change a value, or leave out a storage that cancels another"
             )
-
-
-def _shown(
-    reduction: Reduction, outputs: Iterable[Hashable] | None
-) -> list[tuple[sp.Symbol, Mapping[int, sp.Expr]]]:
-    """The outputs' symbols and their rows over the ports."""
-    structure = reduction.structure
-    if isinstance(outputs, str):
-        raise StructureError(f"outputs must be a list of nodes; for one node write [{outputs!r}]")
-    if outputs is None:
-        outputs = [
-            port.element.name
-            for port in structure.ports
-            if port.element.kind is Kind.R and port.element.gives and port.element.law is None
-        ]
-    numbers = {port.element.name: at for at, port in enumerate(structure.ports)}
-    result: list[tuple[sp.Symbol, Mapping[int, sp.Expr]]] = []
-    for name in outputs:
-        element = structure.elements.get(name)
-        if element is None:
-            raise StructureError(f"output {name!r} is not a node of the graph")
-        if name in numbers:
-            result.append((structure.ports[numbers[name]].received, structure.rows[numbers[name]]))
-        elif name in structure.common:
-            symbol = element.effort if element.kind is Kind.ZERO else element.flow
-            if symbol is None:
-                raise StructureError(
-                    f"output {name!r}: the junction's name makes no symbol; name its variable with "
-                    "effort=... or flow=..."
-                )
-            result.append((symbol, structure.common[name]))
-        else:
-            raise StructureError(
-                f"output {name!r} is a {element.kind}, which has two efforts and two flows; "
-                "name a junction or a one-port beside it"
-            )
-    return result
 
 
 def _reached(A: list[Row], start: Iterable[int]) -> list[int]:

@@ -7,13 +7,15 @@ import sympy as sp
 from sympy.polys.constructor import construct_domain
 from sympy.polys.matrices import DomainMatrix
 
+from bondgraph.expressions import expanded_terms
 from bondgraph.residues import is_rational_function, is_zero
 
 Row = dict[int, sp.Expr]
 """A sparse row: column to expression, no zeros."""
 
 TIDY_OPERATIONS = 60
-"""An entry with more operations than this is left as it came."""
+TIDY_TERMS = 100
+"""An entry with more operations, or more terms when multiplied out, is left as it came."""
 
 
 class SingularError(ArithmeticError):
@@ -39,7 +41,7 @@ def cancelled(expr: sp.Expr) -> sp.Expr:
         return expr
     if is_zero(expr):
         return sp.Integer(0)
-    return sp.cancel(expr) if expr.is_Add and expr.count_ops() <= TIDY_OPERATIONS else expr
+    return sp.cancel(expr) if expr.is_Add and _is_short(expr) else expr
 
 
 def solve(matrix: Sequence[Row], right: Sequence[Row]) -> list[Row]:
@@ -79,13 +81,16 @@ def solve(matrix: Sequence[Row], right: Sequence[Row]) -> list[Row]:
 
 def tidy(expr: sp.Expr) -> sp.Expr:
     """The shortest of an expression's plain, cancelled and factored forms; long ones stay as they are."""
-    if expr.is_Atom or not is_rational_function(expr) or expr.count_ops() > TIDY_OPERATIONS:
-        return expr
-    if any(power.exp > 4 for power in expr.atoms(sp.Pow)):
+    if expr.is_Atom or not is_rational_function(expr) or not _is_short(expr):
         return expr
     if is_zero(expr):
         return sp.Integer(0)
     return min((expr, sp.cancel(expr), sp.factor(expr)), key=lambda form: form.count_ops())
+
+
+def _is_short(expr: sp.Expr) -> bool:
+    """Whether an expression, multiplied out as well, is short enough to look for a better form."""
+    return expr.count_ops() <= TIDY_OPERATIONS and expanded_terms(expr) <= TIDY_TERMS
 
 
 def rows_of(matrix: sp.Matrix) -> list[Row]:

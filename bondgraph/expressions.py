@@ -3,6 +3,7 @@
 import ast
 import keyword
 import math
+import unicodedata
 from collections.abc import Callable
 from fractions import Fraction
 from numbers import Integral, Rational, Real
@@ -11,6 +12,7 @@ from typing import Any
 import sympy as sp
 
 from bondgraph.errors import ExpressionError
+from bondgraph.residues import residues
 
 TIME = sp.Symbol("t")
 """The time, in laws and known sources."""
@@ -19,6 +21,7 @@ MAX_LENGTH = 4_000
 MAX_DEPTH = 100
 MAX_EXPONENT = 1_000
 MAX_DIGITS = 400
+MAX_TERMS = 10_000
 
 _NOT_REAL = (sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I)
 
@@ -46,6 +49,14 @@ FUNCTIONS: dict[str, tuple[int, int, Callable[..., Any]]] = {
 }
 """Functions that text may use: least and most number of arguments, and what is built."""
 
+_PARTS = (
+    sp.Add, sp.Mul, sp.Pow, sp.Symbol, sp.Number, sp.NumberSymbol, sp.exp,
+    *(build for *_, build in FUNCTIONS.values() if isinstance(build, type)),
+    sp.Piecewise, sp.functions.elementary.piecewise.ExprCondPair,
+    sp.core.relational.Relational, sp.logic.boolalg.BooleanFunction, sp.logic.boolalg.BooleanAtom,
+)  # fmt: skip
+"""What an expression may be made of; piecewise laws come as sympy expressions only."""
+
 _BINARY: dict[type, Callable[[Any, Any], Any]] = {
     ast.Add: lambda a, b: a + b,
     ast.Sub: lambda a, b: a - b,
@@ -55,12 +66,18 @@ _BINARY: dict[type, Callable[[Any, Any], Any]] = {
 }
 
 
+def normal(name: object) -> object:
+    """A name as Python itself would read it: letters that look alike are one letter (NFKC)."""
+    return unicodedata.normalize("NFKC", name) if isinstance(name, str) else name
+
+
 def symbol(name: object, where: str) -> sp.Symbol:
     """A plain symbol of that name, refused if generated code could not carry the name.
 
     >>> symbol("omega_1", "node 'left'")
     omega_1
     """
+    name = normal(name)
     if not isinstance(name, str) or not name.isidentifier() or keyword.iskeyword(name):
         raise ExpressionError(
             f"{where}: {name!r} cannot be a symbol; use letters, digits and underscores, "
@@ -94,11 +111,41 @@ def expression(value: object, where: str) -> sp.Expr:
         raise ExpressionError(f"{where}: {value!r} is neither a number, a text nor an expression")
     if not isinstance(result, sp.Symbol) and (result.has(*_NOT_REAL) or result.is_real is False):
         raise ExpressionError(f"{where}: {value!r} is not a finite real expression")
-    for part in result.free_symbols:
-        if not isinstance(part, sp.Symbol):
-            raise ExpressionError(f"{where}: {part!r} is not a plain symbol")
-        symbol(part.name, where)
+    _check_parts(result, where)
     return result
+
+
+def expanded_terms(expr: sp.Expr) -> int:
+    """An upper bound on the number of terms that multiplying an expression out would give."""
+    if expr.is_Add:
+        return sum(map(expanded_terms, expr.args))
+    if expr.is_Mul:
+        return math.prod(map(expanded_terms, expr.args))
+    if expr.is_Pow and expr.exp.is_Integer:
+        terms, power = expanded_terms(expr.base), abs(int(expr.exp))
+        return math.comb(terms + power - 1, power) if terms > 1 else 1
+    return 1
+
+
+def _check_parts(expr: sp.Expr, where: str) -> None:
+    """Refuse what no backend could print, no stage could decide, or no patience could expand."""
+    if isinstance(expr, sp.Symbol) and expr.is_commutative:
+        symbol(expr.name, where)
+        return
+    for part in sp.preorder_traversal(expr):
+        if not isinstance(part, _PARTS) or part.is_commutative is False:
+            raise ExpressionError(
+                f"{where}: {_short(str(part))} is not allowed; an expression holds numbers, names, "
+                f"+ - * / ** and the functions {', '.join(sorted(FUNCTIONS))}"
+            )
+        if isinstance(part, sp.Symbol):
+            symbol(part.name, where)
+    if expanded_terms(expr) > MAX_TERMS:
+        raise ExpressionError(f"{where}: multiplied out it would have over {MAX_TERMS} terms")
+    try:
+        residues()(expr)
+    except ZeroDivisionError:
+        raise ExpressionError(f"{where}: a denominator of {_short(str(expr))} vanishes") from None
 
 
 def number(value: object, where: str) -> sp.Rational:

@@ -1,7 +1,7 @@
 """`validate`: the only reader of the user's attributes; what passes is complete, checked and frozen."""
 
 from collections.abc import Hashable, Mapping
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any
 
 import networkx as nx
 import sympy as sp
@@ -25,6 +25,16 @@ from bondgraph.residues import is_zero
 Bond = tuple[Hashable, Hashable]
 
 
+if TYPE_CHECKING:
+    _DiGraph = nx.DiGraph[Hashable]
+else:
+    _DiGraph = nx.DiGraph
+
+
+class _Validated(_DiGraph):
+    """A graph that has passed; only `validate` makes one."""
+
+
 def validate(graph: Any) -> "nx.DiGraph[Hashable]":
     """A frozen copy of the graph whose nodes carry one checked `Element` each as ``element``.
 
@@ -37,11 +47,11 @@ def validate(graph: Any) -> "nx.DiGraph[Hashable]":
         raise StructureError(
             f"a bond graph is a networkx.DiGraph with one edge a bond, not a {type(graph).__name__}"
         )
-    if graph.graph.get("validated") and nx.is_frozen(graph):
-        return cast("nx.DiGraph[Hashable]", graph)
+    if isinstance(graph, _Validated):
+        return graph
     if len(graph) == 0:
         raise StructureError("the graph has no nodes; add elements and bonds first")
-    result: nx.DiGraph[Hashable] = nx.DiGraph(validated=True)
+    result = _Validated()
     for name, attributes in graph.nodes(data=True):
         result.add_node(name, element=_element(name, attributes))
     for tail, head, attributes in graph.edges(data=True):

@@ -62,6 +62,13 @@ class DryFriction:
                 f"dry friction: breakaway {ratio} is below the curve at standstill, {at_rest}; "
                 "a port held there could neither stick nor slip"
             )
+        if at_rest.is_negative:
+            raise ExpressionError(
+                f"curve of dry friction: {at_rest} at slip = 0 would drive the slip"
+            )
+        for part, what in ((self.level, "level"), (ratio, "breakaway")):
+            if SLIP in part.free_symbols:
+                raise ExpressionError(f"{what} of dry friction: only the curve may use slip")
         object.__setattr__(self, "breakaway", ratio)
 
     @property

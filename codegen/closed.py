@@ -23,6 +23,10 @@ Mode = tuple[int, ...]
 """For each friction port: 0 sticking, +1 or -1 the sign of its slip."""
 
 
+FAR = 2.0**30
+"""How far out affine models are probed; a power of two, so that dividing by it is exact."""
+
+
 @dataclass(frozen=True)
 class Snapshot:
     """Everything at one instant: states x and z, inputs, their rates, readings, the rate of s.
@@ -60,8 +64,7 @@ class ClosedModel:
         self._friction = binding.function(program.friction_values)
         self._outside = [program.inputs.index(n) for n in program.external if n in program.inputs]
         self._rated = any(M.any() for M in (self.numbers.R, self.numbers.G, self.numbers.D))
-        self._joint = bool(program.coupled.inputs) or bool(self._exact_D.todok())
-        self._affine = program.affine and not self._joint
+        self._joint, self._affine = program.joint, program.affine
         self._maps: dict[Mode, AffineMap | None] = {}
         self._holds: dict[Mode, Hold] = {}
 
@@ -142,14 +145,16 @@ class ClosedModel:
         length = self.size + 2 * inputs
         parts = point(np.zeros(length))
         origin = np.concatenate(parts)
-        columns = [np.concatenate(point(row)) - origin for row in np.eye(length)]
+        # Far out the constant part of a law no longer swallows digits of its slope.
+        columns = [(np.concatenate(point(FAR * e)) - origin) / FAR for e in np.eye(length)]
         return AffineMap([len(part) for part in parts], np.column_stack([*columns, origin]))
 
     def _give(self, now: Instant, group: Group, function: Evaluation) -> None:
         """Evaluate one group of laws, or solve it if it is a loop."""
         columns, D = list(group.inputs), self.numbers.D
         if group.loop:
-            solve_loop(now, columns, D, lambda at: at.u[columns] - function(at), group.ports)
+            rows = list(group.readings)
+            solve_loop(now, columns, rows, D, lambda at: at.u[columns] - function(at), group.ports)
         else:
             now.give(columns, function(now), D)
 
@@ -181,23 +186,34 @@ class ClosedModel:
             return np.concatenate([left, at.u[coupled] - self._coupled(at)])
 
         names = [port.name for port in self.program.friction] + list(self.program.coupled.ports)
-        solve_loop(now, self.friction_inputs + coupled, self.numbers.D, residual, names)
+        columns = self.friction_inputs + coupled
+        rows = self.friction_readings + list(self.program.coupled.readings)
+        solve_loop(now, columns, rows, self.numbers.D, residual, names)
         if stuck and len(self.hold(mode).share):
             fair = fair_share(now.u[held], self.hold(mode).share, now.caps[stuck])
             now.give(held, fair - now.u[held], self.numbers.D)
 
     def _against(self, now: Instant, mode: Mode, checked: bool) -> Array:
         """Slipping ports' efforts, zero at sticking ones; notes every port's breakaway effort."""
-        levels, caps, curves = self._friction(now).reshape(-1, 3).T
-        if checked and (levels < 0).any():
-            at = int(np.argmin(levels))
-            raise SimulationError(
-                f"at t = {now.t:g} the friction level at {self.program.friction[at].name!r} is "
-                f"negative ({levels[at]:g}); a level is a magnitude"
-            )
+        levels, caps, curves, at_rest = self._friction(now).reshape(-1, 4).T
+        if checked:
+            self._check_friction(now.t, levels, caps, curves, at_rest)
         now.caps = caps
         efforts: Array = levels * curves * np.array(mode, dtype=float)
         return efforts
+
+    def _check_friction(
+        self, t: float, levels: Array, caps: Array, curves: Array, at_rest: Array
+    ) -> None:
+        """Refuse friction that would drive, or hold less than it brakes at standstill."""
+        wrong = (levels < 0) | (curves < 0) | (caps < levels * at_rest * (1 - 1e-12))
+        if wrong.any():
+            at = int(np.argmax(wrong))
+            raise SimulationError(
+                f"at t = {t:g} the friction at {self.program.friction[at].name!r} has level "
+                f"{levels[at]:g}, curve {curves[at]:g} and breakaway effort {caps[at]:g}: level and "
+                "curve must not be negative, the breakaway not below the friction at standstill"
+            )
 
     def _check_differentiable(self, found: Hold) -> None:
         """Refuse to stick where the slope of a law that the system rules would be needed."""

@@ -7,6 +7,7 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph import DryFriction, ParameterError, StateEquations, StructureError
+from bondgraph.elements import Kind
 from bondgraph.exact import rows_of
 from bondgraph.expressions import TIME
 from bondgraph.junction import Port
@@ -24,8 +25,8 @@ class Closing:
     state and the reading that is its rate.
     """
 
-    inputs: tuple[sp.Symbol, ...]
-    readings: tuple[sp.Symbol, ...]
+    #: The equations, with every signal that a law reads among their readings.
+    equations: StateEquations
     laws: Mapping[sp.Symbol, Law]
     port_names: Mapping[sp.Symbol, Hashable]
     received: Mapping[sp.Symbol, sp.Symbol]
@@ -35,6 +36,8 @@ class Closing:
     order: tuple[tuple[tuple[sp.Symbol, ...], bool], ...]
     friction: tuple[sp.Symbol, ...]
     coupled: tuple[sp.Symbol, ...]
+    #: Whether friction efforts act back at once on friction, by way of slips, levels or other laws.
+    joint: bool
 
 
 def close_ports(
@@ -42,6 +45,9 @@ def close_ports(
 ) -> Closing:
     """Merge declared and given laws, sort their names, and find an order of evaluation."""
     by_port = _merged(equations, overrides)
+    _check_assumptions(equations, by_port)
+    read = {name for closed in by_port.values() for name in closed.free_symbols}
+    equations = equations.with_readings(read)
     ports = {port.element.name: port for port in equations.ports}
     _check_parameters(equations, by_port, parameters)
     for name, port in ports.items():
@@ -60,10 +66,9 @@ def close_ports(
         if isinstance(closed, ExpressionLaw) and closed.state is not None
     }
     sorted_laws = _sort(equations, laws, set(states), parameters)
-    known, order, friction, coupled = sorted_laws
+    known, order, friction, coupled, joint = sorted_laws
     return Closing(
-        equations.inputs,
-        tuple(equations.readings),
+        equations,
         laws,
         owner,
         received,
@@ -73,11 +78,26 @@ def close_ports(
         order,
         friction,
         coupled,
+        joint,
     )
+
+
+def _check_assumptions(equations: StateEquations, laws: Mapping[Hashable, Law]) -> None:
+    """Refuse a law whose symbol only looks like another: same name, other assumptions."""
+    known = {name.name: name for name in (*equations.parameters, *equations.signals)}
+    for port, closed in laws.items():
+        for name in sorted(closed.free_symbols, key=str):
+            if known.setdefault(name.name, name) != name:
+                raise StructureError(
+                    f"law at {port!r}: the symbol {name} is used elsewhere with different "
+                    "assumptions; use one symbol for one name, or plain text"
+                )
 
 
 def _merged(equations: StateEquations, overrides: Mapping[Hashable, object]) -> dict[Hashable, Law]:
     """Every closed port's law; a key of the overrides is a node, or the input it gives."""
+    if not isinstance(overrides, Mapping):
+        raise StructureError(f"laws must map nodes to laws, not be {overrides!r}")
     merged = dict(equations.laws)
     for key, value in overrides.items():
         port = _port(equations.ports, key)
@@ -85,11 +105,13 @@ def _merged(equations: StateEquations, overrides: Mapping[Hashable, object]) -> 
         declared = equations.laws.get(name)
         state = declared.state if isinstance(declared, ExpressionLaw) else None
         closed = law(value, f"law at {name!r}", state)
-        if isinstance(closed, DryFriction) and port.gives != "effort":
-            raise StructureError(f"law at {name!r}: dry friction gives an effort, this port a flow")
+        if isinstance(closed, DryFriction) and (
+            port.gives != "effort" or port.element.kind is not Kind.R
+        ):
+            raise StructureError(f"law at {name!r}: dry friction closes an R that gives an effort")
         merged[name] = closed
     matrix_rows = rows_of(equations.E)
-    check_laws(merged, equations.states, equations.ports, matrix_rows, equations.readings)
+    check_laws(merged, set(equations.signals), equations.ports, matrix_rows, equations.readings)
     return merged
 
 
@@ -113,9 +135,8 @@ def _check_parameters(
     """Refuse a parameter that names a signal, or an input that a law gives already."""
     closed = {port.given for port in equations.ports if port.element.name in laws}
     own = {part.state for part in laws.values() if isinstance(part, ExpressionLaw) and part.state}
-    taken = {*equations.states, *closed, *own, TIME} | (
-        set(equations.readings) - set(equations.inputs)
-    )
+    signals = set(equations.signals) - set(equations.inputs)
+    taken = {*signals, *closed, *own, TIME}
     for name in sorted(taken, key=str):
         if name.name in parameters:
             raise ParameterError(f"parameter {name} names a signal of the model; rename it")
@@ -128,7 +149,7 @@ def _external(
     parameters: set[str],
 ) -> tuple[sp.Symbol, ...]:
     """Inputs nothing in the model gives: open ports and sources first, then what laws ask for."""
-    known = {*equations.states, *equations.readings, *equations.inputs, *law_states, TIME}
+    known = {*equations.signals, *law_states, TIME}
     asked: set[sp.Symbol] = set()
     for closed in laws.values():
         asked |= {name for name in closed.free_symbols - known if name.name not in parameters}
@@ -142,6 +163,7 @@ Sorted = tuple[
     tuple[tuple[tuple[sp.Symbol, ...], bool], ...],
     tuple[sp.Symbol, ...],
     tuple[sp.Symbol, ...],
+    bool,
 ]
 
 
@@ -151,8 +173,8 @@ def _sort(
     law_states: set[sp.Symbol],
     parameters: set[str],
 ) -> Sorted:
-    signals = {*equations.states, *equations.readings, *law_states}
-    signals |= {given for given, closed in laws.items() if closed != ExpressionLaw(given)}
+    held = {given for given, closed in laws.items() if closed == ExpressionLaw(given)}
+    signals = (set(equations.signals) | law_states) - (set(equations.inputs) - set(laws)) - held
     friction = tuple(name for name in laws if isinstance(laws[name], DryFriction))
     known = tuple(name for name in laws if not depends_on_signals(laws[name], signals))
     needs: nx.DiGraph[sp.Symbol] = nx.DiGraph()
@@ -164,7 +186,9 @@ def _sort(
     after: set[sp.Symbol] = set().union(*(nx.descendants(needs, name) for name in friction))
     coupled = tuple(name for name in laws if name in after and name not in friction)
     rest = needs.subgraph(set(needs) - set(friction) - set(coupled))
-    return known, _groups(rest, list(laws)), friction, coupled
+    solved = {*friction, *coupled}
+    joint = bool(coupled) or any(a in solved and b in friction for a, b in needs.edges)
+    return known, _groups(rest, list(laws)), friction, coupled, joint
 
 
 def _reads(

@@ -8,7 +8,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from codegen.arrays import Array
 from codegen.closed import ClosedModel, Mode, Snapshot
-from codegen.modes import scales
+from codegen.modes import Peaks, scales
 from codegen.pieces import Piece
 
 CHECKS = 6
@@ -35,13 +35,19 @@ class Watch:
     """
 
     def __init__(
-        self, model: ClosedModel, pieces: Sequence[Piece], mode: Mode, t: float, s: Array
+        self,
+        model: ClosedModel,
+        pieces: Sequence[Piece],
+        mode: Mode,
+        t: float,
+        s: Array,
+        peaks: Peaks,
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
         now = self._snapshot(t, s)
         self._limits = np.zeros(0)
         if mode:
-            size = scales(model, now)
+            size = scales(model, t, now, peaks)
             self._limits = np.where(np.array(mode) == 0, size.effort, size.slip)
         self._armed = [False] * len(mode)
         self._before = self._triggers(now)
@@ -55,19 +61,29 @@ class Watch:
         grid = np.linspace(t_old, t_new, CHECKS + 2).tolist()
         values = [self._before, *(self._triggers(self._snapshot(t, dense(t))) for t in grid[1:])]
         self._before = values[-1]
+        roots: dict[int, float] = {}
+        for i in range(len(self._mode)):
+            root = self._first_fall(i, grid, [value[i] for value in values], dense)
+            if root is not None:
+                roots[i] = root
+        if not roots:
+            return None
+        time = min(roots.values())
+        near = time + 1e-12 * max(abs(time), t_new - t_old)
+        return time, frozenset(i for i, root in roots.items() if root <= near)
+
+    def _first_fall(
+        self, i: int, grid: Sequence[float], values: Sequence[float], dense: Dense
+    ) -> float | None:
+        """The first time in a step at which trigger i falls through zero, seen or hidden in a dip."""
         for k in range(len(grid) - 1):
-            roots: dict[int, float] = {}
-            for i in range(len(self._mode)):
-                root = self._fall(i, grid[k], grid[k + 1], values[k][i], values[k + 1][i], dense)
-                if root is None and k > 0 and self._armed[i]:
-                    three = [value[i] for value in values[k - 1 : k + 2]]
-                    root = self._dip(i, grid[k - 1 : k + 2], three, dense)
+            root = self._fall(i, grid[k], grid[k + 1], values[k], values[k + 1], dense)
+            if root is not None:
+                return root
+            if k > 0 and self._armed[i]:
+                root = self._dip(i, grid[k - 1 : k + 2], values[k - 1 : k + 2], dense)
                 if root is not None:
-                    roots[i] = root
-            if roots:
-                time = min(roots.values())
-                near = time + 1e-12 * max(abs(time), t_new - t_old)
-                return time, frozenset(i for i, root in roots.items() if root <= near)
+                    return root
         return None
 
     def _snapshot(self, t: float, s: Array) -> Snapshot:

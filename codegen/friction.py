@@ -11,13 +11,12 @@ from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
 import numpy as np
-import scipy.linalg
 import scipy.optimize
 import sympy as sp
 
-from bondgraph import StateEquations
+from bondgraph import SimulationError, StateEquations
 from codegen.arrays import Array
-from codegen.numbers import Numbers, at_parameters
+from codegen.numbers import Numbers, at_parameters, scaled_solve
 from codegen.program import Program
 
 
@@ -106,12 +105,18 @@ def _take_away(model: Numbers, slip_x: Array) -> Array:
     """``-A^-1 S^T (S A^-1 S^T)^-1``: the impulse that stops the slips S x, and moves nothing else."""
     if not len(slip_x):
         return np.zeros((slip_x.shape[1], 0))
-    moved = np.asarray(scipy.linalg.solve(model.A, slip_x.T), dtype=float)
+    moved = scaled_solve(model.A, slip_x.T)
     return np.asarray(-moved @ _inverse(slip_x @ moved), dtype=float)
 
 
 def _inverse(matrix: Array) -> Array:
-    return np.asarray(np.linalg.inv(matrix), dtype=float)
+    try:
+        return np.asarray(np.linalg.inv(matrix), dtype=float)
+    except np.linalg.LinAlgError:
+        raise SimulationError(
+            "sticking ports have no unique holding efforts: the storages behind them cancel; "
+            "check the signs of their values"
+        ) from None
 
 
 def _array(matrix: sp.Matrix) -> Array:

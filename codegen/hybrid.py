@@ -1,5 +1,6 @@
 """The event-driven loop: smooth legs between breakpoints, sticking, release and zero crossings."""
 
+from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,7 +10,7 @@ from codegen.arrays import Array
 from codegen.closed import ClosedModel, Mode
 from codegen.events import Event
 from codegen.legs import Leg, Settings, Track
-from codegen.modes import LOOK_AHEAD, decide, scales
+from codegen.modes import LOOK_AHEAD, Peaks, decide, scales
 from codegen.pieces import Piece
 from codegen.signals import Signal
 
@@ -29,26 +30,31 @@ def run_hybrid(
     At a breakpoint or an event a sample shows the instant just after.
     """
     t, end, s = float(times[0]), float(times[-1]), start
+    span = end - t
     track = Track(np.zeros((len(times), model.size)), [])
-    breaks = sorted({b for signal in signals for b in signal.breakpoints if t < b < end})
+    breaks = sorted({b for signal in signals for b in signal.breakpoints if t < b <= end})
     mode: Mode = tuple(1 for _ in model.friction_inputs)
-    touched = frozenset[int]()
-    started, span = False, end - t
-    while t < end:
+    touched, started, peaks = frozenset[int](), False, Peaks.none(model)
+    rounds: deque[float] = deque(maxlen=STALLED)
+    while True:
         pieces = [signal.piece(t) for signal in signals]
-        fastest = Leg(model, pieces, mode, settings, end - t).fastest(t, s)
-        ahead = LOOK_AHEAD / max(fastest, 100.0 / (end - t))
+        peaks.see(model.at(t, s, pieces, tuple(sign or 1 for sign in mode)))
+        leg = Leg(model, pieces, mode, settings, span, peaks)
+        ahead = LOOK_AHEAD / max(leg.fastest(t, s), 100.0 / span) if mode else 0.0
         # A breakpoint may set the slips anew, so sticking ports are decided again with the others.
         loose = touched | {i for i, sign in enumerate(mode) if sign == 0}
-        at_zero = _still(model, t, s, pieces, mode, loose)
-        new = decide(model, t, s, pieces, mode, at_zero, ahead)
+        at_zero = _still(model, t, s, pieces, mode, loose, peaks)
+        new = decide(model, t, s, pieces, mode, at_zero, ahead, peaks)
         if started:
             _note(model, track.events, t, mode, new)
-            _check_progress(track.events, span)
+            _check_progress(rounds, t, span, track.events)
         mode, started = new, True
         s = _at_rest(model, t, s, pieces, mode)
+        if t >= end:
+            break
         stop = next((b for b in breaks if b > t), end)
-        t, s, touched = Leg(model, pieces, mode, settings, span).run(t, s, stop, times, track)
+        leg = Leg(model, pieces, mode, settings, span, peaks)
+        t, s, touched = leg.run(t, s, stop, times, track)
     track.record(s, mode)
     return track
 
@@ -60,13 +66,14 @@ def _still(
     pieces: Sequence[Piece],
     mode: Mode,
     ports: frozenset[int],
+    peaks: Peaks,
 ) -> frozenset[int]:
     """Those of the ports that are at rest, or close enough for it to be the event's own rounding."""
     if not ports:
         return frozenset()
     now = model.at(t, s, pieces, tuple(sign or 1 for sign in mode))
     slips = np.abs(now.y[model.friction_readings])
-    limits = 1e3 * scales(model, now).slip
+    limits = 1e3 * scales(model, t, now, peaks).slip
     return frozenset(i for i in ports if slips[i] <= limits[i] or model.coupled_directly(i))
 
 
@@ -88,10 +95,12 @@ def _note(model: ClosedModel, events: list[Event], t: float, old: Mode, new: Mod
             events.append(Event(t, port.name, kind))
 
 
-def _check_progress(events: list[Event], span: float) -> None:
-    """Refuse to go on when too many of the latest events fall together."""
-    if len(events) >= STALLED and events[-1].time - events[-STALLED].time < 1e-9 * span:
+def _check_progress(rounds: deque[float], t: float, span: float, events: list[Event]) -> None:
+    """Refuse to go on when too many of the latest legs end together."""
+    rounds.append(t)
+    if len(rounds) == STALLED and t - rounds[0] < 1e-9 * span:
         latest = ", ".join(f"{e.kind} {e.port!r} at {e.time:.12g}" for e in events[-4:])
         raise SimulationError(
-            f"{STALLED} events within {1e-9 * span:.3g} s: the run makes no progress ({latest})"
+            f"{STALLED} events within {1e-9 * span:.3g} s of t = {t:.12g}: the run makes no progress "
+            f"(latest: {latest or 'none that changed a mode'})"
         )

@@ -10,6 +10,7 @@ from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.closed import ClosedModel, Mode
 from codegen.events import Dense, Event, Watch
+from codegen.modes import Peaks
 from codegen.pieces import Piece
 
 METHODS = {"DOP853": DOP853, "Radau": Radau}
@@ -20,9 +21,12 @@ STIFF = 2e5
 STEP_BOUND = 1.0
 """An explicit step's length in shortest time constants: beyond, its interpolant is unreliable."""
 
-SMALLEST_SPAN = 200
+LEAST_STEPS = 200
 """Steps are never longer than the span of the run divided by this."""
 
+
+TINY_STEP, MANY_STEPS = 1e-9, 500
+"""So many steps in a row below this fraction of the run are a run that goes nowhere."""
 
 REFRESH = 50
 """Steps after which a nonlinear model's time constants are looked at again."""
@@ -63,21 +67,33 @@ class Leg:
         mode: Mode,
         settings: Settings,
         span: float,
+        peaks: Peaks,
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
-        self._settings, self._span = settings, span
+        self._settings, self._span, self._peaks = settings, span, peaks
 
     def fastest(self, t: float, s: Array) -> float:
         """The largest rate [1/s] of the mode's linearisation and of the inputs."""
         base = self._rate(t, s)
         jacobian = np.empty((len(s), len(s)))
         for j in range(len(s)):
-            step = 1e-6 * max(1.0, abs(s[j]))
-            moved = s.copy()
-            moved[j] += step
-            jacobian[:, j] = (self._rate(t, moved) - base) / step
+            jacobian[:, j] = self._slope(t, s, j, base)
         inner = float(np.abs(np.linalg.eigvals(jacobian)).max(initial=0.0))
         return max(inner, *(piece.fastest for piece in self._pieces), 0.0)
+
+    def _slope(self, t: float, s: Array, j: int, base: Array) -> Array:
+        """How the rates change with one component, by a difference that stays where laws have values."""
+        step = 1e-6 * abs(s[j]) + 1e-9 * abs(base[j]) * self._span + 1e-9
+        for _ in range(12):
+            moved = s.copy()
+            moved[j] += step
+            slope = (self._model.at(t, moved, self._pieces, self._mode).rate - base) / step
+            if np.isfinite(slope).all():
+                return np.asarray(slope, dtype=float)
+            step *= 1e-2
+        raise SimulationError(
+            f"at t = {t:g} the rates are not finite beside the state {s.tolist()}"
+        )
 
     def run(
         self, t: float, s: Array, stop: float, times: Array, track: Track
@@ -96,7 +112,8 @@ class Leg:
             self._rate, t, s, stop, rtol=self._settings.rtol, atol=self._settings.atol,
             max_step=self._bound(name, fastest),
         )  # fmt: skip
-        watch, steps = Watch(self._model, self._pieces, self._mode, t, s), 0
+        watch = Watch(self._model, self._pieces, self._mode, t, s, self._peaks)
+        steps, short = 0, 0
         while solver.status == "running":
             message = solver.step()
             if solver.status == "failed":
@@ -108,13 +125,19 @@ class Leg:
             if found is not None:
                 return until, dense(until), found[1]
             steps += 1
+            short = short + 1 if solver.t - solver.t_old < TINY_STEP * self._span else 0
+            if short > MANY_STEPS:
+                raise SimulationError(
+                    f"at t = {solver.t:.9g} the integrator no longer advances: the rates jump there; "
+                    "friction that changes sign is a DryFriction, a switch a step of an input"
+                )
             if steps % REFRESH == 0 and not self._model.program.affine:
                 solver.max_step = self._bound(name, self.fastest(solver.t, solver.y))
         return stop, solver.y, frozenset()
 
     def _bound(self, name: str, fastest: float) -> float:
         """The longest step: events and inputs must not fall between, nor the interpolant be strained."""
-        bound = self._span / SMALLEST_SPAN
+        bound = self._span / LEAST_STEPS
         return min(bound, STEP_BOUND / fastest) if name == "DOP853" and fastest > 0 else bound
 
     def _sample(self, times: Array, track: Track, until: float, dense: Dense) -> None:

@@ -18,6 +18,23 @@ LOOK_AHEAD = 1e-4
 """Ties are decided this fraction of the system's shortest time constant later."""
 
 
+@dataclass
+class Peaks:
+    """The largest magnitudes of states and inputs that a run has seen: what rounding is relative to."""
+
+    x: Array
+    u: Array
+
+    @classmethod
+    def none(cls, model: ClosedModel) -> "Peaks":
+        """Nothing seen yet."""
+        return cls(np.zeros(len(model.program.states)), np.zeros(len(model.program.inputs)))
+
+    def see(self, now: Snapshot) -> None:
+        """Take an instant into account."""
+        self.x, self.u = np.maximum(self.x, np.abs(now.x)), np.maximum(self.u, np.abs(now.u))
+
+
 @dataclass(frozen=True)
 class Scales:
     """Below these a slip, an effort margin or a slip acceleration counts as zero, port by port."""
@@ -27,10 +44,11 @@ class Scales:
     acceleration: Array
 
 
-def scales(model: ClosedModel, now: Snapshot) -> Scales:
-    """The rounding to be expected, from the magnitude of the terms that cancel."""
+def scales(model: ClosedModel, t: float, now: Snapshot, peaks: Peaks) -> Scales:
+    """The rounding to be expected, from the magnitude of the terms that cancel, and of the time's."""
     readings, numbers = model.friction_readings, model.numbers
-    x, u = np.abs(now.x), np.abs(now.u)
+    x, u = np.maximum(np.abs(now.x), peaks.x), np.maximum(np.abs(now.u), peaks.u)
+    late = 16 * np.spacing(abs(t)) * np.abs(slip_rates(model, now))
     slip = np.abs(numbers.F[readings]) @ x + np.abs(numbers.D[readings]) @ u
     moved = (
         np.abs(numbers.F[readings] @ numbers.P) @ x + np.abs(numbers.F[readings] @ numbers.Q) @ u
@@ -43,7 +61,7 @@ def scales(model: ClosedModel, now: Snapshot) -> Scales:
     driven = np.divide(moved, inertia, out=np.zeros_like(moved), where=inertia > 0)
     tiny = np.finfo(float).tiny
     return Scales(
-        TOLERANCE * slip + tiny,
+        TOLERANCE * slip + late + tiny,
         TOLERANCE * (efforts + driven) + tiny,
         TOLERANCE * 10 * moved + tiny,
     )
@@ -57,6 +75,7 @@ def decide(
     previous: Mode,
     at_zero: frozenset[int],
     ahead: float,
+    peaks: Peaks,
 ) -> Mode:
     """The mode just after t: every port in ``at_zero`` sticks if it can, else slips the way it is pushed.
 
@@ -68,11 +87,11 @@ def decide(
     undecided = set(at_zero) | {i for i in range(len(previous)) if model.coupled_directly(i)}
     now = model.at(t, s, pieces, tuple(sign or 1 for sign in previous))
     slips = now.y[model.friction_readings]
-    near = scales(model, now).slip
+    near = scales(model, t, now, peaks).slip
     undecided |= {i for i, slip in enumerate(slips) if abs(slip) <= near[i]}
     tried = []
     for mode in _candidates(previous, slips, sorted(undecided)):
-        complaint = _complaint(model, t, s, pieces, mode, undecided, ahead)
+        complaint = _complaint(model, t, s, pieces, mode, undecided, ahead, peaks)
         if complaint is None:
             return mode
         tried.append(f"{mode}: {complaint}")
@@ -104,10 +123,11 @@ def _complaint(
     mode: Mode,
     undecided: set[int],
     ahead: float,
+    peaks: Peaks,
 ) -> str | None:
     """What contradicts a mode; None if it is consistent."""
     now = model.at(t, s, pieces, mode)
-    size = scales(model, now)
+    size = scales(model, t, now, peaks)
     later: Snapshot | None = None
     for i in sorted(undecided):
         verdict = _stick_verdict(model, now, size, i) if mode[i] == 0 else _slip_verdict(

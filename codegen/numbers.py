@@ -4,13 +4,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 import sympy as sp
 
 from bondgraph import ParameterError, StateEquations
+from bondgraph.elements import Kind
 from bondgraph.elimination import ResidueRows
 from bondgraph.exact import Row, rows_of
-from bondgraph.expressions import number
+from bondgraph.expressions import normal, number
 from bondgraph.residues import residues
 from codegen.arrays import Array
 from codegen.numpy_backend import compiled
@@ -44,7 +44,7 @@ def exact_parameters(parameters: Mapping[str, object]) -> dict[str, sp.Rational]
         if not isinstance(name, str):
             raise ParameterError(f"parameter {name!r}: a parameter's name must be a text")
         try:
-            result[name] = number(value, f"parameter {name!r}")
+            result[str(normal(name))] = number(value, f"parameter {name!r}")
         except ValueError as error:
             raise ParameterError(str(error)) from None
     return result
@@ -58,13 +58,11 @@ def numbers(
     Raises `ParameterError` if a coefficient is not finite or A is singular at these parameters;
     the latter is decided exactly.
     """
+    _check_elements(equations, parameters)
     matrices = _matrices(program, equations, parameters)
     _check_regular(equations, parameters)
     A = matrices["A"]
-    solved = np.zeros((len(A), 0))
-    right = np.hstack([matrices["J"], matrices["B"], matrices["E"]])
-    if len(A):
-        solved = scipy.linalg.solve(A, right)
+    solved = scaled_solve(A, np.hstack([matrices["J"], matrices["B"], matrices["E"]]))
     n, m = len(program.states), len(program.inputs)
     P, Q, R = solved[:, :n], solved[:, n : n + m], solved[:, n + m :]
     H = matrices["H"]
@@ -77,6 +75,14 @@ def numbers(
         D=matrices["D"] + H @ Q,
         G=matrices["K"] + H @ R,
     )
+
+
+def scaled_solve(A: Array, right: Array) -> Array:
+    """``A^-1 right`` with rows and columns scaled first: storages may differ by many powers of ten."""
+    scale = 1 / np.sqrt(np.abs(np.diag(A)))
+    scale[~np.isfinite(scale)] = 1.0
+    solved = np.linalg.solve(A * np.outer(scale, scale), scale[:, None] * right)
+    return np.asarray(scale[:, None] * solved, dtype=float)
 
 
 def _matrices(
@@ -108,10 +114,7 @@ def _not_finite(equations: StateEquations, parameters: Mapping[str, sp.Rational]
         for (i, j), entry in sorted(getattr(equations, name).todok().items()):
             value = at_parameters(entry, parameters)
             if value.has(sp.zoo, sp.nan, sp.oo) or value.is_real is False:
-                used = ", ".join(
-                    f"{s} = {float(parameters[s.name]):g}"
-                    for s in sorted(entry.free_symbols, key=str)
-                )
+                used = _listed(entry, parameters)
                 return f"{name}[{i}, {j}] = {entry} has no finite real value at {used}"
     return "a coefficient has no finite real value at these parameters"
 
@@ -121,6 +124,28 @@ def at_parameters(expr: sp.Expr, parameters: Mapping[str, sp.Rational]) -> sp.Ex
     return expr.xreplace(
         {name: parameters[name.name] for name in expr.free_symbols if name.name in parameters}
     )
+
+
+def _check_elements(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
+    """Refuse storages and moduli whose value is zero, or no finite number, at these parameters."""
+    value = residues()
+    for name, element in equations.elements.items():
+        if element.value is None or element.kind is Kind.R:
+            continue
+        try:
+            zero = value(at_parameters(element.value, parameters)) == 0
+        except (ZeroDivisionError, TypeError):
+            zero = True
+        if zero:
+            raise ParameterError(
+                f"{element.kind} {name!r}: its value {element.value} is zero or infinite at "
+                f"{_listed(element.value, parameters)}"
+            )
+
+
+def _listed(expr: sp.Expr, parameters: Mapping[str, sp.Rational]) -> str:
+    names = sorted(expr.free_symbols, key=str)
+    return ", ".join(f"{s} = {float(parameters[s.name]):g}" for s in names if s.name in parameters)
 
 
 def _check_regular(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:

@@ -9,8 +9,11 @@ from functools import cached_property
 Term = tuple[complex, tuple[complex, ...]]
 """A rate [1/s] and a polynomial's coefficients, lowest power first."""
 
-RESONANCE = 1e-12
-"""A lag driven at its own rate, to this relative distance, answers with a higher power of time."""
+RESONANCE = 1e-3
+"""A lag driven so near its own rate (relatively) answers by a series about it, not by a quotient."""
+
+SERIES = 9
+"""Terms of that series: rounding takes over from the quotient where the series leaves off."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,7 @@ def lagged_terms(piece: Piece, T: float) -> tuple[Term, ...]:
     for rate, polynomial in piece.terms:
         gain = 1 + rate * T
         if abs(gain) <= RESONANCE:
-            terms.append((rate, (0.0, *(c / (T * (k + 1)) for k, c in enumerate(polynomial)))))
+            terms.append((complex(-1 / T), _resonant(polynomial, gain / T, T)))
             continue
         solved: list[complex] = []
         above: complex = 0.0
@@ -70,6 +73,17 @@ def lagged_terms(piece: Piece, T: float) -> tuple[Term, ...]:
             solved.append(above)
         terms.append((rate, tuple(reversed(solved))))
     return tuple(terms)
+
+
+def _resonant(polynomial: Sequence[complex], off: complex, T: float) -> tuple[complex, ...]:
+    """The answer to ``p(tau) exp((off - 1/T) tau)`` over ``exp(-tau/T)``, by the series of ``exp(off tau)``."""
+    driven: list[complex] = [0.0] * (len(polynomial) + SERIES)
+    factor: complex = 1.0
+    for k in range(SERIES + 1):
+        for j, c in enumerate(polynomial):
+            driven[j + k] += c * factor
+        factor *= off / (k + 1)
+    return (0.0, *(c / (T * (n + 1)) for n, c in enumerate(driven)))
 
 
 def moved(piece: Piece, start: float) -> Piece:

@@ -41,6 +41,8 @@ class Group:
 
     inputs: tuple[int, ...]
     ports: tuple[Hashable, ...]
+    #: For each law the reading that its port receives.
+    readings: tuple[int, ...]
     loop: bool
     values: Block
 
@@ -62,7 +64,7 @@ class Program:
     states and inputs, and F, D, H, K with a row for each reading, ``F x + D u + H x' + K u'``.
     ``known``: laws of time, parameters and external inputs; ``known_rates`` their rates. ``groups``:
     the other laws in an order in which each can be evaluated. ``friction_values``: level, breakaway
-    level and curve of each friction port in turn. ``coupled``: laws to be solved with the friction.
+    level, curve and curve at rest of each friction port in turn. ``coupled``: laws to be solved with the friction.
     """
 
     parameters: tuple[sp.Symbol, ...]
@@ -85,6 +87,10 @@ class Program:
     friction: tuple[FrictionPort, ...]
     friction_values: Block
     coupled: Group
+    #: Whether the friction efforts have to be solved for together, with the coupled laws.
+    joint: bool
+    #: Readings that a step must not turn into an impulse: outputs, and what laws read.
+    read: tuple[int, ...]
     #: Whether each friction mode is an affine system with constant coefficients.
     affine: bool
 
@@ -108,12 +114,13 @@ def lower(
         raise ParameterError(
             f"missing parameter(s) {', '.join(missing)}; give each a number in parameters"
         )
-    closing = close_ports(equations, laws or {}, given)
+    closing = close_ports(equations, {} if laws is None else laws, given)
+    equations = closing.equations
     taken = _all_names(equations, closing)
     expressions, layout = _coefficients(equations)
     friction, values = _friction(closing)
     readings = tuple(equations.readings)
-    rates = tuple(sp.Symbol(f"d_{name}") for name in closing.external)
+    rates = _rate_names(closing.external, taken)
     return Program(
         parameters=tuple(sorted((n for n in taken if n.name in given), key=str)),
         states=equations.states,
@@ -132,6 +139,8 @@ def lower(
         friction=friction,
         friction_values=block(values, taken),
         coupled=_group(closing, closing.coupled, True, taken),
+        joint=closing.joint,
+        read=_read(closing),
         affine=_is_affine(closing, values, given),
     )
 
@@ -150,7 +159,7 @@ def block(expressions: Sequence[sp.Expr], taken: Iterable[sp.Symbol] = ()) -> Bl
 
 
 def _all_names(equations: StateEquations, closing: Closing) -> set[sp.Symbol]:
-    names = {*equations.parameters, *equations.states, *equations.inputs, *equations.readings}
+    names = {*equations.parameters, *equations.signals, *closing.laws}
     names |= {*closing.law_states, *closing.external, TIME}
     for law in closing.laws.values():
         names |= law.free_symbols
@@ -187,18 +196,35 @@ def _pattern(shape: tuple[int, int], places: Sequence[tuple[int, int]]) -> Patte
 def _group(
     closing: Closing, names: Sequence[sp.Symbol], loop: bool, taken: Iterable[sp.Symbol]
 ) -> Group:
-    inputs = tuple(closing.inputs.index(name) for name in names)
+    inputs = tuple(closing.equations.inputs.index(name) for name in names)
     expressions = [_expression(closing.laws[name]) for name in names]
     ports = tuple(closing.port_names[name] for name in names)
-    return Group(inputs, ports, loop, block(expressions, taken))
+    known = list(closing.equations.readings)
+    readings = tuple(known.index(closing.received[name]) for name in names)
+    return Group(inputs, ports, readings, loop, block(expressions, taken))
+
+
+def _rate_names(names: Sequence[sp.Symbol], taken: set[sp.Symbol]) -> tuple[sp.Symbol, ...]:
+    """A name for each external input's rate that nothing else has."""
+    prefix = "d_"
+    while any(sp.Symbol(f"{prefix}{name}") in taken for name in names):
+        prefix += "_"
+    return tuple(sp.Symbol(f"{prefix}{name}") for name in names)
+
+
+def _read(closing: Closing) -> tuple[int, ...]:
+    used = set(closing.equations.outputs)
+    for law in closing.laws.values():
+        used |= law.free_symbols
+    return tuple(at for at, name in enumerate(closing.equations.readings) if name in used)
 
 
 def _is_affine(closing: Closing, friction: list[sp.Expr], parameters: set[str]) -> bool:
     """Whether all laws are affine and none has to be solved for; curves must be constant."""
-    if closing.coupled or any(loop for _, loop in closing.order):
+    if closing.joint or any(loop for _, loop in closing.order):
         return False
     given = [law.expression for law in closing.laws.values() if isinstance(law, ExpressionLaw)]
-    curves = all(isinstance(c, sp.Expr) and c.is_number for c in friction[2::3])
+    curves = all(isinstance(c, sp.Expr) and c.is_number for c in friction[2::4])
     return curves and is_affine([*given, *friction], parameters)
 
 
@@ -221,6 +247,7 @@ def _rates(closing: Closing, rates: Sequence[sp.Symbol]) -> list[sp.Expr]:
 
 
 def _friction(closing: Closing) -> tuple[tuple[FrictionPort, ...], list[sp.Expr]]:
+    readings = list(closing.equations.readings)
     ports: list[FrictionPort] = []
     values: list[sp.Expr] = []
     for name in closing.friction:
@@ -231,9 +258,10 @@ def _friction(closing: Closing) -> tuple[tuple[FrictionPort, ...], list[sp.Expr]
         ports.append(
             FrictionPort(
                 closing.port_names[name],
-                closing.inputs.index(name),
-                closing.readings.index(received),
+                closing.equations.inputs.index(name),
+                readings.index(received),
             )
         )
-        values += [law.level, law.breakaway * law.level, law.curve.subs(SLIP, sp.Abs(received))]
+        curves = [law.curve.subs(SLIP, slip) for slip in (sp.Abs(received), 0)]
+        values += [law.level, law.breakaway * law.level, *curves]
     return tuple(ports), values

@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bondgraph import ParameterError, SignalError, SimulationError, StateEquations
+from bondgraph.expressions import normal
 from codegen.arrays import Array
 from codegen.closed import ClosedModel
 from codegen.events import Event
 from codegen.hybrid import run_hybrid
 from codegen.legs import METHODS, Settings, Track
-from codegen.modes import LOOK_AHEAD, decide
+from codegen.modes import LOOK_AHEAD, Peaks, decide
 from codegen.program import lower
 from codegen.signals import Constant, Signal, as_signal
 
@@ -83,7 +84,14 @@ class Simulator:
         s = self._vector(t, state, given)
         with np.errstate(all="ignore"):
             mode = decide(
-                self.closed, t, s, pieces, self._all_slipping(), frozenset(), LOOK_AHEAD * 1e-3
+                self.closed,
+                t,
+                s,
+                pieces,
+                self._all_slipping(),
+                frozenset(),
+                LOOK_AHEAD * 1e-3,
+                Peaks.none(self.closed),
             )
             now = self.closed.at(t, s, pieces, mode)
         n = len(self.closed.program.states)
@@ -112,6 +120,9 @@ class Simulator:
             if given is not None and not isinstance(given, Mapping):
                 raise SignalError(f"{what} must map names to values, not be {given!r}")
         signals = self._signals(inputs or {})
+        for tolerance, what in ((rtol, "rtol"), (atol, "atol")):
+            if not isinstance(tolerance, int | float | np.number) or not tolerance > 0:
+                raise SignalError(f"{what} must be a positive number, not {tolerance!r}")
         if method != "auto" and method not in METHODS:
             raise SignalError(f"unknown method {method!r}; there are auto, {', '.join(METHODS)}")
         self._check_steps(signals, times)
@@ -145,7 +156,8 @@ class Simulator:
 
     def _initial(self, initial: Mapping[str, float]) -> Array:
         state = np.zeros(len(self.states))
-        for name, value in initial.items():
+        for given, value in initial.items():
+            name = str(normal(given))
             if name not in self.states:
                 raise SignalError(f"{name!r} is not a state; there are {', '.join(self.states)}")
             if isinstance(value, bool) or not isinstance(value, int | float | np.number):
@@ -156,6 +168,7 @@ class Simulator:
         return state
 
     def _signals(self, inputs: Mapping[str, object]) -> list[Signal]:
+        inputs = {str(normal(name)): value for name, value in inputs.items()}
         for name in inputs:
             if name not in self.inputs:
                 known = ", ".join(self.inputs) or "none"
@@ -173,7 +186,7 @@ class Simulator:
         program, G = self.closed.program, self.closed.numbers.G
         for name, signal in zip(self.inputs, signals, strict=True):
             columns = [j for j, symbol in enumerate(program.inputs) if symbol.name == name]
-            rows = [i for i in range(len(G)) if any(G[i, j] for j in columns)]
+            rows = [i for i in program.read if any(G[i, j] for j in columns)]
             if not rows:
                 continue
             for b, one, other in zip(

@@ -11,9 +11,9 @@ ROOT = Path(__file__).parents[1]
 #: Each package may import the ones before it; each file of a package the files before it.
 ORDER = {
     "bondgraph": [
-        "errors", "expressions", "laws", "elements", "residues", "elimination", "names", "graph", "strokes",
+        "errors", "residues", "expressions", "laws", "elements", "elimination", "names", "graph", "strokes",
         "causal_order", "regularity", "stories", "causality", "exact", "junction", "reduction",
-        "readings", "equations",
+        "outputs", "readings", "equations",
     ],
     "codegen": [
         "arrays", "pieces", "signals", "affine", "closing", "program", "numpy_backend", "numbers",

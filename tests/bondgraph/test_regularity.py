@@ -1,8 +1,11 @@
 """Singular structures that valid strokes do not show: refused by exact rank, with names."""
 
+import random
+
 import pytest
 from references.brute_force import regular, regular_port_choices, valid_strokes
 from references.build import bond_graph
+from references.random_graphs import random_graph
 
 import bondgraph as bg
 
@@ -66,6 +69,37 @@ def test_singular_structure_is_refused(name: str) -> None:
     assert regular_port_choices(graph) == []
     with pytest.raises(error, match=message):
         bg.assign_causality(graph)
+
+
+@pytest.mark.parametrize(
+    ("modulus", "singular"), [(1, True), (-1, False), ("n/(1 + n - 1)", True), ("n", False)]
+)
+def test_ring_of_one_transformer_is_singular_at_ratio_one(modulus: object, singular: bool) -> None:
+    """e = m e leaves the effort open and the flow too at m = 1, and only there."""
+    nodes = [bg.Zero("z0"), bg.Zero("z1"), bg.TF("g", modulus), bg.C("c", "c"), bg.I("m", "m")]
+    graph = bond_graph(nodes, "z0>z1>g>z0>m z1>c")
+    if singular:
+        with pytest.raises(bg.AlgebraicLoopError, match=r"bond '(z0|z1|g)' -> '(z0|z1|g)'"):
+            bg.assign_causality(graph)
+    else:
+        assert bg.assign_causality(graph).integral == ("m",)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_large_mesh_is_decided_as_exact_rank_decides_it(seed: int) -> None:
+    """Of two hundred bonds, with few sources, so that some are regular."""
+    rng = random.Random(seed)
+    graph = random_graph(rng, 200, mesh=0.3, symbols=False)
+    for at, attributes in enumerate(list(graph.nodes.values())):
+        if attributes["kind"] in ("Se", "Sf") or "gives" in attributes:
+            attributes.clear()
+            attributes.update(kind="R", value=f"w{at}")
+    try:
+        bg.assign_causality(graph)
+        accepted = True
+    except bg.BondGraphError:
+        accepted = False
+    assert accepted == regular(graph)
 
 
 def test_some_of_these_have_valid_strokes() -> None:

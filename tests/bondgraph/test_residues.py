@@ -1,11 +1,8 @@
 """Decisions modulo a large prime."""
 
-import random
-
 import pytest
 import sympy as sp
 
-from bondgraph.elimination import ResidueRows
 from bondgraph.residues import PRIME, is_rational_function, is_zero, residues
 
 a, b, h, x = sp.symbols("a b h x")
@@ -64,15 +61,55 @@ def test_rational_functions_are_told_from_others() -> None:
     assert not any(map(is_rational_function, (sp.sin(a), sp.sqrt(a), a**b, sp.pi * a)))
 
 
-@pytest.mark.parametrize("seed", range(20))
-@pytest.mark.parametrize("jordan", [True, False])
-def test_pivots_are_found_up_to_the_rank(seed: int, jordan: bool) -> None:
-    """Against sympy's rank; small entries keep ranks equal modulo the prime."""
-    rng = random.Random(seed)
-    matrix = sp.Matrix(5, 6, lambda i, j: rng.choice([0, 0, 0, 1, -1, 2]))
-    rows = ResidueRows(
-        {j: int(matrix[i, j]) % PRIME for j in range(6) if matrix[i, j]} for i in range(5)
-    )
-    found = [column for column in range(6) if rows.pivot(column, jordan)]
-    assert len(found) == matrix.rank()
-    assert tuple(found) == matrix.rref()[1]
+w = sp.sqrt(2)
+IDENTITIES = [
+    (w + 1) * (w - 1) - 1,
+    (1 + w + sp.sqrt(3)) * (1 + w - sp.sqrt(3)) - 2 * w,
+    sp.sqrt(a) * sp.sqrt(a) * b - a * b,
+    (sp.sqrt(a + b) + 1) ** 2 - a - b - 1 - 2 * sp.sqrt(a + b),
+    a ** sp.Rational(3, 2) / a - sp.sqrt(a),
+    sp.sqrt(sp.Rational(2, 3)) - sp.sqrt(6) / 3,
+    sp.sin(x) ** 2 + sp.cos(x) ** 2 - 1,
+    sp.tan(x) * sp.cos(x) - sp.sin(x),
+    sp.sin(2 * x) - 2 * sp.sin(x) * sp.cos(x),
+    sp.cos(x / 2) ** 2 - (1 + sp.cos(x)) / 2,
+    sp.sin(3 * x) - 3 * sp.sin(x) + 4 * sp.sin(x) ** 3,
+    sp.sin(a + b) - sp.sin(a) * sp.cos(b) - sp.cos(a) * sp.sin(b),
+    sp.cosh(x) ** 2 - sp.sinh(x) ** 2 - 1,
+    sp.tanh(x) * sp.cosh(x) - sp.sinh(x),
+    sp.exp(a) * sp.exp(b) - sp.exp(a + b),
+    sp.cosh(x) - (sp.exp(x) + sp.exp(-x)) / 2,
+    sp.exp(2 * a) - sp.exp(a) ** 2,
+]
+
+
+@pytest.mark.parametrize("identity", IDENTITIES, ids=str)
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_residues_keep_identities_of_roots_and_functions(identity: sp.Expr, seed: int) -> None:
+    assert residues(seed)(identity) == 0
+
+
+@pytest.mark.parametrize("number", [2, 3, 5, 30, 31, 37, 41, 43, 53, 101, 41 * 43, 9973])
+def test_residues_keep_the_root_of_every_number(number: int) -> None:
+    root = sp.sqrt(number)
+    assert residues()((1 + root) ** 2 - 1 - number - 2 * root) == 0
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        w - sp.sqrt(3),
+        w + sp.sqrt(3) - sp.sqrt(10),
+        sp.sqrt(a) - a,
+        sp.sqrt(a + b) - sp.sqrt(a) - sp.sqrt(b),
+        sp.sin(x) - x,
+        sp.sin(x) - sp.cos(x),
+        sp.sin(x) ** 2 - sp.cos(x) ** 2 - 1,
+        sp.exp(a * b) - sp.exp(a + b),
+        sp.Abs(x) - x,
+        sp.sin(1) - sp.sin(2),
+    ],
+    ids=str,
+)
+def test_residues_tell_what_is_not_an_identity(other: sp.Expr) -> None:
+    assert residues()(other) != 0

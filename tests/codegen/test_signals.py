@@ -58,7 +58,9 @@ def test_derivative_of_each_piece_is_its_slope(signal: Signal) -> None:
     for piece in signal.pieces:
         for t in (0.61, 1.23, 2.71):
             # Five points: the error is h^4 f'''''/30, below 1e-10 for rates up to 20/s.
-            slope = (8 * (piece(t + h) - piece(t - h)) - piece(t + 2 * h) + piece(t - 2 * h)) / 12 / h
+            slope = (
+                (8 * (piece(t + h) - piece(t - h)) - piece(t + 2 * h) + piece(t - 2 * h)) / 12 / h
+            )
             assert piece.derivative(t) == pytest.approx(slope, rel=1e-8, abs=1e-8)
 
 

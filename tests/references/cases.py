@@ -126,6 +126,8 @@ CASES = {
         ],
         "F>a>r1 a>z>r2 z>b>r3 b>c",
         {"q_c": "(r2*F - (r1 + r2)*q_c/c)/(r1*r2 + r1*r3 + r2*r3)"},
+        # The voltage of node z by Kirchhoff's law: (F - e)/r1 = e/r2 + (e - q/c)/r3.
+        {"z": "(F/r1 + q_c/(c*r3))/(1/r1 + 1/r2 + 1/r3)", "r2": "(F/r1 + q_c/(c*r3))/(1/r1 + 1/r2 + 1/r3)"},
     ),
     "two_resistances_in_series": Case(
         "MTT AlgebraicLoops_rep.pdf, aRC",

@@ -1,0 +1,129 @@
+"""Arguments that no run can use: each is refused by name before anything is integrated."""
+
+import math
+
+import numpy as np
+import pytest
+from oracles.models import oscillator, series_circuit
+
+import bondgraph as bg
+from codegen import Step, simulator
+
+CIRCUIT = bg.derive(series_circuit())
+GOOD = {"R": 2.0, "L": 0.5, "C": 0.02}
+RUN = simulator(CIRCUIT, GOOD)
+TIMES = [0.0, 0.5, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("time", "message"),
+    [
+        ([0.0, math.nan, 1.0], "time: a point is not finite"),
+        ([0.0, 1.0, math.inf], "time: a point is not finite"),
+        ([0.0, 1.0, 0.5], "time must increase; 1 is followed by 0.5"),
+        ([1.0, 0.0], "time must increase; 1 is followed by 0"),
+        ([0.0, 0.5, 0.5], "time must increase; 0.5 is followed by 0.5"),
+        ([0.0], r"two or more points, not of shape \(1,\)"),
+        ([], r"two or more points, not of shape \(0,\)"),
+        (1.0, r"two or more points, not of shape \(\)"),
+        ([[0.0, 1.0]], r"two or more points, not of shape \(1, 2\)"),
+        (None, "time"),
+        ("0, 1", "time must be numbers"),
+        (["a", "b"], "time must be numbers"),
+        ([0.0, 1j], "time must be numbers"),
+    ],
+)
+def test_time_must_be_increasing_finite_points(time, message: str) -> None:
+    with pytest.raises(bg.SignalError, match=message):
+        RUN.run(time, inputs={"V": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("inputs", "message"),
+    [
+        (None, r"missing input\(s\) V: give each a signal or a number in inputs"),
+        ({}, r"missing input\(s\) V"),
+        ({"W": 1.0}, "unknown input 'W'; the model's inputs are V"),
+        ({"V": 1.0, "i": 1.0}, "unknown input 'i'; the model's inputs are V"),
+        ({"V": "1"}, "input 'V': '1' is neither a signal nor a number"),
+        ({"V": None}, "input 'V': None is neither a signal nor a number"),
+        ({"V": math.nan}, "input 'V': nan is not a finite number"),
+        ({"V": math.sin}, "input 'V': .* is neither a signal nor a number"),
+        ([("V", 1.0)], "inputs must map names to values"),
+        (5.0, "inputs must map names to values"),
+    ],
+)
+def test_inputs_must_be_the_models_own(inputs, message: str) -> None:
+    with pytest.raises(bg.SignalError, match=message):
+        RUN.run(TIMES, inputs=inputs)
+
+
+def test_a_model_without_inputs_says_so() -> None:
+    run = simulator(bg.derive(oscillator()), {"m": 1.0, "k": 1.0, "F_c": 1.0})
+    with pytest.raises(bg.SignalError, match="unknown input 'P'; the model's inputs are none"):
+        run.run(TIMES, inputs={"P": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("initial", "message"),
+    [
+        ({"w": 1.0}, "'w' is not a state; there are i, v"),
+        ({"V": 1.0}, "'V' is not a state; there are i, v"),
+        ({"v": "1"}, "initial v: '1' is not a number"),
+        ({"v": True}, "initial v: True is not a number"),
+        ({"v": None}, "initial v: None is not a number"),
+        ({"v": 1j}, "initial v: 1j is not a number"),
+        ({"v": [1.0]}, r"initial v: \[1.0\] is not a number"),
+        ({"v": math.nan}, "initial v: nan is not finite"),
+        ({"v": -math.inf}, "initial v: -inf is not finite"),
+        ([1.0, 2.0], "initial must map names to values"),
+    ],
+)
+def test_initial_values_must_be_numbers_of_states(initial, message: str) -> None:
+    with pytest.raises(bg.SignalError, match=message):
+        RUN.run(TIMES, initial, {"V": 1.0})
+
+
+@pytest.mark.parametrize("method", ["RK45", "auto ", "", None, 3])
+def test_methods_are_a_closed_list(method) -> None:
+    with pytest.raises(bg.SignalError, match="unknown method .*; there are auto, DOP853, Radau"):
+        RUN.run(TIMES, inputs={"V": 1.0}, method=method)
+
+
+@pytest.mark.parametrize("tolerances", [{"rtol": 0.0}, {"rtol": -1e-6}, {"rtol": math.nan}, {"atol": -1.0},
+                                        {"atol": math.nan}, {"rtol": "1e-6"}])  # fmt: skip
+def test_tolerances_must_be_positive_numbers(tolerances) -> None:
+    with pytest.raises(bg.SignalError, match="tol"):
+        RUN.run(TIMES, inputs={"V": 1.0}, **tolerances)
+
+
+def test_backends_are_a_closed_list() -> None:
+    with pytest.raises(bg.SignalError, match="unknown backend 'fortran'; there is numpy"):
+        simulator(CIRCUIT, GOOD, backend="fortran")
+
+
+@pytest.mark.parametrize("missing", ["R", "L", "C"])
+def test_a_missing_parameter_is_named(missing: str) -> None:
+    numbers = {name: value for name, value in GOOD.items() if name != missing}
+    with pytest.raises(
+        bg.ParameterError, match=rf"missing parameter\(s\) {missing}; give each a number"
+    ):
+        simulator(CIRCUIT, numbers)
+
+
+@pytest.mark.parametrize("name", ["i", "v", "t"])
+def test_a_parameter_that_names_a_signal_is_refused(name: str) -> None:
+    with pytest.raises(bg.ParameterError, match=f"parameter {name} names a signal of the model"):
+        simulator(CIRCUIT, GOOD | {name: 1.0})
+
+
+def test_laws_must_be_a_mapping() -> None:
+    with pytest.raises(bg.BondGraphError, match="laws"):
+        simulator(CIRCUIT, GOOD, laws=["V"])
+
+
+def test_a_refused_run_leaves_the_simulator_usable() -> None:
+    with pytest.raises(bg.SignalError, match="missing input"):
+        RUN.run(TIMES)
+    result = RUN.run(TIMES, inputs={"V": Step(0.5, 1.0)})
+    assert np.isfinite(result["v"]).all()
