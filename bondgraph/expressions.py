@@ -109,10 +109,17 @@ def expression(value: object, where: str) -> sp.Expr:
         result = number(value, where)
     else:
         raise ExpressionError(f"{where}: {value!r} is neither a number, a text nor an expression")
-    if not isinstance(result, sp.Symbol) and (result.has(*_NOT_REAL) or result.is_real is False):
-        raise ExpressionError(f"{where}: {value!r} is not a finite real expression")
-    _check_parts(result, where)
+    try:
+        _check_value(result, value, where)
+        _check_parts(result, where)
+    except (OverflowError, RecursionError) as error:
+        raise ExpressionError(f"{where}: {_short(str(value))} is out of bounds: {error}") from None
     return result
+
+
+def _check_value(expr: sp.Expr, value: object, where: str) -> None:
+    if expr.is_real is False or (not isinstance(expr, sp.Symbol) and expr.has(*_NOT_REAL)):
+        raise ExpressionError(f"{where}: {value!r} is not a finite real expression")
 
 
 def expanded_terms(expr: sp.Expr) -> int:
@@ -140,6 +147,10 @@ def _check_parts(expr: sp.Expr, where: str) -> None:
             )
         if isinstance(part, sp.Symbol):
             symbol(part.name, where)
+        if part.is_Pow and part.exp.is_Rational and abs(part.exp) > MAX_EXPONENT:
+            raise ExpressionError(f"{where}: an exponent of more than {MAX_EXPONENT}")
+        if part.is_Rational and max(abs(part.p), part.q).bit_length() > 4 * MAX_DIGITS:
+            raise ExpressionError(f"{where}: a number of more than {MAX_DIGITS} digits")
     if expanded_terms(expr) > MAX_TERMS:
         raise ExpressionError(f"{where}: multiplied out it would have over {MAX_TERMS} terms")
     try:
@@ -186,7 +197,7 @@ def _from_text(text: str, where: str) -> sp.Expr:
         raise ExpressionError(
             f"{where}: {_short(text)} is not an expression: {error.msg}"
         ) from None
-    except (ValueError, RecursionError, MemoryError) as error:
+    except (ValueError, OverflowError, RecursionError, MemoryError) as error:
         raise ExpressionError(f"{where}: {_short(text)} is not an expression: {error}") from None
 
 

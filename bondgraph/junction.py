@@ -151,7 +151,7 @@ def _solve_loop(
 def _loop_message(strokes: Strokes, group: tuple[int, ...]) -> str:
     names = []
     for signal in group[:8]:
-        tail, head = (strokes.names[node] for node in strokes.bonds[signal // 2])
+        tail, head = strokes.declared[signal // 2]
         names.append(f"{'flow' if signal % 2 else 'effort'} of {tail!r} -> {head!r}")
     more = f" and {len(group) - 8} more" if len(group) > 8 else ""
     return (

@@ -66,6 +66,10 @@ class DryFriction:
             raise ExpressionError(
                 f"curve of dry friction: {at_rest} at slip = 0 would drive the slip"
             )
+        if self.level.is_negative:
+            raise ExpressionError(
+                f"level of dry friction: {self.level} is negative; it is a magnitude"
+            )
         for part, what in ((self.level, "level"), (ratio, "breakaway")):
             if SLIP in part.free_symbols:
                 raise ExpressionError(f"{what} of dry friction: only the curve may use slip")

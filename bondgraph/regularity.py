@@ -80,7 +80,7 @@ def _eliminate_inner(strokes: Strokes, rows: ResidueRows, inner: list[int]) -> N
             heapq.heappush(heap, (now, column))
         elif not rows.pivot(column, jordan=False):
             bond = column // 2
-            tail, head = (strokes.names[node] for node in strokes.bonds[bond])
+            tail, head = strokes.declared[bond]
             kind = "flow" if column % 2 else "effort"
             raise AlgebraicLoopError(
                 f"the {kind} of bond {tail!r} -> {head!r} stays undetermined whatever the elements "

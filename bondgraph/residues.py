@@ -27,7 +27,8 @@ def residues(seed: int = 0) -> Callable[[sp.Expr], int]:
     """A function from expressions to residues; equal seeds give equal functions.
 
     Sums, products, powers with integer or half exponents and the functions in `KNOWN_FUNCTIONS` keep
-    their identities; any other function counts as a symbol of its own. Raises `ZeroDivisionError` where
+    their identities, roots as far as the prime has them: of integers whose prime factors are below 32, and of
+    products of symbols. Any other root or function counts as a symbol of its own. Raises `ZeroDivisionError` where
     a denominator vanishes.
 
     >>> value = residues()
@@ -77,6 +78,8 @@ class _Residues:
             return self._random(base)
         if base.is_Mul:
             return prod_mod(map(self._root, base.args))
+        if base.is_Pow and base.exp.is_Integer:
+            return _power(self._root(base.base), int(base.exp))
         if base.is_Rational and not base.is_Integer:
             return self._root(sp.Integer(base.p)) * _inverse(self._root(sp.Integer(base.q))) % PRIME
         if base.is_Integer and base.p > 0:

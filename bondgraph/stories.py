@@ -73,7 +73,7 @@ def _sentence(strokes: Strokes, bond: int) -> str:
     reason = strokes.reason[bond]
     if reason is None:
         return ""
-    tail, head = (strokes.names[node] for node in strokes.bonds[bond])
+    tail, head = strokes.declared[bond]
     end = strokes.end[bond]
     receiver = strokes.names[end] if end is not None else None
     return (

@@ -40,6 +40,7 @@ class Strokes:
         number = {name: at for at, name in enumerate(self.names)}
         self.elements: list[Element] = [graph.nodes[name]["element"] for name in self.names]
         self.bonds = [(number[tail], number[head]) for tail, head in graph.edges]
+        self.declared = [graph.edges[bond]["declared"] for bond in graph.edges]
         self.at: list[list[int]] = [[] for _ in self.names]
         for bond, ends in enumerate(self.bonds):
             for node in ends:

@@ -41,13 +41,13 @@ class Watch:
         mode: Mode,
         t: float,
         s: Array,
-        peaks: Peaks,
+        peaks: Peaks | None = None,
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
         now = self._snapshot(t, s)
         self._limits = np.zeros(0)
         if mode:
-            size = scales(model, t, now, peaks)
+            size = scales(model, now, t, peaks)
             self._limits = np.where(np.array(mode) == 0, size.effort, size.slip)
         self._armed = [False] * len(mode)
         self._before = self._triggers(now)

@@ -40,11 +40,12 @@ def run_hybrid(
         pieces = [signal.piece(t) for signal in signals]
         peaks.see(model.at(t, s, pieces, tuple(sign or 1 for sign in mode)))
         leg = Leg(model, pieces, mode, settings, span, peaks)
-        ahead = LOOK_AHEAD / max(leg.fastest(t, s), 100.0 / span) if mode else 0.0
+        peaks.time = 1 / max(leg.fastest(t, s), 100.0 / span) if mode else 0.0
+        ahead = LOOK_AHEAD * peaks.time
         # A breakpoint may set the slips anew, so sticking ports are decided again with the others.
         loose = touched | {i for i, sign in enumerate(mode) if sign == 0}
         at_zero = _still(model, t, s, pieces, mode, loose, peaks)
-        new = decide(model, t, s, pieces, mode, at_zero, ahead, peaks)
+        new = decide(model, t, s, pieces, mode, at_zero, ahead, peaks, touched)
         if started:
             _note(model, track.events, t, mode, new)
             _check_progress(rounds, t, span, track.events)
@@ -73,7 +74,7 @@ def _still(
         return frozenset()
     now = model.at(t, s, pieces, tuple(sign or 1 for sign in mode))
     slips = np.abs(now.y[model.friction_readings])
-    limits = 1e3 * scales(model, t, now, peaks).slip
+    limits = 1e3 * scales(model, now, t, peaks).slip
     return frozenset(i for i in ports if slips[i] <= limits[i] or model.coupled_directly(i))
 
 

@@ -67,7 +67,7 @@ class Leg:
         mode: Mode,
         settings: Settings,
         span: float,
-        peaks: Peaks,
+        peaks: Peaks | None = None,
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
         self._settings, self._span, self._peaks = settings, span, peaks

@@ -14,16 +14,23 @@ from codegen.pieces import Piece
 TOLERANCE = 1e-10
 """Slips and efforts count as zero below this fraction of the terms that make them up."""
 
+ROUNDING = 1e-4
+"""A little later, an acceleration above this fraction of what counts as zero is a real one."""
+
 LOOK_AHEAD = 1e-4
 """Ties are decided this fraction of the system's shortest time constant later."""
 
 
 @dataclass
 class Peaks:
-    """The largest magnitudes of states and inputs that a run has seen: what rounding is relative to."""
+    """What rounding is relative to: the largest magnitudes of states and inputs that a run has seen.
+
+    ``time`` [s] is the shortest time constant: forces that cancel leave slips of their rounding times it.
+    """
 
     x: Array
     u: Array
+    time: float = 0.0
 
     @classmethod
     def none(cls, model: ClosedModel) -> "Peaks":
@@ -44,9 +51,10 @@ class Scales:
     acceleration: Array
 
 
-def scales(model: ClosedModel, t: float, now: Snapshot, peaks: Peaks) -> Scales:
+def scales(model: ClosedModel, now: Snapshot, t: float = 0.0, peaks: Peaks | None = None) -> Scales:
     """The rounding to be expected, from the magnitude of the terms that cancel, and of the time's."""
     readings, numbers = model.friction_readings, model.numbers
+    peaks = peaks or Peaks.none(model)
     x, u = np.maximum(np.abs(now.x), peaks.x), np.maximum(np.abs(now.u), peaks.u)
     late = 16 * np.spacing(abs(t)) * np.abs(slip_rates(model, now))
     slip = np.abs(numbers.F[readings]) @ x + np.abs(numbers.D[readings]) @ u
@@ -61,7 +69,7 @@ def scales(model: ClosedModel, t: float, now: Snapshot, peaks: Peaks) -> Scales:
     driven = np.divide(moved, inertia, out=np.zeros_like(moved), where=inertia > 0)
     tiny = np.finfo(float).tiny
     return Scales(
-        TOLERANCE * slip + late + tiny,
+        TOLERANCE * (slip + moved * peaks.time) + late + tiny,
         TOLERANCE * (efforts + driven) + tiny,
         TOLERANCE * 10 * moved + tiny,
     )
@@ -75,11 +83,13 @@ def decide(
     previous: Mode,
     at_zero: frozenset[int],
     ahead: float,
-    peaks: Peaks,
+    peaks: Peaks | None = None,
+    touched: frozenset[int] = frozenset(),
 ) -> Mode:
     """The mode just after t: every port in ``at_zero`` sticks if it can, else slips the way it is pushed.
 
-    Other ports slip the way their slip shows. ``ahead`` [s] is how far to look where the instant itself
+    Other ports slip the way their slip shows. Where several modes are consistent, ports not ``touched``
+    by the event keep their state. ``ahead`` [s] is how far to look where the instant itself
     does not decide. Raises `SimulationError`, with the numbers, if no mode is consistent.
     """
     if not previous:
@@ -87,10 +97,10 @@ def decide(
     undecided = set(at_zero) | {i for i in range(len(previous)) if model.coupled_directly(i)}
     now = model.at(t, s, pieces, tuple(sign or 1 for sign in previous))
     slips = now.y[model.friction_readings]
-    near = scales(model, t, now, peaks).slip
+    near = scales(model, now, t, peaks).slip
     undecided |= {i for i, slip in enumerate(slips) if abs(slip) <= near[i]}
     tried = []
-    for mode in _candidates(previous, slips, sorted(undecided)):
+    for mode in _candidates(previous, slips, sorted(undecided), touched):
         complaint = _complaint(model, t, s, pieces, mode, undecided, ahead, peaks)
         if complaint is None:
             return mode
@@ -102,11 +112,19 @@ def decide(
     )
 
 
-def _candidates(previous: Mode, slips: Array, undecided: list[int]) -> Iterator[Mode]:
-    """Modes by the number of ports that stick, most first; then the directions of before first."""
+def _candidates(
+    previous: Mode, slips: Array, undecided: list[int], touched: frozenset[int]
+) -> Iterator[Mode]:
+    """Modes by the number of ports that stick, most first; then those that change least."""
+
+    def rank(choice: tuple[int, ...]) -> tuple[int, int]:
+        kept = [i for i in undecided if i not in touched]
+        changed = sum(choice[undecided.index(i)] != previous[i] for i in kept)
+        return -choice.count(0), changed
+
     choices = sorted(
         product(*((0, previous[i] or 1, -(previous[i] or 1)) for i in undecided)),
-        key=lambda choice: -choice.count(0),
+        key=rank,
     )
     for choice in choices:
         mode = [1 if slip > 0 else -1 for slip in slips]
@@ -123,11 +141,11 @@ def _complaint(
     mode: Mode,
     undecided: set[int],
     ahead: float,
-    peaks: Peaks,
+    peaks: Peaks | None,
 ) -> str | None:
     """What contradicts a mode; None if it is consistent."""
     now = model.at(t, s, pieces, mode)
-    size = scales(model, t, now, peaks)
+    size = scales(model, now, t, peaks)
     later: Snapshot | None = None
     for i in sorted(undecided):
         verdict = _stick_verdict(model, now, size, i) if mode[i] == 0 else _slip_verdict(
@@ -165,7 +183,8 @@ def _later_verdict(model: ClosedModel, later: Snapshot, size: Scales, i: int, si
         margin = later.caps[i] - abs(later.u[model.friction_inputs[i]])
         return 1 if margin >= -size.effort[i] else -1
     slip = sign * later.y[model.friction_readings[i]]
-    return 1 if sign * slip_rates(model, later)[i] > 0 or slip > size.slip[i] else -1
+    rounding = ROUNDING * size.acceleration[i]
+    return 1 if sign * slip_rates(model, later)[i] > rounding or slip > size.slip[i] else -1
 
 
 def slip_rates(model: ClosedModel, now: Snapshot) -> Array:

@@ -76,7 +76,7 @@ def lagged_terms(piece: Piece, T: float) -> tuple[Term, ...]:
 
 
 def _resonant(polynomial: Sequence[complex], off: complex, T: float) -> tuple[complex, ...]:
-    """The answer to ``p(tau) exp((off - 1/T) tau)`` over ``exp(-tau/T)``, by the series of ``exp(off tau)``."""
+    """The answer to ``p(tau) exp((off - 1/T) tau)``, over ``exp(-tau/T)``, by a series."""
     driven: list[complex] = [0.0] * (len(polynomial) + SERIES)
     factor: complex = 1.0
     for k in range(SERIES + 1):

@@ -64,7 +64,8 @@ class Program:
     states and inputs, and F, D, H, K with a row for each reading, ``F x + D u + H x' + K u'``.
     ``known``: laws of time, parameters and external inputs; ``known_rates`` their rates. ``groups``:
     the other laws in an order in which each can be evaluated. ``friction_values``: level, breakaway
-    level, curve and curve at rest of each friction port in turn. ``coupled``: laws to be solved with the friction.
+    level, curve and curve at rest of each friction port in turn. ``coupled``: laws to be
+    solved with the friction.
     """
 
     parameters: tuple[sp.Symbol, ...]
@@ -82,6 +83,8 @@ class Program:
     coefficients: Block
     layout: Mapping[str, Pattern]
     known: Group
+    #: For each known law the external inputs that it uses.
+    known_uses: tuple[tuple[int, ...], ...]
     known_rates: Block
     groups: tuple[Group, ...]
     friction: tuple[FrictionPort, ...]
@@ -134,6 +137,7 @@ def lower(
         coefficients=block(expressions, taken),
         layout=layout,
         known=_group(closing, closing.known, False, taken),
+        known_uses=tuple(_uses(closing, name) for name in closing.known),
         known_rates=block(_rates(closing, rates), taken),
         groups=tuple(_group(closing, names, loop, taken) for names, loop in closing.order),
         friction=friction,
@@ -212,6 +216,11 @@ def _rate_names(names: Sequence[sp.Symbol], taken: set[sp.Symbol]) -> tuple[sp.S
     return tuple(sp.Symbol(f"{prefix}{name}") for name in names)
 
 
+def _uses(closing: Closing, name: sp.Symbol) -> tuple[int, ...]:
+    used = closing.laws[name].free_symbols
+    return tuple(at for at, external in enumerate(closing.external) if external in used)
+
+
 def _read(closing: Closing) -> tuple[int, ...]:
     used = set(closing.equations.outputs)
     for law in closing.laws.values():
@@ -224,8 +233,9 @@ def _is_affine(closing: Closing, friction: list[sp.Expr], parameters: set[str]) 
     if closing.joint or any(loop for _, loop in closing.order):
         return False
     given = [law.expression for law in closing.laws.values() if isinstance(law, ExpressionLaw)]
-    curves = all(isinstance(c, sp.Expr) and c.is_number for c in friction[2::4])
-    return curves and is_affine([*given, *friction], parameters)
+    rubbing = [law for law in closing.laws.values() if isinstance(law, DryFriction)]
+    constant = all(law.curve.is_number and law.breakaway.is_number for law in rubbing)
+    return constant and is_affine([*given, *friction], parameters)
 
 
 def _expression(law: Law) -> sp.Expr:

@@ -148,7 +148,10 @@ class Sampled(Signal):
     values: tuple[float, ...]
 
     def __init__(self, times: ArrayLike, values: ArrayLike) -> None:
-        t, v = (np.asarray(array, dtype=float) for array in (times, values))
+        try:
+            t, v = (np.asarray(array, dtype=float) for array in (times, values))
+        except (TypeError, ValueError) as error:
+            raise SignalError(f"samples: times and values must be numbers: {error}") from None
         if t.ndim != 1 or t.shape != v.shape or len(t) < 2:
             raise SignalError(
                 f"samples need times and values of one length, two or more, not {t.shape} "

@@ -16,7 +16,7 @@ from codegen.closed import ClosedModel
 from codegen.events import Event
 from codegen.hybrid import run_hybrid
 from codegen.legs import METHODS, Settings, Track
-from codegen.modes import LOOK_AHEAD, Peaks, decide
+from codegen.modes import LOOK_AHEAD, decide
 from codegen.program import lower
 from codegen.signals import Constant, Signal, as_signal
 
@@ -84,14 +84,7 @@ class Simulator:
         s = self._vector(t, state, given)
         with np.errstate(all="ignore"):
             mode = decide(
-                self.closed,
-                t,
-                s,
-                pieces,
-                self._all_slipping(),
-                frozenset(),
-                LOOK_AHEAD * 1e-3,
-                Peaks.none(self.closed),
+                self.closed, t, s, pieces, self._all_slipping(), frozenset(), LOOK_AHEAD * 1e-3
             )
             now = self.closed.at(t, s, pieces, mode)
         n = len(self.closed.program.states)
@@ -184,8 +177,10 @@ class Simulator:
     def _check_steps(self, signals: Sequence[Signal], times: Array) -> None:
         """Refuse steps of inputs whose rate an output shows: it would be an impulse."""
         program, G = self.closed.program, self.closed.numbers.G
-        for name, signal in zip(self.inputs, signals, strict=True):
+        for at, (name, signal) in enumerate(zip(self.inputs, signals, strict=True)):
             columns = [j for j, symbol in enumerate(program.inputs) if symbol.name == name]
+            known = zip(program.known.inputs, program.known_uses, strict=True)
+            columns += [j for j, used in known if at in used]
             rows = [i for i in program.read if any(G[i, j] for j in columns)]
             if not rows:
                 continue

@@ -1,8 +1,10 @@
 """The constructors return what networkx takes; defaults are left out."""
 
 import pytest
+from references.build import bond_graph
 
 import bondgraph as bg
+from bondgraph.elements import Element
 
 
 @pytest.mark.parametrize(
@@ -34,13 +36,40 @@ def test_kinds_are_the_nine_of_the_table() -> None:
     assert [str(kind) for kind in bg.Kind] == ["Se", "Sf", "I", "C", "R", "TF", "GY", "Zero", "One"]
 
 
-def test_element_without_a_value_says_so() -> None:
-    import networkx as nx
+def _checked(*nodes: tuple) -> dict[object, Element]:
+    """The elements of a 1-junction with these nodes."""
+    graph = bond_graph([bg.One("j"), *nodes], "")
+    graph.add_edges_from(("j", name) for name, _ in nodes)
+    return {name: data["element"] for name, data in bg.validate(graph).nodes(data=True)}
 
-    graph = nx.DiGraph()
-    graph.add_nodes_from([bg.Se("s", "u"), bg.I("m", "m")])
-    graph.add_edge("s", "m")
-    checked = bg.validate(graph)
-    assert checked.nodes["m"]["element"].constant == checked.nodes["m"]["element"].value
+
+def test_element_without_a_value_says_so() -> None:
+    elements = _checked(bg.Se("s", "u"), bg.I("m", "m"))
+    assert elements["m"].constant == elements["m"].value
     with pytest.raises(AttributeError, match="Se 's' has no constant value"):
-        _ = checked.nodes["s"]["element"].constant
+        _ = elements["s"].constant
+
+
+@pytest.mark.parametrize(
+    ("node", "given", "received"),
+    [
+        (bg.Se("a", "u"), "u", "f_a"),
+        (bg.Sf("a", "u"), "u", "e_a"),
+        (bg.R("a"), "e_a", "f_a"),
+        (bg.R("a", gives="flow"), "f_a", "e_a"),
+        (bg.I("a", law="p_a/m"), "f_a", "e_a"),
+        (bg.C("a", law="q_a/c"), "e_a", "f_a"),
+        (bg.I("a", "m"), "None", "None"),
+        (bg.R("a", "r"), "None", "None"),
+    ],
+)
+def test_what_an_element_gives_and_receives_where_that_is_fixed(
+    node: tuple, given: str, received: str
+) -> None:
+    element = _checked(node, bg.I("other", 1))["a"]
+    assert (str(element.given), str(element.received)) == (given, received)
+
+
+def test_one_ports_are_all_but_junctions_and_two_ports() -> None:
+    elements = _checked(bg.Se("s", "u"), bg.R("r", 1))
+    assert {name for name, element in elements.items() if element.one_port} == {"s", "r"}

@@ -88,6 +88,14 @@ def test_cancelling_finds_zero_and_common_factors() -> None:
     assert cancelled(x) is x
 
 
+def test_cancelling_finds_zero_in_long_entries() -> None:
+    product = sp.prod(a + k * b + (k + 1) * c for k in range(12))
+    zero = product - sp.expand(product)
+    assert zero.count_ops() > 200
+    assert cancelled(zero) == 0
+    assert cancelled(zero + 1) != 0
+
+
 @pytest.mark.parametrize(
     ("entry", "shortest"),
     [

@@ -79,6 +79,7 @@ IDENTITIES = [
     sp.tanh(x) * sp.cosh(x) - sp.sinh(x),
     sp.exp(a) * sp.exp(b) - sp.exp(a + b),
     sp.cosh(x) - (sp.exp(x) + sp.exp(-x)) / 2,
+    sp.sinh(x) - (sp.exp(x) - sp.exp(-x)) / 2,
     sp.exp(2 * a) - sp.exp(a) ** 2,
 ]
 

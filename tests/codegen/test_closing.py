@@ -93,7 +93,11 @@ REFUSED = [
     ({"a": "v +"}, bg.ExpressionError, "law at 'a': 'v \\+' is not an expression"),
     ({"a": None}, bg.ExpressionError, "law at 'a': None is neither a number"),
     ({"a": float("nan")}, bg.ExpressionError, "law at 'a': nan is not a finite number"),
-    ({"flowing": bg.DryFriction(1)}, bg.StructureError, "'flowing': dry friction gives an effort"),
+    (
+        {"flowing": bg.DryFriction(1)},
+        bg.StructureError,
+        "'flowing': dry friction .*gives an effort",
+    ),
     ({"s": bg.DryFriction(1)}, bg.ExpressionError, "'s': a storage takes an expression in q_s"),
 ]
 

@@ -115,6 +115,18 @@ def test_a_belt_that_swings_carries_and_drops_the_mass(V: float, W: float) -> No
     assert result["v"] == pytest.approx(expected, abs=1e-8)
 
 
+def test_a_belt_whose_speed_is_a_law_carries_the_mass_with_the_laws_rate() -> None:
+    """V_b = 0.4 (1 - cos 3 t) + 0.2 u, u a ramp: f = -m V_b' while it holds."""
+    graph = belt()
+    graph.nodes["belt"]["value"] = "0.4*(1 - cos(3*t)) + u/5"
+    run = simulator(bg.derive(graph), {"m": 2.0, "F_c": 3.0})
+    result = run.run(np.linspace(0, 3, 61), inputs={"u": Ramp(0.5, 0.7)})
+    rate = 1.2 * np.sin(3 * result.time) + np.where(result.time >= 0.5, 0.14, 0.0)
+    assert result.events == ()
+    assert result["f"] == pytest.approx(-2 * rate, abs=1e-9)
+    assert np.abs(result["slip"]).max() < 1e-11
+
+
 def test_a_belt_that_swings_gently_never_drops_the_mass() -> None:
     result = _free(Sine(0.5, 2.9 / (2 * np.pi)), np.linspace(0, 8, 81))
     assert result.events == ()

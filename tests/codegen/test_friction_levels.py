@@ -110,7 +110,7 @@ def test_a_level_through_a_lag_catches_and_keeps_the_mass() -> None:
         rtol=1e-13, atol=1e-14, events=rest,
     )  # fmt: skip
     assert _events(result) == [(pytest.approx(found.t[-1], abs=1e-9), "stick")]
-    assert np.abs(result["v"][TIMES > found.t[-1]]).max() < 1e-10
+    assert np.abs(result["v"][found.t[-1] < TIMES]).max() < 1e-10
 
 
 def test_a_level_of_time() -> None:
@@ -122,7 +122,7 @@ def test_a_level_of_time() -> None:
     def v(t):
         return (-(t - release) + 2 / 3 * (np.cos(3 * t) - np.cos(3 * release))) / 2
 
-    inside = (TIMES > release) & (TIMES < 2.3)
+    inside = (release < TIMES) & (TIMES < 2.3)
     assert result["v"][inside] == pytest.approx(v(TIMES[inside]), abs=1e-8)
 
 
@@ -149,13 +149,13 @@ def test_a_level_of_the_state() -> None:
     "law", [bg.DryFriction("L"), bg.DryFriction("L", "1 + slip"), bg.DryFriction("L - 0*t")]
 )
 def test_a_level_that_becomes_negative_ends_the_run_with_its_port(law: bg.DryFriction) -> None:
-    message = r"at t = 1\.\d* the friction level at 'ground' is negative .*a level is a magnitude"
+    message = r"at t = 1\.\d* .*'ground'.* -0\.\d+.*negative"
     with pytest.raises(bg.SimulationError, match=message):
         _run(law, 3.0, more={"L": Ramp(0.0, -2.0, 2.0)})
 
 
 def test_a_negative_level_is_refused_at_the_start() -> None:
-    message = r"at t = 0 the friction level at 'ground' is negative \(-2\)"
+    message = r"at t = 0 .*'ground'.* -2.*negative"
     with pytest.raises(bg.SimulationError, match=message):
         _run(bg.DryFriction("L"), 3.0, L=-2.0)
     run = simulator(bg.derive(block(bg.DryFriction("L"))), {"m": 1.0, "L": -2.0})

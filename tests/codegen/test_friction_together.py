@@ -112,7 +112,7 @@ def test_redundant_brakes_in_different_gears_share_by_level(ratio: float) -> Non
     run = simulator(_constrained(ratio), {"m": 2.0, "L_1": 3.0, "L_2": 1.0, "r": ratio})
     result = run.run(TIMES, inputs={"P": Ramp(0.0, 4.0)})
     total = 3.0 + abs(ratio)
-    locked = 4 * TIMES < total - 1e-9
+    locked = total - 1e-9 > 4 * TIMES
     fraction = 4 * TIMES[locked] / total
     assert result["f_1"][locked] == pytest.approx(3.0 * fraction, abs=1e-9)
     assert result["f_2"][locked] == pytest.approx(np.sign(ratio) * fraction, abs=1e-9)

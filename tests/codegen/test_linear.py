@@ -1,5 +1,7 @@
 """Linear circuits and mechanics against closed forms."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from oracles.models import series_circuit
@@ -97,7 +99,7 @@ def test_a_mass_alone_integrates_its_force(drive) -> None:
     points, weights = np.polynomial.legendre.leggauss(20)
     edges = np.unique([*TIMES, *drive.breakpoints])
     momentum, expected = 0.0, {0.0: 0.0}
-    for a, b in zip(edges, edges[1:], strict=False):
+    for a, b in pairwise(edges):
         middle, half = (a + b) / 2, (b - a) / 2
         momentum += half * sum(
             w * drive(middle + half * p) for p, w in zip(points, weights, strict=True)

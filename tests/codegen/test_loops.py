@@ -79,7 +79,8 @@ def test_laws_that_name_each_other_are_solved_together() -> None:
 def test_a_linear_law_loop_is_the_linear_solution() -> None:
     """Two controlled sources about two resistances; D couples them both ways."""
     nodes = [bg.Se("s", "V"), bg.One("n"), bg.R("r", 2), bg.Zero("z"), bg.R("g", 5),
-             bg.R("x", law="e_x/3 + 1", gives="flow"), bg.R("y", law="e_x/7 - f_x/2", gives="flow")]  # fmt: skip
+             bg.R("x", law="e_x/3 + 1", gives="flow"),
+             bg.R("y", law="e_x/7 - f_x/2", gives="flow")]  # fmt: skip
     equations = bg.derive(bond_graph(nodes, "s>n>r n>z>g z>x z>y"), outputs=["x"])
     result = simulator(equations, {}).run(TIMES, inputs={"V": Ramp(0.0, 4.0)})
     # (V - e)/2 = e/5 + f_x + f_y, f_x = e/3 + 1, f_y = e/7 - f_x/2.

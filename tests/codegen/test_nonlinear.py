@@ -98,7 +98,8 @@ def test_the_same_law_on_received_variable_or_state_is_the_same() -> None:
 def test_van_der_pol_circuit_agrees_with_tight_integration() -> None:
     """Laws of a state and of another law's input: L i' = v, C v' = -i - g(v)."""
     nodes = [bg.Zero("n"), bg.C("c", "C", effort="v"), bg.I("l", "L", flow="i"),
-             bg.R("tube", law="mu*(v**3/3 - v)", gives="flow"), bg.R("copy", law="f_tube/10", gives="flow")]  # fmt: skip
+             bg.R("tube", law="mu*(v**3/3 - v)", gives="flow"),
+             bg.R("copy", law="f_tube/10", gives="flow")]  # fmt: skip
     run = simulator(
         bg.derive(bond_graph(nodes, "n>c n>l n>tube n>copy")), {"C": 1.0, "L": 0.8, "mu": 2.0}
     )

@@ -49,7 +49,7 @@ def test_a_name_of_a_law_that_is_no_parameter_is_an_input() -> None:
 
 
 def test_a_missing_parameter_is_named() -> None:
-    with pytest.raises(bg.ParameterError, match="missing parameter.s. C, R; give each a number"):
+    with pytest.raises(bg.ParameterError, match=r"missing parameter\(s\) C, R; give each a number"):
         lower(CIRCUIT, parameters=["L"])
 
 

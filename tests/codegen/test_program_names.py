@@ -58,11 +58,12 @@ def test_states_inputs_and_outputs_of_any_name(names: tuple[str, str, str]) -> N
 
 
 def test_temporaries_pass_over_every_name_that_is_taken() -> None:
+    """Names that other parts of the program use count as taken: c3 stands in a law alone."""
     equations = _two_masses("c0", "c2", "c1")
-    program = lower(equations, parameters=["c0", "c1", "c2"])
+    program = lower(equations, {"push": "c3*c4"}, ["c0", "c1", "c2", "c3"])
     temporaries = {name.name for name, _ in program.coefficients.assignments}
     assert temporaries
-    assert not temporaries & {"c0", "c1", "c2"}
+    assert not temporaries & {"c0", "c1", "c2", "c3", "c4"}
 
 
 def test_a_rate_does_not_collide_with_a_parameter_called_like_it() -> None:

@@ -67,8 +67,8 @@ def test_ramp_must_end_after_it_begins(end: float) -> None:
         ([0, 2, 1], [1, 2, 3], "the times must increase"),
         ([0, math.nan], [1, 2], "a time or a value is not finite"),
         ([0, 1], [1, math.inf], "a time or a value is not finite"),
-        (["zero", "one"], [1, 2], "samples.*not.*number"),
-        ([0, 1], [1, 2j], "samples.*not.*number"),
+        (["zero", "one"], [1, 2], "samples.*must be numbers"),
+        ([0, 1], [1, 2j], "samples.*must be numbers"),
         ([0, [1, 2]], [1, 2], "samples"),
     ],
 )
@@ -84,13 +84,13 @@ def test_adding_a_number_is_refused() -> None:
 
 @pytest.mark.parametrize("value", ["5", None, True, 2j, [1.0], np.array([1.0, 2.0])])
 def test_an_input_must_be_a_signal_or_a_number(value: object) -> None:
-    with pytest.raises(SignalError, match="input 'tau': .* is neither a signal nor a number"):
+    with pytest.raises(SignalError, match=r"input 'tau': .* is neither a signal nor a number"):
         as_signal(value, "tau")
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, np.float64(-np.inf)])
 def test_an_input_must_be_finite(value: float) -> None:
-    with pytest.raises(SignalError, match="input 'tau': .* is not a finite number"):
+    with pytest.raises(SignalError, match=r"input 'tau': .* is not a finite number"):
         as_signal(value, "tau")
 
 

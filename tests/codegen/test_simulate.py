@@ -42,7 +42,7 @@ def test_a_simulator_names_what_it_takes_and_shows() -> None:
 
 
 def test_an_unknown_name_lists_what_there_is() -> None:
-    with pytest.raises(KeyError, match="no signal 'omega'; there are v, F, .*slip"):
+    with pytest.raises(KeyError, match=r"no signal 'omega'; there are v, F, .*slip"):
         _run()["omega"]
 
 

@@ -27,7 +27,7 @@ def _divider(value: object = "V", first: str = "lower") -> bg.StateEquations:
 
 def _jump_and_decay(at: float, height: float) -> np.ndarray:
     after = np.maximum(TIMES - at, 0.0)
-    return np.where(TIMES >= at, height * C_1 / (C_1 + C_2) * np.exp(-after / TAU), 0.0)
+    return np.where(at <= TIMES, height * C_1 / (C_1 + C_2) * np.exp(-after / TAU), 0.0)
 
 
 def _lower_voltage(result, first: str) -> np.ndarray:
@@ -119,12 +119,14 @@ def _charged(value: object = "V") -> bg.StateEquations:
     return bg.derive(bond_graph(nodes, "s>z>c z>r"), outputs=["s"])
 
 
-def test_an_output_may_show_the_rate_of_a_smooth_input() -> None:
-    run = simulator(_charged(), {"C_1": C_1, "R": R})
+@pytest.mark.parametrize(("value", "gain", "slope"), [("V", 1, 0), ("3*V + 4*t", 3, 4)])
+def test_an_output_may_show_the_rate_of_a_smooth_input(value: str, gain: float, slope: float) -> None:
+    run = simulator(_charged(value), {"C_1": C_1, "R": R})
     result = run.run(TIMES, inputs={"V": Lag(Step(0.5, 10.0), 0.2)})
     decay = np.where(TIMES >= 0.5, np.exp(-np.maximum(TIMES - 0.5, 0) / 0.2), 0.0)
     V = np.where(TIMES >= 0.5, 10 * (1 - decay), 0.0)
-    assert result["f_s"] == pytest.approx(C_1 * 10 / 0.2 * decay + V / R, abs=1e-9)
+    expected = C_1 * (gain * 10 / 0.2 * decay + slope) + (gain * V + slope * TIMES) / R
+    assert result["f_s"] == pytest.approx(expected, abs=1e-9)
 
 
 def test_corners_are_no_impulses() -> None:

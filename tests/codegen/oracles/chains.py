@@ -96,8 +96,7 @@ def random_chain(rng: np.random.Generator, breakaway: bool = False) -> Chain:
     pairs = places[n:]
     springs = {p: float(rng.uniform(5, 60)) for p in places if rng.random() < 0.4 or p in pairs[:1]}
     dampers = {p: float(rng.uniform(0.05, 3)) for p in places if rng.random() < 0.3}
-    # A friction port at a place that is taken already shares its motion: redundant holding.
-    friction = [places[i] for i in rng.choice(len(places), size=int(rng.integers(1, 4)))]
+    friction = _friction(rng, places, n)
     joined = {*springs, *dampers, *friction}
     for pair in pairs:
         if pair not in joined:
@@ -110,6 +109,14 @@ def random_chain(rng: np.random.Generator, breakaway: bool = False) -> Chain:
     )  # fmt: skip
 
 
+def _friction(rng: np.random.Generator, places: list[Place], n: int) -> list[Place]:
+    """One to three places, some of them twice; at most one way of holding more than needed."""
+    while True:
+        chosen = [places[i] for i in rng.choice(len(places), size=int(rng.integers(1, 4)))]
+        if np.linalg.matrix_rank(np.array([way(place, n) for place in chosen])) >= len(chosen) - 1:
+            return chosen
+
+
 def _level(rng: np.random.Generator) -> Signal:
     L = float(rng.uniform(0.3, 3))
     shapes = [Constant(L), Constant(L), Constant(0.0), Step(float(rng.uniform(0.2, 1.5)), L / 3, L),
@@ -120,6 +127,6 @@ def _level(rng: np.random.Generator) -> Signal:
 
 def _push(rng: np.random.Generator) -> Signal:
     P = float(rng.normal() * 3)
-    shapes = [Constant(0.0), Constant(P), Step(float(rng.uniform(0.1, 1.5)), P), Sine(P, float(rng.uniform(0.3, 2))),
-              Lag(Step(0.5, P), 0.2), Ramp(0.2, P, end=1.2)]  # fmt: skip
+    shapes = [Constant(0.0), Constant(P), Step(float(rng.uniform(0.1, 1.5)), P),
+              Sine(P, float(rng.uniform(0.3, 2))), Lag(Step(0.5, P), 0.2), Ramp(0.2, P, end=1.2)]  # fmt: skip
     return shapes[int(rng.integers(len(shapes)))]

@@ -6,6 +6,7 @@ M^-1, ports that slip being held at L_i sign(s_i).
 """
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import lsq_linear
@@ -73,7 +74,7 @@ def time_stepped(
     """
     q, v = (part.astype(float).copy() for part in start)
     result = [v.copy()]
-    for t_0, t_1 in zip(times, times[1:], strict=False):
+    for t_0, t_1 in pairwise(times):
         h = (t_1 - t_0) / steps
         system = M + h * damping + h * h * K
         inverse = np.linalg.inv(system)

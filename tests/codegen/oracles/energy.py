@@ -1,6 +1,7 @@
 """Energy balance of a run by Gauss quadrature between its events."""
 
 from collections.abc import Callable, Iterable
+from itertools import pairwise
 
 import numpy as np
 
@@ -12,9 +13,7 @@ POINTS, WEIGHTS = np.polynomial.legendre.leggauss(12)
 def gauss_times(edges: Iterable[float], panels: int = 8) -> np.ndarray:
     """The edges of every panel and the Gauss points inside, increasing: 13 for each panel, and the end."""
     stretches = np.unique(np.asarray(list(edges)))
-    ends = [
-        np.linspace(a, b, panels + 1)[:-1] for a, b in zip(stretches, stretches[1:], strict=False)
-    ]
+    ends = [np.linspace(a, b, panels + 1)[:-1] for a, b in pairwise(stretches)]
     starts = np.concatenate(ends)
     widths = np.diff([*starts, stretches[-1]])
     inner = starts[:, None] + widths[:, None] * (POINTS + 1) / 2

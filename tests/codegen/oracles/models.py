@@ -78,8 +78,8 @@ def stacked_blocks() -> nx.DiGraph:
 
 def clutches(*laws: object) -> nx.DiGraph:
     """Two shafts of inertias I_1 and I_2 under torques T_1 and T_2, with a clutch for each law between."""
-    nodes = [bg.Se("t1", "T_1"), bg.Se("t2", "T_2"), bg.One("n1"), bg.One("n2"), bg.Zero("between"), bg.One("slip"),
-             bg.I("i1", "I_1", flow="w_1"), bg.I("i2", "I_2", flow="w_2")]  # fmt: skip
+    nodes = [bg.Se("t1", "T_1"), bg.Se("t2", "T_2"), bg.One("n1"), bg.One("n2"), bg.Zero("between"),
+             bg.One("slip"), bg.I("i1", "I_1", flow="w_1"), bg.I("i2", "I_2", flow="w_2")]  # fmt: skip
     nodes += [bg.R(f"c{i}", law=law, effort=f"f_{i}", flow="slip") for i, law in enumerate(laws)]
     bonds = " ".join(f"slip>c{i}" for i in range(len(laws)))
     return bond_graph(nodes, f"t1>n1>i1 t2>n2>i2 n1>between>n2 between>slip {bonds}")
