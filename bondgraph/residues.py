@@ -15,7 +15,7 @@ import sympy as sp
 from sympy.ntheory import factorint, sqrt_mod
 
 PRIME = 2874246 * 802241960520 + 1
-"""The largest prime below 2**61 of the form ``k * 8 * 3 * 5 * 7 * 11 * 13 * 17 * 19 * 23 * 29 * 31 + 1``."""
+"""The largest prime below 2**61 of the form ``8 * 3 * 5 * ... * 29 * 31 * k + 1``."""
 
 PARTS = 2**4 * 3**2 * 5 * 7
 """Angles and exponents are counted in this fraction of a symbol, so that x/2 and x/3 agree with x."""
@@ -27,9 +27,9 @@ def residues(seed: int = 0) -> Callable[[sp.Expr], int]:
     """A function from expressions to residues; equal seeds give equal functions.
 
     Sums, products, powers with integer or half exponents and the functions in `KNOWN_FUNCTIONS` keep
-    their identities, roots as far as the prime has them: of integers whose prime factors are below 32, and of
-    products of symbols. Any other root or function counts as a symbol of its own. Raises `ZeroDivisionError` where
-    a denominator vanishes.
+    their identities, roots as far as the prime has them: of integers whose prime factors are below 32,
+    and of products of symbols. Any other root or function counts as a symbol of its own. Raises
+    `ZeroDivisionError` where a denominator vanishes.
 
     >>> value = residues()
     >>> h = sp.Symbol("h")

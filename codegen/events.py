@@ -8,7 +8,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from codegen.arrays import Array
 from codegen.closed import ClosedModel, Mode, Snapshot
-from codegen.modes import Peaks, scales
+from codegen.modes import LOOK_AHEAD, Peaks, scales
 from codegen.pieces import Piece
 
 CHECKS = 6
@@ -31,7 +31,8 @@ class Watch:
 
     Each port has a trigger that is positive while the mode holds: the magnitude of its slip, or, where
     it sticks, the margin to its breakaway effort. A trigger that starts at zero is armed once it has
-    risen above rounding; until then only a fall well below zero counts.
+    risen above rounding; until then only a fall well below zero counts, and only after a moment too
+    short to matter, so that a leg out of complete rest makes progress.
     """
 
     def __init__(
@@ -44,6 +45,7 @@ class Watch:
         peaks: Peaks | None = None,
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
+        self._blind = t + LOOK_AHEAD * (peaks.time if peaks else 0.0)
         now = self._snapshot(t, s)
         self._limits = np.zeros(0)
         if mode:
@@ -107,7 +109,9 @@ class Watch:
                 return None
         if self._armed[i]:
             return self._crossing(i, t_a, t_b, 0.0, dense) if b <= 0 else None
-        return self._crossing(i, t_a, t_b, -2 * limit, dense) if b < -2 * limit else None
+        if b >= -2 * limit or t_b <= self._blind:
+            return None
+        return max(self._crossing(i, t_a, t_b, -2 * limit, dense), self._blind)
 
     def _crossing(self, i: int, t_a: float, t_b: float, level: float, dense: Dense) -> float:
         def above(t: float) -> float:

@@ -50,6 +50,11 @@ def test_names_are_plain_symbols_whatever_sympy_calls_so(name: str) -> None:
     assert result.is_real is None
 
 
+def test_letters_that_look_alike_are_one_name_everywhere() -> None:
+    """Python reads the full-width x as x (NFKC), so a flow of that name is the value's x too."""
+    assert bg.expression("\uff58", "here") == symbol("\uff58", "here") == x
+
+
 @pytest.mark.parametrize(
     ("value", "expected"),
     [

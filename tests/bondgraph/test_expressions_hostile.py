@@ -58,6 +58,12 @@ def test_powers_of_powers_are_refused_too(text: str) -> None:
         bg.expression(text, "node 'q'")
 
 
+@pytest.mark.parametrize("text", ["(x + y + z + w)**300", "(x + y)**99*(z + w)**99*(x + z)**99"])
+def test_powers_that_multiply_out_to_very_many_terms_are_refused(text: str) -> None:
+    with pytest.raises(bg.ExpressionError, match=r"node 'q': .*terms"):
+        bg.expression(text, "node 'q'")
+
+
 def test_function_values_beyond_floats_are_refused_or_kept() -> None:
     """Comparing them takes numbers that floats do not have."""
     try:

@@ -120,7 +120,9 @@ def _charged(value: object = "V") -> bg.StateEquations:
 
 
 @pytest.mark.parametrize(("value", "gain", "slope"), [("V", 1, 0), ("3*V + 4*t", 3, 4)])
-def test_an_output_may_show_the_rate_of_a_smooth_input(value: str, gain: float, slope: float) -> None:
+def test_an_output_may_show_the_rate_of_a_smooth_input(
+    value: str, gain: float, slope: float
+) -> None:
     run = simulator(_charged(value), {"C_1": C_1, "R": R})
     result = run.run(TIMES, inputs={"V": Lag(Step(0.5, 10.0), 0.2)})
     decay = np.where(TIMES >= 0.5, np.exp(-np.maximum(TIMES - 0.5, 0) / 0.2), 0.0)
