@@ -160,3 +160,26 @@ def test_a_law_that_reads_friction_is_solved_with_it() -> None:
     assert [(e.time, e.kind) for e in result.events] == [(pytest.approx(stop, abs=1e-9), "stick")]
     assert result["v"] == pytest.approx(np.interp(TIMES, [0, 1, stop], [0, 0.45, 0]), abs=1e-9)
     assert result["f"][-1] == pytest.approx(-0.8 / 1.1, abs=1e-8)
+
+
+def test_a_port_behind_a_damper_and_one_on_the_ground_stick_each_in_its_way() -> None:
+    """One hold follows from D at once, the other rules the state: m v' = P - L_1 sign(v) - clip(b v, L_2)."""
+    nodes = [bg.R("ground", law=bg.DryFriction(1.5), effort="f_1", flow="s_1")]
+    m, b, L_1, L_2, P = 2.0, 4.0, 1.5, 2.0, 6.0
+    run = simulator(_slip_damper(*nodes), {"m": m, "b": b, "L": L_2})
+    result = run.run(TIMES, inputs={"P": Step(1.0, 0.0, P)})
+    tau, fast = m / b, L_2 / b
+    t_1 = -tau * np.log(1 - fast * b / (P - L_1))
+    peak = fast + (P - L_1 - L_2) / m * (1 - t_1)
+    t_2 = 1 + (peak - fast) * m / (L_1 + L_2)
+    t_3 = t_2 + tau * np.log((fast + L_1 / b) / (L_1 / b))
+    assert [(e.port, e.kind) for e in result.events] == [
+        ("rub", "slip"), ("rub", "stick"), ("ground", "stick"),
+    ]  # fmt: skip
+    assert [e.time for e in result.events] == pytest.approx([t_1, t_2, t_3], abs=1e-9)
+    rise = (P - L_1) / b * (1 - np.exp(-TIMES / tau))
+    fall = (fast + L_1 / b) * np.exp(-(TIMES - t_2) / tau) - L_1 / b
+    ends = [t_1 > TIMES, t_2 > TIMES, t_3 > TIMES]
+    middle = np.interp(TIMES, [t_1, 1, t_2], [fast, peak, fast])
+    assert result["v"] == pytest.approx(np.select(ends, [rise, middle, fall], 0.0), abs=1e-9)
+    assert np.abs(result["v"][t_3 < TIMES]).max() < 1e-12

@@ -120,3 +120,44 @@ def test_redundant_brakes_in_different_gears_share_by_level(ratio: float) -> Non
     assert [e.time for e in result.events] == pytest.approx([total / 4] * 2, abs=1e-9)
     after = np.maximum(TIMES - total / 4, 0.0)
     assert result["v"] == pytest.approx(after**2, abs=1e-9)
+
+
+def _lever() -> bg.StateEquations:
+    """A speed V shared between two masses, v_1 + v_2 = V, of which one rubs on the ground.
+
+    (m_1 + m_2) v_1' = m_2 V' - f: the imposed speed acts through the dependent mass.
+    """
+    nodes = [bg.Sf("drive", "V"), bg.Zero("beam"), bg.One("n1"), bg.I("m1", "m_1", flow="v_1", priority=1),
+             bg.I("m2", "m_2", flow="v_2"),
+             bg.R("rub", law=bg.DryFriction("L"), effort="f", flow="s")]  # fmt: skip
+    return bg.derive(bond_graph(nodes, "drive>beam>n1>m1 n1>rub beam>m2"))
+
+
+def test_a_step_through_a_dependent_mass_tears_a_port_loose() -> None:
+    """v_1 jumps by m_2/(m_1 + m_2) of the step and is braked by L/(m_1 + m_2) until it holds again."""
+    equations = _lever()
+    assert equations.E.todok()
+    run = simulator(equations, {"m_1": 1.0, "m_2": 3.0, "L": 6.0})
+    result = run.run(TIMES, inputs={"V": Step(0.5, 1.2) + Step(1.5, -0.4)})
+    expected = np.interp(TIMES, [0.5, 1.1], [0.9, 0]) * (TIMES >= 0.5)
+    expected += np.interp(TIMES, [1.5, 1.7], [-0.3, 0]) * (TIMES >= 1.5)
+    assert result["v_1"] == pytest.approx(expected, abs=1e-9)
+    assert [(e.time, e.kind) for e in result.events] == [
+        (0.5, "slip"), (pytest.approx(1.1, abs=1e-9), "stick"),
+        (1.5, "slip"), (pytest.approx(1.7, abs=1e-9), "stick"),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("slope", "held"), [(1.9, True), (-1.9, True), (2.1, False)])
+def test_a_slope_through_a_dependent_mass_pulls_at_a_port_that_holds(
+    slope: float, held: bool
+) -> None:
+    """f = m_2 V' while it holds, up to L = 6."""
+    run = simulator(_lever(), {"m_1": 1.0, "m_2": 3.0, "L": 6.0})
+    result = run.run(TIMES, inputs={"V": Ramp(0.5, slope)})
+    after = TIMES >= 0.5
+    acceleration = 0.0 if held else (3 * slope - 6.0) / 4.0
+    assert result["f"][after] == pytest.approx(
+        np.full(after.sum(), 3 * slope if held else 6.0), abs=1e-9
+    )
+    assert result["v_1"] == pytest.approx(acceleration * np.maximum(TIMES - 0.5, 0.0), abs=1e-9)
