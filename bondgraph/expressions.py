@@ -266,8 +266,9 @@ def _power(base: Any, exponent: Any) -> sp.Expr:
     """A power, unless writing it out would take more than a sensible number of digits."""
     if exponent.is_Rational and abs(exponent) > MAX_EXPONENT:
         raise ExpressionError(f"an exponent of more than {MAX_EXPONENT}")
-    if base.is_Rational and exponent.is_Rational:
-        digits = max(len(str(abs(base.p))), len(str(base.q))) * abs(exponent)
+    factor = base.as_coeff_Mul()[0]
+    if factor.is_Rational and factor not in (1, -1) and exponent.is_Rational:
+        digits = max(len(str(abs(factor.p))), len(str(factor.q))) * abs(exponent)
         if digits > MAX_DIGITS:
             raise ExpressionError(f"a power of more than {MAX_DIGITS} digits")
         if base.is_zero and exponent.is_negative:
