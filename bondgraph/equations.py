@@ -17,7 +17,10 @@ from bondgraph.laws import Law
 from bondgraph.outputs import PortRow, named_signals, shown_signals
 from bondgraph.readings import check_laws
 from bondgraph.reduction import Reading, Reduction, reduce_ports
-from bondgraph.residues import is_zero, residues
+from bondgraph.residues import is_rational_function, is_zero, residues
+
+LARGEST_ROOTED = 6
+"""Blocks of A of more states are decided by residues alone, roots and functions or not."""
 
 LARGEST_TIDIED = 2_000
 """Matrices with more entries in all are left as they were derived."""
@@ -181,11 +184,24 @@ def _check_regular(A: list[Row], states: tuple[sp.Symbol, ...]) -> None:
         {j: entry for j, expr in A[i].items() if (entry := value(expr))} for i in sorted(coupled)
     )
     for i in sorted(coupled):
-        if not rows.pivot(i, jordan=False):
+        if not rows.pivot(i, jordan=False) or _vanishes_by_roots(A, i):
             raise SingularStorageError(
                 f"the matrix A is singular: {states[i]}' is not determined by the storages' values; "
                 "change a value, or leave out a storage that cancels another"
             )
+
+
+def _vanishes_by_roots(A: list[Row], state: int) -> bool:
+    """Whether the block that a state begins has a determinant that only roots or functions cancel.
+
+    Residues don't see every such identity; a small block's determinant is looked at as it is.
+    """
+    block = _reached(A, [state])
+    entries = [entry for i in block for entry in A[i].values()]
+    if state != block[0] or len(block) > LARGEST_ROOTED or all(map(is_rational_function, entries)):
+        return False
+    determinant = sp.Matrix(len(block), len(block), lambda i, j: A[block[i]].get(block[j], 0)).det()
+    return is_zero(determinant)
 
 
 def _reached(A: list[Row], start: Iterable[int]) -> list[int]:
