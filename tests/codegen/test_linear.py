@@ -124,3 +124,21 @@ def test_stiff_circuits_take_the_implicit_method_and_stay_exact() -> None:
     t = np.maximum(result.time - 0.5, 0.0)
     v = 1 - (fast * np.exp(slow * t) - slow * np.exp(fast * t)) / (fast - slow)
     assert result["v"] == pytest.approx(v, abs=1e-7)
+
+
+def test_between_the_steps_of_an_explicit_method_samples_keep_the_tolerance() -> None:
+    """A pole of 3750/s under a slow input: at the stability limit an interpolant would be noise.
+
+    i = Re(-j X exp(j w t)) less what decays, X = (j w - A)^-1 B.
+    """
+    A, w = np.array([[-3750.0, -1.0], [100.0, 0.0]]), 2 * np.pi
+    X = -1j * np.linalg.solve(1j * w * np.eye(2) - A, [1.0, 0.0])
+    rates, modes = np.linalg.eig(A)
+    parts = np.linalg.solve(modes, X.real)
+    times = np.linspace(0.0, 2.0, 2001)
+    steady = np.outer(np.exp(1j * w * times), X).real
+    expected = steady - (np.exp(np.outer(times, rates)) * parts) @ modes.T
+    run = simulator(CIRCUIT, {"R": 3750.0, "L": 1.0, "C": 0.01})
+    result = run.run(times, inputs={"V": Sine(1.0, 1.0)}, method="DOP853")
+    assert result["i"] == pytest.approx(expected[:, 0], abs=3e-11)
+    assert result["v"] == pytest.approx(expected[:, 1], abs=1e-9)

@@ -1,5 +1,6 @@
 """Known sources of time, and inputs that drive dependent storages: jumps, rates, impulses."""
 
+import networkx as nx
 import numpy as np
 import pytest
 from references.build import bond_graph
@@ -13,7 +14,7 @@ TAU = R * (C_1 + C_2)
 NUMBERS = {"C_1": C_1, "C_2": C_2, "R": R}
 
 
-def _divider(value: object = "V", first: str = "lower") -> bg.StateEquations:
+def _divider_graph(value: object = "V", first: str = "lower") -> nx.DiGraph:
     """A source on two capacitances in series, one with a resistance beside it: V = v_1 + v_2.
 
     (C_1 + C_2) v_2' = C_1 V' - v_2/R.
@@ -22,7 +23,11 @@ def _divider(value: object = "V", first: str = "lower") -> bg.StateEquations:
     nodes = [bg.Se("s", value), bg.One("n"), bg.Zero("z"), bg.R("r", "R"),
              bg.C("upper", "C_1", effort="v_1", priority=priority.get("upper", 0)),
              bg.C("lower", "C_2", effort="v_2", priority=priority.get("lower", 0))]  # fmt: skip
-    return bg.derive(bond_graph(nodes, "s>n>upper n>z>lower z>r"), outputs=["z"])
+    return bond_graph(nodes, "s>n>upper n>z>lower z>r")
+
+
+def _divider(value: object = "V", first: str = "lower") -> bg.StateEquations:
+    return bg.derive(_divider_graph(value, first), outputs=["z"])
 
 
 def _jump_and_decay(at: float, height: float) -> np.ndarray:
@@ -59,6 +64,16 @@ def test_a_ramp_drives_by_its_slope() -> None:
     result = simulator(_divider(), NUMBERS).run(TIMES, inputs={"V": Ramp(0.5, 4.0)})
     after = np.maximum(TIMES - 0.5, 0.0)
     assert result["v_2"] == pytest.approx(R * C_1 * 4.0 * (1 - np.exp(-after / TAU)), abs=1e-9)
+
+
+def test_the_current_into_a_divider_depends_on_the_rate_of_its_state() -> None:
+    """i = C_1 (V' - v_2'), an output of x'; after the corner v_2' = a C_1/(C_1 + C_2) exp(-t/tau)."""
+    equations = bg.derive(_divider_graph(), outputs=["s"])
+    result = simulator(equations, NUMBERS).run(TIMES, inputs={"V": Ramp(0.5, 4.0)})
+    after = np.maximum(TIMES - 0.5, 0.0)
+    rate = 4.0 * C_1 / (C_1 + C_2) * np.exp(-after / TAU)
+    expected = np.where(TIMES >= 0.5, C_1 * (4.0 - rate), 0.0)
+    assert result["f_s"] == pytest.approx(expected, abs=1e-9)
 
 
 def _sine_response(w: float, V: float) -> np.ndarray:
