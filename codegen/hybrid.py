@@ -15,7 +15,10 @@ from codegen.pieces import Piece
 from codegen.signals import Signal
 
 STALLED = 60
-"""So many events within a billionth of the run are a run that goes nowhere."""
+"""So many events in a row are a run that goes nowhere, if they are hardly apart."""
+
+APART = 1e-9
+"""Hardly apart: closer than this fraction of the run, or than what decides ties."""
 
 
 def run_hybrid(
@@ -48,7 +51,8 @@ def run_hybrid(
         new = decide(model, t, s, pieces, mode, at_zero, ahead, peaks, touched)
         if started:
             _note(model, track.events, t, mode, new)
-            _check_progress(rounds, t, span, track.events)
+            if touched:
+                _check_progress(rounds, t, max(APART * span, 2 * STALLED * ahead), track.events)
         mode, started = new, True
         s = _at_rest(model, t, s, pieces, mode)
         if t >= end:
@@ -96,12 +100,12 @@ def _note(model: ClosedModel, events: list[Event], t: float, old: Mode, new: Mod
             events.append(Event(t, port.name, kind))
 
 
-def _check_progress(rounds: deque[float], t: float, span: float, events: list[Event]) -> None:
-    """Refuse to go on when too many of the latest legs end together."""
+def _check_progress(rounds: deque[float], t: float, least: float, events: list[Event]) -> None:
+    """Refuse to go on when too many of the latest legs end in an event within ``least`` [s]."""
     rounds.append(t)
-    if len(rounds) == STALLED and t - rounds[0] < 1e-9 * span:
+    if len(rounds) == STALLED and t - rounds[0] < least:
         latest = ", ".join(f"{e.kind} {e.port!r} at {e.time:.12g}" for e in events[-4:])
         raise SimulationError(
-            f"{STALLED} events within {1e-9 * span:.3g} s of t = {t:.12g}: the run makes no progress "
+            f"{STALLED} events within {least:.3g} s of t = {t:.12g}: the run makes no progress "
             f"(latest: {latest or 'none that changed a mode'})"
         )

@@ -42,7 +42,9 @@ class Signal(ABC):
 
     def __add__(self, other: "Signal") -> "Signal":
         """The sum of two signals."""
-        return _Sum(self, other) if isinstance(other, Signal) else NotImplemented
+        if not isinstance(other, Signal):
+            return NotImplemented
+        return _Sum((*_summands(self), *_summands(other)))
 
 
 @dataclass(frozen=True)
@@ -222,24 +224,27 @@ class Lag(Signal):
 
 @dataclass(frozen=True)
 class _Sum(Signal):
-    one: Signal
-    other: Signal
+    parts: tuple[Signal, ...]
 
     @cached_property
     def breakpoints(self) -> tuple[float, ...]:
-        """Those of both."""
-        return tuple(sorted({*self.one.breakpoints, *self.other.breakpoints}))
+        """Those of all parts."""
+        return tuple(sorted({time for part in self.parts for time in part.breakpoints}))
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """The pieces of both, side by side."""
+        """The pieces of all parts, side by side."""
         times = self.breakpoints
         starts = (times[0] - 1.0 if times else 0.0, *times)
         return tuple(
-            Piece(at, collected([*moved(self.one.piece(at), at).terms,
-                                  *moved(self.other.piece(at), at).terms]))
+            Piece(at, collected([term for part in self.parts
+                                 for term in moved(part.piece(at), at).terms]))
             for at in starts
         )  # fmt: skip
+
+
+def _summands(signal: Signal) -> tuple[Signal, ...]:
+    return signal.parts if isinstance(signal, _Sum) else (signal,)
 
 
 def as_signal(value: object, name: str) -> Signal:
