@@ -11,13 +11,14 @@ from bondgraph.causality import assign_causality
 from bondgraph.elements import Element
 from bondgraph.elimination import ResidueRows
 from bondgraph.errors import SingularStorageError
-from bondgraph.exact import Row, add_scaled, matrix_of, solve, tidy
+from bondgraph.exact import Row, add_scaled, matrix_of, solve
 from bondgraph.junction import JunctionStructure, Port, junction_structure
 from bondgraph.laws import Law
 from bondgraph.outputs import PortRow, named_signals, shown_signals
 from bondgraph.readings import check_laws
 from bondgraph.reduction import Reading, Reduction, reduce_ports
 from bondgraph.residues import is_rational_function, is_zero, residues
+from bondgraph.tidy import tidy
 
 LARGEST_ROOTED = 6
 """Blocks of A of more states are decided by residues alone, roots and functions or not."""

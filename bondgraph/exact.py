@@ -8,14 +8,14 @@ from sympy.polys.constructor import construct_domain
 from sympy.polys.matrices import DomainMatrix
 
 from bondgraph.expressions import expanded_terms
-from bondgraph.residues import is_rational_function, is_zero
+from bondgraph.residues import is_zero
 
 Row = dict[int, sp.Expr]
 """A sparse row: column to expression, no zeros."""
 
-TIDY_OPERATIONS = 60
-TIDY_TERMS = 100
-"""An entry with more operations, or more terms when multiplied out, is left as it came."""
+SHORT_OPERATIONS = 60
+SHORT_TERMS = 100
+"""A sum with more operations, or more terms when multiplied out, is left as it came."""
 
 
 class SingularError(ArithmeticError):
@@ -36,12 +36,14 @@ def add_scaled(target: Row, row: Mapping[int, sp.Expr], factor: sp.Expr) -> None
 
 
 def cancelled(expr: sp.Expr) -> sp.Expr:
-    """The expression with common factors cancelled; 0 exactly when it vanishes identically."""
+    """The shorter of a sum and its cancelled form; 0 exactly when it vanishes identically."""
     if expr.is_Rational or expr.is_Symbol:
         return expr
     if is_zero(expr):
         return sp.Integer(0)
-    return sp.cancel(expr) if expr.is_Add and _is_short(expr) else expr
+    if not expr.is_Add or not _is_short(expr):
+        return expr
+    return min((expr, sp.cancel(expr)), key=lambda form: form.count_ops())
 
 
 def solve(matrix: Sequence[Row], right: Sequence[Row]) -> list[Row]:
@@ -79,18 +81,9 @@ def solve(matrix: Sequence[Row], right: Sequence[Row]) -> list[Row]:
     return result
 
 
-def tidy(expr: sp.Expr) -> sp.Expr:
-    """The shortest of an expression's plain, cancelled and factored forms; long ones stay as they are."""
-    if expr.is_Atom or not is_rational_function(expr) or not _is_short(expr):
-        return expr
-    if is_zero(expr):
-        return sp.Integer(0)
-    return min((expr, sp.cancel(expr), sp.factor(expr)), key=lambda form: form.count_ops())
-
-
 def _is_short(expr: sp.Expr) -> bool:
     """Whether an expression, multiplied out as well, is short enough to look for a better form."""
-    return expr.count_ops() <= TIDY_OPERATIONS and expanded_terms(expr) <= TIDY_TERMS
+    return expr.count_ops() <= SHORT_OPERATIONS and expanded_terms(expr) <= SHORT_TERMS
 
 
 def rows_of(matrix: sp.Matrix) -> list[Row]:

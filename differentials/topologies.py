@@ -1,22 +1,13 @@
-"""The paper's differentials as graphs over parts, and the catalog of them."""
+"""The catalog of the paper's differentials: their graphs and equations by name."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import bondgraph as bg
-from differentials.parts import (
-    Part,
-    assemble,
-    bevel,
-    clutch,
-    engine,
-    gear,
-    halfshaft,
-    inertia,
-    shaft,
-    tire,
-)
+from differentials import active, passive
+from differentials.parts import Part
+from differentials.pieces import Variant
 
 
 @dataclass(frozen=True)
@@ -24,98 +15,70 @@ class Differential:
     """One topology: what it is called, where it comes from, and how its graph is built.
 
     ``clutches``: node of each clutch to the name of its hydraulic torque. ``wheels``: how many.
-    ``observed``: nodes whose signals a simulation records beside the slips.
+    ``full``: whether there is a model with halfshafts beside the rigid one. ``play``: which of its
+    models can have backlash, "full", "rigid" or none. ``observed``: nodes whose signals a simulation
+    records beside the slips.
     """
 
     name: str
     title: str
     source: str
-    build: Callable[[bool, bool], Part]
+    build: Callable[[Variant], Part]
     clutches: Mapping[str, str]
     wheels: int
+    full: bool
+    play: str
     observed: tuple[str, ...]
 
 
-def alsd(halfshafts: bool, lumped: bool) -> Part:
-    """The active limited slip differential, Fig. 7a: a clutch between the case and the right output."""
-    return assemble(
-        _bevel_core(halfshafts, lumped),
-        clutch("clutch", "tau_f", "omega_f", driving="case", driven="right"),
-        _wheels(("left", "right"), halfshafts),
-    )
+def _row(
+    name: str, title: str, source: str, build: Callable[[Variant], Part], *levels: str, wheels: int = 2,
+    full: bool = True, play: str = "full", observed: tuple[str, ...] = ("input", "case"),
+) -> Differential:  # fmt: skip
+    nodes = ("clutch",) if len(levels) == 1 else tuple(f"clutch_{j}" for j in (1, 2))
+    clutches = MappingProxyType(dict(zip(nodes[: len(levels)], levels, strict=True)))
+    if full:
+        observed += tuple(f"halfshaft_{j}" for j in range(1, wheels + 1))
+    return Differential(name, title, source, build, clutches, wheels, full, play, observed)
 
 
-def _bevel_core(halfshafts: bool, lumped: bool) -> Part:
-    """The passive differential, Fig. 2a, whose input inertia is the dependent one."""
-    parts = [
-        shaft("input", "omega_e"),
-        engine("engine", "tau_e", at="input"),
-        inertia("I_i", "I_i", at="input", priority=-1),
-        shaft("case", "omega_c"),
-        gear("final_drive", "i", driving="input", driven="case"),
-        shaft("left"),
-        shaft("right"),
-        bevel("bevel", case="case", left="left", right="right"),
-        *_outputs(("left", "right"), halfshafts, lumped),
-    ]
-    if not lumped:
-        parts.append(inertia("I_c", "I_c", at="case", priority=-1))
-    return assemble(*parts)
+_ALL = (
+    _row("passive", "passive differential", "Figs. 2a, 4, eqs. (6), (12)", passive.passive),
+    _row(
+        "passive_input_clutch", "passive differential with an input clutch", "Fig. 2b, eqs. (7), (8)",
+        passive.passive_input_clutch, "tau_h", full=False, play="", observed=("input", "case"),
+    ),
+    _row(
+        "passive_input_shaft", "passive differential with a compliant input shaft", "Fig. 2c, eq. (9)",
+        passive.passive_input_shaft, full=False, play="rigid",
+        observed=("input", "case", "input_shaft"),
+    ),
+    _row(
+        "passive_halfshafts", "passive differential with massless outputs on halfshafts",
+        "Fig. 3, eqs. (10), (11)", passive.passive_halfshafts, full=False, play="",
+        observed=("case", "left", "right"),
+    ),
+    _row(
+        "alsd", "active limited slip differential (ALSD)", "Figs. 6a, 7a, Appendix B", active.alsd,
+        "tau_h",
+    ),
+    _row(
+        "superposition_tvd", "torque vectoring differential with superposition clutches",
+        "Figs. 6b, 7b, Appendix B", active.superposition_tvd, "tau_h1", "tau_h2",
+    ),
+    _row(
+        "stationary_tvd", "torque vectoring differential with stationary clutches",
+        "Figs. 6c, 7c, Appendix B", active.stationary_tvd, "tau_h1", "tau_h2",
+    ),
+    _row(
+        "four_wheel_drive_tvd", "four wheel drive with a torque vectoring rear differential",
+        "Figs. 6d, 7d, Appendix B", active.four_wheel_drive_tvd, "tau_h1", "tau_h2", wheels=4,
+        observed=("input", "case", "ring"),
+    ),
+)  # fmt: skip
 
-
-def _outputs(sides: tuple[str, ...], halfshafts: bool, lumped: bool) -> list[Part]:
-    """The inertias at the outputs: with halfshafts the outputs' own, without them the wheels'.
-
-    Lumped, ``I_w<j>`` holds both (Appendix B); else the output's own stands beside, dependent.
-    """
-    parts = []
-    for number, side in enumerate(sides, start=1):
-        speed = f"omega_{number}"
-        own, wheel = f"I_{number}", f"I_w{number}"
-        if halfshafts:
-            parts.append(inertia(own, own, at=side, speed=speed))
-            continue
-        parts.append(inertia(wheel, wheel, at=side, speed=speed))
-        if not lumped:
-            parts.append(inertia(own, own, at=side, priority=-1))
-    return parts
-
-
-def _wheels(sides: tuple[str, ...], halfshafts: bool) -> Part:
-    """Tires at the outputs, by way of halfshafts and wheels in the full model, eqs. (15), (16)."""
-    numbered = list(enumerate(sides, start=1))
-    if not halfshafts:
-        return assemble(*(tire(number, at=side) for number, side in numbered))
-    shafts = [
-        halfshaft(number, inner=side, outer=f"wheel_{number}", k="k", b="b")
-        for number, side in numbered
-    ]
-    wheels = [
-        assemble(
-            shaft(f"wheel_{number}"),
-            inertia(f"I_w{number}", "I_w", at=f"wheel_{number}", speed=f"omega_t{number}"),
-        )
-        for number, _ in numbered
-    ]
-    return assemble(
-        *shafts, *wheels, *(tire(number, at=f"wheel_{number}") for number, _ in numbered)
-    )
-
-
-catalog: Mapping[str, Differential] = MappingProxyType(
-    {
-        "alsd": Differential(
-            name="alsd",
-            title="active limited slip differential (ALSD)",
-            source="Figs. 6a, 7a, Appendix B",
-            build=alsd,
-            clutches=MappingProxyType({"clutch": "tau_h"}),
-            wheels=2,
-            observed=("input", "case", "halfshaft_1", "halfshaft_2"),
-        ),
-    }
-)
-"""Name to differential."""
+catalog: Mapping[str, Differential] = MappingProxyType({row.name: row for row in _ALL})
+"""Name to differential, in the paper's order."""
 
 
 def differential(name: str) -> Differential:
@@ -127,12 +90,29 @@ def differential(name: str) -> Differential:
     return catalog[name]
 
 
-def graph(name: str, halfshafts: bool = False, lumped: bool = True) -> Part:
+def graph(
+    name: str, halfshafts: bool = False, lumped: bool = True, backlash: bool = False
+) -> Part:
     """A differential's bond graph, rigid or with compliant halfshafts.
 
-    ``lumped=False`` keeps the case and output inertias as elements of their own, all dependent.
+    ``lumped=False`` keeps inertias that Appendix B lumps as elements of their own, all dependent.
+    ``backlash=True`` puts a gap into the halfshafts, or into the compliant input shaft (Fig. 5).
+
+    Raises `StructureError` for a variant that the differential does not have.
     """
-    return differential(name).build(halfshafts, lumped)
+    chosen = differential(name)
+    if halfshafts and not chosen.full:
+        raise bg.StructureError(
+            f"{name} ({chosen.source}) has no model with halfshafts of its own; the paper extends "
+            "'passive' and the active differentials by them"
+        )
+    if backlash and chosen.play != ("full" if halfshafts else "rigid"):
+        also = " without halfshafts=True" if chosen.play == "full" else ""
+        raise bg.StructureError(
+            f"{name}{also} has no shaft that could have backlash; there is backlash in the halfshafts "
+            "of full models and in the shaft of 'passive_input_shaft'"
+        )
+    return chosen.build(Variant(halfshafts, lumped, backlash))
 
 
 def equations(name: str, halfshafts: bool = False) -> bg.StateEquations:

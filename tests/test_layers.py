@@ -13,14 +13,15 @@ ORDER = {
     "bondgraph": [
         "errors", "residues", "expressions", "laws", "elements", "elimination", "names", "graph", "strokes",
         "causal_order", "regularity", "stories", "causality", "exact", "junction", "reduction",
-        "outputs", "readings", "equations",
+        "outputs", "readings", "tidy", "equations",
     ],
     "codegen": [
         "arrays", "pieces", "signals", "affine", "closing", "program", "numpy_backend", "numbers",
         "friction", "instant", "loops", "closed", "modes", "events", "legs", "hybrid", "simulate",
     ],
     "differentials": [
-        "laws", "parts", "parameters", "topologies", "scenarios", "figures", "report",
+        "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "scenarios",
+        "figures", "report",
     ],
 }  # fmt: skip
 

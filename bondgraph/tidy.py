@@ -1,0 +1,57 @@
+"""Entries in the form in which a person would write them."""
+
+import sympy as sp
+
+from bondgraph.expressions import expanded_terms
+from bondgraph.residues import is_rational_function, is_zero
+
+MOST_OPERATIONS = 150
+MOST_TERMS = 300
+"""An entry with more operations, or more terms when multiplied out, is left as it came."""
+
+
+def tidy(expr: sp.Expr) -> sp.Expr:
+    """The shortest of an expression's plain, cancelled, factored and by-symbol forms.
+
+    Long expressions, and those with functions or roots, stay as they are.
+    """
+    if expr.is_Atom or not is_rational_function(expr):
+        return expr
+    if expr.count_ops() > MOST_OPERATIONS or expanded_terms(expr) > MOST_TERMS:
+        return expr
+    if is_zero(expr):
+        return sp.Integer(0)
+    forms = (expr, sp.cancel(expr), sp.factor(expr), by_linear_symbols(expr))
+    return min(forms, key=lambda form: form.count_ops())
+
+
+def by_linear_symbols(expr: sp.Expr) -> sp.Expr:
+    """The sum over the symbols in which an expression is linear, each with its coefficient factored.
+
+    So inertias stand beside one another, each with the square of its gear ratio.
+
+    >>> n, I_1, I_2 = sp.symbols("n I_1 I_2")
+    >>> by_linear_symbols((n**2*I_1 + 2*n*I_1 + I_1 + n*I_2)/n)
+    I_1*(n + 1)**2/n + I_2
+    """
+    over, under = sp.fraction(sp.together(expr))
+    names = sorted(over.free_symbols, key=str)
+    if not names:
+        return expr
+    terms = sp.Poly(over, *names).terms()
+    linear: list[int] = []
+    for at, name in enumerate(names):
+        if name not in under.free_symbols and all(
+            powers[at] <= 1 and not (powers[at] and any(powers[k] for k in linear))
+            for powers, _ in terms
+        ):
+            linear.append(at)
+    parts: dict[int | None, list[sp.Expr]] = {}
+    for powers, number in terms:
+        own = next((at for at in linear if powers[at]), None)
+        factors = [name**powers[at] for at, name in enumerate(names) if at != own]
+        parts.setdefault(own, []).append(number * sp.prod(factors))
+    return sp.Add(*(
+        (1 if own is None else names[own]) * sp.factor(sp.Add(*found) / under)
+        for own, found in parts.items()
+    ))  # fmt: skip
