@@ -18,8 +18,10 @@ from bondgraph.errors import (
 )
 from bondgraph.expressions import expression
 from bondgraph.graph import validate
+from bondgraph.holding import holding_efforts
 from bondgraph.junction import JunctionStructure, junction_structure
 from bondgraph.laws import DryFriction, ExpressionLaw
+from bondgraph.linear import LinearModel, linearize
 
 __all__ = [
     "GY",
@@ -36,6 +38,7 @@ __all__ = [
     "I",
     "JunctionStructure",
     "Kind",
+    "LinearModel",
     "MissingExtraError",
     "One",
     "ParameterError",
@@ -51,7 +54,9 @@ __all__ = [
     "assign_causality",
     "derive",
     "expression",
+    "holding_efforts",
     "junction_structure",
+    "linearize",
     "state_equations",
     "validate",
 ]

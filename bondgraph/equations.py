@@ -1,6 +1,6 @@
 """`state_equations` and `derive`: the graph as ``A x' = J x + B u + E u'``, ``y = F x + D u + G u'``."""
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
@@ -11,20 +11,18 @@ from bondgraph.causality import assign_causality
 from bondgraph.elements import Element
 from bondgraph.elimination import ResidueRows
 from bondgraph.errors import SingularStorageError
-from bondgraph.exact import Row, add_scaled, matrix_of, solve
+from bondgraph.exact import Row, add_scaled
 from bondgraph.junction import JunctionStructure, Port, junction_structure
 from bondgraph.laws import Law
 from bondgraph.outputs import PortRow, named_signals, shown_signals
+from bondgraph.rates import reached, resolved
 from bondgraph.readings import check_laws
 from bondgraph.reduction import Reading, Reduction, reduce_ports
 from bondgraph.residues import is_rational_function, is_zero, residues
-from bondgraph.tidy import tidy
+from bondgraph.tidy import tidy_matrices
 
 LARGEST_ROOTED = 6
 """Blocks of A of more states are decided by residues alone, roots and functions or not."""
-
-LARGEST_TIDIED = 2_000
-"""Matrices with more entries in all are left as they were derived."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +130,7 @@ def state_equations(
     shown = shown_signals(structure, outputs)
     rows = [(ports[port].received, structure.rows[port]) for port in reduction.imposed]
     readings = {symbol: reduction.reading(row) for symbol, row in [*rows, *shown]}
-    resolved = [_resolved(A, balances, readings[symbol]) for symbol, _ in shown]
+    resolved_rows = [resolved(A, balances, readings[symbol]) for symbol, _ in shown]
     imposed = tuple(ports[port] for port in reduction.imposed)
     E = [row.K for row in balances]
     laws = {port.element.name: port.element.law for port in imposed if port.element.law is not None}
@@ -140,10 +138,10 @@ def state_equations(
     n, m = len(states), len(reduction.inputs)
     parts = [
         (A, n), ([row.F for row in balances], n), ([row.D for row in balances], m), (E, m),
-        ([row.F for row in resolved], n), ([row.D for row in resolved], m),
-        ([row.K for row in resolved], m),
+        ([row.F for row in resolved_rows], n), ([row.D for row in resolved_rows], m),
+        ([row.K for row in resolved_rows], m),
     ]  # fmt: skip
-    matrices = _matrices(parts)
+    matrices = tidy_matrices(parts)
     shown_names = tuple(symbol for symbol, _ in shown)
     named = dict(zip("AJBEFDG", matrices, strict=True))
     return StateEquations(
@@ -158,17 +156,6 @@ def _rates(value: sp.Expr, at: int, dependent: Mapping[int, sp.Expr]) -> Row:
     row: Row = {at: value}
     add_scaled(row, dependent, sp.Integer(-1))
     return row
-
-
-def _matrices(parts: Sequence[tuple[list[Row], int]]) -> list[sp.ImmutableSparseMatrix]:
-    """Immutable matrices from rows, entries in their shortest form while there are few."""
-    count = sum(len(row) for rows, _ in parts for row in rows)
-    if count <= LARGEST_TIDIED:
-        parts = [
-            ([{j: tidy(entry) for j, entry in row.items()} for row in rows], width)
-            for rows, width in parts
-        ]
-    return [matrix_of(rows, width) for rows, width in parts]
 
 
 def _check_regular(A: list[Row], states: tuple[sp.Symbol, ...]) -> None:
@@ -197,40 +184,9 @@ def _vanishes_by_roots(A: list[Row], state: int) -> bool:
 
     Residues don't see every such identity; a small block's determinant is looked at as it is.
     """
-    block = _reached(A, [state])
+    block = reached(A, [state])
     entries = [entry for i in block for entry in A[i].values()]
     if state != block[0] or len(block) > LARGEST_ROOTED or all(map(is_rational_function, entries)):
         return False
     determinant = sp.Matrix(len(block), len(block), lambda i, j: A[block[i]].get(block[j], 0)).det()
     return is_zero(determinant)
-
-
-def _reached(A: list[Row], start: Iterable[int]) -> list[int]:
-    """The states that A couples, however indirectly, to some of them."""
-    found = set(start)
-    pending = list(found)
-    while pending:
-        new = A[pending.pop()].keys() - found
-        found |= new
-        pending += new
-    return sorted(found)
-
-
-def _resolved(A: list[Row], balances: Sequence[Reading], reading: Reading) -> Reading:
-    """A reading with x' substituted: one solve with A^T, on the block of A that it touches."""
-    if not reading.H:
-        return reading
-    block = _reached(A, reading.H)
-    place = {state: at for at, state in enumerate(block)}
-    transposed: list[Row] = [{} for _ in block]
-    for i in block:
-        for j, entry in A[i].items():
-            transposed[place[j]][place[i]] = entry
-    right = [{0: reading.H[i]} if i in reading.H else {} for i in block]
-    result = Reading(dict(reading.F), dict(reading.D), {}, dict(reading.K))
-    for i, solved in zip(block, solve(transposed, right), strict=True):
-        if 0 in solved:
-            add_scaled(result.F, balances[i].F, solved[0])
-            add_scaled(result.D, balances[i].D, solved[0])
-            add_scaled(result.K, balances[i].K, solved[0])
-    return result

@@ -1,13 +1,30 @@
 """Entries in the form in which a person would write them."""
 
+from collections.abc import Sequence
+
 import sympy as sp
 
+from bondgraph.exact import Row, matrix_of
 from bondgraph.expressions import expanded_terms
 from bondgraph.residues import is_rational_function, is_zero
 
 MOST_OPERATIONS = 150
 MOST_TERMS = 300
 """An entry with more operations, or more terms when multiplied out, is left as it came."""
+
+LARGEST_TIDIED = 2_000
+"""Matrices with more entries in all are left as they were derived."""
+
+
+def tidy_matrices(parts: Sequence[tuple[list[Row], int]]) -> list[sp.ImmutableSparseMatrix]:
+    """Immutable matrices from rows and widths, entries in their shortest form while there are few."""
+    count = sum(len(row) for rows, _ in parts for row in rows)
+    if count <= LARGEST_TIDIED:
+        parts = [
+            ([{j: tidy(entry) for j, entry in row.items()} for row in rows], width)
+            for rows, width in parts
+        ]
+    return [matrix_of(rows, width) for rows, width in parts]
 
 
 def tidy(expr: sp.Expr) -> sp.Expr:
@@ -22,7 +39,9 @@ def tidy(expr: sp.Expr) -> sp.Expr:
     if is_zero(expr):
         return sp.Integer(0)
     forms = (expr, sp.cancel(expr), sp.factor(expr), by_linear_symbols(expr))
-    return min(forms, key=lambda form: form.count_ops())
+    least = min(form.count_ops() for form in forms)
+    shortest = dict.fromkeys(form for form in forms if form.count_ops() == least)
+    return min(shortest, key=lambda form: len(str(form)))
 
 
 def by_linear_symbols(expr: sp.Expr) -> sp.Expr:
@@ -49,7 +68,7 @@ def by_linear_symbols(expr: sp.Expr) -> sp.Expr:
     parts: dict[int | None, list[sp.Expr]] = {}
     for powers, number in terms:
         own = next((at for at in linear if powers[at]), None)
-        factors = [name**powers[at] for at, name in enumerate(names) if at != own]
+        factors = [name ** powers[at] for at, name in enumerate(names) if at != own]
         parts.setdefault(own, []).append(number * sp.prod(factors))
     return sp.Add(*(
         (1 if own is None else names[own]) * sp.factor(sp.Add(*found) / under)

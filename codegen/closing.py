@@ -7,12 +7,10 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph import DryFriction, ParameterError, StateEquations, StructureError
-from bondgraph.elements import Kind
-from bondgraph.exact import rows_of
+from bondgraph.closures import merged_laws
 from bondgraph.expressions import TIME
-from bondgraph.junction import Port
-from bondgraph.laws import ExpressionLaw, Law, law
-from bondgraph.readings import check_laws, depends_on_signals
+from bondgraph.laws import ExpressionLaw, Law
+from bondgraph.readings import depends_on_signals
 
 
 @dataclass(frozen=True)
@@ -44,7 +42,7 @@ def close_ports(
     equations: StateEquations, overrides: Mapping[Hashable, object], parameters: set[str]
 ) -> Closing:
     """Merge declared and given laws, sort their names, and find an order of evaluation."""
-    by_port = _merged(equations, overrides)
+    by_port = merged_laws(equations, overrides)
     _check_assumptions(equations, by_port)
     read = {name for closed in by_port.values() for name in closed.free_symbols}
     equations = equations.with_readings(read)
@@ -92,41 +90,6 @@ def _check_assumptions(equations: StateEquations, laws: Mapping[Hashable, Law]) 
                     f"law at {port!r}: the symbol {name} is used elsewhere with different "
                     "assumptions; use one symbol for one name, or plain text"
                 )
-
-
-def _merged(equations: StateEquations, overrides: Mapping[Hashable, object]) -> dict[Hashable, Law]:
-    """Every closed port's law; a key of the overrides is a node, or the input it gives."""
-    if not isinstance(overrides, Mapping):
-        raise StructureError(f"laws must map nodes to laws, not be {overrides!r}")
-    merged = dict(equations.laws)
-    for key, value in overrides.items():
-        port = _port(equations.ports, key)
-        name = port.element.name
-        declared = equations.laws.get(name)
-        state = declared.state if isinstance(declared, ExpressionLaw) else None
-        closed = law(value, f"law at {name!r}", state)
-        if isinstance(closed, DryFriction) and (
-            port.gives != "effort" or port.element.kind is not Kind.R
-        ):
-            raise StructureError(f"law at {name!r}: dry friction closes an R that gives an effort")
-        merged[name] = closed
-    matrix_rows = rows_of(equations.E)
-    check_laws(merged, set(equations.signals), equations.ports, matrix_rows, equations.readings)
-    return merged
-
-
-def _port(ports: Sequence[Port], key: Hashable) -> Port:
-    named = [port for port in ports if port.element.name == key]
-    giving = [port for port in ports if port.given.name == str(key)]
-    found = named or giving
-    if not found:
-        raise StructureError(
-            f"no open port or source is called {key!r}; there are "
-            f"{', '.join(repr(port.element.name) for port in ports) or 'none'}"
-        )
-    if named and giving and named != giving:
-        raise StructureError(f"law at {key!r}: that names a node and another node's input")
-    return found[0]
 
 
 def _check_parameters(

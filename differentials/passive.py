@@ -1,8 +1,25 @@
 """The passive differential of Figs. 2 to 4, with the inputs and halfshafts the paper compares."""
 
-from differentials.parts import Part, assemble, clutch, compliant_shaft, engine, halfshaft, inertia
-from differentials.parts import shaft, wheel
-from differentials.pieces import SIDES, Variant, bevel_core, final_drive, outputs, rigid_input, wheels
+from differentials.parts import (
+    Part,
+    assemble,
+    clutch,
+    compliant_shaft,
+    engine,
+    halfshaft,
+    inertia,
+    shaft,
+    wheel,
+)
+from differentials.pieces import (
+    SIDES,
+    Variant,
+    bevel_core,
+    final_drive,
+    outputs,
+    rigid_input,
+    wheels,
+)
 
 
 def passive(variant: Variant) -> Part:

@@ -8,9 +8,8 @@ import numpy as np
 
 import bondgraph as bg
 import codegen
-from differentials.laws import coulomb_clutch, linear_tire
-from differentials.parameters import PARAMETERS
-from differentials.topologies import Differential, differential, graph
+from differentials.model import Model, model
+from differentials.parameters import checked
 
 SAMPLE = 1e-3
 """Sampling interval of a simulation [s]."""
@@ -36,21 +35,31 @@ class Scenario:
     parameters: Mapping[str, float] = field(default_factory=dict)
 
 
+STIFFNESSES = (0.5, 1, 2, 5)
+"""Fig. 12: halfshaft stiffness over the nominal one."""
+
+
+def _figure_12(speed: float, factor: float) -> Scenario:
+    return Scenario(speed, -0.5, 0.0, (1000.0,), 0.0, 0.0, 0.5, parameters={"k": 8600 * factor})
+
+
+# The paper prints no torques: those of Fig. 11 are read off its axes, the others are assumed.
 scenarios: Mapping[str, Scenario] = MappingProxyType(
     {
-        # The torques are read off the axes of Fig. 11: the paper does not print them.
-        "fig11": Scenario(
-            wheel_speed=80.0,
-            speed_difference=-2.0,
-            engine_torque=350.0,
-            clutch_torques=(1000.0,),
-            engine_step=0.1,
-            clutch_step=0.5,
-            duration=1.0,
-        ),
+        "fig11": Scenario(80.0, -2.0, 350.0, (1000.0,), 0.1, 0.5, 1.0),
+        **{
+            f"fig12_{speed:g}_{factor:g}": _figure_12(speed, factor)
+            for speed in (20.0, 80.0)
+            for factor in STIFFNESSES
+        },
+        "fig13": Scenario(80.0, 0.5, 150.0, (100.0, 0.0), 0.1, 0.5, 1.0),
+        "fig13_superposition": Scenario(80.0, 0.5, 150.0, (1000.0, 0.0), 0.1, 0.5, 1.0),
+        "fig14": Scenario(80.0, 0.5, 150.0, (250.0, 0.0), 0.1, 0.5, 1.0),
+        "engine_step": Scenario(80.0, -0.5, 350.0, (), 0.1, 0.0, 1.0),
+        "input_clutch": Scenario(80.0, -0.5, 350.0, (500.0,), 0.3, 0.0, 1.0),
     }
 )
-"""Named scenarios, by the paper's figures."""
+"""Named scenarios: the paper's figures, and two for the passive differentials, which have no figure."""
 
 
 def simulate(
@@ -58,32 +67,36 @@ def simulate(
     scenario: str | Scenario,
     parameters: Mapping[str, float] | None = None,
     backend: str = "numpy",
+    laws: Mapping[str, object] | None = None,
+    backlash: bool = False,
 ) -> codegen.Result:
     """Run a differential's full model through a scenario, sampled every millisecond.
 
-    The result has the equations' states, inputs and slips, and the torques of the halfshafts
-    ``tau_hs1``.., the speeds of input ``omega_e`` and case ``omega_c``, and the hydraulic torques.
+    ``parameters``: what differs from the scenario's and the defaults. ``laws``: other laws for clutches
+    and tires, by node, such as ``{"tire_1": magic_formula_tire(1)}``. ``backlash``: with play in the shafts.
+
+    The result has the equations' states, inputs and slips, the torques of the halfshafts ``tau_hs1``..,
+    the speeds of input ``omega_e`` and case ``omega_c``, and the hydraulic torques. A passive variant that
+    the paper does not extend by halfshafts is run as it is.
 
     Raises `BondGraphError` for names and numbers that don't fit the differential.
     """
-    chosen = differential(name)
-    case = _scenario(scenario)
-    if len(case.clutch_torques) != len(chosen.clutches):
+    case = named(scenario)
+    full = model(name, laws, backlash)
+    clutches = full.differential.clutches
+    if len(case.clutch_torques) != len(clutches):
         raise bg.SignalError(
-            f"{name} has {len(chosen.clutches)} clutch(es); the scenario gives "
+            f"{name} has {len(clutches)} clutch(es); the scenario gives "
             f"{len(case.clutch_torques)} clutch torques"
         )
-    model = codegen.simulator(
-        _observed(chosen),
-        _parameters(chosen, case, parameters or {}),
-        laws=_laws(chosen),
-        backend=backend,
-    )
+    values = _parameters(full, case, parameters or {})
+    ready = codegen.simulator(full.equations, values, laws=full.laws, backend=backend)
     times = np.linspace(0.0, case.duration, round(case.duration / SAMPLE) + 1)
-    return model.run(times, _initial(chosen, case), _inputs(chosen, case))
+    return ready.run(times, _initial(full, case, values, ready), _inputs(full, case))
 
 
-def _scenario(scenario: str | Scenario) -> Scenario:
+def named(scenario: str | Scenario) -> Scenario:
+    """A scenario as it is, or the one of that name; `SignalError` with the names there are."""
     if isinstance(scenario, Scenario):
         return scenario
     if scenario not in scenarios:
@@ -91,56 +104,44 @@ def _scenario(scenario: str | Scenario) -> Scenario:
     return scenarios[scenario]
 
 
-def _observed(chosen: Differential) -> bg.StateEquations:
-    full = graph(chosen.name, halfshafts=True)
-    return bg.derive(full, outputs=[*chosen.clutches, *chosen.observed])
-
-
-def _laws(chosen: Differential) -> dict[str, object]:
-    laws: dict[str, object] = {
-        node: coulomb_clutch(level) for node, level in chosen.clutches.items()
-    }
-    return laws | {f"tire_{j}": linear_tire(j) for j in range(1, chosen.wheels + 1)}
-
-
-def _speeds(chosen: Differential, case: Scenario) -> list[float]:
+def _speeds(full: Model, case: Scenario) -> list[float]:
     """The speed each wheel starts at."""
-    others = [case.wheel_speed - case.speed_difference] * (chosen.wheels - 1)
+    others = [case.wheel_speed - case.speed_difference] * (full.differential.wheels - 1)
     return [case.wheel_speed, *others]
 
 
-def _parameters(
-    chosen: Differential, case: Scenario, changed: Mapping[str, float]
-) -> dict[str, float]:
+def _parameters(full: Model, case: Scenario, changed: Mapping[str, float]) -> dict[str, float]:
     """Defaults, then the scenario's, then the caller's; each wheel's tire is linearised at its start."""
-    values = {name: parameter.value for name, parameter in PARAMETERS.items()}
-    for wheel, speed in enumerate(_speeds(chosen, case), start=1):
+    values = {symbol: parameter.value for symbol, parameter in full.parameters.items()}
+    for wheel, (start, speed) in enumerate(zip(full.starts, _speeds(full, case), strict=True), 1):
         if not speed > 0:
             raise bg.SignalError(
                 f"wheel {wheel} starts at {speed} rad/s; the tire law needs a speed > 0"
             )
-        values[f"omega_t{wheel}_0"] = speed
-    for name, value in {**case.parameters, **changed}.items():
-        if name not in values:
-            raise bg.ParameterError(
-                f"{chosen.name} has no parameter {name!r}; there are {', '.join(values)}"
-            )
-        values[name] = value
+        values[start] = speed
+    name = full.differential.name
+    for more in (case.parameters, changed):
+        values |= checked(name, more, values)
     return values
 
 
-def _initial(chosen: Differential, case: Scenario) -> dict[str, float]:
-    speeds = dict(enumerate(_speeds(chosen, case), start=1))
-    return {f"omega_{j}": w for j, w in speeds.items()} | {
-        f"omega_t{j}": w for j, w in speeds.items()
-    }
+def _initial(
+    full: Model, case: Scenario, values: Mapping[str, float], ready: codegen.Simulator
+) -> dict[str, float]:
+    """Steady motion: shafts without torque, the input turning with the case."""
+    speeds = dict(enumerate(_speeds(full, case), start=1))
+    initial = {f"omega_{j}": w for j, w in speeds.items()}
+    initial |= {f"omega_t{j}": w for j, w in speeds.items()}
+    if "omega_e" in ready.states:
+        initial["omega_e"] = values["i"] * (speeds[1] + speeds[2]) / 2
+    return {name: speed for name, speed in initial.items() if name in ready.states}
 
 
-def _inputs(chosen: Differential, case: Scenario) -> dict[str, codegen.Signal]:
+def _inputs(full: Model, case: Scenario) -> dict[str, codegen.Signal]:
     def lagged(time: float, demand: float) -> codegen.Signal:
         return codegen.Lag(codegen.Step(time, demand), case.lag)
 
-    levels = chosen.clutches.values()
+    levels = full.differential.clutches.values()
     inputs = {"tau_e": lagged(case.engine_step, case.engine_torque)}
     return inputs | {
         level: lagged(case.clutch_step, demand)

@@ -90,9 +90,7 @@ def differential(name: str) -> Differential:
     return catalog[name]
 
 
-def graph(
-    name: str, halfshafts: bool = False, lumped: bool = True, backlash: bool = False
-) -> Part:
+def graph(name: str, halfshafts: bool = False, lumped: bool = True, backlash: bool = False) -> Part:
     """A differential's bond graph, rigid or with compliant halfshafts.
 
     ``lumped=False`` keeps inertias that Appendix B lumps as elements of their own, all dependent.

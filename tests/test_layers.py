@@ -12,16 +12,16 @@ ROOT = Path(__file__).parents[1]
 ORDER = {
     "bondgraph": [
         "errors", "residues", "expressions", "laws", "elements", "elimination", "names", "graph", "strokes",
-        "causal_order", "regularity", "stories", "causality", "exact", "junction", "reduction",
-        "outputs", "readings", "tidy", "equations",
+        "causal_order", "regularity", "stories", "causality", "exact", "tidy", "junction", "reduction",
+        "rates", "outputs", "readings", "equations", "closures", "slopes", "holding", "response", "linear",
     ],
     "codegen": [
         "arrays", "pieces", "signals", "affine", "closing", "program", "numpy_backend", "numbers",
         "friction", "instant", "loops", "closed", "modes", "events", "legs", "hybrid", "simulate",
     ],
     "differentials": [
-        "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "scenarios",
-        "figures", "report",
+        "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "model",
+        "identification", "speeds", "scenarios", "figures", "report",
     ],
 }  # fmt: skip
 
