@@ -1,74 +1,104 @@
-"""The command line: ``python -m differentials demo``."""
+"""The command line: ``python -m differentials --help``."""
 
 import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NoReturn
 
 import bondgraph as bg
-from differentials.figures import FIG_11, draw
-from differentials.report import causality_text, equations_text, events_text
-from differentials.scenarios import scenarios, simulate
-from differentials.topologies import catalog, equations, graph
+from differentials import commands
+from differentials.figures import figures
+from differentials.topologies import catalog
+
+EXAMPLES = """\
+examples:
+  python -m differentials list
+  python -m differentials show superposition_tvd
+  python -m differentials simulate alsd --scenario fig11 --set k=4300 --out out
+  python -m differentials figures --out out
+"""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose complaints are one line."""
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong and where help is, and leave with status 2."""
+        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; 0 if it did what it says, 2 with one line on standard error if it can't."""
-    parser = _parser()
-    options = parser.parse_args(arguments)
+    options = _parser().parse_args(arguments)
     try:
-        demo(options.out)
+        _run(options)
     except (bg.BondGraphError, OSError) as error:
-        print(f"{parser.prog}: {error}", file=sys.stderr)
+        print(f"python -m differentials {options.command}: {error}", file=sys.stderr)
         return 2
     return 0
 
 
-def demo(out: Path) -> None:
-    """Derive the ALSD, explain its causality, run Fig. 11, and write the run and its picture."""
-    chosen, scenario = catalog["alsd"], scenarios["fig11"]
-    print(f"The {chosen.title}, {chosen.source} of IMECE2008-69248\n")
-    print(_headed("Rigid model"))
-    print(equations_text(equations("alsd")), "\n")
-    print(_headed("Causality of the rigid model"))
-    print(causality_text(bg.assign_causality(graph("alsd"))), "\n")
-    print(_headed("Model with halfshafts (used for the simulation)"))
-    print(equations_text(equations("alsd", halfshafts=True)), "\n")
-    print(_headed("Fig. 11"))
-    print(
-        f"engine torque {scenario.engine_torque:g} N m at {scenario.engine_step:g} s, clutch torque "
-        f"{scenario.clutch_torques[0]:g} N m at {scenario.clutch_step:g} s, through lags of "
-        f"{1000 * scenario.lag:g} ms\n"
-    )
-    result = simulate("alsd", scenario)
-    print(events_text(result))
-    last = result.time >= result.time[-1] - 0.1
-    difference = (result["tau_hs1"] - result["tau_hs2"])[last].mean()
-    print(f"torque difference tau_hs1 - tau_hs2, mean over the last 0.1 s: {difference:.1f} N m\n")
-    out.mkdir(parents=True, exist_ok=True)
-    table, picture = out / "alsd_fig11.csv", out / "alsd_fig11.png"
-    result.write_csv(table)
-    draw(result, FIG_11, "Fig. 11: response of the ALSD model", picture)
-    print(f"every signal:  {table}\npicture:       {picture}")
+def _run(options: argparse.Namespace) -> None:
+    match options.command:
+        case "list":
+            commands.list_all()
+        case "show":
+            commands.show(options.name, options.halfshafts, not options.unlumped)
+        case "simulate":
+            changed = dict(options.set)
+            commands.run(options.name, options.scenario, changed, options.backlash, options.out)
+        case "figures":
+            commands.draw_figures(options.figure, options.out)
+        case _:
+            commands.demo(options.out)
 
 
-def _headed(title: str) -> str:
-    return f"{title}\n{'-' * len(title)}"
+def _assignment(text: str) -> tuple[str, float]:
+    """``k=4300`` as a name and a number."""
+    name, equals, value = text.partition("=")
+    try:
+        if name and equals:
+            return name, float(value)
+    except ValueError:
+        pass
+    raise argparse.ArgumentTypeError(f"{text!r} is not NAME=NUMBER, as in k=4300")
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="python -m differentials",
-        description="Differential models of Deur, Hancock and Assadian, IMECE2008-69248.",
+        description="The differentials of Deur, Hancock and Assadian (IMECE2008-69248): equations, "
+        "simulations, figures.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    commands = parser.add_subparsers(dest="command", required=True)
-    shown = commands.add_parser(
-        "demo", help="derive the ALSD, explain its causality, run Fig. 11", description=demo.__doc__
-    )
-    shown.add_argument(
-        "--out", type=Path, default=Path("out"), help="folder for the table and the picture (out)"
-    )
+    added = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    added.add_parser("list", help="the differentials and the scenarios there are")
+    show = _command(added, "show", "equations, causality, parameters and modes of a differential")
+    show.add_argument("name", metavar="NAME", help=f"one of {', '.join(catalog)}")
+    show.add_argument("--halfshafts", action="store_true", help="the full model's equations")
+    show.add_argument("--unlumped", action="store_true", help="every inertia an element of its own")
+    simulate = _command(added, "simulate", "run a scenario; writes a table and a picture")
+    simulate.add_argument("name", metavar="NAME", help=f"one of {', '.join(catalog)}")
+    simulate.add_argument("--scenario", help="a name that `list` shows (the differential's own)")
+    simulate.add_argument(
+        "--set", action="append", default=[], type=_assignment, metavar="NAME=NUMBER",
+        help="another value for a parameter, in SI units; may be repeated (`show` lists them)",
+    )  # fmt: skip
+    simulate.add_argument("--backlash", action="store_true", help="with play (parameter gap, rad)")
+    drawn = _command(added, "figures", "run and draw the paper's Figs. 11 to 14")
+    drawn.add_argument("figure", nargs="*", metavar="FIGURE", help=f"some of {', '.join(figures)}")
+    demo = _command(added, "demo", "a tour: equations, causality, modes, two simulations")
+    for command in (simulate, drawn, demo):
+        command.add_argument(
+            "--out", type=Path, default=Path("out"), metavar="DIR", help="folder for files (out)"
+        )
     return parser
+
+
+def _command(added: "argparse._SubParsersAction[Parser]", name: str, text: str) -> Parser:
+    return added.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
 
 
 if __name__ == "__main__":

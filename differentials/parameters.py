@@ -85,6 +85,16 @@ OWN: Mapping[str, Mapping[str, Parameter]] = MappingProxyType(
 )  # fmt: skip
 """Per differential, over `PARAMETERS`."""
 
+PRINTED_FREQUENCIES: Mapping[str, tuple[float, ...]] = MappingProxyType(
+    {
+        "alsd": (18.9, 165.0),
+        "superposition_tvd": (165.0,),
+        "stationary_tvd": (11.4,),
+        "four_wheel_drive_tvd": (41.0,),
+    }
+)
+"""The mode frequencies [Hz] that the paper's simulation results mention."""
+
 
 def defaults(name: str, symbols: Iterable[str]) -> dict[str, Parameter]:
     """The default of each of these symbols in a differential, those that have one.

@@ -1,12 +1,14 @@
-"""Equations, causality and events as text that a person can read."""
+"""Equations, causality, modes, parameters and events as text that a person can read."""
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping, Sequence
 from typing import Any
 
 import sympy as sp
 
 import bondgraph as bg
+from bondgraph.response import StateSpace
 from codegen import Result
+from differentials.parameters import Parameter
 
 
 def equations_text(equations: bg.StateEquations) -> str:
@@ -47,6 +49,51 @@ def events_text(result: Result) -> str:
     words = {"stick": "sticks", "slip": "slips again", "cross": "crosses zero slip"}
     lines = [f"t = {e.time:.6f} s   {e.port} {words[e.kind]}" for e in result.events]
     return "\n".join(lines) or "no friction port stuck, was released or changed its slip's sign"
+
+
+def modes_text(model: StateSpace) -> str:
+    """Frequency, damping and the largest parts of the shape of every mode."""
+    rows = [("f [Hz]", "damping", "pole [1/s]", "moves most")]
+    for mode in model.modes():
+        by_size = sorted(mode.shape, key=lambda name: -abs(mode.shape[name]))
+        speeds = [name for name in by_size if name.startswith("omega")] or by_size
+        swings = mode.pole.imag > 0
+        turning = f" +- {mode.pole.imag:.1f}i" if swings else ""
+        rows.append((
+            f"{mode.damped_frequency:.2f}" if swings else "-",
+            f"{mode.damping:.4f}" if swings else "-",
+            f"{mode.pole.real:.1f}{turning}",
+            _shape(mode.shape, speeds),
+        ))  # fmt: skip
+    return table(rows)
+
+
+def _shape(shape: Mapping[str, complex], names: Sequence[str]) -> str:
+    """The speeds that move at least a fifth as much as the fastest, and which way."""
+    largest = shape[names[0]]
+    moving = [name for name in sorted(names) if abs(shape[name]) > 0.2 * abs(largest)]
+    signs = {name: "-" if (shape[name] / shape[moving[0]]).real < 0 else "+" for name in moving}
+    return " ".join(f"{signs[name]}{name}" for name in moving)
+
+
+def parameters_text(parameters: Mapping[str, Parameter]) -> str:
+    """Symbol, value, unit, meaning and source of parameters, one a line."""
+    rows = [("symbol", "value", "unit", "meaning", "source")]
+    rows += [
+        (name, f"{p.value:.6g}", p.unit or "-", p.meaning, p.source)
+        for name, p in parameters.items()
+    ]
+    return table(rows)
+
+
+def table(rows: Sequence[Sequence[str]]) -> str:
+    """Columns as wide as their widest cell, a rule below the headings."""
+    widths = [max(len(row[at]) for row in rows) for at in range(len(rows[0]))]
+    lines = [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+    return "\n".join([lines[0], "  ".join("-" * width for width in widths), *lines[1:]])
 
 
 def _labelled(name: str, matrix: Any) -> str:

@@ -16,8 +16,8 @@ class Differential:
 
     ``clutches``: node of each clutch to the name of its hydraulic torque. ``wheels``: how many.
     ``full``: whether there is a model with halfshafts beside the rigid one. ``play``: which of its
-    models can have backlash, "full", "rigid" or none. ``observed``: nodes whose signals a simulation
-    records beside the slips.
+    models can have backlash, "full", "rigid" or none. ``scenario``: the one that the paper shows it in, or
+    that suits it. ``observed``: nodes whose signals a simulation records beside the slips.
     """
 
     name: str
@@ -28,51 +28,58 @@ class Differential:
     wheels: int
     full: bool
     play: str
+    scenario: str
     observed: tuple[str, ...]
 
 
 def _row(
-    name: str, title: str, source: str, build: Callable[[Variant], Part], *levels: str, wheels: int = 2,
-    full: bool = True, play: str = "full", observed: tuple[str, ...] = ("input", "case"),
+    name: str, title: str, source: str, build: Callable[[Variant], Part], scenario: str, *levels: str,
+    wheels: int = 2, full: bool = True, play: str = "full", observed: tuple[str, ...] = ("input", "case"),
 ) -> Differential:  # fmt: skip
     nodes = ("clutch",) if len(levels) == 1 else tuple(f"clutch_{j}" for j in (1, 2))
     clutches = MappingProxyType(dict(zip(nodes[: len(levels)], levels, strict=True)))
     if full:
         observed += tuple(f"halfshaft_{j}" for j in range(1, wheels + 1))
-    return Differential(name, title, source, build, clutches, wheels, full, play, observed)
+    return Differential(
+        name, title, source, build, clutches, wheels, full, play, scenario, observed
+    )
 
 
 _ALL = (
-    _row("passive", "passive differential", "Figs. 2a, 4, eqs. (6), (12)", passive.passive),
+    _row(
+        "passive", "passive differential", "Figs. 2a, 4, eqs. (6), (12)", passive.passive,
+        "engine_step",
+    ),
     _row(
         "passive_input_clutch", "passive differential with an input clutch", "Fig. 2b, eqs. (7), (8)",
-        passive.passive_input_clutch, "tau_h", full=False, play="", observed=("input", "case"),
+        passive.passive_input_clutch, "input_clutch", "tau_h", full=False, play="",
+        observed=("input", "case"),
     ),
     _row(
         "passive_input_shaft", "passive differential with a compliant input shaft", "Fig. 2c, eq. (9)",
-        passive.passive_input_shaft, full=False, play="rigid",
+        passive.passive_input_shaft, "engine_step", full=False, play="rigid",
         observed=("input", "case", "input_shaft"),
     ),
     _row(
         "passive_halfshafts", "passive differential with massless outputs on halfshafts",
-        "Fig. 3, eqs. (10), (11)", passive.passive_halfshafts, full=False, play="",
-        observed=("case", "left", "right"),
+        "Fig. 3, eqs. (10), (11)", passive.passive_halfshafts, "engine_step", full=False, play="",
+        observed=("case", "left", "right", "halfshaft_1", "halfshaft_2"),
     ),
     _row(
         "alsd", "active limited slip differential (ALSD)", "Figs. 6a, 7a, Appendix B", active.alsd,
-        "tau_h",
+        "fig11", "tau_h",
     ),
     _row(
         "superposition_tvd", "torque vectoring differential with superposition clutches",
-        "Figs. 6b, 7b, Appendix B", active.superposition_tvd, "tau_h1", "tau_h2",
+        "Figs. 6b, 7b, Appendix B", active.superposition_tvd, "fig13_superposition", "tau_h1", "tau_h2",
     ),
     _row(
         "stationary_tvd", "torque vectoring differential with stationary clutches",
-        "Figs. 6c, 7c, Appendix B", active.stationary_tvd, "tau_h1", "tau_h2",
+        "Figs. 6c, 7c, Appendix B", active.stationary_tvd, "fig13", "tau_h1", "tau_h2",
     ),
     _row(
         "four_wheel_drive_tvd", "four wheel drive with a torque vectoring rear differential",
-        "Figs. 6d, 7d, Appendix B", active.four_wheel_drive_tvd, "tau_h1", "tau_h2", wheels=4,
+        "Figs. 6d, 7d, Appendix B", active.four_wheel_drive_tvd, "fig14", "tau_h1", "tau_h2", wheels=4,
         observed=("input", "case", "ring"),
     ),
 )  # fmt: skip

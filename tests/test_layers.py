@@ -21,7 +21,7 @@ ORDER = {
     ],
     "differentials": [
         "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "model",
-        "identification", "speeds", "scenarios", "figures", "report",
+        "identification", "speeds", "scenarios", "figures", "report", "commands",
     ],
 }  # fmt: skip
 
