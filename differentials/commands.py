@@ -121,17 +121,19 @@ def _demo_scenario() -> None:
 
 def _comparison() -> str:
     """One line per differential: orders, what is dependent, oscillations of the simulated model."""
-    rows = [("name", "states", "full", "dependent storages", "oscillations [Hz]")]
+    rows = [("name", "states", "full", "dependent storages", "oscillations [Hz]", "as printed")]
     for name, chosen in catalog.items():
         causal = bg.assign_causality(graph(name))
         full = str(3 * chosen.wheels) if chosen.full else "-"
         swings = [
             f"{m.damped_frequency:.1f}" for m in linear_model(name).modes() if m.pole.imag > 0
         ]
-        rows.append((
-            name, str(len(causal.integral)), full, ", ".join(map(str, causal.derivative)) or "none",
-            ", ".join(swings) or "none",
-        ))  # fmt: skip
+        printed = [f"{frequency:g}" for frequency in PRINTED_FREQUENCIES.get(name, ())]
+        dependent = ", ".join(map(str, causal.derivative)) or "none"
+        states = str(len(causal.integral))
+        rows.append(
+            (name, states, full, dependent, ", ".join(swings) or "none", ", ".join(printed) or "-")
+        )
     return table(rows)
 
 
