@@ -10,7 +10,7 @@ import sympy as sp
 from bondgraph.causality import assign_causality
 from bondgraph.elements import Element
 from bondgraph.elimination import ResidueRows
-from bondgraph.errors import SingularStorageError
+from bondgraph.errors import SingularStorageError, StructureError
 from bondgraph.exact import Row, add_scaled
 from bondgraph.junction import JunctionStructure, Port, junction_structure
 from bondgraph.laws import Law
@@ -72,6 +72,20 @@ class StateEquations:
     def elements(self) -> Mapping[Hashable, Element]:
         """The graph's nodes, checked."""
         return self.reduction.structure.elements
+
+    def bond(self, tail: Hashable, head: Hashable) -> tuple[Reading, Reading]:
+        """Effort and flow of a bond, as declared, over states and inputs and their rates.
+
+        Their product is the power along the arrow; between a junction and an I, C or R it is the power
+        into the element, whichever way the arrow was drawn.
+
+        Raises `StructureError` if there is no such bond.
+        """
+        bonds = self.reduction.structure.bonds
+        if (tail, head) not in bonds:
+            raise StructureError(f"no bond {tail!r} -> {head!r} was declared")
+        effort, flow = bonds[tail, head]
+        return self.reduction.reading(effort), self.reduction.reading(flow)
 
     def with_readings(self, names: Iterable[sp.Symbol]) -> "StateEquations":
         """The same equations that also know these signals as readings."""

@@ -43,12 +43,14 @@ class JunctionStructure:
 
     ``ports`` in declaration order; S (ports x ports) holds moduli only, and with power counted
     into every port it is skew-symmetric. ``common``: each junction's common variable as a row over z.
+    ``bonds``: each bond, as declared, with its effort and its flow as rows over z.
     """
 
     ports: tuple[Port, ...]
     #: For each port the row of S, sparse: port number to modulus.
     rows: tuple[Mapping[int, sp.Expr], ...]
     common: Mapping[Hashable, Mapping[int, sp.Expr]]
+    bonds: Mapping[tuple[Hashable, Hashable], tuple[Mapping[int, sp.Expr], Mapping[int, sp.Expr]]]
     elements: Mapping[Hashable, Element]
 
     @cached_property
@@ -76,10 +78,12 @@ def junction_structure(causal: CausalGraph) -> JunctionStructure:
         for node, element in enumerate(strokes.elements)
         if element.kind in (Kind.ZERO, Kind.ONE)
     }
+    pairs = zip(signals[::2], signals[1::2], strict=True)
     return JunctionStructure(
         ports=tuple(_port(strokes, node) for node in one_ports),
         rows=tuple(rows),
         common=MappingProxyType(common),
+        bonds=MappingProxyType(dict(zip(strokes.declared, pairs, strict=True))),
         elements=MappingProxyType(dict(zip(strokes.names, strokes.elements, strict=True))),
     )
 

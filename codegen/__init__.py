@@ -2,8 +2,10 @@
 
 from codegen.events import Event
 from codegen.program import Block, Program, lower
+from codegen.result import Result
 from codegen.signals import Constant, Lag, Ramp, Sampled, Signal, Sine, Step
-from codegen.simulate import Result, Simulator, simulator
+from codegen.simulate import Simulator, simulator
+from codegen.trim import trim
 
 __all__ = [
     "Block",
@@ -20,4 +22,5 @@ __all__ = [
     "Step",
     "lower",
     "simulator",
+    "trim",
 ]

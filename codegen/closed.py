@@ -51,7 +51,7 @@ class ClosedModel:
         self, program: Program, equations: StateEquations, parameters: Mapping[str, object]
     ) -> None:
         exact = exact_parameters(parameters)
-        self.program = program
+        self.program, self.equations, self.parameters = program, equations, exact
         self.numbers: Numbers = numbers(program, equations, exact)
         self.friction_inputs = [port.input for port in program.friction]
         self.friction_readings = [port.reading for port in program.friction]

@@ -1,8 +1,7 @@
 """`simulator` and what it returns: a model with numbers, ready to run, and the record of a run."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from os import PathLike
 from types import MappingProxyType
 from typing import Any
 
@@ -13,47 +12,16 @@ from bondgraph import ParameterError, SignalError, SimulationError, StateEquatio
 from bondgraph.expressions import normal
 from codegen.arrays import Array
 from codegen.closed import ClosedModel
-from codegen.events import Event
 from codegen.hybrid import run_hybrid
 from codegen.legs import METHODS, Settings, Track
 from codegen.modes import LOOK_AHEAD, decide
+from codegen.observer import Observer
+from codegen.pieces import Piece, constant_piece
 from codegen.program import lower
+from codegen.result import Result
 from codegen.signals import Constant, Signal, as_signal
 
 BACKENDS = ("numpy",)
-
-
-@dataclass(frozen=True)
-class Result:
-    """The record of a run: ``result["omega_1"]`` is any state, input or output over ``result.time``.
-
-    ``events``: what happened at friction ports, in order. At a step or an event a sample shows the
-    instant just after.
-    """
-
-    time: Array
-    states: tuple[str, ...]
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-    events: tuple[Event, ...]
-    columns: Mapping[str, Array]
-
-    def __getitem__(self, name: str) -> Array:
-        """The values of one signal; `KeyError` naming what there is."""
-        try:
-            return self.columns[name]
-        except KeyError:
-            raise KeyError(f"no signal {name!r}; there are {', '.join(self.columns)}") from None
-
-    def __iter__(self) -> Iterator[str]:
-        """The signals' names."""
-        return iter(self.columns)
-
-    def write_csv(self, path: str | PathLike[str]) -> None:
-        """Write time and every signal as comma-separated columns with one line of names."""
-        table = np.column_stack([self.time, *self.columns.values()])
-        header = ",".join(["t", *self.columns])
-        np.savetxt(path, table, delimiter=",", header=header, comments="", fmt="%.17g")
 
 
 @dataclass(frozen=True)
@@ -123,7 +91,7 @@ class Simulator:
         start = self._vector(float(times[0]), self._initial(initial or {}), at_start)
         with np.errstate(all="ignore"):
             track = run_hybrid(self.closed, times, start, signals, Settings(method, rtol, atol))
-            columns = self._columns(times, signals, track)
+            columns, observer = self._columns(times, signals, track)
         return Result(
             times,
             self.states,
@@ -131,7 +99,17 @@ class Simulator:
             self.outputs,
             tuple(track.events),
             MappingProxyType(columns),
+            observer,
         )
+
+    def steady(
+        self, inputs: Mapping[str, float], initial: Mapping[str, float]
+    ) -> tuple[list[Piece], Array]:
+        """Constant inputs as pieces, and the integrated vector at these states."""
+        signals = self._signals(inputs)
+        given = np.array([signal(0.0) for signal in signals])
+        pieces = [constant_piece(0.0, value) for value in given.tolist()]
+        return pieces, self._vector(0.0, self._initial(initial), given)
 
     def _all_slipping(self) -> tuple[int, ...]:
         return tuple(1 for _ in self.closed.program.friction)
@@ -194,7 +172,9 @@ class Simulator:
                         "rate and would be an impulse; smooth it with Lag or Ramp"
                     )
 
-    def _columns(self, times: Array, signals: Sequence[Signal], track: Track) -> dict[str, Array]:
+    def _columns(
+        self, times: Array, signals: Sequence[Signal], track: Track
+    ) -> tuple[dict[str, Array], Observer]:
         program = self.closed.program
         shots = [
             self.closed.at(t, s, [signal.piece(t) for signal in signals], mode)
@@ -212,7 +192,8 @@ class Simulator:
             table = np.array(rows)
             for at, name in enumerate(names):
                 columns.setdefault(name.name, table[:, at].copy())
-        return columns
+        x, u, du = (np.array([getattr(s, part) for s in shots]) for part in ("x", "u", "du"))
+        return columns, Observer(times, self.closed, columns, x, u, du)
 
 
 def simulator(

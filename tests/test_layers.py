@@ -17,7 +17,8 @@ ORDER = {
     ],
     "codegen": [
         "arrays", "pieces", "signals", "affine", "closing", "program", "numpy_backend", "numbers",
-        "friction", "instant", "loops", "closed", "modes", "events", "legs", "hybrid", "simulate",
+        "friction", "instant", "loops", "closed", "modes", "events", "legs", "hybrid", "observer", "result",
+        "simulate", "trim",
     ],
     "differentials": [
         "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "model",

@@ -1,0 +1,107 @@
+"""Signals of a run that were not recorded, worked out from those that were."""
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+from bondgraph import ParameterError, SignalError, StateEquations, StructureError
+from bondgraph.elements import SOURCES, STORAGES, Element, Kind
+from bondgraph.expressions import TIME
+from bondgraph.laws import ExpressionLaw
+from bondgraph.reduction import Reading
+from codegen.arrays import Array
+from codegen.closed import ClosedModel
+from codegen.numbers import at_parameters
+
+
+@dataclass(frozen=True)
+class Observer:
+    """The states, inputs and inputs' rates of every sample, and the equations that rule the rest.
+
+    ``x`` (samples x states), ``u`` and ``du`` (samples x inputs), as the equations number them.
+    """
+
+    time: Array
+    model: ClosedModel
+    columns: Mapping[str, Array]
+    x: Array
+    u: Array
+    du: Array
+
+    @property
+    def _equations(self) -> StateEquations:
+        return self.model.equations
+
+    def signal(self, name: str) -> Array:
+        """A named effort or flow; `KeyError` naming what there is."""
+        row = self._equations.signals.get(sp.Symbol(name))
+        if row is None:
+            known = dict.fromkeys([*self.columns, *map(str, self._equations.signals)])
+            raise KeyError(f"no signal {name!r}; there are {', '.join(known)}")
+        return self._values(self._equations.reduction.reading(row))
+
+    def bond(self, tail: Hashable, head: Hashable) -> tuple[Array, Array]:
+        """Effort and flow of a bond; `StructureError` if there is none."""
+        effort, flow = self._equations.bond(tail, head)
+        return self._values(effort), self._values(flow)
+
+    def power(self, node: Hashable) -> Array:
+        """Effort times flow of a one-port: absorbed, or supplied by a source."""
+        structure = self._equations.reduction.structure
+        for at, port in enumerate(structure.ports):
+            if port.element.name == node:
+                given = self._values(self._equations.reduction.reading({at: sp.Integer(1)}))
+                received = self._values(self._equations.reduction.reading(structure.rows[at]))
+                supplies = port.element.kind in SOURCES and port.inward == 1
+                return np.asarray(-given * received if supplies else given * received)
+        raise StructureError(f"{node!r} is not a one-port of the graph; only those have a power")
+
+    def energy(self, node: Hashable) -> Array:
+        """The energy in an I or C: ``value * w^2/2`` of its co-energy variable, or its law's integral."""
+        element = self._equations.elements.get(node)
+        if element is None or element.kind not in STORAGES:
+            raise StructureError(f"{node!r} is not an I or a C; only storages have an energy")
+        if isinstance(element.law, ExpressionLaw):
+            return self._stored(element, element.law)
+        value = float(at_parameters(element.constant, self.model.parameters))
+        ruling = element.flow if element.kind is Kind.I else element.effort
+        return np.asarray(0.5 * value * self.signal(str(ruling)) ** 2, dtype=float)
+
+    def _stored(self, element: Element, law: ExpressionLaw) -> Array:
+        """The integral of a law over its own state, from 0."""
+        state = law.state
+        if state is None or law.free_symbols & {*self._equations.signals, TIME}:
+            raise SignalError(
+                f"{element.name!r}: its law reads other signals, so it has no energy of its own; "
+                "integrate its power"
+            )
+        exact = at_parameters(law.expression, self.model.parameters)
+        real = sp.Dummy("q", real=True)
+        shape = exact.xreplace({state: real}).rewrite(sp.Piecewise)
+        integral = sp.integrate(shape, (real, 0, real))
+        if integral.has(sp.Integral):
+            raise SignalError(
+                f"{element.name!r}: no closed form of the energy; integrate its power"
+            )
+        energy = sp.lambdify(real, integral, modules="numpy")
+        return np.array([float(energy(value)) for value in self.columns[state.name]])
+
+    def _values(self, reading: Reading) -> Array:
+        """A reading at every sample."""
+        numbers = self.model.numbers
+        result = np.zeros(len(self.time))
+        for row, table in ((reading.F, self.x), (reading.D, self.u), (reading.K, self.du)):
+            for column, entry in row.items():
+                result += self._number(entry) * table[:, column]
+        for column, entry in reading.H.items():
+            rate = self.x @ numbers.P[column] + self.u @ numbers.Q[column]
+            result += self._number(entry) * (rate + self.du @ numbers.R[column])
+        return result
+
+    def _number(self, entry: sp.Expr) -> float:
+        value = sp.N(at_parameters(entry, self.model.parameters))
+        if not value.is_real:
+            raise ParameterError(f"{entry} has no real value at these parameters")
+        return float(value)
