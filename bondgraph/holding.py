@@ -117,24 +117,26 @@ class Reduced:
     T: tuple[Row, ...]
 
 
-def without_slips(slips: Sequence[Row], size: int) -> Reduced:
-    """Solve ``F_s x = 0`` for as many states as there are independent slips, earlier states first.
+def without_slips(slips: Sequence[Row], order: Sequence[int]) -> Reduced:
+    """Solve ``F_s x = 0`` for as many states as there are independent slips, in that order of states.
 
-    >>> without_slips([{0: sp.Integer(1), 1: -sp.Integer(2)}], 2).T
+    >>> without_slips([{0: sp.Integer(1), 1: -sp.Integer(2)}], [0, 1]).T
     ({0: 2}, {0: 1})
     """
-    matrix = sp.zeros(len(slips), size)
+    matrix = sp.zeros(len(slips), len(order))
     for i, row in enumerate(slips):
-        for j, entry in row.items():
-            matrix[i, j] = entry
+        for at, j in enumerate(order):
+            matrix[i, at] = row.get(j, 0)
     reduced, pivots = matrix.rref(
         simplify=sp.cancel, iszerofunc=lambda entry: sp.cancel(entry) == 0
     )
-    kept = tuple(j for j in range(size) if j not in pivots)
+    gone = {order[pivot]: i for i, pivot in enumerate(pivots)}
+    kept = tuple(j for j in range(len(order)) if j not in gone)
     place = {j: at for at, j in enumerate(kept)}
-    T: list[Row] = [{place[j]: sp.Integer(1)} if j in place else {} for j in range(size)]
-    for i, pivot in enumerate(pivots):
-        T[pivot] = {place[j]: -reduced[i, j] for j in kept if reduced[i, j] != 0}
+    T: list[Row] = [{place[j]: sp.Integer(1)} if j in place else {} for j in range(len(order))]
+    for j, i in gone.items():
+        entries = {at: reduced[i, order.index(k)] for k, at in place.items()}
+        T[j] = {at: -entry for at, entry in entries.items() if entry != 0}
     return Reduced(kept, tuple(T))
 
 

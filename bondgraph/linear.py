@@ -100,8 +100,8 @@ def linearize(
     ``at``: signal to value at the operating point, as far as slopes depend on it. ``laws``: as for a
     simulator, over those declared. ``inputs``: names in laws that become inputs; what else no signal
     has is a parameter. A law that reads no signal and no such input leaves its port an input. ``stuck``:
-    nodes of ports that stick; their slips go, and with each as many states. ``outputs``: names of signals,
-    else the equations' outputs.
+    nodes of ports that stick; each slip takes a state with it, of the storage of lowest priority, earlier
+    ones first. ``outputs``: names of signals, else the equations' outputs.
 
     Raises `SignalError` where a slope needs a value that ``at`` lacks or the law has a corner there.
 
@@ -129,7 +129,7 @@ def linearize(
     gone = {equations.inputs.index(port.given) for port in held}
     model = _Rows(system.states, A, balances, ys)
     if held:
-        model = _locked(model, slips, gone)
+        model = _locked(model, slips, gone, _least_first(equations, len(system.states)))
     ys = [resolved(model.A, model.balances, y) for y in model.ys]
     left = [j for j in system.left if j not in gone]
     return _model(model, ys, left, system.columns, tuple(shown))
@@ -260,14 +260,21 @@ def _unpacked(row: Row) -> Reading:
     return Reading(*({j // 4: e for j, e in row.items() if j % 4 == at} for at in range(4)))
 
 
-def _locked(model: _Rows, slips: Sequence[Reading], gone: set[int]) -> _Rows:
+def _least_first(equations: StateEquations, size: int) -> list[int]:
+    """The states in the order in which they become dependent: lowest priority first."""
+    ports = [equations.reduction.structure.ports[port] for port in equations.reduction.states]
+    priority = [port.element.priority for port in ports] + [0.0] * (size - len(ports))
+    return sorted(range(size), key=lambda j: (priority[j], j))
+
+
+def _locked(model: _Rows, slips: Sequence[Reading], gone: set[int], order: Sequence[int]) -> _Rows:
     """The model with slips held at zero: ``x = T x_r``, and the balances along what is left free."""
     if any(slip.D or slip.H or slip.K for slip in slips):
         raise DependentSourceError(
             "a port beside a resistance or a driven storage sticks; linearize holds ports between "
             "storages only"
         )
-    reduced = without_slips([slip.F for slip in slips], len(model.states))
+    reduced = without_slips([slip.F for slip in slips], order)
     T, kept = reduced.T, reduced.kept
     A = [multiplied(row, T) for row in folded(model.A, T, len(kept))]
     parts = [folded([getattr(row, part) for row in model.balances], T, len(kept)) for part in "FDK"]

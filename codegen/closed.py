@@ -64,7 +64,7 @@ class ClosedModel:
         self._friction = binding.function(program.friction_values)
         self._outside = [program.inputs.index(n) for n in program.external if n in program.inputs]
         self._rated = any(M.any() for M in (self.numbers.R, self.numbers.G, self.numbers.D))
-        self._joint, self._affine = program.joint, program.affine
+        self._joint = program.joint
         self._maps: dict[Mode, AffineMap | None] = {}
         self._holds: dict[Mode, Hold] = {}
 
@@ -92,8 +92,8 @@ class ClosedModel:
         dw = (
             np.array([piece.derivative(t) for piece in pieces]) if self._rated else np.zeros(len(w))
         )
-        if self._affine:
-            affine = self._map(mode, len(w))
+        if self.program.affine:
+            affine = self.affine_map(mode, len(w))
             if affine is not None:
                 x, z, u, du, y, rate, caps = affine(s, w, dw)
                 now = Snapshot(x, z, u, du, y, rate, caps, w)
@@ -129,8 +129,10 @@ class ClosedModel:
         rate[n : n + own] = now.y[list(program.law_rates)]
         return Snapshot(now.x, z, now.u, now.du, now.y, rate, now.caps, w)
 
-    def _map(self, mode: Mode, inputs: int) -> AffineMap | None:
-        """The mode's matrix, column by column; None where redundant ports share a load."""
+    def affine_map(self, mode: Mode, inputs: int) -> AffineMap | None:
+        """An affine mode's matrix; None for other models, and where redundant ports share a load."""
+        if not self.program.affine:
+            return None
         if mode not in self._maps:
             redundant = 0 in mode and len(self.hold(mode).share) > 0
             self._maps[mode] = None if redundant else self._affine_map(mode, inputs)

@@ -41,7 +41,7 @@ def run_hybrid(
     rounds: deque[float] = deque(maxlen=STALLED)
     while True:
         pieces = [signal.piece(t) for signal in signals]
-        peaks.see(model.at(t, s, pieces, tuple(sign or 1 for sign in mode)))
+        peaks.see(model, t, s, pieces, mode)
         leg = Leg(model, pieces, mode, settings, span, peaks)
         peaks.time = 1 / max(leg.fastest(t, s), 100.0 / span) if mode else 0.0
         ahead = LOOK_AHEAD * peaks.time

@@ -10,6 +10,7 @@ from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.closed import ClosedModel, Mode, Snapshot
 from codegen.pieces import Piece
+from codegen.sizes import input_terms
 
 TOLERANCE = 1e-10
 """Slips and efforts count as zero below this fraction of the terms that make them up."""
@@ -37,9 +38,13 @@ class Peaks:
         """Nothing seen yet."""
         return cls(np.zeros(len(model.program.states)), np.zeros(len(model.program.inputs)))
 
-    def see(self, now: Snapshot) -> None:
-        """Take an instant into account."""
-        self.x, self.u = np.maximum(self.x, np.abs(now.x)), np.maximum(self.u, np.abs(now.u))
+    def see(
+        self, model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode
+    ) -> None:
+        """Take an instant into account, friction slipping in the given directions or forwards."""
+        slipping = tuple(sign or 1 for sign in mode)
+        self.x = np.maximum(self.x, np.abs(model.at(t, s, pieces, slipping).x))
+        self.u = np.maximum(self.u, input_terms(model, t, s, pieces, slipping))
 
 
 @dataclass(frozen=True)

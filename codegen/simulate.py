@@ -14,7 +14,7 @@ from codegen.arrays import Array
 from codegen.closed import ClosedModel
 from codegen.hybrid import run_hybrid
 from codegen.legs import METHODS, Settings, Track
-from codegen.modes import LOOK_AHEAD, decide
+from codegen.modes import LOOK_AHEAD, Peaks, decide
 from codegen.observer import Observer
 from codegen.pieces import Piece, constant_piece
 from codegen.program import lower
@@ -50,9 +50,11 @@ class Simulator:
                 )
         pieces = [Constant(float(value)).pieces[0] for value in given]
         s = self._vector(t, state, given)
+        slipping, peaks = self._all_slipping(), Peaks.none(self.closed)
         with np.errstate(all="ignore"):
+            peaks.see(self.closed, t, s, pieces, slipping)
             mode = decide(
-                self.closed, t, s, pieces, self._all_slipping(), frozenset(), LOOK_AHEAD * 1e-3
+                self.closed, t, s, pieces, slipping, frozenset(), LOOK_AHEAD * 1e-3, peaks
             )
             now = self.closed.at(t, s, pieces, mode)
         n = len(self.closed.program.states)

@@ -17,7 +17,7 @@ ORDER = {
     ],
     "codegen": [
         "arrays", "pieces", "signals", "affine", "closing", "program", "numpy_backend", "numbers",
-        "friction", "instant", "loops", "closed", "modes", "events", "legs", "hybrid", "observer", "result",
+        "friction", "instant", "loops", "closed", "sizes", "modes", "events", "legs", "hybrid", "observer", "result",
         "simulate", "trim",
     ],
     "differentials": [
