@@ -1,11 +1,11 @@
 """Ports that stick: the efforts that hold them, and the system with their slips taken out."""
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 
 import sympy as sp
 
+from bondgraph.constrained import echelon
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, StructureError
 from bondgraph.exact import Row, SingularError, add_scaled, rows_of, solve
@@ -37,9 +37,9 @@ def holding_efforts(
     ports = stuck_ports(equations, stuck)
     held = [equations.inputs.index(port.given) for port in ports]
     rows = [equations.readings[port.received] for port in ports]
-    if all(not any(column in row.D for column in held) for row in rows):
-        rows = [_rate(equations, row, port) for row, port in zip(rows, ports, strict=True)]
-    solved = _solve_for(rows, held, len(equations.states), ports)
+    direct, bound = split(rows, held)
+    rates = [_rate(equations, row, ports) for row in bound]
+    solved = solve_for([*direct, *rates], held, len(equations.states), ports)
     variables = [*equations.states, *equations.inputs]
     return MappingProxyType({
         port.given: tidy(sp.Add(*(entry * variables[at] for at, entry in sorted(row.items()))))
@@ -60,8 +60,38 @@ def stuck_ports(equations: StateEquations, stuck: Iterable[Hashable]) -> list[Po
             raise StructureError(
                 f"no open port is called {name!r} that could stick; there are {', '.join(known) or 'none'}"
             )
+        if port in ports:
+            raise StructureError(f"stuck names {name!r} twice")
         ports.append(port)
     return ports
+
+
+def split(rows: Sequence[Reading], held: Sequence[int]) -> tuple[list[Reading], list[Reading]]:
+    """What sticking ports receive, split into rows that fix efforts at once and rows that bind states.
+
+    The first are those whose D over the held efforts is independent; the others are the combinations
+    in which these efforts cancel.
+    """
+    D = sp.Matrix(len(rows), len(held), lambda i, j: rows[i].D.get(held[j], 0))
+    _, pivots = echelon(D.T)
+    direct = [rows[i] for i in pivots]
+    bound = []
+    for weights in D.T.nullspace(simplify=sp.cancel):
+        sums = [Reading({}, {}, {}, {})]
+        for row, weight in zip(rows, weights, strict=True):
+            add_reading(sums[0], row, weight)
+        bound += sums
+    return direct, bound
+
+
+def add_reading(target: Reading, row: Reading, factor: sp.Expr) -> None:
+    """Add a multiple of one row to another in place."""
+    if factor == 0:
+        return
+    add_scaled(target.F, row.F, factor)
+    add_scaled(target.D, row.D, factor)
+    add_scaled(target.H, row.H, factor)
+    add_scaled(target.K, row.K, factor)
 
 
 def balances_of(equations: StateEquations) -> tuple[list[Row], list[Reading]]:
@@ -71,26 +101,34 @@ def balances_of(equations: StateEquations) -> tuple[list[Row], list[Reading]]:
     return rows_of(equations.A), balances
 
 
-def _rate(equations: StateEquations, row: Reading, port: Port) -> Reading:
-    """How fast what a port receives changes, as a row over states and inputs."""
-    if row.H or row.K or row.D:
-        raise DependentSourceError(
-            f"what holds {port.element.name!r} depends on the rate of an input; "
-            "put a storage or a resistance between"
-        )
-    rate = resolved(*balances_of(equations), Reading({}, {}, row.F, {}))
-    if rate.K:
-        raise DependentSourceError(
-            f"what holds {port.element.name!r} depends on the rate of an input that drives a dependent "
-            "storage; simulate it, or lag the input"
-        )
-    return rate
+def _rate(equations: StateEquations, row: Reading, ports: Sequence[Port]) -> Reading:
+    """How fast a slip changes that efforts don't touch at once, as a row over states and inputs."""
+    if not (row.H or row.K or row.D):
+        rate = resolved(*balances_of(equations), Reading({}, {}, row.F, {}))
+        if not rate.K:
+            return rate
+    raise DependentSourceError(
+        f"what holds {_names(ports)} depends on the rate of an input or of what a law gives; put a storage "
+        "or a resistance between, or simulate it"
+    )
 
 
-def _solve_for(
+def _names(ports: Sequence[Port]) -> str:
+    return ", ".join(repr(port.element.name) for port in ports)
+
+
+def solve_for(
     rows: Sequence[Reading], held: Sequence[int], states: int, ports: Sequence[Port]
 ) -> list[Row]:
-    """``F x + D u = 0`` solved for the held inputs, over the columns of x and then u."""
+    """``F x + D u = 0`` solved for the held inputs, over the columns of x and then u.
+
+    Raises `StructureError` where they are not unique, `DependentSourceError` if rates come in.
+    """
+    if any(row.H or row.K for row in rows):
+        raise DependentSourceError(
+            f"what holds {_names(ports)} depends on the rate of what drives a dependent storage; "
+            "put a storage or a resistance between, or simulate it"
+        )
     inside = [
         {held.index(column): entry for column, entry in row.D.items() if column in held}
         for row in rows
@@ -103,55 +141,6 @@ def _solve_for(
     try:
         return solve(inside, right) if held else []
     except SingularError:
-        names = ", ".join(repr(port.element.name) for port in ports)
         raise StructureError(
-            f"the ports {names} hold one another: their efforts are not unique; name fewer of them"
+            f"the ports {_names(ports)} hold one another: their efforts are not unique; name fewer of them"
         ) from None
-
-
-@dataclass(frozen=True)
-class Reduced:
-    """States that remain when slips are held at zero: ``x = T x_r``, ``T`` by rows."""
-
-    kept: tuple[int, ...]
-    T: tuple[Row, ...]
-
-
-def without_slips(slips: Sequence[Row], order: Sequence[int]) -> Reduced:
-    """Solve ``F_s x = 0`` for as many states as there are independent slips, in that order of states.
-
-    >>> without_slips([{0: sp.Integer(1), 1: -sp.Integer(2)}], [0, 1]).T
-    ({0: 2}, {0: 1})
-    """
-    matrix = sp.zeros(len(slips), len(order))
-    for i, row in enumerate(slips):
-        for at, j in enumerate(order):
-            matrix[i, at] = row.get(j, 0)
-    reduced, pivots = matrix.rref(
-        simplify=sp.cancel, iszerofunc=lambda entry: sp.cancel(entry) == 0
-    )
-    gone = {order[pivot]: i for i, pivot in enumerate(pivots)}
-    kept = tuple(j for j in range(len(order)) if j not in gone)
-    place = {j: at for at, j in enumerate(kept)}
-    T: list[Row] = [{place[j]: sp.Integer(1)} if j in place else {} for j in range(len(order))]
-    for j, i in gone.items():
-        entries = {at: reduced[i, order.index(k)] for k, at in place.items()}
-        T[j] = {at: -entry for at, entry in entries.items() if entry != 0}
-    return Reduced(kept, tuple(T))
-
-
-def multiplied(row: Mapping[int, sp.Expr], T: Sequence[Row]) -> Row:
-    """``row * T``."""
-    result: Row = {}
-    for j, entry in row.items():
-        add_scaled(result, T[j], entry)
-    return result
-
-
-def folded(rows: Sequence[Row], T: Sequence[Row], count: int) -> list[Row]:
-    """``T^T rows``."""
-    result: list[Row] = [{} for _ in range(count)]
-    for row, weights in zip(rows, T, strict=True):
-        for at, weight in weights.items():
-            add_scaled(result[at], row, weight)
-    return result

@@ -9,8 +9,11 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
+from bondgraph.elimination import ResidueRows
 from bondgraph.errors import MissingExtraError, ParameterError, SignalError
+from bondgraph.exact import rows_of
 from bondgraph.expressions import normal, number
+from bondgraph.residues import residues
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -20,11 +23,13 @@ ComplexArray = NDArray[np.complex128]
 class Mode:
     """One real pole or one pair: the pole with Im >= 0 [1/s] and its shape over the states.
 
-    The largest component of ``shape`` is 1.
+    The largest component of ``shape`` is 1. ``participation``: how much each state takes part, whatever
+    the units, by right and left eigenvector.
     """
 
     pole: complex
     shape: Mapping[str, complex]
+    participation: Mapping[str, float]
 
     @property
     def frequency(self) -> float:
@@ -62,48 +67,65 @@ class StateSpace:
     F: Array
     D: Array
     G: Array
+    #: Whether a pole is exactly 0, so that constant inputs have no steady state.
+    drifts: bool = False
 
     def poles(self) -> ComplexArray:
         """The eigenvalues of P [1/s], slowest first, pairs together."""
         found = np.linalg.eigvals(self.P).astype(complex)
-        return np.array(sorted(found, key=lambda p: (round(abs(p), 9), p.imag)), dtype=complex)
+        return np.array(
+            sorted(found, key=lambda p: (float(f"{abs(p):.9g}"), abs(p.imag), p.imag)),
+            dtype=complex,
+        )
 
     def modes(self) -> tuple[Mode, ...]:
         """Every real pole and every pair of poles once, with its shape, slowest first."""
         values, vectors = np.linalg.eig(self.P)
+        part = np.abs(vectors * np.linalg.pinv(vectors).T)
         modes = []
-        for value, vector in zip(values.astype(complex), vectors.T.astype(complex), strict=True):
+        for at, value in enumerate(values.astype(complex)):
             if value.imag >= 0:
+                vector = vectors[:, at].astype(complex)
                 scaled = vector / vector[int(np.argmax(np.abs(vector)))]
                 shape = dict(zip(self.states, map(complex, scaled), strict=True))
-                modes.append(Mode(complex(value), MappingProxyType(shape)))
+                taken = dict(zip(self.states, map(float, part[:, at]), strict=True))
+                modes.append(Mode(complex(value), MappingProxyType(shape), MappingProxyType(taken)))
         return tuple(sorted(modes, key=lambda mode: (mode.frequency, -mode.pole.real)))
 
     def mode(self, pattern: Mapping[str, float]) -> Mode:
         """The oscillation whose shape lies most along a pattern, such as ``{"omega_1": 1, "omega_2": -1}``.
 
-        Of the oscillations that do so equally well the one in which these states move most.
+        Of the oscillations that do so equally well the one in which these states take part most.
 
         Raises `SignalError` for unknown states, or if nothing oscillates.
         """
         for name in pattern:
             if name not in self.states:
                 raise SignalError(f"{name!r} is not a state; there are {', '.join(self.states)}")
-        swinging = [mode for mode in self.modes() if mode.pole.imag > 1e-9 * abs(mode.pole)]
+        modes = self.modes()
+        # Poles at 0 come with imaginary parts of rounding, relative to the fastest.
+        least = 1e-9 * max((abs(mode.pole) for mode in modes), default=0.0)
+        swinging = [mode for mode in modes if mode.pole.imag > least]
         if not swinging:
             raise SignalError("nothing oscillates: all poles are real")
         return max(
             swinging,
             key=lambda mode: (
                 round(mode.share(pattern), 6),
-                float(np.linalg.norm([mode.shape[name] for name in pattern])),
+                sum(mode.participation[name] for name in pattern),
             ),
         )
 
     def transfer(self, s: complex) -> ComplexArray:
-        """Outputs over inputs at one complex frequency [1/s]: an array outputs x inputs."""
+        """Outputs over inputs at one complex frequency [1/s]: an array outputs x inputs.
+
+        Raises `ParameterError` at a pole.
+        """
         pencil = s * np.eye(len(self.states)) - self.P
-        x = np.linalg.solve(pencil, self.Q + s * self.R)
+        try:
+            x = np.linalg.solve(pencil, self.Q + s * self.R)
+        except np.linalg.LinAlgError:
+            raise ParameterError(f"s = {s} is a pole; take a value beside it") from None
         return np.asarray(self.F @ x + self.D + s * self.G, dtype=complex)
 
     def frequency_response(self, frequencies: ArrayLike) -> ComplexArray:
@@ -118,7 +140,7 @@ class StateSpace:
 
         Raises `ParameterError` if a pole at 0 leaves no steady state.
         """
-        if self.states and np.linalg.matrix_rank(self.P) < len(self.states):
+        if self.drifts:
             raise ParameterError(
                 "the model has a pole at 0, so a constant input has no steady state; "
                 "close the ports that hold it, or look at transfer(s) for a small s"
@@ -174,18 +196,28 @@ def state_space(
     if missing:
         raise ParameterError(f"missing parameter(s) {', '.join(missing)}; give each a number")
     A, J, B, E, F, D, G = (_array(matrix, used, values) for matrix in matrices)
+    if not _is_regular(matrices[0], values):
+        raise ParameterError("A is singular at these parameters")
     scale = 1 / np.sqrt(np.where(np.diag(A) != 0, np.abs(np.diag(A)), 1.0))
     right = scale[:, None] * np.hstack([J, B, E])
-    try:
-        solved = scale[:, None] * np.linalg.solve(A * np.outer(scale, scale), right)
-    except np.linalg.LinAlgError:
-        raise ParameterError("A is singular at these parameters") from None
+    solved = scale[:, None] * np.linalg.solve(A * np.outer(scale, scale), right)
     n, m = len(names[0]), len(names[1])
     arrays = (solved[:, :n], solved[:, n : n + m], solved[:, n + m :], F, D, G)
     for array in arrays:
         array.setflags(write=False)
     states, inputs, outputs = (tuple(map(str, group)) for group in names)
-    return StateSpace(states, inputs, outputs, *arrays)
+    return StateSpace(states, inputs, outputs, *arrays, drifts=not _is_regular(matrices[1], values))
+
+
+def _is_regular(matrix: Any, values: Mapping[str, sp.Rational]) -> bool:
+    """Whether a square matrix has an inverse at these numbers, decided exactly."""
+    value = residues()
+    exact = {name: values[name.name] for name in matrix.free_symbols}
+    rows = ResidueRows(
+        {j: v for j, entry in row.items() if (v := value(entry.xreplace(exact)))}
+        for row in rows_of(matrix)
+    )
+    return all(rows.pivot(i, jordan=False) for i in range(matrix.rows))
 
 
 def _exact(parameters: Mapping[str, object]) -> dict[str, sp.Rational]:

@@ -1,82 +1,140 @@
 """Laws at an operating point: how much a port gives per unit of every signal that its law reads."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
+from itertools import product
 
 import sympy as sp
 
 from bondgraph.errors import SignalError
 from bondgraph.expressions import TIME, expression, normal
 from bondgraph.laws import SLIP, DryFriction, Law
+from bondgraph.residues import is_zero
+
+Point = Mapping[sp.Symbol, sp.Expr]
+"""Values of signals, and of parameters where they decide on which side of a corner it lies."""
 
 
-def operating_point(at: Mapping[object, object] | None) -> dict[sp.Symbol, sp.Expr]:
-    """Signals and their values there: numbers, or expressions in parameters."""
-    if at is None:
-        return {}
-    if not isinstance(at, Mapping):
+def operating_point(at: Mapping[object, object] | None, known: Iterable[sp.Symbol]) -> Point:
+    """Names and their values there: numbers, or expressions in parameters.
+
+    Raises `SignalError` for a name that neither the equations nor a law has.
+    """
+    if not isinstance(at, Mapping | None):
         raise SignalError(f"at must map signals to values, not be {at!r}")
-    return {
+    point = {
         sp.Symbol(str(normal(str(name)))): expression(value, f"operating point of {name}")
-        for name, value in at.items()
+        for name, value in (at or {}).items()
     }
+    unknown = sorted(point.keys() - set(known), key=str)
+    if unknown:
+        raise SignalError(f"at: no signal, state or parameter is called {unknown[0]}")
+    return point
 
 
 def slopes(
-    law: Law, port: Hashable, received: sp.Symbol, signals: set[sp.Symbol],
-    point: Mapping[sp.Symbol, sp.Expr],
-) -> dict[sp.Symbol, sp.Expr]:  # fmt: skip
+    law: Law, port: Hashable, received: sp.Symbol, signals: set[sp.Symbol], point: Point
+) -> dict[sp.Symbol, sp.Expr]:
     """The derivative of what a law gives by each of the signals it reads, at the operating point.
 
     Raises `SignalError` where a derivative needs a value that the point lacks, or where the law has a
-    corner there.
+    corner or a jump there.
     """
     given = _as_expression(law, port, received, signals, point)
-    result: dict[sp.Symbol, sp.Expr] = {}
+    read = sorted(given.free_symbols & signals - {TIME}, key=str)
     # The derivative of a modulus is a sign for real names only.
     real = {name: sp.Dummy(name.name, real=True) for name in given.free_symbols}
     plain = {dummy: name for name, dummy in real.items()}
-    for name in sorted(given.free_symbols & signals - {TIME}, key=str):
-        derivative = sp.diff(given.xreplace(real), real[name]).xreplace(plain)
-        slope = _at(derivative, port, signals, point)
-        if slope != 0:
-            result[name] = slope
-    return result
+    derivatives = [sp.diff(given.xreplace(real), real[name]).xreplace(plain) for name in read]
+    if _switches([given]):
+        _at(given, port, signals, point, "value")
+    found = {
+        name: _at(slope, port, signals, point, "slope")
+        for name, slope in zip(read, derivatives, strict=True)
+    }
+    return {name: slope for name, slope in found.items() if slope != 0}
 
 
 def _as_expression(
-    law: Law, port: Hashable, received: sp.Symbol, signals: set[sp.Symbol],
-    point: Mapping[sp.Symbol, sp.Expr],
-) -> sp.Expr:  # fmt: skip
+    law: Law, port: Hashable, received: sp.Symbol, signals: set[sp.Symbol], point: Point
+) -> sp.Expr:
     """A law as an expression; slipping friction on the side on which the operating point lies."""
     if not isinstance(law, DryFriction):
         return law.expression
-    if SLIP not in law.curve.free_symbols and not law.level.free_symbols & signals:
+    constant = SLIP not in law.curve.free_symbols and not law.level.free_symbols & signals
+    if constant and received not in point:
         return law.level
     side = sp.sign(point.get(received, sp.Integer(0)))
     if side not in (1, -1):
         raise SignalError(
-            f"dry friction at {port!r} slips one way or the other, or sticks: give the sign of "
-            f"{received} in at, or name {port!r} in stuck"
+            f"dry friction at {port!r} slips one way or the other, or sticks: give {received} a number "
+            f"that is not 0 in at, or name {port!r} in stuck"
         )
     return side * law.level * law.curve.subs(SLIP, side * received)
 
 
-def _at(
-    slope: sp.Expr, port: Hashable, signals: set[sp.Symbol], point: Mapping[sp.Symbol, sp.Expr]
-) -> sp.Expr:
-    missing = sorted((slope.free_symbols & (signals | {TIME})) - point.keys(), key=str)
+def _switches(expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
+    """What decides between the branches of laws, by its sign."""
+    found: set[sp.Expr] = set()
+    for expr in expressions:
+        found |= {part.args[0] for part in expr.atoms(sp.Heaviside, sp.DiracDelta, sp.sign, sp.Abs)}
+        found |= {part.lhs - part.rhs for part in expr.atoms(sp.core.relational.Relational)}
+        for part in expr.atoms(sp.Max, sp.Min):
+            found |= {a - b for a in part.args for b in part.args if str(a) < str(b)}
+    return sorted(found, key=str)
+
+
+def _at(expr: sp.Expr, port: Hashable, signals: set[sp.Symbol], point: Point, what: str) -> sp.Expr:
+    """An expression at the point; where a branch changes there, the same on either side of it."""
+    missing = sorted((expr.free_symbols & (signals | {TIME})) - point.keys(), key=str)
     if missing:
         raise SignalError(
-            f"the slope of the law at {port!r} depends on {', '.join(map(str, missing))}; "
+            f"the {what} of the law at {port!r} depends on {', '.join(map(str, missing))}; "
             "give it a value in at"
         )
-    for jump in slope.atoms(sp.Heaviside, sp.DiracDelta, sp.sign):
-        if jump.args[0].subs(point).is_zero:
-            raise SignalError(
-                f"the law at {port!r} has a corner at the operating point, where {jump.args[0]} = 0; "
-                "linearise on one side of it"
-            )
-    value = slope.subs(point).doit()
-    if value.has(sp.nan, sp.zoo, sp.oo):
-        raise SignalError(f"the law at {port!r} has no finite slope at the operating point")
-    return value
+    sides = {switch: _sides(switch, port, point) for switch in _switches([expr])}
+    away = [part for part in expr.atoms(sp.DiracDelta) if len(sides[part.args[0]]) == 1]
+    expr = expr.xreplace(dict.fromkeys(away, sp.Integer(0)))
+    there = {name: value for name, value in point.items() if name in signals | {TIME}}
+    values = [
+        _on_sides(expr, dict(zip(sides, chosen, strict=True))).subs(there).doit()
+        for chosen in product(*sides.values())
+    ]
+    if any(v.has(sp.nan, sp.zoo, sp.oo, sp.I) or v.is_real is False for v in values):
+        raise SignalError(f"the law at {port!r} has no finite real {what} at the operating point")
+    if any(value.has(sp.DiracDelta) or not is_zero(value - values[0]) for value in values):
+        corner = next(switch for switch, both in sides.items() if len(both) == 2)
+        raise SignalError(
+            f"the law at {port!r} has a corner at the operating point, where {corner} = 0; "
+            "linearise on one side of it"
+        )
+    return values[0]
+
+
+def _sides(switch: sp.Expr, port: Hashable, point: Point) -> tuple[int, ...]:
+    """The sign of a switch at the point; both where it is zero."""
+    value = switch.subs(point)
+    if value.free_symbols:
+        names = ", ".join(sorted(map(str, value.free_symbols)))
+        raise SignalError(
+            f"the law at {port!r} has a corner where {switch} = 0; on which side the operating point "
+            f"lies depends on {names}: give numbers for them in at, too"
+        )
+    if is_zero(value):
+        return (1, -1)
+    return (1,) if value > 0 else (-1,)
+
+
+def _on_sides(expr: sp.Expr, sides: Mapping[sp.Expr, int]) -> sp.Expr:
+    """An expression with its branches chosen as if each switch had that sign."""
+    chosen: dict[sp.Basic, sp.Basic] = {}
+    for switch, side in sides.items():
+        for part in expr.atoms(sp.sign, sp.Heaviside, sp.Abs, sp.DiracDelta):
+            if part.args[0] == switch:
+                chosen[part] = {
+                    sp.sign: sp.Integer(side), sp.Heaviside: sp.Rational(side + 1, 2),
+                    sp.Abs: side * switch,
+                }.get(part.func, part)  # fmt: skip
+        for part in expr.atoms(sp.core.relational.Relational):
+            if part.lhs - part.rhs == switch:
+                chosen[part] = sp.true if part.func(sp.Integer(side), 0) else sp.false
+    return expr.xreplace(chosen)
