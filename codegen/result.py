@@ -20,12 +20,12 @@ class Result:
     and what laws read.
     """
 
-    time: Array
+    time: Array = field(repr=False)
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     events: tuple[Event, ...]
-    columns: Mapping[str, Array]
+    columns: Mapping[str, Array] = field(repr=False)
     observer: Observer = field(repr=False, compare=False)
 
     def __getitem__(self, name: str) -> Array:

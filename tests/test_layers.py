@@ -18,8 +18,8 @@ ORDER = {
     ],
     "codegen": [
         "arrays", "pieces", "signals", "affine", "closing", "program", "numpy_backend", "numbers",
-        "friction", "instant", "loops", "closed", "sizes", "modes", "events", "legs", "hybrid", "observer", "result",
-        "simulate", "trim",
+        "friction", "instant", "loops", "closed", "sizes", "modes", "events", "legs", "hybrid",
+        "observer", "result", "simulate", "trim",
     ],
     "differentials": [
         "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "model",
