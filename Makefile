@@ -7,7 +7,7 @@ READY := $(VENV)/ready
 .PHONY: demo test lint types unit bench clean help
 
 help:
-	@echo "make demo   derive and simulate the ALSD; table and picture in out/"
+	@echo "make demo   derive and simulate differentials; tables and pictures in out/"
 	@echo "make test   format, lint, types, tests and doctests"
 	@echo "make bench  how the time to derive grows with the size of a graph"
 	@echo "make clean  remove the environment and what was generated"
