@@ -165,7 +165,6 @@ def test_control_is_an_extra(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_control_gets_the_names() -> None:
-    pytest.importorskip("control")
     system = _oscillator().numeric({"m": 2, "k": 50, "b": 3}).to_control()
     assert system.state_labels == system.output_labels == ["v", "F"]
     assert np.asarray(system.A) == pytest.approx(np.array([[-1.5, -0.5], [50, 0]]))
