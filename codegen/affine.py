@@ -40,3 +40,7 @@ class AffineMap:
         """The parts at one point."""
         values = self.matrix @ np.concatenate((*vectors, (1.0,)))
         return [values[part] for part in self.parts]
+
+    def rows(self, part: int) -> Array:
+        """The rows of one part."""
+        return self.matrix[self.parts[part]]

@@ -4,7 +4,7 @@ The integrated vector is ``s = [xi, z]``: ``xi = x - A^-1 E u`` stays continuous
 drives a dependent storage steps; z are the states that laws own.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +22,9 @@ from codegen.program import Group, Program
 Mode = tuple[int, ...]
 """For each friction port: 0 sticking, +1 or -1 the sign of its slip."""
 
+
+INPUTS, READINGS, RATE, CAPS = 2, 4, 5, 6
+"""Where the parts of a `Snapshot` stand in an affine map."""
 
 FAR = 2.0**30
 """How far out affine models are probed; a power of two, so that dividing by it is exact."""
@@ -88,10 +91,7 @@ class ClosedModel:
 
     def at(self, t: float, s: Array, pieces: Sequence[Piece], mode: Mode) -> Snapshot:
         """Every variable at one time, with the inputs' pieces and the friction mode given."""
-        w = np.array([piece(t) for piece in pieces])
-        dw = (
-            np.array([piece.derivative(t) for piece in pieces]) if self._rated else np.zeros(len(w))
-        )
+        w, dw = self.given(t, pieces)
         if self.program.affine:
             affine = self.affine_map(mode, len(w))
             if affine is not None:
@@ -100,6 +100,26 @@ class ClosedModel:
                 if not mode or min(now.caps) >= 0:
                     return now
         return self.evaluate(t, s, w, dw, mode)
+
+    def given(self, t: float, pieces: Sequence[Piece]) -> tuple[Array, Array]:
+        """The external inputs, and their rates where anything asks for them."""
+        w = np.array([piece(t) for piece in pieces])
+        if not self._rated:
+            return w, np.zeros(len(w))
+        return w, np.array([piece.derivative(t) for piece in pieces])
+
+    def rates(self, pieces: Sequence[Piece], mode: Mode) -> Callable[[float, Array], Array]:
+        """The rate of s in a mode as a function of t and s; quicker than `at`, which gives all else too."""
+        affine = self.affine_map(mode, len(pieces))
+        if affine is None:
+            return lambda t, s: self.at(t, s, pieces, mode).rate
+        rows = np.ascontiguousarray(affine.rows(RATE))
+        one = (1.0,)
+
+        def rate(t: float, s: Array) -> Array:
+            return np.asarray(rows @ np.concatenate((s, *self.given(t, pieces), one)))
+
+        return rate
 
     def evaluate(
         self, t: float, s: Array, w: Array, dw: Array, mode: Mode, checked: bool = True

@@ -7,15 +7,15 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from codegen.arrays import Array
-from codegen.closed import ClosedModel, Mode, Snapshot
+from codegen.closed import CAPS, INPUTS, READINGS, ClosedModel, Mode, Snapshot
 from codegen.modes import LOOK_AHEAD, Peaks, scales
 from codegen.pieces import Piece
 
 CHECKS = 6
 """Points inside each step at which events are looked for."""
 
-Dense = Callable[[float], Array]
-"""The integrated vector anywhere inside a step."""
+Dense = Callable[[float | Array], Array]
+"""The integrated vector anywhere inside a step; for several times its columns."""
 
 
 class Event(NamedTuple):
@@ -46,6 +46,12 @@ class Watch:
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
         self._blind = t + LOOK_AHEAD * (peaks.time if peaks else 0.0)
+        affine = model.affine_map(mode, len(pieces)) if mode else None
+        self._affine = None if affine is None else (
+            affine.rows(INPUTS)[model.friction_inputs],
+            affine.rows(READINGS)[model.friction_readings],
+            affine.rows(CAPS),
+        )  # fmt: skip
         now = self._snapshot(t, s)
         self._limits = np.zeros(0)
         if mode:
@@ -61,7 +67,7 @@ class Watch:
         if not self._mode:
             return None
         grid = np.linspace(t_old, t_new, CHECKS + 2).tolist()
-        values = [self._before, *(self._triggers(self._snapshot(t, dense(t))) for t in grid[1:])]
+        values = [self._before, *self._series(grid[1:], dense)]
         self._before = values[-1]
         roots: dict[int, float] = {}
         for i in range(len(self._mode)):
@@ -87,6 +93,20 @@ class Watch:
                 if root is not None:
                     return root
         return None
+
+    def _series(self, times: Sequence[float], dense: Dense) -> list[Array]:
+        """The triggers at several times; in one product where everything is affine."""
+        if self._affine is None:
+            return [self._triggers(self._snapshot(t, dense(t))) for t in times]
+        given = np.array([np.concatenate(self._model.given(t, self._pieces)) for t in times])
+        vectors = np.hstack([dense(np.array(times)).T, given, np.ones((len(times), 1))])
+        efforts, slips, caps = (vectors @ rows.T for rows in self._affine)
+        if caps.min() < 0:
+            # One by one, so that a friction level below zero is refused with its time.
+            return [self._triggers(self._snapshot(t, dense(t))) for t in times]
+        signs = np.array(self._mode)
+        margins = caps - np.abs(efforts)
+        return list(np.where(signs == 0, margins, signs * slips))
 
     def _snapshot(self, t: float, s: Array) -> Snapshot:
         return self._model.at(t, s, self._pieces, self._mode)

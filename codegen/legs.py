@@ -71,6 +71,7 @@ class Leg:
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
         self._settings, self._span, self._peaks = settings, span, peaks
+        self._rates = model.rates(pieces, mode)
 
     def fastest(self, t: float, s: Array) -> float:
         """The largest rate [1/s] of the mode's linearisation and of the inputs."""
@@ -87,7 +88,7 @@ class Leg:
         for _ in range(12):
             moved = s.copy()
             moved[j] += step
-            slope = (self._model.at(t, moved, self._pieces, self._mode).rate - base) / step
+            slope = (self._rates(t, moved) - base) / step
             if np.isfinite(slope).all():
                 return np.asarray(slope, dtype=float)
             step *= 1e-2
@@ -145,7 +146,7 @@ class Leg:
             track.record(dense(float(times[track.recorded])), self._mode)
 
     def _rate(self, t: float, s: Array) -> Array:
-        rate = self._model.at(t, s, self._pieces, self._mode).rate
+        rate = self._rates(t, s)
         if not np.isfinite(rate).all():
             raise SimulationError(f"at t = {t:.9g} the rates are not finite; state {s.tolist()}")
         return rate

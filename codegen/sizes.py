@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from codegen.arrays import Array
-from codegen.closed import ClosedModel, Mode
+from codegen.closed import INPUTS, ClosedModel, Mode
 from codegen.pieces import Piece
 
 STEP = 2.0**-20
@@ -23,7 +23,7 @@ def input_terms(
     affine = model.affine_map(mode, len(pieces))
     if affine is not None:
         w = np.array([piece(t) for piece in pieces])
-        matrix = affine.matrix[affine.parts[2]]
+        matrix = affine.rows(INPUTS)
         ones = np.concatenate((np.abs(s), np.abs(w), np.zeros(len(w)), (1.0,)))
         return np.asarray(np.abs(matrix) @ ones, dtype=float)
     now = model.at(t, s, pieces, mode)

@@ -56,7 +56,7 @@ scenarios: Mapping[str, Scenario] = MappingProxyType(
         "fig13_superposition": Scenario(80.0, 0.5, 150.0, (1000.0, 0.0), 0.1, 0.5, 1.0),
         "fig14": Scenario(80.0, 0.5, 150.0, (250.0, 0.0), 0.1, 0.5, 1.0),
         "engine_step": Scenario(80.0, -0.5, 350.0, (), 0.1, 0.0, 1.0),
-        "input_clutch": Scenario(80.0, -0.5, 350.0, (500.0,), 0.3, 0.0, 1.0),
+        "input_clutch": Scenario(80.0, -0.5, 50.0, (300.0,), 0.1, 0.4, 1.0),
     }
 )
 """Named scenarios: the paper's figures, and two for the passive differentials, which have no figure."""
