@@ -23,7 +23,7 @@ Mode = tuple[int, ...]
 """For each friction port: 0 sticking, +1 or -1 the sign of its slip."""
 
 
-INPUTS, READINGS, RATE, CAPS = 2, 4, 5, 6
+INPUTS, RATES_OF_INPUTS, READINGS, RATE, CAPS = 2, 3, 4, 5, 6
 """Where the parts of a `Snapshot` stand in an affine map."""
 
 FAR = 2.0**30
@@ -147,6 +147,7 @@ class ClosedModel:
         rate = np.zeros(self.size)
         rate[:n] = numbers.P @ now.x + numbers.Q @ now.u
         rate[n : n + own] = now.y[list(program.law_rates)]
+        rate += self._correction(mode, rate, now.du)
         return Snapshot(now.x, z, now.u, now.du, now.y, rate, now.caps, w)
 
     def affine_map(self, mode: Mode, inputs: int) -> AffineMap | None:
@@ -169,7 +170,20 @@ class ClosedModel:
         origin = np.concatenate(parts)
         # Far out the constant part of a law no longer swallows digits of its slope.
         columns = [(np.concatenate(point(FAR * e)) - origin) / FAR for e in np.eye(length)]
-        return AffineMap([len(part) for part in parts], np.column_stack([*columns, origin]))
+        affine = AffineMap([len(part) for part in parts], np.column_stack([*columns, origin]))
+        affine.rows(RATE)[:] += self._correction(
+            mode, affine.rows(RATE), affine.rows(RATES_OF_INPUTS)
+        )
+        return affine
+
+    def _correction(self, mode: Mode, rate: Array, du: Array) -> Array:
+        """What rounding in the holding efforts has to be added to rates, or slips that stick would drift."""
+        change = np.zeros_like(rate)
+        if 0 in mode:
+            held, n = self.hold(mode), len(self.program.states)
+            fixed = held.slip_x @ self.numbers.R + held.slip_u
+            change[:n] = held.take_away @ (held.slip_x @ rate[:n] + fixed @ du)
+        return change
 
     def _give(self, now: Instant, group: Group, function: Evaluation) -> None:
         """Evaluate one group of laws, or solve it if it is a loop."""

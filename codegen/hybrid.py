@@ -39,7 +39,7 @@ def run_hybrid(
     mode: Mode = tuple(1 for _ in model.friction_inputs)
     touched, started, peaks = frozenset[int](), False, Peaks.none(model)
     rounds: deque[float] = deque(maxlen=STALLED)
-    while True:
+    while t < end or touched or t in breaks:
         pieces = [signal.piece(t) for signal in signals]
         peaks.see(model, t, s, pieces, mode)
         leg = Leg(model, pieces, mode, settings, span, peaks)

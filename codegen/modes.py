@@ -63,6 +63,8 @@ def scales(model: ClosedModel, now: Snapshot, t: float = 0.0, peaks: Peaks | Non
     x, u = np.maximum(np.abs(now.x), peaks.x), np.maximum(np.abs(now.u), peaks.u)
     late = 16 * np.spacing(abs(t)) * np.abs(slip_rates(model, now))
     slip = np.abs(numbers.F[readings]) @ x + np.abs(numbers.D[readings]) @ u
+    # At rest states are rounding themselves: of what moves them within a time constant.
+    x = np.maximum(x, peaks.time * (np.abs(numbers.P) @ x + np.abs(numbers.Q) @ u))
     moved = (
         np.abs(numbers.F[readings] @ numbers.P) @ x + np.abs(numbers.F[readings] @ numbers.Q) @ u
     )

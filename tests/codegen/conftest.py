@@ -1,29 +1,6 @@
-"""Makes `oracles` importable beside the tests, and ends a run that would never end by itself."""
+"""Makes `oracles` importable beside the tests."""
 
-import signal
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
-
 sys.path.insert(0, str(Path(__file__).parent))
-
-LONGEST = 60
-"""Seconds after which a test counts as hanging: many times what the longest one takes."""
-
-
-@pytest.fixture(autouse=True)
-def _no_endless_run() -> Iterator[None]:
-    if not hasattr(signal, "SIGALRM"):
-        yield
-        return
-
-    def end(*_: object) -> None:
-        raise TimeoutError(f"no end after {LONGEST} s: the run makes no progress")
-
-    before = signal.signal(signal.SIGALRM, end)
-    signal.alarm(LONGEST)
-    yield
-    signal.alarm(0)
-    signal.signal(signal.SIGALRM, before)
