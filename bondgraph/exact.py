@@ -35,6 +35,11 @@ def add_scaled(target: Row, row: Mapping[int, sp.Expr], factor: sp.Expr) -> None
             target[column] = factor * entry
 
 
+def scaled(row: Mapping[int, sp.Expr], factor: sp.Expr) -> Row:
+    """``factor * row``."""
+    return {column: factor * entry for column, entry in row.items()}
+
+
 def cancelled(expr: sp.Expr) -> sp.Expr:
     """The shorter of a sum and its cancelled form; 0 exactly when it vanishes identically."""
     if expr.is_Rational or expr.is_Symbol:

@@ -11,7 +11,7 @@ from bondgraph.causal_order import CausalEquations, causal_equations, causal_gro
 from bondgraph.causality import CausalGraph
 from bondgraph.elements import SOURCES, Element, Kind
 from bondgraph.errors import AlgebraicLoopError
-from bondgraph.exact import Row, SingularError, add_scaled, matrix_of, solve
+from bondgraph.exact import Row, SingularError, add_scaled, matrix_of, scaled, solve
 from bondgraph.strokes import Strokes
 
 
@@ -72,7 +72,7 @@ def junction_structure(causal: CausalGraph) -> JunctionStructure:
     rows = []
     for node in one_ports:
         signal, sign = equations.received[node]
-        rows.append(signals[signal] if sign == 1 else _scaled(signals[signal], sign))
+        rows.append(signals[signal] if sign == 1 else scaled(signals[signal], sign))
     common = {
         strokes.names[node]: signals[2 * strokes.at[node][0] + (element.kind is Kind.ONE)]
         for node, element in enumerate(strokes.elements)
@@ -116,15 +116,11 @@ def _signal(
     if len(terms) == 1:
         # Rows are never changed once made, so equal signals may share one.
         source, factor = terms[0]
-        return signals[source] if factor == 1 else _scaled(signals[source], factor)
+        return signals[source] if factor == 1 else scaled(signals[source], factor)
     row: Row = {}
     for source, factor in terms:
         add_scaled(row, signals[source], factor)
     return row
-
-
-def _scaled(row: Row, factor: sp.Expr) -> Row:
-    return {column: factor * entry for column, entry in row.items()}
 
 
 def _solve_loop(

@@ -8,7 +8,7 @@ import sympy as sp
 
 from bondgraph.elements import STORAGES, Kind
 from bondgraph.errors import AlgebraicLoopError, CausalityError
-from bondgraph.exact import Row, SingularError, add_scaled, solve
+from bondgraph.exact import Row, SingularError, add_scaled, scaled, solve
 from bondgraph.junction import JunctionStructure, Port
 
 
@@ -97,7 +97,7 @@ def _dependent(reduction: Reduction, port: int) -> Reading:
             "have integral causality; please report this graph"
         )
     value, ruled = structure.ports[port].element.constant, reduction.reading(row)
-    return Reading({}, {}, _scaled(ruled.F, value), _scaled(ruled.D, value))
+    return Reading({}, {}, scaled(ruled.F, value), scaled(ruled.D, value))
 
 
 def _resistances(reduction: Reduction) -> dict[int, Reading]:
@@ -136,7 +136,7 @@ def _closed(reduction: Reduction, group: Sequence[int]) -> list[Reading]:
     else:
         received = _solved(structure, group, inside, outside, len(reduction.states))
     return [
-        Reading(_scaled(F, law), _scaled(D, law), {}, {})
+        Reading(scaled(F, law), scaled(D, law), {}, {})
         for law, (F, D) in zip(laws, received, strict=True)
     ]
 
@@ -169,7 +169,3 @@ def _solved(
 def _conductance(port: Port) -> sp.Expr:
     """What a linear resistance gives per unit of what it receives: R, or 1/R where it gives flow."""
     return port.element.constant if port.gives == "effort" else 1 / port.element.constant
-
-
-def _scaled(row: Row, factor: sp.Expr) -> Row:
-    return {column: factor * entry for column, entry in row.items()}

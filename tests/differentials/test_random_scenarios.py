@@ -18,7 +18,7 @@ ASSUMED |= {"I_c1": 0.026, "I_c2": 0.026, "I_s1": 0.0094, "I_s2": 0.0094}
 
 ALIKE = 1e-6  # of a signal's range; s for events
 SPEED, TORQUE = 1e-9, 1e-7  # rad/s, N m: rounding in a signal that has no range
-UNDECIDED = 1e-5  # s
+UNDECIDED = 1e-7  # s
 MOST_EVENTS = 150  # in 0.3 s: the stiffest shafts' mode of 370 Hz could make 220 per clutch
 
 
