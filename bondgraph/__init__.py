@@ -1,7 +1,7 @@
 """Symbolic bond graphs: declared with networkx, derived into ``A x' = J x + B u``, slip ``= F x``."""
 
 from bondgraph.causality import CausalGraph, assign_causality
-from bondgraph.elements import GY, TF, C, I, Kind, One, R, Se, Sf, Zero
+from bondgraph.elements import GY, TF, C, De, Df, I, Kind, One, R, Se, Sf, Zero
 from bondgraph.equations import StateEquations, derive, state_equations
 from bondgraph.errors import (
     AlgebraicLoopError,
@@ -31,7 +31,9 @@ __all__ = [
     "C",
     "CausalGraph",
     "CausalityError",
+    "De",
     "DependentSourceError",
+    "Df",
     "DryFriction",
     "ExpressionError",
     "ExpressionLaw",

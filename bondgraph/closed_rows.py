@@ -8,11 +8,12 @@ from bondgraph.elimination import ResidueRows
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, SignalError, SingularStorageError
 from bondgraph.exact import Row, SingularError, add_scaled, solve
+from bondgraph.expressions import TIME
 from bondgraph.holding import add_reading, balances_of, solve_for
 from bondgraph.junction import Port
 from bondgraph.laws import ExpressionLaw, Law
+from bondgraph.modulation import Reading, slope_of
 from bondgraph.readings import depends_on_signals
-from bondgraph.reduction import Reading
 from bondgraph.residues import residues
 from bondgraph.slopes import Point, slopes
 
@@ -30,7 +31,8 @@ class ClosedRows:
             law.state: ports[name].received
             for name, law in closed.items()
             if isinstance(law, ExpressionLaw) and law.state is not None
-        }
+        } | dict(equations.integrals)
+        self._point = point
         self.states = (*equations.states, *self._rated)
         self.columns = (*equations.inputs, *outer)
         signals = {*equations.signals, *self._rated, *outer}
@@ -75,7 +77,36 @@ class ClosedRows:
             return Reading({self.states.index(name): one}, {}, {}, {})
         if name in self.columns:
             return Reading({}, {self.columns.index(name): one}, {}, {})
-        return self._equations.readings[name]
+        return self._frozen(self._equations.readings[name])
+
+    def _frozen(self, row: Reading) -> Reading:
+        """A row whose coefficients change in time, for deviations from the point, where all rates are 0.
+
+        ``g(xi) v`` deviates by ``g v`` at the point and by the slope of g by each xi, times v there.
+        """
+        if not self._equations.varying:
+            return row
+        moving = set(self._equations.varying)
+        result = Reading.zero()
+        for mine, theirs in zip(result.parts, row.parts, strict=True):
+            for j, entry in theirs.items():
+                add_scaled(mine, {j: sp.Integer(1)}, self._there(entry))
+        for names, part in ((self.states, row.F), (self.columns, row.D)):
+            for j, entry in part.items():
+                for name in sorted(entry.free_symbols & moving - {TIME}, key=str):
+                    slope = self._there(slope_of(entry, name) * names[j])
+                    result.add(self.signal(name), slope)
+        return result
+
+    def _there(self, expr: sp.Expr) -> sp.Expr:
+        """An expression at the operating point."""
+        moving = {*self._equations.varying, *self.states, *self.columns, TIME}
+        missing = sorted((expr.free_symbols & moving) - self._point.keys(), key=str)
+        if missing:
+            raise SignalError(
+                f"values of the graph change with {', '.join(map(str, missing))}: give a value in at"
+            )
+        return expr.subs({name: self._point[name] for name in expr.free_symbols & moving})
 
     def _combined(self, slope: Mapping[sp.Symbol, sp.Expr]) -> Reading:
         result = Reading({}, {}, {}, {})
@@ -100,7 +131,9 @@ class ClosedRows:
     def dynamics(self) -> tuple[list[Row], list[Reading]]:
         """A and the right sides of ``A x' =``, the rates of laws' own states below."""
         A, balances = balances_of(self._equations)
-        rows = [self.put_in(balance) for balance in balances]
+        if self._equations.varying:
+            A = [{j: self._there(entry) for j, entry in row.items()} for row in A]
+        rows = [self.put_in(self._frozen(balance)) for balance in balances]
         for at, received in enumerate(self._rated.values(), start=len(A)):
             A.append({at: sp.Integer(1)})
             rows.append(self.put_in(self.signal(received)))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from bondgraph.exact import Row, add_scaled
-from bondgraph.reduction import Reading
+from bondgraph.modulation import Reading
 from bondgraph.residues import is_zero
 
 

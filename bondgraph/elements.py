@@ -1,4 +1,4 @@
-"""The nine kinds of node, their constructors, and what each kind is, as data."""
+"""The kinds of node, their constructors, and what each kind is, as data."""
 
 from collections.abc import Hashable
 from dataclasses import dataclass
@@ -24,13 +24,16 @@ class Kind(StrEnum):
     GY = "GY"
     ZERO = "Zero"
     ONE = "One"
+    DE = "De"
+    DF = "Df"
 
 
 SOURCES = frozenset({Kind.SE, Kind.SF})
 STORAGES = frozenset({Kind.I, Kind.C})
 TWO_PORTS = frozenset({Kind.TF, Kind.GY})
 JUNCTIONS = frozenset({Kind.ZERO, Kind.ONE})
-POWER_INTO = frozenset({Kind.I, Kind.C, Kind.R})
+DETECTORS = frozenset({Kind.DE, Kind.DF})
+POWER_INTO = frozenset({Kind.I, Kind.C, Kind.R, *DETECTORS})
 """Power counts into these whichever way the arrow points."""
 
 KEYS: dict[Kind, frozenset[str]] = {
@@ -43,6 +46,8 @@ KEYS: dict[Kind, frozenset[str]] = {
     Kind.GY: frozenset({"value", "unit"}),
     Kind.ZERO: frozenset({"effort"}),
     Kind.ONE: frozenset({"flow"}),
+    Kind.DE: frozenset({"effort", "integrate", "unit"}),
+    Kind.DF: frozenset({"flow", "integrate", "unit"}),
 }
 """The attributes a node of each kind may carry beside ``kind``."""
 
@@ -52,7 +57,8 @@ class Element:
     """One node, checked: what it is, its value or law, and the names of its effort and flow.
 
     A source's ``value`` is None: what it gives is its input, closed by ``law`` if it is known.
-    ``gives`` is "effort" or "flow" where the causality is fixed: sources, open ports, laws.
+    ``gives`` is "effort" or "flow" where the causality is fixed: sources, open ports, laws, detectors.
+    ``integral``: the state that a detector makes of what it reads.
     """
 
     name: Hashable
@@ -64,6 +70,7 @@ class Element:
     priority: float = 0
     gives: str | None = None
     unit: str | None = None
+    integral: sp.Symbol | None = None
 
     @property
     def one_port(self) -> bool:
@@ -153,6 +160,22 @@ def Zero(name: Hashable, effort: object = None, **more: object) -> Node:
 def One(name: Hashable, flow: object = None, **more: object) -> Node:
     """A 1-junction: one flow, efforts that sum to zero. ``flow`` names the common flow."""
     return _node(name, Kind.ONE, flow=flow, **more)
+
+
+def De(name: Hashable, effort: object = None, integrate: object = None, **more: object) -> Node:
+    """A detector of an effort: it draws no flow. ``integrate`` names the effort's integral, a state."""
+    return _node(name, Kind.DE, effort=effort, integrate=integrate, **more)
+
+
+def Df(name: Hashable, flow: object = None, integrate: object = None, **more: object) -> Node:
+    """A detector of a flow: it takes no effort. ``integrate`` names the flow's integral, a state.
+
+    So an angle becomes a state that moduli can use:
+
+    >>> Df("sensor", integrate="theta")
+    ('sensor', {'kind': 'Df', 'integrate': 'theta'})
+    """
+    return _node(name, Kind.DF, flow=flow, integrate=integrate, **more)
 
 
 def _node(name: Hashable, kind: Kind, **attributes: object) -> Node:

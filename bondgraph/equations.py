@@ -12,13 +12,15 @@ from bondgraph.elements import Element
 from bondgraph.elimination import ResidueRows
 from bondgraph.errors import SingularStorageError, StructureError
 from bondgraph.exact import Row, add_scaled
+from bondgraph.expressions import TIME
 from bondgraph.junction import JunctionStructure, Port, junction_structure
 from bondgraph.laws import Law
+from bondgraph.modulation import Reading
 from bondgraph.outputs import PortRow, named_signals, shown_signals
 from bondgraph.rates import reached, resolved
 from bondgraph.readings import check_laws
-from bondgraph.reduction import Reading, Reduction, reduce_ports
-from bondgraph.residues import is_rational_function, is_zero, residues
+from bondgraph.reduction import Reduction, reduce_ports
+from bondgraph.residues import decided_by_residues, is_zero, residues
 from bondgraph.tidy import tidy_matrices
 
 LARGEST_ROOTED = 6
@@ -33,7 +35,8 @@ class StateEquations:
            y = F x + D u + G u'
 
     States are flows of inertias and efforts of compliances; A is symmetric. Power counts into open
-    ports, so in a structure without resistances their columns of B are ``-F^T``.
+    ports, so in a structure without resistances their columns of B are ``-F^T``. Entries may hold
+    states, integrals, inputs and the time ``t`` where values of the graph do.
     """
 
     states: tuple[sp.Symbol, ...]
@@ -46,6 +49,8 @@ class StateEquations:
     F: sp.ImmutableSparseMatrix
     D: sp.ImmutableSparseMatrix
     G: sp.ImmutableSparseMatrix
+    #: States that detectors make, each with the signal that is its rate.
+    integrals: Mapping[sp.Symbol, sp.Symbol]
     #: Node to the law that closes its port, as declared.
     laws: Mapping[Hashable, Law]
     #: The ports that give inputs, in declaration order.
@@ -60,13 +65,28 @@ class StateEquations:
     @property
     def parameters(self) -> tuple[sp.Symbol, ...]:
         """The names that the matrices need numbers for, sorted."""
+        return tuple(sorted(self._names - self._moving, key=str))
+
+    @property
+    def varying(self) -> tuple[sp.Symbol, ...]:
+        """The names in the matrices that change in time, sorted; none where all values are constant."""
+        return tuple(sorted(self._names & self._moving, key=str))
+
+    @property
+    def _moving(self) -> set[sp.Symbol]:
+        structure = self.reduction.structure
+        return {*self.states, *self.inputs, *structure.states_of_laws, TIME}
+
+    @property
+    def _names(self) -> set[sp.Symbol]:
+        """Every name in the matrices and the readings."""
         used: set[sp.Symbol] = set()
         for matrix in (self.A, self.J, self.B, self.E, self.F, self.D, self.G):
             used |= matrix.free_symbols
         for reading in self.readings.values():
             for row in (reading.F, reading.D, reading.H, reading.K):
                 used.update(*(entry.free_symbols for entry in row.values()))
-        return tuple(sorted(used, key=str))
+        return used
 
     @property
     def elements(self) -> Mapping[Hashable, Element]:
@@ -134,8 +154,12 @@ def state_equations(
     differentiated, `StructureError` for an output that does not exist.
     """
     reduction = reduce_ports(structure)
-    ports = structure.ports
+    structure, ports = reduction.structure, reduction.structure.ports
     balances = [reduction.reading(structure.rows[port]) for port in reduction.states]
+    if reduction.motion is not None:
+        for port, balance in zip(reduction.states, balances, strict=True):
+            value = ports[port].element.constant
+            reduction.motion.add_rate(balance, -value, ports[port].given)
     A = [_rates(ports[port].element.constant, at, balances[at].H)
          for at, port in enumerate(reduction.states)]  # fmt: skip
     states = tuple(ports[port].given for port in reduction.states)
@@ -158,8 +182,10 @@ def state_equations(
     matrices = tidy_matrices(parts)
     shown_names = tuple(symbol for symbol, _ in shown)
     named = dict(zip("AJBEFDG", matrices, strict=True))
+    detectors = [port for port in ports if port.element.integral is not None]
     return StateEquations(
         states, reduction.inputs, shown_names, **named,
+        integrals=MappingProxyType({port.element.integral: port.received for port in detectors}),
         laws=MappingProxyType(laws), ports=imposed, readings=MappingProxyType(readings),
         signals=MappingProxyType(signals), reduction=reduction,
     )  # fmt: skip
@@ -200,7 +226,7 @@ def _vanishes_by_roots(A: list[Row], state: int) -> bool:
     """
     block = reached(A, [state])
     entries = [entry for i in block for entry in A[i].values()]
-    if state != block[0] or len(block) > LARGEST_ROOTED or all(map(is_rational_function, entries)):
+    if state != block[0] or len(block) > LARGEST_ROOTED or all(map(decided_by_residues, entries)):
         return False
     determinant = sp.Matrix(len(block), len(block), lambda i, j: A[block[i]].get(block[j], 0)).det()
     return is_zero(determinant)

@@ -7,6 +7,7 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph.elements import (
+    DETECTORS,
     JUNCTIONS,
     KEYS,
     POWER_INTO,
@@ -124,6 +125,8 @@ def _element(name: Hashable, attributes: Mapping[str, Any]) -> Element:
         return Element(name, kind, _value(attributes, where), None, None, unit=unit)
     if kind in SOURCES:
         return _source(name, kind, attributes, unit)
+    if kind in DETECTORS:
+        return _detector(name, kind, attributes, unit)
     return _passive(name, kind, attributes, unit)
 
 
@@ -173,8 +176,6 @@ def _value(attributes: Mapping[str, Any], where: str) -> sp.Expr:
     value = expression(attributes["value"], where)
     if is_zero(value):
         raise StructureError(f"{where}: its value is zero, which leaves it without a meaning")
-    if TIME in value.free_symbols:
-        raise StructureError(f"{where}: its value depends on the time t; a value must be constant")
     return value
 
 
@@ -193,6 +194,19 @@ def _source(name: Hashable, kind: Kind, attributes: Mapping[str, Any], unit: str
     effort, flow = (given, received) if kind is Kind.SE else (received, given)
     known = None if bare else law(value, where)
     return Element(name, kind, None, effort, flow, law=known, gives=gives, unit=unit)
+
+
+def _detector(
+    name: Hashable, kind: Kind, attributes: Mapping[str, Any], unit: str | None
+) -> Element:
+    """A port that gives nothing and reads one variable, or that variable's integral too."""
+    integral = attributes.get("integrate")
+    if integral is not None:
+        text = integral.name if isinstance(integral, sp.Symbol) else integral
+        integral = symbol(text, f"node {name!r}, integrate")
+    effort, flow = (_name(attributes, variable, name) for variable in ("effort", "flow"))
+    gives = "flow" if kind is Kind.DE else "effort"
+    return Element(name, kind, None, effort, flow, gives=gives, unit=unit, integral=integral)
 
 
 def _passive(

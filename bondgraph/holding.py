@@ -10,8 +10,8 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, StructureError
 from bondgraph.exact import Row, SingularError, add_scaled, rows_of, solve
 from bondgraph.junction import Port
+from bondgraph.modulation import Reading
 from bondgraph.rates import resolved
-from bondgraph.reduction import Reading
 from bondgraph.tidy import tidy
 
 
@@ -35,6 +35,10 @@ def holding_efforts(
     {F: P}
     """
     ports = stuck_ports(equations, stuck)
+    if equations.varying:
+        raise StructureError(
+            "values of this graph change in time, and with them what a port must give: hold it in a run"
+        )
     held = [equations.inputs.index(port.given) for port in ports]
     rows = [equations.readings[port.received] for port in ports]
     direct, bound = split(rows, held)

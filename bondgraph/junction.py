@@ -53,6 +53,15 @@ class JunctionStructure:
     bonds: Mapping[tuple[Hashable, Hashable], tuple[Mapping[int, sp.Expr], Mapping[int, sp.Expr]]]
     elements: Mapping[Hashable, Element]
 
+    @property
+    def states_of_laws(self) -> tuple[sp.Symbol, ...]:
+        """The states that laws own and that detectors make, in declaration order."""
+        found: list[sp.Symbol] = []
+        for port in self.ports:
+            own = getattr(port.element.law, "state", None) or port.element.integral
+            found += [own] if own is not None else []
+        return tuple(found)
+
     @cached_property
     def S(self) -> sp.ImmutableSparseMatrix:
         """The matrix that ``rows`` hold, ports x ports."""

@@ -16,8 +16,8 @@ from bondgraph.expressions import TIME, normal
 from bondgraph.holding import split, stuck_ports
 from bondgraph.junction import Port
 from bondgraph.laws import ExpressionLaw, Law
+from bondgraph.modulation import Reading
 from bondgraph.rates import resolved
-from bondgraph.reduction import Reading
 from bondgraph.slopes import operating_point
 from bondgraph.tidy import tidy_matrices
 
@@ -121,9 +121,9 @@ def linearize(
     closed = {name: law for name, law in merged.items() if name not in names}
     read = {name for law in closed.values() for name in law.free_symbols}
     shown = _shown(equations, closed, outputs)
-    equations = equations.with_readings({*read, *shown})
+    equations = equations.with_readings({*read, *shown, *equations.integrals.values()})
     outer = _outer(equations, closed, read, inputs)
-    known = {*equations.signals, *equations.parameters, *read}
+    known = {*equations.signals, *equations.integrals, *equations.parameters, *read, TIME}
     system = ClosedRows(equations, closed, outer, operating_point(at, known))
     gone = [equations.inputs.index(port.given) for port in held]
     slips = _slips(system, held, gone)
@@ -172,6 +172,7 @@ def _outer(
         raise SignalError(f"inputs must be a list of names, not {inputs!r}")
     given = {port.given for port in equations.ports if port.element.name in closed}
     states = {law.state for law in closed.values() if isinstance(law, ExpressionLaw)}
+    states |= set(equations.integrals)
     asked = {sp.Symbol(str(normal(str(name)))) for name in inputs}
     for name in sorted(asked, key=str):
         if name in equations.inputs and name not in given:
@@ -193,6 +194,7 @@ def _shown(
     if isinstance(outputs, str):
         raise SignalError(f"outputs must be a list of signals, not {outputs!r}")
     own = {law.state for law in closed.values() if isinstance(law, ExpressionLaw) and law.state}
+    own |= set(equations.integrals)
     shown = [sp.Symbol(str(normal(str(name)))) for name in outputs]
     for name in shown:
         if name not in equations.signals and name not in own:

@@ -25,13 +25,15 @@ def check_names(elements: Sequence[Element]) -> None:
         raise StructureError(
             f"node {owner.name!r}: 't' is the time; give its variable another name"
         )
-    _check_values(elements, signals)
+    _check_own_names(elements)
     _check_assumptions(elements, signals)
 
 
 def _owned(element: Element) -> Iterable[sp.Symbol]:
     """The quantities that this element alone imposes or keeps: its input and its law's state."""
     own = [element.given] if element.given is not None else []
+    if element.integral is not None:
+        own.append(element.integral)
     if isinstance(element.law, ExpressionLaw) and element.law.state is not None:
         own.append(element.law.state)
     return own
@@ -48,22 +50,21 @@ def _check_owner(owners: dict[sp.Symbol, Element], name: sp.Symbol, element: Ele
 
 
 def named_by(element: Element) -> tuple[sp.Symbol, ...]:
-    """The signals an element names: its effort, its flow, and the state its law owns."""
-    named = [name for name in (element.effort, element.flow) if name is not None]
+    """The signals an element names: its effort, its flow, and the state its law or itself owns."""
+    named = [n for n in (element.effort, element.flow, element.integral) if n is not None]
     if isinstance(element.law, ExpressionLaw) and element.law.state is not None:
         named.append(element.law.state)
     return tuple(named)
 
 
-def _check_values(elements: Sequence[Element], signals: set[sp.Symbol]) -> None:
+def _check_own_names(elements: Sequence[Element]) -> None:
+    """Refuse a value that is nothing but the element's own variable: it was meant as a parameter."""
     for element in elements:
-        used = element.value.free_symbols if element.value is not None else set()
-        for name in sorted(used, key=str):
-            if sp.Symbol(name.name) in signals:
-                raise StructureError(
-                    f"node {element.name!r}: its value uses {name}, which names a signal of the "
-                    "graph; a value must be constant, and a parameter needs a name of its own"
-                )
+        if element.value is not None and element.value in named_by(element):
+            raise StructureError(
+                f"node {element.name!r}: its value is {element.value}, the name of its own variable; "
+                "a parameter needs a name of its own"
+            )
 
 
 def _check_assumptions(elements: Sequence[Element], signals: set[sp.Symbol]) -> None:
@@ -102,12 +103,12 @@ def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:
 
 
 def _share_a_signal(graph: Any, one: set[Hashable], other: set[Hashable]) -> bool:
-    """Whether a law of one part reads a signal of the other, or both have an input of one name."""
+    """Whether a law or value of one part reads a signal of the other, or both share an input."""
     named, inputs, read = [], [], []
     for part in (one, other):
         elements = [graph.nodes[name]["element"] for name in part]
         named.append({name for element in elements for name in named_by(element)})
         inputs.append({element.given for element in elements if element.given is not None})
-        laws = [element.law for element in elements if element.law is not None]
-        read.append({name for law in laws for name in law.free_symbols})
+        used = [part for e in elements for part in (e.law, e.value) if part is not None]
+        read.append({name for part in used for name in part.free_symbols})
     return bool(inputs[0] & inputs[1] or read[0] & named[1] or read[1] & named[0])

@@ -7,7 +7,8 @@ import sympy as sp
 from bondgraph.elements import Kind
 from bondgraph.errors import StructureError
 from bondgraph.junction import JunctionStructure
-from bondgraph.reduction import Reading, Reduction
+from bondgraph.modulation import Reading
+from bondgraph.reduction import Reduction
 from bondgraph.residues import is_zero
 
 PortRow = Mapping[int, sp.Expr]

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 import sympy as sp
 
 from bondgraph.exact import Row, add_scaled, solve
-from bondgraph.reduction import Reading
+from bondgraph.modulation import Reading
 
 
 def reached(A: Sequence[Row], start: Iterable[int]) -> list[int]:

@@ -8,7 +8,7 @@ from bondgraph.errors import DependentSourceError
 from bondgraph.exact import Row
 from bondgraph.junction import Port
 from bondgraph.laws import DryFriction, Law
-from bondgraph.reduction import Reading
+from bondgraph.modulation import Reading
 
 
 def check_laws(

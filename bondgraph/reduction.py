@@ -1,25 +1,18 @@
 """Resistances and dependent storages folded away: any row over the ports as ``F x + D u + H x' + K u'``."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import networkx as nx
 import sympy as sp
 
-from bondgraph.elements import STORAGES, Kind
-from bondgraph.errors import AlgebraicLoopError, CausalityError
+from bondgraph.elements import DETECTORS, STORAGES, Kind
+from bondgraph.errors import AlgebraicLoopError, CausalityError, DependentSourceError
 from bondgraph.exact import Row, SingularError, add_scaled, scaled, solve
+from bondgraph.expressions import TIME
 from bondgraph.junction import JunctionStructure, Port
-
-
-@dataclass(frozen=True)
-class Reading:
-    """One signal as ``F x + D u + H x' + K u'``: sparse rows over the states and the inputs."""
-
-    F: Row
-    D: Row
-    H: Row
-    K: Row
+from bondgraph.modulation import Motion, Reading, moving_names, settled
 
 
 @dataclass(frozen=True)
@@ -36,17 +29,20 @@ class Reduction:
     resistive: tuple[int, ...]
     imposed: tuple[int, ...]
     inputs: tuple[sp.Symbol, ...]
+    #: The names in values that change in time; None where all values are constant.
+    motion: Motion | None
     _columns: Mapping[int, Reading]
+
+    @property
+    def names(self) -> tuple[sp.Symbol, ...]:
+        """The symbols of the states."""
+        return tuple(self.structure.ports[port].given for port in self.states)
 
     def reading(self, row: Mapping[int, sp.Expr]) -> Reading:
         """A row over what the ports give, rewritten over states, inputs and their rates."""
-        result = Reading({}, {}, {}, {})
+        result = Reading.zero()
         for port, factor in row.items():
-            column = self._columns[port]
-            add_scaled(result.F, column.F, factor)
-            add_scaled(result.D, column.D, factor)
-            add_scaled(result.H, column.H, factor)
-            add_scaled(result.K, column.K, factor)
+            result.add(self._columns[port], factor)
         return result
 
 
@@ -61,20 +57,89 @@ def reduce_ports(structure: JunctionStructure) -> Reduction:
     resistive = tuple(
         i for i, port in enumerate(ports) if port.element.kind is Kind.R and not _fixed(port)
     )
-    imposed = tuple(i for i, port in enumerate(ports) if _fixed(port))
+    imposed = tuple(i for i, port in enumerate(ports) if _fixed(port) and not _detects(port))
     inputs = tuple(dict.fromkeys(ports[i].given for i in imposed))
     one = sp.Integer(1)
     columns = {port: Reading({at: one}, {}, {}, {}) for at, port in enumerate(states)}
     columns |= {i: Reading({}, {inputs.index(ports[i].given): one}, {}, {}) for i in imposed}
-    found = Reduction(structure, states, dependent, resistive, imposed, inputs, columns)
+    columns |= {i: Reading.zero() for i, port in enumerate(ports) if _detects(port)}
+    found = Reduction(structure, states, dependent, resistive, imposed, inputs, None, columns)
     columns |= _resistances(found)
+    moving = moving_names(structure)
+    if moving:
+        found = _in_motion(found, moving, columns)
     columns |= {port: _dependent(found, port) for port in dependent}
     return found
+
+
+def _in_motion(found: Reduction, moving: set[sp.Symbol], columns: dict[int, Reading]) -> Reduction:
+    """The same with values over states, integrals, inputs and time, and the rates of these."""
+    structure = found.structure
+    base = {*found.names, *found.inputs, *structure.states_of_laws, TIME}
+    rows = signal_rows(structure)
+
+    def express(name: sp.Symbol) -> sp.Expr:
+        return _expression(found, rows[name], name)
+
+    structure = settled(structure, moving, base, express)
+    found = replace(found, structure=structure)
+    columns |= _resistances(found)
+    one = sp.Integer(1)
+    rates = {name: Reading({}, {}, {at: one}, {}) for at, name in enumerate(found.names)}
+    rates |= {name: Reading({}, {}, {}, {at: one}) for at, name in enumerate(found.inputs)}
+    for at, port in enumerate(structure.ports):
+        own = getattr(port.element.law, "state", None) or port.element.integral
+        if own is not None and own in moving | _within(structure):
+            _independent(found, structure.rows[at], own)
+            rates[own] = found.reading(structure.rows[at])
+    return replace(found, motion=Motion(found.names, found.inputs, MappingProxyType(rates)))
+
+
+def _within(structure: JunctionStructure) -> set[sp.Symbol]:
+    """The names in the entries of a structure."""
+    return {n for row in structure.rows for entry in row.values() for n in entry.free_symbols}
+
+
+def _expression(found: Reduction, row: Mapping[int, sp.Expr], name: sp.Symbol) -> sp.Expr:
+    """A signal that a value uses, over states and inputs."""
+    _independent(found, row, name)
+    reading = found.reading(row)
+    terms = [entry * found.names[j] for j, entry in reading.F.items()]
+    return sp.Add(*terms, *(entry * found.inputs[j] for j, entry in reading.D.items()))
+
+
+def _independent(found: Reduction, row: Mapping[int, sp.Expr], name: sp.Symbol) -> None:
+    """Refuse a signal that shows what a dependent storage gives: it is ruled by accelerations."""
+    for port in row:
+        if port in found.dependent:
+            dependent = found.structure.ports[port].element.name
+            raise DependentSourceError(
+                f"a value depends on {name}, which shows what the dependent storage {dependent!r} gives, "
+                "and so on the rates of states; let it use a state, or an integral of a flow"
+            )
+
+
+def signal_rows(structure: JunctionStructure) -> dict[sp.Symbol, Mapping[int, sp.Expr]]:
+    """What every name stands for, over what the ports give; the first of several."""
+    rows: dict[sp.Symbol, Mapping[int, sp.Expr]] = {}
+    for at, port in enumerate(structure.ports):
+        rows.setdefault(port.given, {at: sp.Integer(1)})
+        rows.setdefault(port.received, structure.rows[at])
+    for name, row in structure.common.items():
+        element = structure.elements[name]
+        symbol = element.effort if element.kind is Kind.ZERO else element.flow
+        if symbol is not None:
+            rows.setdefault(symbol, row)
+    return rows
 
 
 def is_storage(port: Port) -> bool:
     """Whether the port is a linear storage; one with a law counts as an imposed port."""
     return port.element.kind in STORAGES and not _fixed(port)
+
+
+def _detects(port: Port) -> bool:
+    return port.element.kind in DETECTORS
 
 
 def _fixed(port: Port) -> bool:
@@ -97,7 +162,12 @@ def _dependent(reduction: Reduction, port: int) -> Reading:
             "have integral causality; please report this graph"
         )
     value, ruled = structure.ports[port].element.constant, reduction.reading(row)
-    return Reading({}, {}, scaled(ruled.F, value), scaled(ruled.D, value))
+    result = Reading({}, {}, scaled(ruled.F, value), scaled(ruled.D, value))
+    if reduction.motion is not None:
+        for symbols, rates in ((reduction.names, result.H), (reduction.inputs, result.K)):
+            for j, entry in list(rates.items()):
+                reduction.motion.add_rate(result, entry, symbols[j])
+    return result
 
 
 def _resistances(reduction: Reduction) -> dict[int, Reading]:

@@ -148,7 +148,7 @@ def is_zero(expr: sp.Expr) -> bool:
         return bool(expr.p == 0)
     if expr.is_Symbol:
         return False
-    if not is_rational_function(expr):
+    if not decided_by_residues(expr):
         return bool(expr.equals(0))
     try:
         return residues()(expr) == 0 and residues(1)(expr) == 0
@@ -163,3 +163,14 @@ def is_rational_function(expr: sp.Expr) -> bool:
     if expr.is_Pow:
         return bool(expr.exp.is_Integer) and is_rational_function(expr.base)
     return bool(expr.is_Add or expr.is_Mul) and all(map(is_rational_function, expr.args))
+
+
+def decided_by_residues(expr: sp.Expr) -> bool:
+    """Whether residues know every identity that could hold: no roots, no functions but the known ones."""
+    if expr.is_Rational or expr.is_Symbol:
+        return True
+    if expr.is_Pow:
+        return bool(expr.exp.is_Integer) and decided_by_residues(expr.base)
+    if isinstance(expr, KNOWN_FUNCTIONS):
+        return decided_by_residues(expr.args[0])
+    return bool(expr.is_Add or expr.is_Mul) and all(map(decided_by_residues, expr.args))

@@ -1,6 +1,6 @@
 """Entries in the form in which a person would write them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import sympy as sp
 
@@ -30,18 +30,53 @@ def tidy_matrices(parts: Sequence[tuple[list[Row], int]]) -> list[sp.ImmutableSp
 def tidy(expr: sp.Expr) -> sp.Expr:
     """The shortest of an expression's plain, cancelled, factored and by-symbol forms.
 
-    Long expressions, and those with functions or roots, stay as they are.
+    Sines and cosines of one angle are known to belong together. Long expressions, and those with roots
+    or other functions, stay as they are.
+
+    >>> J, m, l, theta = sp.symbols("J m l theta")
+    >>> tidy(J + m*l**2*sp.sin(theta)**2 + m*l**2*sp.cos(theta)**2)
+    J + l**2*m
     """
-    if expr.is_Atom or not is_rational_function(expr):
+    if expr.is_Atom or expr.count_ops() > MOST_OPERATIONS or expanded_terms(expr) > MOST_TERMS:
         return expr
-    if expr.count_ops() > MOST_OPERATIONS or expanded_terms(expr) > MOST_TERMS:
+    turning = sorted(expr.atoms(sp.sin, sp.cos), key=str)
+    # Sines and cosines count as symbols that know their squares' sum.
+    named = {part: sp.Dummy(str(part)) for part in turning}
+    plain = expr.xreplace(named)
+    if not is_rational_function(plain):
         return expr
     if is_zero(expr):
         return sp.Integer(0)
-    forms = (expr, sp.cancel(expr), sp.factor(expr), by_linear_symbols(expr))
+    found = _forms(plain)
+    for sine, cosine in _pairs(named):
+        found += _forms(_without_square(plain, sine, cosine))
+        found += _forms(_without_square(plain, cosine, sine))
+    back = {dummy: part for part, dummy in named.items()}
+    forms = [form.xreplace(back) for form in found]
     least = min(form.count_ops() for form in forms)
     shortest = dict.fromkeys(form for form in forms if form.count_ops() == least)
     return min(shortest, key=lambda form: len(str(form)))
+
+
+def _forms(expr: sp.Expr) -> list[sp.Expr]:
+    return [expr, sp.cancel(expr), sp.factor(expr), by_linear_symbols(expr)]
+
+
+def _pairs(named: Mapping[sp.Expr, sp.Dummy]) -> list[tuple[sp.Dummy, sp.Dummy]]:
+    """The sine and the cosine of each angle that has both."""
+    return [
+        (dummy, named[sp.cos(*part.args)])
+        for part, dummy in named.items()
+        if isinstance(part, sp.sin) and sp.cos(*part.args) in named
+    ]
+
+
+def _without_square(expr: sp.Expr, one: sp.Dummy, other: sp.Dummy) -> sp.Expr:
+    """The expression with ``one^2 = 1 - other^2`` wherever it holds a higher power of one."""
+    over, under = (
+        sp.rem(part, one**2 + other**2 - 1, one) for part in sp.fraction(sp.together(expr))
+    )
+    return over / under
 
 
 def by_linear_symbols(expr: sp.Expr) -> sp.Expr:

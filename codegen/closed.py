@@ -15,7 +15,7 @@ from codegen.arrays import Array
 from codegen.friction import Hold, exact_rows, fair_share, hold
 from codegen.instant import Binding, Evaluation, Instant
 from codegen.loops import solve_loop
-from codegen.numbers import Numbers, exact_parameters, numbers
+from codegen.numbers import Numbers, assembled, check_values, exact_parameters, numbers
 from codegen.pieces import Piece
 from codegen.program import Group, Program
 
@@ -35,6 +35,7 @@ class Snapshot:
     """Everything at one instant: states x and z, inputs, their rates, readings, the rate of s.
 
     ``caps``: the breakaway effort of each friction port. ``external``: the external inputs.
+    ``numbers``: the matrices, as they are at this instant.
     """
 
     x: Array
@@ -45,6 +46,7 @@ class Snapshot:
     rate: Array
     caps: Array
     external: Array
+    numbers: Numbers
 
 
 class ClosedModel:
@@ -55,7 +57,6 @@ class ClosedModel:
     ) -> None:
         exact = exact_parameters(parameters)
         self.program, self.equations, self.parameters = program, equations, exact
-        self.numbers: Numbers = numbers(program, equations, exact)
         self.friction_inputs = [port.input for port in program.friction]
         self.friction_readings = [port.reading for port in program.friction]
         self._exact_F, self._exact_D = exact_rows(program, equations, exact)
@@ -66,10 +67,21 @@ class ClosedModel:
         self._coupled = binding.function(program.coupled.values)
         self._friction = binding.function(program.friction_values)
         self._outside = [program.inputs.index(n) for n in program.external if n in program.inputs]
-        self._rated = any(M.any() for M in (self.numbers.R, self.numbers.G, self.numbers.D))
+        self._coefficients = binding.function(program.coefficients)
+        self._constant = None if program.varying else numbers(program, equations, exact)
+        if program.varying:
+            check_values(equations, exact)
+        self._rated = any(program.layout[name].rows for name in "EDHK")
         self._joint = program.joint
         self._maps: dict[Mode, AffineMap | None] = {}
         self._holds: dict[Mode, Hold] = {}
+
+    @property
+    def constant(self) -> Numbers:
+        """The matrices of a model whose coefficients don't change."""
+        if self._constant is None:
+            raise SimulationError("the coefficients of this model change in time")
+        return self._constant
 
     @property
     def size(self) -> int:
@@ -80,14 +92,32 @@ class ClosedModel:
         """Whether a friction port's slip depends at once on efforts of friction ports."""
         return bool(self._exact_D[port, :].todok())
 
-    def hold(self, mode: Mode) -> Hold:
-        """The holding equations of the ports that stick in a mode."""
-        if mode not in self._holds:
+    def hold(self, mode: Mode, numbers: Numbers) -> Hold:
+        """The holding equations of the ports that stick in a mode, with the matrices of an instant."""
+        if mode not in self._holds or self.program.varying:
             ports = tuple(i for i, sign in enumerate(mode) if sign == 0)
-            found = hold(self.program, self.numbers, self._exact_F, self._exact_D, ports)
+            found = hold(self.program, numbers, self._exact_F, self._exact_D, ports)
             self._check_differentiable(found)
             self._holds[mode] = found
         return self._holds[mode]
+
+    def numbers(self, now: Instant) -> Numbers:
+        """The matrices at an instant, of which the states and the external inputs must be known.
+
+        Raises `SimulationError` where a value has no finite number or A no inverse.
+        """
+        if self._constant is not None:
+            return self._constant
+        values = self._coefficients(now)
+        if np.isfinite(values).all():
+            try:
+                return assembled(self.program, values)
+            except np.linalg.LinAlgError:
+                pass
+        raise SimulationError(
+            f"at t = {now.t:.9g} a value is not finite, or A has no inverse; state {now.x.tolist()} "
+            f"{now.z.tolist()}"
+        )
 
     def at(self, t: float, s: Array, pieces: Sequence[Piece], mode: Mode) -> Snapshot:
         """Every variable at one time, with the inputs' pieces and the friction mode given."""
@@ -96,7 +126,7 @@ class ClosedModel:
             affine = self.affine_map(mode, len(w))
             if affine is not None:
                 x, z, u, du, y, rate, caps = affine(s, w, dw)
-                now = Snapshot(x, z, u, du, y, rate, caps, w)
+                now = Snapshot(x, z, u, du, y, rate, caps, w, self.constant)
                 if not mode or min(now.caps) >= 0:
                     return now
         return self.evaluate(t, s, w, dw, mode)
@@ -125,11 +155,13 @@ class ClosedModel:
         self, t: float, s: Array, w: Array, dw: Array, mode: Mode, checked: bool = True
     ) -> Snapshot:
         """As `at`, from the external inputs' values and rates; ``checked``: friction levels, for sign."""
-        program, numbers = self.program, self.numbers
+        program = self.program
         n, own = len(program.states), len(program.law_states)
         m, p = len(program.inputs), len(program.readings)
         xi, z = s[:n], s[n : n + own]
-        now = Instant(t, xi, z, np.zeros(m), np.zeros(m), np.zeros(p), w, dw, np.zeros(len(mode)))
+        u, du, y, caps = np.zeros(m), np.zeros(m), np.zeros(p), np.zeros(len(mode))
+        now = Instant(t, xi, z, u, du, y, w, dw, caps, None)  # type: ignore[arg-type]
+        numbers = now.numbers = self.numbers(now)
         now.u[self._outside], now.du[self._outside] = (
             w[: len(self._outside)],
             dw[: len(self._outside)],
@@ -138,7 +170,8 @@ class ClosedModel:
         now.u[known] = self._known(now)
         if self._rated:
             now.du[known] = self._known_rates(now)
-        now.x = xi + numbers.R @ now.u
+        if not program.varying:
+            now.x = xi + numbers.R @ now.u
         now.y = numbers.F @ now.x + numbers.D @ now.u + numbers.G @ now.du
         for group, function in zip(program.groups, self._groups, strict=True):
             self._give(now, group, function)
@@ -146,16 +179,18 @@ class ClosedModel:
             self._rub(now, mode, checked)
         rate = np.zeros(self.size)
         rate[:n] = numbers.P @ now.x + numbers.Q @ now.u
+        if program.varying:
+            rate[:n] += numbers.R @ now.du
         rate[n : n + own] = now.y[list(program.law_rates)]
-        rate += self._correction(mode, rate, now.du)
-        return Snapshot(now.x, z, now.u, now.du, now.y, rate, now.caps, w)
+        rate += self._correction(mode, rate, now.du, numbers)
+        return Snapshot(now.x, z, now.u, now.du, now.y, rate, now.caps, w, numbers)
 
     def affine_map(self, mode: Mode, inputs: int) -> AffineMap | None:
         """An affine mode's matrix; None for other models, and where redundant ports share a load."""
         if not self.program.affine:
             return None
         if mode not in self._maps:
-            redundant = 0 in mode and len(self.hold(mode).share) > 0
+            redundant = 0 in mode and len(self.hold(mode, self.constant).share) > 0
             self._maps[mode] = None if redundant else self._affine_map(mode, inputs)
         return self._maps[mode]
 
@@ -171,23 +206,22 @@ class ClosedModel:
         # Far out the constant part of a law no longer swallows digits of its slope.
         columns = [(np.concatenate(point(FAR * e)) - origin) / FAR for e in np.eye(length)]
         affine = AffineMap([len(part) for part in parts], np.column_stack([*columns, origin]))
-        affine.rows(RATE)[:] += self._correction(
-            mode, affine.rows(RATE), affine.rows(RATES_OF_INPUTS)
-        )
+        rate, du = affine.rows(RATE), affine.rows(RATES_OF_INPUTS)
+        rate += self._correction(mode, rate, du, self.constant)
         return affine
 
-    def _correction(self, mode: Mode, rate: Array, du: Array) -> Array:
+    def _correction(self, mode: Mode, rate: Array, du: Array, numbers: Numbers) -> Array:
         """What rounding in the holding efforts has to be added to rates, or slips that stick would drift."""
         change = np.zeros_like(rate)
         if 0 in mode:
-            held, n = self.hold(mode), len(self.program.states)
-            fixed = held.slip_x @ self.numbers.R + held.slip_u
+            held, n = self.hold(mode, numbers), len(self.program.states)
+            fixed = held.slip_u + (0.0 if self.program.varying else held.slip_x @ numbers.R)
             change[:n] = held.take_away @ (held.slip_x @ rate[:n] + fixed @ du)
         return change
 
     def _give(self, now: Instant, group: Group, function: Evaluation) -> None:
         """Evaluate one group of laws, or solve it if it is a loop."""
-        columns, D = list(group.inputs), self.numbers.D
+        columns, D = list(group.inputs), now.numbers.D
         if group.loop:
             rows = list(group.readings)
             solve_loop(now, columns, rows, D, lambda at: at.u[columns] - function(at), group.ports)
@@ -204,8 +238,9 @@ class ClosedModel:
             against = self._against(now, mode, checked)
             now.u[self.friction_inputs] = against
             if stuck:
-                now.u[held] = self.hold(mode).efforts(now.x, now.u, now.du, held, now.caps[stuck])
-            now.y += self.numbers.D[:, self.friction_inputs] @ now.u[self.friction_inputs]
+                rule = self.hold(mode, now.numbers)
+                now.u[held] = rule.efforts(now.x, now.u, now.du, held, now.caps[stuck])
+            now.y += now.numbers.D[:, self.friction_inputs] @ now.u[self.friction_inputs]
 
     def _rub_jointly(
         self, now: Instant, mode: Mode, stuck: list[int], held: list[int], checked: bool
@@ -216,7 +251,7 @@ class ClosedModel:
         def residual(at: Instant) -> Array:
             left = at.u[self.friction_inputs] - self._against(at, mode, checked)
             if stuck:
-                hold = self.hold(mode)
+                hold = self.hold(mode, at.numbers)
                 rule = hold.X @ at.x + hold.U @ at.u + hold.V @ at.du
                 left[stuck] = np.concatenate([rule, hold.share @ at.u[held]])
             return np.concatenate([left, at.u[coupled] - self._coupled(at)])
@@ -224,10 +259,10 @@ class ClosedModel:
         names = [port.name for port in self.program.friction] + list(self.program.coupled.ports)
         columns = self.friction_inputs + coupled
         rows = self.friction_readings + list(self.program.coupled.readings)
-        solve_loop(now, columns, rows, self.numbers.D, residual, names)
-        if stuck and len(self.hold(mode).share):
-            fair = fair_share(now.u[held], self.hold(mode).share, now.caps[stuck])
-            now.give(held, fair - now.u[held], self.numbers.D)
+        solve_loop(now, columns, rows, now.numbers.D, residual, names)
+        if stuck and len(share := self.hold(mode, now.numbers).share):
+            fair = fair_share(now.u[held], share, now.caps[stuck])
+            now.give(held, fair - now.u[held], now.numbers.D)
 
     def _against(self, now: Instant, mode: Mode, checked: bool) -> Array:
         """Slipping ports' efforts, zero at sticking ones; notes every port's breakaway effort."""

@@ -45,7 +45,7 @@ def close_ports(
     by_port = merged_laws(equations, overrides)
     _check_assumptions(equations, by_port)
     read = {name for closed in by_port.values() for name in closed.free_symbols}
-    equations = equations.with_readings(read)
+    equations = equations.with_readings({*read, *equations.integrals.values()})
     ports = {port.element.name: port for port in equations.ports}
     _check_parameters(equations, by_port, parameters)
     for name, port in ports.items():
@@ -63,6 +63,7 @@ def close_ports(
         for given, closed in laws.items()
         if isinstance(closed, ExpressionLaw) and closed.state is not None
     }
+    states = {**states, **equations.integrals}
     sorted_laws = _sort(equations, laws, set(states), parameters)
     known, order, friction, coupled, joint = sorted_laws
     return Closing(
@@ -98,6 +99,7 @@ def _check_parameters(
     """Refuse a parameter that names a signal, or an input that a law gives already."""
     closed = {port.given for port in equations.ports if port.element.name in laws}
     own = {part.state for part in laws.values() if isinstance(part, ExpressionLaw) and part.state}
+    own |= set(equations.integrals)
     signals = set(equations.signals) - set(equations.inputs)
     taken = {*signals, *closed, *own, TIME}
     for name in sorted(taken, key=str):

@@ -86,7 +86,8 @@ def _at_rest(model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mo
     """Remove what slip is left at sticking ports, along ``A^-1 F^T``: no energy but the slip's own."""
     if all(mode):
         return s
-    held, now = model.hold(mode), model.at(t, s, pieces, mode)
+    now = model.at(t, s, pieces, mode)
+    held = model.hold(mode, now.numbers)
     n = len(model.program.states)
     s = s.copy()
     s[:n] += held.take_away @ (held.slip_x @ now.x + held.slip_u @ now.u)

@@ -10,6 +10,7 @@ import sympy as sp
 from bondgraph import SimulationError
 from bondgraph.expressions import TIME
 from codegen.arrays import Array
+from codegen.numbers import Numbers
 from codegen.numpy_backend import compiled
 from codegen.program import Block, Program
 
@@ -20,6 +21,7 @@ class Instant:
 
     ``x``, ``z``: states, and states that laws own. ``du``: rates of those inputs that have one. ``w``,
     ``dw``: external inputs and their rates. ``caps``: breakaway efforts of the friction ports.
+    ``numbers``: the matrices, as they are at this instant.
     """
 
     t: float
@@ -31,6 +33,7 @@ class Instant:
     w: Array
     dw: Array
     caps: Array
+    numbers: Numbers
 
     def give(self, columns: Sequence[int], values: Array, D: Array) -> None:
         """Add to inputs, and to the readings that show them at once."""

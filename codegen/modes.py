@@ -58,7 +58,7 @@ class Scales:
 
 def scales(model: ClosedModel, now: Snapshot, t: float = 0.0, peaks: Peaks | None = None) -> Scales:
     """The rounding to be expected, from the magnitude of the terms that cancel, and of the time's."""
-    readings, numbers = model.friction_readings, model.numbers
+    readings, numbers = model.friction_readings, now.numbers
     peaks = peaks or Peaks.none(model)
     x, u = np.maximum(np.abs(now.x), peaks.x), np.maximum(np.abs(now.u), peaks.u)
     late = 16 * np.spacing(abs(t)) * np.abs(slip_rates(model, now))
@@ -196,7 +196,7 @@ def _later_verdict(model: ClosedModel, later: Snapshot, size: Scales, i: int, si
 
 def slip_rates(model: ClosedModel, now: Snapshot) -> Array:
     """How fast each friction port's slip changes, inputs that cannot be differentiated held."""
-    readings, numbers = model.friction_readings, model.numbers
+    readings, numbers = model.friction_readings, now.numbers
     x_rate = numbers.P @ now.x + numbers.Q @ now.u + numbers.R @ now.du
     result: Array = numbers.F[readings] @ x_rate + numbers.D[readings] @ now.du
     return result

@@ -53,28 +53,36 @@ def exact_parameters(parameters: Mapping[str, object]) -> dict[str, sp.Rational]
 def numbers(
     program: Program, equations: StateEquations, parameters: Mapping[str, sp.Rational]
 ) -> Numbers:
-    """Evaluate the coefficients and solve for the rates once.
+    """Evaluate constant coefficients and solve for the rates once.
 
     Raises `ParameterError` if a coefficient is not finite or A is singular at these parameters;
     the latter is decided exactly.
     """
+    check_values(equations, parameters)
+    return assembled(program, _values(program, equations, parameters))
+
+
+def check_values(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
+    """Refuse parameters that make a value zero or A singular, whatever changes in time."""
     _check_elements(equations, parameters)
-    matrices = _matrices(program, equations, parameters)
     _check_regular(equations, parameters)
+
+
+def assembled(program: Program, values: Array) -> Numbers:
+    """The matrices from the nonzero entries that `Program.coefficients` gives, solved for the rates."""
+    matrices: dict[str, Array] = {}
+    start = 0
+    for name, pattern in program.layout.items():
+        matrix = np.zeros(pattern.shape)
+        end = start + len(pattern.rows)
+        matrix[list(pattern.rows), list(pattern.columns)] = values[start:end]
+        matrices[name], start = matrix, end
     A = matrices["A"]
     solved = scaled_solve(A, np.hstack([matrices["J"], matrices["B"], matrices["E"]]))
     n, m = len(program.states), len(program.inputs)
     P, Q, R = solved[:, :n], solved[:, n : n + m], solved[:, n + m :]
-    H = matrices["H"]
-    return Numbers(
-        P,
-        Q,
-        R,
-        A,
-        F=matrices["F"] + H @ P,
-        D=matrices["D"] + H @ Q,
-        G=matrices["K"] + H @ R,
-    )
+    F, D, H, K = (matrices[name] for name in "FDHK")
+    return Numbers(P, Q, R, A, F=F + H @ P, D=D + H @ Q, G=K + H @ R)
 
 
 def scaled_solve(A: Array, right: Array) -> Array:
@@ -85,9 +93,10 @@ def scaled_solve(A: Array, right: Array) -> Array:
     return np.asarray(scale[:, None] * solved, dtype=float)
 
 
-def _matrices(
+def _values(
     program: Program, equations: StateEquations, parameters: Mapping[str, sp.Rational]
-) -> dict[str, Array]:
+) -> Array:
+    """The entries of all matrices at these parameters; `ParameterError` where one is not finite."""
     code = program.coefficients
     arguments = [float(parameters[name.name]) for name in code.arguments]
     try:
@@ -98,14 +107,7 @@ def _matrices(
         finite = False
     if not finite:
         raise ParameterError(_not_finite(equations, parameters))
-    result: dict[str, Array] = {}
-    start = 0
-    for name, pattern in program.layout.items():
-        matrix = np.zeros(pattern.shape)
-        end = start + len(pattern.rows)
-        matrix[list(pattern.rows), list(pattern.columns)] = values[start:end]
-        result[name], start = matrix, end
-    return result
+    return values
 
 
 def _not_finite(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> str:

@@ -10,7 +10,7 @@ from bondgraph import ParameterError, SignalError, StateEquations, StructureErro
 from bondgraph.elements import SOURCES, STORAGES, Element, Kind
 from bondgraph.expressions import TIME
 from bondgraph.laws import ExpressionLaw
-from bondgraph.reduction import Reading
+from bondgraph.modulation import Reading
 from codegen.arrays import Array
 from codegen.closed import ClosedModel
 from codegen.numbers import at_parameters
@@ -18,15 +18,16 @@ from codegen.numbers import at_parameters
 
 @dataclass(frozen=True)
 class Observer:
-    """The states, inputs and inputs' rates of every sample, and the equations that rule the rest.
+    """The states, inputs and both's rates of every sample, and the equations that rule the rest.
 
-    ``x`` (samples x states), ``u`` and ``du`` (samples x inputs), as the equations number them.
+    ``x`` and ``dx`` (samples x states), ``u`` and ``du`` (samples x inputs), as the equations number them.
     """
 
     time: Array
     model: ClosedModel
     columns: Mapping[str, Array]
     x: Array
+    dx: Array
     u: Array
     du: Array
 
@@ -60,14 +61,19 @@ class Observer:
 
     def energy(self, node: Hashable) -> Array:
         """The energy in an I or C: ``value * w^2/2`` of its co-energy variable, or its law's integral."""
-        element = self._equations.elements.get(node)
+        element = self._settled(node)
         if element is None or element.kind not in STORAGES:
             raise StructureError(f"{node!r} is not an I or a C; only storages have an energy")
         if isinstance(element.law, ExpressionLaw):
             return self._stored(element, element.law)
-        value = float(at_parameters(element.constant, self.model.parameters))
+        value = self._number(element.constant)
         ruling = element.flow if element.kind is Kind.I else element.effort
         return np.asarray(0.5 * value * self.signal(str(ruling)) ** 2, dtype=float)
+
+    def _settled(self, node: Hashable) -> Element | None:
+        """The element, its value over states, integrals, inputs and time."""
+        ports = self._equations.reduction.structure.ports
+        return next((port.element for port in ports if port.element.name == node), None)
 
     def _stored(self, element: Element, law: ExpressionLaw) -> Array:
         """The integral of a law over its own state, from 0."""
@@ -90,18 +96,21 @@ class Observer:
 
     def _values(self, reading: Reading) -> Array:
         """A reading at every sample."""
-        numbers = self.model.numbers
         result = np.zeros(len(self.time))
-        for row, table in ((reading.F, self.x), (reading.D, self.u), (reading.K, self.du)):
+        tables = (self.x, self.u, self.dx, self.du)
+        for row, table in zip(reading.parts, tables, strict=True):
             for column, entry in row.items():
                 result += self._number(entry) * table[:, column]
-        for column, entry in reading.H.items():
-            rate = self.x @ numbers.P[column] + self.u @ numbers.Q[column]
-            result += self._number(entry) * (rate + self.du @ numbers.R[column])
         return result
 
-    def _number(self, entry: sp.Expr) -> float:
-        value = sp.N(at_parameters(entry, self.model.parameters))
+    def _number(self, entry: sp.Expr) -> float | Array:
+        """A coefficient: a number, or a value for every sample where it changes in time."""
+        exact = at_parameters(entry, self.model.parameters)
+        names = sorted(exact.free_symbols, key=str)
+        if names:
+            given = [self.time if name == TIME else self.columns[name.name] for name in names]
+            return np.asarray(sp.lambdify(names, exact, modules="numpy")(*given), dtype=float)
+        value = sp.N(exact)
         if not value.is_real:
             raise ParameterError(f"{entry} has no real value at these parameters")
         return float(value)

@@ -7,7 +7,7 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph import DryFriction, ParameterError, StateEquations
+from bondgraph import DryFriction, ParameterError, StateEquations, StructureError
 from bondgraph.expressions import TIME
 from bondgraph.laws import SLIP, ExpressionLaw, Law
 from codegen.affine import is_affine
@@ -94,6 +94,8 @@ class Program:
     joint: bool
     #: Readings that a step must not turn into an impulse: outputs, and what laws read.
     read: tuple[int, ...]
+    #: Whether coefficients change in time, with states, external inputs or the time itself.
+    varying: bool
     #: Whether each friction mode is an affine system with constant coefficients.
     affine: bool
 
@@ -119,6 +121,7 @@ def lower(
         )
     closing = close_ports(equations, {} if laws is None else laws, given)
     equations = closing.equations
+    _check_varying(closing)
     taken = _all_names(equations, closing)
     expressions, layout = _coefficients(equations)
     friction, values = _friction(closing)
@@ -145,8 +148,32 @@ def lower(
         coupled=_group(closing, closing.coupled, True, taken),
         joint=closing.joint,
         read=_read(closing),
+        varying=bool(equations.varying),
         affine=_is_affine(closing, values, given),
     )
+
+
+def _check_varying(closing: Closing) -> None:
+    """Refuse values that depend on what laws give, and friction whose slip is a varying sum of speeds."""
+    equations = closing.equations
+    for name in equations.varying:
+        if name in closing.laws:
+            raise StructureError(
+                f"a value depends on {name}, which a law gives; let it use what that law reads"
+            )
+    for name in closing.friction:
+        row = equations.readings[closing.received[name]]
+        used = {
+            s
+            for part in (row.F, row.D, row.H, row.K)
+            for e in part.values()
+            for s in e.free_symbols
+        }
+        if used & set(equations.varying):
+            raise StructureError(
+                f"the slip at {closing.port_names[name]!r} is a sum of speeds whose factors change in time; "
+                "dry friction needs constant ones there: put a stiff spring between, or use a smooth law"
+            )
 
 
 def block(expressions: Sequence[sp.Expr], taken: Iterable[sp.Symbol] = ()) -> Block:
@@ -230,7 +257,7 @@ def _read(closing: Closing) -> tuple[int, ...]:
 
 def _is_affine(closing: Closing, friction: list[sp.Expr], parameters: set[str]) -> bool:
     """Whether all laws are affine and none has to be solved for; curves must be constant."""
-    if closing.joint or any(loop for _, loop in closing.order):
+    if closing.equations.varying or closing.joint or any(loop for _, loop in closing.order):
         return False
     given = [law.expression for law in closing.laws.values() if isinstance(law, ExpressionLaw)]
     rubbing = [law for law in closing.laws.values() if isinstance(law, DryFriction)]

@@ -59,7 +59,8 @@ class Simulator:
             now = self.closed.at(t, s, pieces, mode)
         n = len(self.closed.program.states)
         rate = now.rate[: len(self.states)].copy()
-        rate[:n] += self.closed.numbers.R @ now.du
+        if not self.closed.program.varying:
+            rate[:n] += now.numbers.R @ now.du
         return rate
 
     def run(
@@ -120,11 +121,10 @@ class Simulator:
         """The integrated vector at a state: x less what inputs that drive dependent storages add."""
         s = np.zeros(self.closed.size)
         s[: len(state)] = state
-        zeros = np.zeros(len(given))
-        if self.closed.numbers.R.any():
+        program, zeros = self.closed.program, np.zeros(len(given))
+        if program.layout["E"].rows and not program.varying:
             known = self.closed.evaluate(t, s, given, zeros, self._all_slipping())
-            n = len(self.closed.program.states)
-            s[:n] -= self.closed.numbers.R @ known.u
+            s[: len(program.states)] -= known.numbers.R @ known.u
         return s
 
     def _initial(self, initial: Mapping[str, float]) -> Array:
@@ -155,24 +155,44 @@ class Simulator:
         return [as_signal(inputs[name], name) for name in self.inputs]
 
     def _check_steps(self, signals: Sequence[Signal], times: Array) -> None:
-        """Refuse steps of inputs whose rate an output shows: it would be an impulse."""
-        program, G = self.closed.program, self.closed.numbers.G
+        """Refuse steps of inputs whose rate an output shows: it would be an impulse.
+
+        So are steps of inputs that drive a dependent storage by way of a ratio that changes.
+        """
+        program = self.closed.program
+        shown = self._shown_rates()
         for at, (name, signal) in enumerate(zip(self.inputs, signals, strict=True)):
             columns = [j for j, symbol in enumerate(program.inputs) if symbol.name == name]
             known = zip(program.known.inputs, program.known_uses, strict=True)
             columns += [j for j, used in known if at in used]
-            rows = [i for i in program.read if any(G[i, j] for j in columns)]
-            if not rows:
+            rows = [i for i in program.read if any(shown[i, j] for j in columns)]
+            driven = program.varying and any(j in program.layout["E"].columns for j in columns)
+            if not rows and not driven:
                 continue
+            where = (
+                f"{program.readings[rows[0]]} shows" if rows else "a dependent storage would see"
+            )
             for b, one, other in zip(
                 signal.breakpoints, signal.pieces, signal.pieces[1:], strict=False
             ):
                 jump = abs(one(b) - other(b))
                 if times[0] < b <= times[-1] and jump > 1e-12 * (abs(one(b)) + abs(other(b))):
                     raise SimulationError(
-                        f"input {name!r} steps at t = {b:g}, where {program.readings[rows[0]]} shows its "
-                        "rate and would be an impulse; smooth it with Lag or Ramp"
+                        f"input {name!r} steps at t = {b:g}, where {where} its rate and would be an "
+                        "impulse; smooth it with Lag or Ramp"
                     )
+
+    def _shown_rates(self) -> Array:
+        """Nonzero where a reading shows the rate of an input; where values change, where it may."""
+        program = self.closed.program
+        if not program.varying:
+            return self.closed.constant.G
+        rates, driven = program.layout["K"], program.layout["E"]
+        shown = np.zeros(rates.shape)
+        shown[list(rates.rows), list(rates.columns)] = 1.0
+        for i in set(program.layout["H"].rows):
+            shown[i, list(driven.columns)] = 1.0
+        return shown
 
     def _columns(
         self, times: Array, signals: Sequence[Signal], track: Track
@@ -195,7 +215,10 @@ class Simulator:
             for at, name in enumerate(names):
                 columns.setdefault(name.name, table[:, at].copy())
         x, u, du = (np.array([getattr(s, part) for s in shots]) for part in ("x", "u", "du"))
-        return columns, Observer(times, self.closed, columns, x, u, du)
+        dx = np.array([shot.rate[: len(program.states)] for shot in shots])
+        if not program.varying:
+            dx = dx + du @ self.closed.constant.R.T
+        return columns, Observer(times, self.closed, columns, x, dx, u, du)
 
 
 def simulator(

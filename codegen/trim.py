@@ -93,7 +93,7 @@ def _residual(
     """Rates and held slips, and what they are small against."""
     now = model.at(0.0, s, pieces, mode)
     stuck = [model.friction_readings[i] for i, sign in enumerate(mode) if sign == 0]
-    numbers, n = model.numbers, len(now.x)
+    numbers, n = now.numbers, len(now.x)
     terms = np.abs(numbers.P) @ np.abs(now.x) + np.abs(numbers.Q) @ np.abs(now.u)
     rates = np.concatenate([terms, np.ones(len(now.rate) - n)])
     held = np.abs(numbers.F[stuck]) @ np.abs(now.x) + np.abs(numbers.D[stuck]) @ np.abs(now.u)

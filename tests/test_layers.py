@@ -12,8 +12,8 @@ ROOT = Path(__file__).parents[1]
 ORDER = {
     "bondgraph": [
         "errors", "residues", "expressions", "laws", "elements", "elimination", "names", "graph", "strokes",
-        "causal_order", "regularity", "stories", "causality", "exact", "tidy", "junction", "reduction",
-        "rates", "outputs", "readings", "equations", "closures", "slopes", "constrained", "holding",
+        "causal_order", "regularity", "stories", "causality", "exact", "tidy", "junction", "modulation",
+        "reduction", "rates", "outputs", "readings", "equations", "closures", "slopes", "constrained", "holding",
         "closed_rows", "response", "linear",
     ],
     "codegen": [

@@ -32,8 +32,9 @@ def test_constructor_gives_a_node_of_plain_data(node: tuple, expected: tuple) ->
     assert type(node[1]["kind"]) is str
 
 
-def test_kinds_are_the_nine_of_the_table() -> None:
-    assert [str(kind) for kind in bg.Kind] == ["Se", "Sf", "I", "C", "R", "TF", "GY", "Zero", "One"]
+def test_kinds_are_those_of_textbooks() -> None:
+    kinds = ["Se", "Sf", "I", "C", "R", "TF", "GY", "Zero", "One", "De", "Df"]
+    assert [str(kind) for kind in bg.Kind] == kinds
 
 
 def _checked(*nodes: tuple) -> dict[object, Element]:

@@ -63,10 +63,9 @@ BAD = {
         bond_graph([bg.Se("s", "u"), bg.GY("g", "0"), bg.I("m", "m")], "s>g>m"),
         "'g': its value is zero",
     ),
-    "value of time": (_mass(m={"kind": "I", "value": "m*t"}), "'m'.*depends on the time"),
-    "value of a signal": (_mass(m={"kind": "I", "value": "1 + u"}), "'m': its value uses u"),
     "value named as its flow": (
-        _mass(m={"kind": "I", "value": "w", "flow": "w"}), "'m': its value uses w",
+        _mass(m={"kind": "I", "value": "w", "flow": "w"}),
+        "'m': its value is w, the name of its own variable",
     ),
     "value not a number": (_mass(m={"kind": "I", "value": float("nan")}), "'m': nan"),
     "value of another type": (_mass(m={"kind": "I", "value": [1]}), r"'m': \[1\]"),

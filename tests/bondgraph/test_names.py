@@ -33,9 +33,11 @@ def test_state_of_a_law_is_a_variable_of_its_own() -> None:
         bg.derive(_graph(bg.C("k", law="q_k/c"), bg.R("a", effort="q_k")))
 
 
-def test_value_may_not_use_a_signal() -> None:
-    with pytest.raises(bg.StructureError, match="'b': its value uses v"):
-        bg.derive(_graph(bg.R("b", "c*v")))
+def test_value_may_not_be_its_own_variable() -> None:
+    with pytest.raises(
+        bg.StructureError, match="'b': its value is f_b, the name of its own variable"
+    ):
+        bg.derive(_graph(bg.R("b", "f_b")))
 
 
 def test_one_symbol_object_for_one_name_is_accepted() -> None:

@@ -65,7 +65,7 @@ def test_held_ports_of_random_chains_do_not_accelerate(seed: int) -> None:
     rng = np.random.default_rng(seed)
     chain = random_chain(rng)
     run = simulator(bg.derive(chain.graph()), {})
-    hold = run.closed.hold(tuple([0] * len(chain.friction)))
+    hold = run.closed.hold(tuple([0] * len(chain.friction)), run.closed.constant)
     W, n = chain.W, len(chain.masses)
     assert len(hold.share) == len(W) - np.linalg.matrix_rank(W)
     forces = {f"P{i}": float(rng.normal()) for i in range(n)}
@@ -90,7 +90,7 @@ def test_remaining_slip_is_removed_by_an_impulse_at_the_held_ports(mode: tuple[i
     """What is added to M v lies in the rows of W: all other momentum, and so least energy, is kept."""
     numbers = {"m_1": 2.0, "m_2": 1.0, "L_1": 3.0, "L_2": 1.0, "r_1": 1, "r_2": 1}
     run = simulator(bg.derive(stacked_blocks()), numbers)
-    hold = run.closed.hold(mode)
+    hold = run.closed.hold(mode, run.closed.constant)
     M, W = np.diag([2.0, 1.0]), np.array([[1.0, 0.0], [-1.0, 1.0]])
     held = W[[i for i, sign in enumerate(mode) if sign == 0]]
     v = np.array([0.3, -0.8])
