@@ -13,8 +13,8 @@ ORDER = {
     "bondgraph": [
         "errors", "residues", "expressions", "laws", "elements", "elimination", "names", "graph", "strokes",
         "causal_order", "regularity", "stories", "causality", "exact", "tidy", "junction", "modulation",
-        "reduction", "rates", "outputs", "readings", "equations", "closures", "slopes", "constrained", "holding",
-        "closed_rows", "response", "linear",
+        "reduction", "rates", "outputs", "readings", "equations", "closures", "slopes", "constrained",
+        "holding", "closed_rows", "response", "linear",
     ],
     "codegen": [
         "arrays", "pieces", "signals", "affine", "closing", "program", "numpy_backend", "numbers",
