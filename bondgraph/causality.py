@@ -195,7 +195,8 @@ def _causal_graph(graph: "nx.DiGraph[Hashable]", strokes: Strokes) -> CausalGrap
         for node, element in enumerate(strokes.elements)
         if element.kind in STORAGES
     }
-    ends = [strokes.names[end] for end in strokes.end if end is not None]
+    owners = [element.owner or strokes.names[at] for at, element in enumerate(strokes.elements)]
+    ends = [owners[end] for end in strokes.end if end is not None]
     return CausalGraph(
         graph=graph,
         strokes=MappingProxyType(dict(zip(declared.values(), ends, strict=True))),

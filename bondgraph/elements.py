@@ -39,9 +39,9 @@ POWER_INTO = frozenset({Kind.I, Kind.C, Kind.R, *DETECTORS})
 KEYS: dict[Kind, frozenset[str]] = {
     Kind.SE: frozenset({"value", "flow", "unit"}),
     Kind.SF: frozenset({"value", "effort", "unit"}),
-    Kind.I: frozenset({"value", "effort", "flow", "law", "priority", "unit"}),
-    Kind.C: frozenset({"value", "effort", "flow", "law", "priority", "unit"}),
-    Kind.R: frozenset({"value", "effort", "flow", "law", "gives", "unit"}),
+    Kind.I: frozenset({"value", "effort", "flow", "law", "energy", "ports", "priority", "unit"}),
+    Kind.C: frozenset({"value", "effort", "flow", "law", "energy", "ports", "priority", "unit"}),
+    Kind.R: frozenset({"value", "effort", "flow", "law", "ports", "gives", "unit"}),
     Kind.TF: frozenset({"value", "unit"}),
     Kind.GY: frozenset({"value", "unit"}),
     Kind.ZERO: frozenset({"effort"}),
@@ -58,7 +58,9 @@ class Element:
 
     A source's ``value`` is None: what it gives is its input, closed by ``law`` if it is known.
     ``gives`` is "effort" or "flow" where the causality is fixed: sources, open ports, laws, detectors.
-    ``integral``: the state that a detector makes of what it reads.
+    ``integral``: the state that a detector makes of what it reads. ``row``: of a port of a field, what
+    it has per unit of each port's variable, by the ports' names; ``owner``: the field's node.
+    ``energy``: of a storage with an energy function, that function.
     """
 
     name: Hashable
@@ -71,6 +73,9 @@ class Element:
     gives: str | None = None
     unit: str | None = None
     integral: sp.Symbol | None = None
+    row: tuple[tuple[Hashable, sp.Expr], ...] = ()
+    owner: Hashable | None = None
+    energy: sp.Expr | None = None
 
     @property
     def one_port(self) -> bool:
@@ -115,7 +120,9 @@ def I(  # noqa: E743
 ) -> Node:  # fmt: skip
     """An inertia ``e = (value * f)'``, or the law ``f = law(p_<name>)`` of its momentum.
 
-    The higher ``priority`` is tried first for integral causality.
+    The higher ``priority`` is tried first for integral causality. ``energy=``: a function of ``p_<name>``
+    whose slope is the law. ``ports=``: names of several ports, each bond's given as ``port=`` on the edge;
+    ``value`` is then their symmetric matrix, or ``energy`` a function of all ``p_<name>_<port>``.
     """
     return _node(name, Kind.I, value=value, flow=flow, law=law, priority=priority, **more)
 
@@ -124,7 +131,10 @@ def C(
     name: Hashable, value: object = None, effort: object = None, law: object = None,
     priority: float = 0, **more: object,
 ) -> Node:  # fmt: skip
-    """A compliance ``f = (value * e)'``, value = 1/stiffness, or the law ``e = law(q_<name>)``."""
+    """A compliance ``f = (value * e)'``, value = 1/stiffness, or the law ``e = law(q_<name>)``.
+
+    ``energy=`` and ``ports=`` as for `I`, with ``q_<name>`` and ``q_<name>_<port>``.
+    """
     return _node(name, Kind.C, value=value, effort=effort, law=law, priority=priority, **more)
 
 
@@ -135,7 +145,7 @@ def R(
     """A resistance ``e = value * f``; a law; or, with neither, an open port.
 
     An open port gives an input (its effort, or its flow with ``gives="flow"``) and receives an
-    output.
+    output. With ``ports=`` (see `I`) the value is a matrix, efforts over flows.
     """
     return _node(
         name, Kind.R, value=value, effort=effort, flow=flow, law=law, gives=gives, **more

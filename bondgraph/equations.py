@@ -11,7 +11,7 @@ from bondgraph.causality import assign_causality
 from bondgraph.elements import Element
 from bondgraph.elimination import ResidueRows
 from bondgraph.errors import SingularStorageError, StructureError
-from bondgraph.exact import Row, add_scaled
+from bondgraph.exact import Row
 from bondgraph.expressions import TIME
 from bondgraph.junction import JunctionStructure, Port, junction_structure
 from bondgraph.laws import Law
@@ -19,7 +19,7 @@ from bondgraph.modulation import Reading
 from bondgraph.outputs import PortRow, named_signals, shown_signals
 from bondgraph.rates import reached, resolved
 from bondgraph.readings import check_laws
-from bondgraph.reduction import Reduction, reduce_ports
+from bondgraph.reduction import Reduction, reduce_ports, stored_rate
 from bondgraph.residues import decided_by_residues, is_zero, residues
 from bondgraph.tidy import tidy_matrices
 
@@ -156,12 +156,11 @@ def state_equations(
     reduction = reduce_ports(structure)
     structure, ports = reduction.structure, reduction.structure.ports
     balances = [reduction.reading(structure.rows[port]) for port in reduction.states]
-    if reduction.motion is not None:
-        for port, balance in zip(reduction.states, balances, strict=True):
-            value = ports[port].element.constant
-            reduction.motion.add_rate(balance, -value, ports[port].given)
-    A = [_rates(ports[port].element.constant, at, balances[at].H)
-         for at, port in enumerate(reduction.states)]  # fmt: skip
+    A = []
+    for port, balance in zip(reduction.states, balances, strict=True):
+        stored = stored_rate(reduction, port)
+        balance.add(stored, -sp.Integer(1))
+        A.append({j: -entry for j, entry in balance.H.items()})
     states = tuple(ports[port].given for port in reduction.states)
     _check_regular(A, states)
     signals = named_signals(reduction)
@@ -189,13 +188,6 @@ def state_equations(
         laws=MappingProxyType(laws), ports=imposed, readings=MappingProxyType(readings),
         signals=MappingProxyType(signals), reduction=reduction,
     )  # fmt: skip
-
-
-def _rates(value: sp.Expr, at: int, dependent: Mapping[int, sp.Expr]) -> Row:
-    """One row of A: the storage's own value, less what dependent storages give back."""
-    row: Row = {at: value}
-    add_scaled(row, dependent, sp.Integer(-1))
-    return row
 
 
 def _check_regular(A: list[Row], states: tuple[sp.Symbol, ...]) -> None:

@@ -53,6 +53,11 @@ class JunctionStructure:
     bonds: Mapping[tuple[Hashable, Hashable], tuple[Mapping[int, sp.Expr], Mapping[int, sp.Expr]]]
     elements: Mapping[Hashable, Element]
 
+    @cached_property
+    def places(self) -> Mapping[Hashable, int]:
+        """Each port's number by its node's name."""
+        return {port.element.name: at for at, port in enumerate(self.ports)}
+
     @property
     def states_of_laws(self) -> tuple[sp.Symbol, ...]:
         """The states that laws own and that detectors make, in declaration order."""

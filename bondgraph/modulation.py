@@ -89,6 +89,8 @@ def moving_names(structure: JunctionStructure) -> set[sp.Symbol]:
             used |= element.value.free_symbols
         elif element.value is not None:
             used.add(element.value)
+        for _, entry in element.row:
+            used |= entry.free_symbols
     named = {TIME, *structure.states_of_laws}
     for port in structure.ports:
         named |= {port.given, port.received}
@@ -135,7 +137,8 @@ def _replaced(
         value = one.element.value
         if value is None:
             return one
-        return replace(one, element=replace(one.element, value=value.xreplace(exact)))
+        coupled = tuple((name, entry.xreplace(exact)) for name, entry in one.element.row)
+        return replace(one, element=replace(one.element, value=value.xreplace(exact), row=coupled))
 
     return replace(
         structure,

@@ -83,7 +83,13 @@ def _check_assumptions(elements: Sequence[Element], signals: set[sp.Symbol]) -> 
 
 def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:
     """Refuse parts that share neither a bond nor a signal: most often a bond was forgotten."""
-    parts = list(nx.weakly_connected_components(graph))
+    joined = nx.Graph(graph.edges)
+    joined.add_nodes_from(graph)
+    for name in graph:
+        owner = graph.nodes[name]["element"].owner
+        if owner is not None:
+            joined.add_edge(name, ("field", owner))
+    parts = [set(part) & set(graph) for part in nx.connected_components(joined)]
     if len(parts) == 1:
         return
     position = {name: at for at, name in enumerate(graph)}

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from types import MappingProxyType
 
 import networkx as nx
@@ -9,7 +10,7 @@ import sympy as sp
 
 from bondgraph.elements import DETECTORS, STORAGES, Kind
 from bondgraph.errors import AlgebraicLoopError, CausalityError, DependentSourceError
-from bondgraph.exact import Row, SingularError, add_scaled, scaled, solve
+from bondgraph.exact import Row, SingularError, add_scaled, solve
 from bondgraph.expressions import TIME
 from bondgraph.junction import JunctionStructure, Port
 from bondgraph.modulation import Motion, Reading, moving_names, settled
@@ -33,7 +34,12 @@ class Reduction:
     motion: Motion | None
     _columns: Mapping[int, Reading]
 
-    @property
+    @cached_property
+    def columns_of_states(self) -> Mapping[int, int]:
+        """Each state's column by its port's number."""
+        return {port: at for at, port in enumerate(self.states)}
+
+    @cached_property
     def names(self) -> tuple[sp.Symbol, ...]:
         """The symbols of the states."""
         return tuple(self.structure.ports[port].given for port in self.states)
@@ -68,7 +74,7 @@ def reduce_ports(structure: JunctionStructure) -> Reduction:
     moving = moving_names(structure)
     if moving:
         found = _in_motion(found, moving, columns)
-    columns |= {port: _dependent(found, port) for port in dependent}
+    columns |= {port: stored_rate(found, port) for port in dependent}
     return found
 
 
@@ -150,24 +156,49 @@ def _integral(port: Port) -> bool:
     return port.gives == ("flow" if port.element.kind is Kind.I else "effort")
 
 
-def _dependent(reduction: Reduction, port: int) -> Reading:
-    """What a dependent storage gives: ``(M_d w_d)'``, w_d being ruled by states and inputs alone."""
+def stored_rate(reduction: Reduction, port: int) -> Reading:
+    """The rate of a linear storage's momentum or displacement, ``(sum_j M_ij v_j)'``.
+
+    v_j is the state of a port with integral causality; of a dependent one it is what states and inputs
+    make it. The sum has more than one term in fields alone.
+    """
+    result = Reading.zero()
+    for other, value in _field_row(reduction, port):
+        if other in reduction.columns_of_states:
+            ruled = Reading({reduction.columns_of_states[other]: sp.Integer(1)}, {}, {}, {})
+        else:
+            ruled = _ruled(reduction, other)
+        add_scaled(result.H, ruled.F, value)
+        add_scaled(result.K, ruled.D, value)
+    if reduction.motion is not None:
+        for symbols, rates in ((reduction.names, result.H), (reduction.inputs, result.K)):
+            for j, entry in list(rates.items()):
+                reduction.motion.add_rate(result, entry, symbols[j])
+    return result
+
+
+def _field_row(reduction: Reduction, port: int) -> list[tuple[int, sp.Expr]]:
+    """The ports of a storage's field with its matrix's entries; of a one-port itself and its value."""
+    element = reduction.structure.ports[port].element
+    if not element.row:
+        return [(port, element.constant)]
+    places = reduction.structure.places
+    return [(places[name], value) for name, value in element.row if value != 0]
+
+
+def _ruled(reduction: Reduction, port: int) -> Reading:
+    """What a dependent storage receives, ruled by states and inputs alone."""
     structure = reduction.structure
     row = structure.rows[port]
-    strangers = [i for i in row if i in reduction.dependent or i in reduction.resistive]
+    free = {*reduction.dependent, *reduction.resistive}
+    strangers = [i for i in row if i in free]
     if strangers:
         names = [structure.ports[i].element.name for i in (port, *strangers)]
         raise CausalityError(
             f"storages and resistances {names} determine each other although one of them could "
             "have integral causality; please report this graph"
         )
-    value, ruled = structure.ports[port].element.constant, reduction.reading(row)
-    result = Reading({}, {}, scaled(ruled.F, value), scaled(ruled.D, value))
-    if reduction.motion is not None:
-        for symbols, rates in ((reduction.names, result.H), (reduction.inputs, result.K)):
-            for j, entry in list(rates.items()):
-                reduction.motion.add_rate(result, entry, symbols[j])
-    return result
+    return reduction.reading(row)
 
 
 def _resistances(reduction: Reduction) -> dict[int, Reading]:
@@ -177,6 +208,7 @@ def _resistances(reduction: Reduction) -> dict[int, Reading]:
     loops.add_nodes_from(reduction.resistive)
     for port in reduction.resistive:
         loops.add_edges_from((port, i) for i in structure.rows[port] if i in resistive)
+        loops.add_edges_from((port, i) for i, _ in _field_row(reduction, port))
     result: dict[int, Reading] = {}
     for members in nx.connected_components(loops):
         group = sorted(members)
@@ -189,7 +221,7 @@ def _closed(reduction: Reduction, group: Sequence[int]) -> list[Reading]:
     """What the resistances of one loop give."""
     structure = reduction.structure
     place = {port: at for at, port in enumerate(group)}
-    laws = [_conductance(structure.ports[port]) for port in group]
+    laws = _given_by_received(reduction, group, place)
     outside = [
         reduction.reading({i: s for i, s in structure.rows[port].items() if i not in place})
         for port in group
@@ -199,16 +231,67 @@ def _closed(reduction: Reduction, group: Sequence[int]) -> list[Reading]:
         line: Row = {at: sp.Integer(1)}
         for i, entry in structure.rows[port].items():
             if i in place:
-                add_scaled(line, {place[i]: sp.Integer(1)}, -entry * laws[place[i]])
+                add_scaled(line, laws[place[i]], -entry)
         inside.append(line)
     if all(len(line) == 1 for line in inside):
         received = [(row.F, row.D) for row in outside]
     else:
         received = _solved(structure, group, inside, outside, len(reduction.states))
-    return [
-        Reading(scaled(F, law), scaled(D, law), {}, {})
-        for law, (F, D) in zip(laws, received, strict=True)
-    ]
+    result = []
+    for law in laws:
+        given = Reading.zero()
+        for at, factor in law.items():
+            F, D = received[at]
+            add_scaled(given.F, F, factor)
+            add_scaled(given.D, D, factor)
+        result.append(given)
+    return result
+
+
+def _given_by_received(
+    reduction: Reduction, group: Sequence[int], place: Mapping[int, int]
+) -> list[Row]:
+    """Rows L with ``z = L w``: R or 1/R of a one-port; a field's matrix, partly inverted, of its ports."""
+    rows: dict[int, Row] = {}
+    for port in group:
+        element = reduction.structure.ports[port].element
+        if not element.row:
+            rows[port] = {place[port]: _conductance(reduction.structure.ports[port])}
+        elif port not in rows:
+            rows |= _field_rows(reduction, port, place)
+    return [rows[port] for port in group]
+
+
+def _field_rows(reduction: Reduction, port: int, place: Mapping[int, int]) -> dict[int, Row]:
+    """``e = R f`` of a field solved for what its ports give."""
+    structure = reduction.structure
+    element = structure.ports[port].element
+    ports = [structure.places[name] for name, _ in element.row]
+    flows = {i for i in ports if structure.ports[i].gives == "flow"}
+    matrix: list[Row] = []
+    right: list[Row] = []
+    for at, i in enumerate(ports):
+        entries = dict(
+            zip(ports, (value for _, value in structure.ports[i].element.row), strict=True)
+        )
+        line: Row = {} if i in flows else {at: sp.Integer(1)}
+        known: Row = {place[i]: -sp.Integer(1)} if i in flows else {}
+        for k, j in enumerate(ports):
+            if j in flows:
+                add_scaled(line, {k: sp.Integer(1)}, -entries[j])
+            else:
+                add_scaled(known, {place[j]: sp.Integer(1)}, entries[j])
+        matrix.append({k: e for k, e in line.items() if e != 0})
+        right.append({k: e for k, e in known.items() if e != 0})
+    try:
+        solved = solve(matrix, right)
+    except SingularError:
+        raise AlgebraicLoopError(
+            f"the field {element.owner!r} cannot give flows at "
+            f"{', '.join(repr(structure.ports[i].element.name) for i in sorted(flows))}: that part of its "
+            "matrix has no inverse; change a value, or put a storage between"
+        ) from None
+    return dict(zip(ports, solved, strict=True))
 
 
 def _solved(

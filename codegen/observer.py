@@ -49,34 +49,51 @@ class Observer:
         return self._values(effort), self._values(flow)
 
     def power(self, node: Hashable) -> Array:
-        """Effort times flow of a one-port: absorbed, or supplied by a source."""
+        """Effort times flow of a one-port, or of all ports of a field: absorbed, or supplied by a source."""
         structure = self._equations.reduction.structure
+        powers = []
         for at, port in enumerate(structure.ports):
-            if port.element.name == node:
+            if node in (port.element.name, port.element.owner):
                 given = self._values(self._equations.reduction.reading({at: sp.Integer(1)}))
                 received = self._values(self._equations.reduction.reading(structure.rows[at]))
                 supplies = port.element.kind in SOURCES and port.inward == 1
-                return np.asarray(-given * received if supplies else given * received)
-        raise StructureError(f"{node!r} is not a one-port of the graph; only those have a power")
+                powers.append(-given * received if supplies else given * received)
+        if not powers:
+            raise StructureError(
+                f"{node!r} is not a one-port of the graph; only those have a power"
+            )
+        return np.asarray(sum(powers), dtype=float)
 
     def energy(self, node: Hashable) -> Array:
-        """The energy in an I or C: ``value * w^2/2`` of its co-energy variable, or its law's integral."""
-        element = self._settled(node)
-        if element is None or element.kind not in STORAGES:
+        """The energy in an I or C or a field of them: of its co-energy variables, or its energy function."""
+        elements = self._settled(node)
+        if not elements or elements[0].kind not in STORAGES:
             raise StructureError(f"{node!r} is not an I or a C; only storages have an energy")
-        if isinstance(element.law, ExpressionLaw):
-            return self._stored(element, element.law)
-        value = self._number(element.constant)
-        ruling = element.flow if element.kind is Kind.I else element.effort
-        return np.asarray(0.5 * value * self.signal(str(ruling)) ** 2, dtype=float)
+        first = elements[0]
+        if first.row and first.name == node:
+            raise StructureError(
+                f"{node!r} is one port of {first.owner!r}; the whole field has an energy"
+            )
+        if isinstance(first.law, ExpressionLaw):
+            return self._stored(first, first.law)
+        ruling = {
+            e.name: self.signal(str(e.flow if e.kind is Kind.I else e.effort)) for e in elements
+        }
+        energy = np.zeros(len(self.time))
+        for element in elements:
+            for other, entry in element.row or ((element.name, element.constant),):
+                energy += 0.5 * self._number(entry) * ruling[element.name] * ruling[other]
+        return energy
 
-    def _settled(self, node: Hashable) -> Element | None:
-        """The element, its value over states, integrals, inputs and time."""
+    def _settled(self, node: Hashable) -> list[Element]:
+        """The element, or a field's, values over states, integrals, inputs and time."""
         ports = self._equations.reduction.structure.ports
-        return next((port.element for port in ports if port.element.name == node), None)
+        return [p.element for p in ports if node in (p.element.name, p.element.owner)]
 
     def _stored(self, element: Element, law: ExpressionLaw) -> Array:
-        """The integral of a law over its own state, from 0."""
+        """The energy function, or the integral of a law over its own state from 0."""
+        if element.energy is not None:
+            return np.zeros(len(self.time)) + self._number(element.energy)
         state = law.state
         if state is None or law.free_symbols & {*self._equations.signals, TIME}:
             raise SignalError(
