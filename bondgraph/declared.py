@@ -219,18 +219,38 @@ def _passive(
         raise StructureError(f"{where} has no value; give a number, a name, an expression or a law")
     valued = given == ["value"]
     gives = _gives(kind, attributes, where, valued)
+    effort, flow = (_name(attributes, variable, name) for variable in ("effort", "flow"))
+    closed = _given_law(name, kind, attributes, gives)
+    inverse = _inverse(attributes, closed, flow if kind is Kind.I else effort, where)
     return Element(
         name,
         kind,
         _value(attributes, where) if valued else None,
-        _name(attributes, "effort", name),
-        _name(attributes, "flow", name),
-        law=_given_law(name, kind, attributes, gives),
+        effort,
+        flow,
+        law=closed,
         priority=_priority(attributes, where),
-        gives=gives,
+        gives=gives if inverse is None else None,
         unit=unit,
         energy=_energy(name, kind, attributes)[0] if given == ["energy"] else None,
+        inverse=inverse,
     )
+
+
+def _inverse(
+    attributes: Mapping[str, Any], closed: Law | None, given: sp.Symbol | None, where: str
+) -> sp.Expr | None:
+    """A law's inverse, checked: the law of it is the variable that the law gives."""
+    if attributes.get("inverse") is None:
+        return None
+    if not isinstance(closed, ExpressionLaw) or closed.state is None:
+        raise StructureError(f"{where}: an inverse belongs to the law or the energy of an I or a C")
+    inverse = expression(attributes["inverse"], f"{where}, inverse")
+    if not fields.inverts(closed.expression.subs(closed.state, inverse), given):
+        raise StructureError(
+            f"{where}: {inverse} is not the inverse of {closed.expression}: put in, it does not give {given}"
+        )
+    return inverse
 
 
 def _given_law(

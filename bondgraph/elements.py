@@ -39,8 +39,8 @@ POWER_INTO = frozenset({Kind.I, Kind.C, Kind.R, *DETECTORS})
 KEYS: dict[Kind, frozenset[str]] = {
     Kind.SE: frozenset({"value", "flow", "unit"}),
     Kind.SF: frozenset({"value", "effort", "unit"}),
-    Kind.I: frozenset({"value", "effort", "flow", "law", "energy", "ports", "priority", "unit"}),
-    Kind.C: frozenset({"value", "effort", "flow", "law", "energy", "ports", "priority", "unit"}),
+    Kind.I: frozenset({"value", "effort", "flow", "law", "inverse", "energy", "ports", "priority", "unit"}),
+    Kind.C: frozenset({"value", "effort", "flow", "law", "inverse", "energy", "ports", "priority", "unit"}),
     Kind.R: frozenset({"value", "effort", "flow", "law", "ports", "gives", "unit"}),
     Kind.TF: frozenset({"value", "unit"}),
     Kind.GY: frozenset({"value", "unit"}),
@@ -60,7 +60,8 @@ class Element:
     ``gives`` is "effort" or "flow" where the causality is fixed: sources, open ports, laws, detectors.
     ``integral``: the state that a detector makes of what it reads. ``row``: of a port of a field, what
     it has per unit of each port's variable, by the ports' names; ``owner``: the field's node.
-    ``energy``: of a storage with an energy function, that function.
+    ``energy``: of a storage with an energy function, that function. ``inverse``: of one with a law, its
+    state as a function of what the law gives, so that it may have derivative causality.
     """
 
     name: Hashable
@@ -76,6 +77,7 @@ class Element:
     row: tuple[tuple[Hashable, sp.Expr], ...] = ()
     owner: Hashable | None = None
     energy: sp.Expr | None = None
+    inverse: sp.Expr | None = None
 
     @property
     def one_port(self) -> bool:

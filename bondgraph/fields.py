@@ -85,6 +85,26 @@ def gradient(
     return function, [sp.diff(inner, real[state]).xreplace(plain) for state in states]
 
 
+def inverts(back: sp.Expr, given: sp.Symbol) -> bool:
+    """Whether a law put into its inverse gives the variable back, at points near zero of either sign.
+
+    Parameters are taken between 1 and 2. What has no real value at a point says nothing there, but it must
+    have one at some.
+    """
+    names = sorted(back.free_symbols - {given}, key=str)
+    told = 0
+    for at in range(1, 9):
+        point = {name: 1 + sp.Rational((7 * at + 3 * k) % 11, 11) for k, name in enumerate(names)}
+        point[given] = sp.Rational((-1) ** at * at, 37)
+        value = sp.N(back.subs(point) - point[given], 30)
+        if not value.is_real or not value.is_finite:
+            continue
+        told += 1
+        if abs(value) > 1e-20:
+            return False
+    return told > 0
+
+
 def port_variable(given: object, port: str, default: str, where: str) -> sp.Symbol:
     """The symbol of a port's effort or flow: what a mapping of ports to names has, else the default."""
     if given is None:

@@ -12,6 +12,7 @@ from bondgraph.causality import CausalGraph
 from bondgraph.elements import SOURCES, Element, Kind
 from bondgraph.errors import AlgebraicLoopError
 from bondgraph.exact import Row, SingularError, add_scaled, matrix_of, scaled, solve
+from bondgraph.laws import ExpressionLaw
 from bondgraph.strokes import Strokes
 
 
@@ -35,6 +36,19 @@ class Port:
     def received(self) -> sp.Symbol:
         """The variable the port receives."""
         return self.element.flow if self.gives == "effort" else self.element.effort
+
+    @property
+    def integral(self) -> bool:
+        """Whether the port of a storage has integral causality."""
+        return self.gives == ("flow" if self.element.kind is Kind.I else "effort")
+
+    @property
+    def own_state(self) -> sp.Symbol | None:
+        """The state that a law at this port owns, or that a detector makes."""
+        law = self.element.law
+        if isinstance(law, ExpressionLaw) and law.state is not None and self.integral:
+            return law.state
+        return self.element.integral
 
 
 @dataclass(frozen=True)
@@ -63,8 +77,7 @@ class JunctionStructure:
         """The states that laws own and that detectors make, in declaration order."""
         found: list[sp.Symbol] = []
         for port in self.ports:
-            own = getattr(port.element.law, "state", None) or port.element.integral
-            found += [own] if own is not None else []
+            found += [port.own_state] if port.own_state is not None else []
         return tuple(found)
 
     @cached_property

@@ -1,12 +1,12 @@
 """Values that move: which names change in time, and what a product of a value and a variable gains by it."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import sympy as sp
 
-from bondgraph.errors import AlgebraicLoopError
+from bondgraph.errors import AlgebraicLoopError, DependentSourceError
 from bondgraph.exact import Row, add_scaled
 from bondgraph.expressions import TIME
 from bondgraph.junction import JunctionStructure, Port
@@ -66,6 +66,16 @@ class Motion:
                 self._add(target, variable, slope * sp.Add(*known))
             add_scaled(target.H, rate.H, slope * variable)
             add_scaled(target.K, rate.K, slope * variable)
+
+    def add_total_rate(self, target: Reading, value: sp.Expr, where: Hashable) -> None:
+        """Add ``value'`` to a reading, the rate of an expression over moving names."""
+        if TIME in value.free_symbols:
+            raise DependentSourceError(
+                f"the storage {where!r} has derivative causality and follows the time itself; give the "
+                "time's function as an input"
+            )
+        for name in sorted(value.free_symbols & self.rates.keys(), key=str):
+            target.add(self.rates[name], slope_of(value, name))
 
     def _add(self, target: Reading, variable: sp.Symbol, factor: sp.Expr) -> None:
         if variable in self.states:

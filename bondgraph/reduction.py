@@ -58,12 +58,14 @@ def reduce_ports(structure: JunctionStructure) -> Reduction:
     Raises `AlgebraicLoopError` for resistances whose loop determinant ``|1 - S_rr L|`` vanishes.
     """
     ports = structure.ports
-    states = tuple(i for i, port in enumerate(ports) if is_storage(port) and _integral(port))
-    dependent = tuple(i for i, port in enumerate(ports) if is_storage(port) and not _integral(port))
+    states = tuple(
+        i for i, p in enumerate(ports) if is_storage(p) and p.integral and not _imposes(p)
+    )
+    dependent = tuple(i for i, p in enumerate(ports) if is_storage(p) and not p.integral)
     resistive = tuple(
         i for i, port in enumerate(ports) if port.element.kind is Kind.R and not _fixed(port)
     )
-    imposed = tuple(i for i, port in enumerate(ports) if _fixed(port) and not _detects(port))
+    imposed = tuple(i for i, port in enumerate(ports) if _imposes(port) and not _detects(port))
     inputs = tuple(dict.fromkeys(ports[i].given for i in imposed))
     one = sp.Integer(1)
     columns = {port: Reading({at: one}, {}, {}, {}) for at, port in enumerate(states)}
@@ -72,7 +74,7 @@ def reduce_ports(structure: JunctionStructure) -> Reduction:
     found = Reduction(structure, states, dependent, resistive, imposed, inputs, None, columns)
     columns |= _resistances(found)
     moving = moving_names(structure)
-    if moving:
+    if moving or any(ports[i].element.inverse is not None for i in dependent):
         found = _in_motion(found, moving, columns)
     columns |= {port: stored_rate(found, port) for port in dependent}
     return found
@@ -93,9 +95,10 @@ def _in_motion(found: Reduction, moving: set[sp.Symbol], columns: dict[int, Read
     one = sp.Integer(1)
     rates = {name: Reading({}, {}, {at: one}, {}) for at, name in enumerate(found.names)}
     rates |= {name: Reading({}, {}, {}, {at: one}) for at, name in enumerate(found.inputs)}
+    used = moving | _within(structure)
     for at, port in enumerate(structure.ports):
-        own = getattr(port.element.law, "state", None) or port.element.integral
-        if own is not None and own in moving | _within(structure):
+        own = port.own_state
+        if own is not None and own in used:
             _independent(found, structure.rows[at], own)
             rates[own] = found.reading(structure.rows[at])
     return replace(found, motion=Motion(found.names, found.inputs, MappingProxyType(rates)))
@@ -140,7 +143,7 @@ def signal_rows(structure: JunctionStructure) -> dict[sp.Symbol, Mapping[int, sp
 
 
 def is_storage(port: Port) -> bool:
-    """Whether the port is a linear storage; one with a law counts as an imposed port."""
+    """Whether the port is a storage whose causality is free: linear, or with a law and its inverse."""
     return port.element.kind in STORAGES and not _fixed(port)
 
 
@@ -152,8 +155,9 @@ def _fixed(port: Port) -> bool:
     return port.element.gives is not None
 
 
-def _integral(port: Port) -> bool:
-    return port.gives == ("flow" if port.element.kind is Kind.I else "effort")
+def _imposes(port: Port) -> bool:
+    """Whether what the port gives is an input: of fixed causality, or a law's in integral causality."""
+    return _fixed(port) or (port.element.law is not None and port.integral)
 
 
 def stored_rate(reduction: Reduction, port: int) -> Reading:
@@ -163,6 +167,10 @@ def stored_rate(reduction: Reduction, port: int) -> Reading:
     make it. The sum has more than one term in fields alone.
     """
     result = Reading.zero()
+    element = reduction.structure.ports[port].element
+    if element.inverse is not None and reduction.motion is not None:
+        _add_inverse_rate(reduction, port, result)
+        return result
     for other, value in _field_row(reduction, port):
         if other in reduction.columns_of_states:
             ruled = Reading({reduction.columns_of_states[other]: sp.Integer(1)}, {}, {}, {})
@@ -175,6 +183,19 @@ def stored_rate(reduction: Reduction, port: int) -> Reading:
             for j, entry in list(rates.items()):
                 reduction.motion.add_rate(result, entry, symbols[j])
     return result
+
+
+def _add_inverse_rate(reduction: Reduction, port: int, result: Reading) -> None:
+    """The rate of a nonlinear storage's state as a function of what it receives."""
+    one, ruled = reduction.structure.ports[port], _ruled(reduction, port)
+    terms = [entry * reduction.names[j] for j, entry in ruled.F.items()]
+    terms += [entry * reduction.inputs[j] for j, entry in ruled.D.items()]
+    inverse, motion = one.element.inverse, reduction.motion
+    if inverse is None or motion is None:
+        raise CausalityError(f"the law at {one.element.name!r} has no inverse")
+    motion.add_total_rate(
+        result, inverse.xreplace({one.received: sp.Add(*terms)}), one.element.name
+    )
 
 
 def _field_row(reduction: Reduction, port: int) -> list[tuple[int, sp.Expr]]:
