@@ -1,6 +1,8 @@
 """Symbolic bond graphs: declared with networkx, derived into ``A x' = J x + B u``, slip ``= F x``."""
 
+from bondgraph.assignments import Assignment, assignments
 from bondgraph.causality import CausalGraph, assign_causality
+from bondgraph.composition import assemble, prefixed
 from bondgraph.elements import GY, TF, C, De, Df, I, Kind, One, R, Se, Sf, Zero
 from bondgraph.equations import StateEquations, derive, state_equations
 from bondgraph.errors import (
@@ -9,6 +11,7 @@ from bondgraph.errors import (
     CausalityError,
     DependentSourceError,
     ExpressionError,
+    FileFormatError,
     MissingExtraError,
     ParameterError,
     SignalError,
@@ -16,17 +19,23 @@ from bondgraph.errors import (
     SingularStorageError,
     StructureError,
 )
+from bondgraph.explicit import explicit
 from bondgraph.expressions import expression
+from bondgraph.files import read_graphml, read_json, write_graphml, write_json
 from bondgraph.graph import validate
+from bondgraph.graphml import from_graphml, to_graphml
 from bondgraph.holding import holding_efforts
 from bondgraph.junction import JunctionStructure, junction_structure
+from bondgraph.latex import latex
 from bondgraph.laws import DryFriction, ExpressionLaw
 from bondgraph.linear import LinearModel, linearize
+from bondgraph.nodelink import from_json, to_json
 
 __all__ = [
     "GY",
     "TF",
     "AlgebraicLoopError",
+    "Assignment",
     "BondGraphError",
     "C",
     "CausalGraph",
@@ -37,6 +46,7 @@ __all__ = [
     "DryFriction",
     "ExpressionError",
     "ExpressionLaw",
+    "FileFormatError",
     "I",
     "JunctionStructure",
     "Kind",
@@ -53,12 +63,25 @@ __all__ = [
     "StateEquations",
     "StructureError",
     "Zero",
+    "assemble",
     "assign_causality",
+    "assignments",
     "derive",
+    "explicit",
     "expression",
+    "from_graphml",
+    "from_json",
     "holding_efforts",
     "junction_structure",
+    "latex",
     "linearize",
+    "prefixed",
+    "read_graphml",
+    "read_json",
     "state_equations",
+    "to_graphml",
+    "to_json",
     "validate",
+    "write_graphml",
+    "write_json",
 ]

@@ -39,8 +39,12 @@ POWER_INTO = frozenset({Kind.I, Kind.C, Kind.R, *DETECTORS})
 KEYS: dict[Kind, frozenset[str]] = {
     Kind.SE: frozenset({"value", "flow", "unit"}),
     Kind.SF: frozenset({"value", "effort", "unit"}),
-    Kind.I: frozenset({"value", "effort", "flow", "law", "inverse", "energy", "ports", "priority", "unit"}),
-    Kind.C: frozenset({"value", "effort", "flow", "law", "inverse", "energy", "ports", "priority", "unit"}),
+    Kind.I: frozenset(
+        {"value", "effort", "flow", "law", "inverse", "energy", "ports", "priority", "unit"}
+    ),
+    Kind.C: frozenset(
+        {"value", "effort", "flow", "law", "inverse", "energy", "ports", "priority", "unit"}
+    ),
     Kind.R: frozenset({"value", "effort", "flow", "law", "ports", "gives", "unit"}),
     Kind.TF: frozenset({"value", "unit"}),
     Kind.GY: frozenset({"value", "unit"}),

@@ -19,8 +19,10 @@ from bondgraph.modulation import Reading
 from bondgraph.outputs import PortRow, named_signals, shown_signals
 from bondgraph.rates import reached, resolved
 from bondgraph.readings import check_laws
-from bondgraph.reduction import Reduction, reduce_ports, stored_rate
+from bondgraph.reduction import reduce_ports
 from bondgraph.residues import decided_by_residues, is_zero, residues
+from bondgraph.sorting import Reduction
+from bondgraph.stored import stored_rate
 from bondgraph.tidy import tidy_matrices
 
 LARGEST_ROOTED = 6

@@ -37,6 +37,10 @@ class SignalError(BondGraphError):
     """An input, an initial value or the time axis of a run is not usable."""
 
 
+class FileFormatError(BondGraphError):
+    """A file is not a bond graph's, or a graph holds what a file cannot say."""
+
+
 class MissingExtraError(BondGraphError):
     """A package that only an optional extra installs is missing."""
 

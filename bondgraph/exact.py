@@ -1,6 +1,6 @@
 """Exact linear algebra on small systems of expressions, in the field that their entries generate."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import sympy as sp
@@ -46,7 +46,7 @@ def cancelled(expr: sp.Expr) -> sp.Expr:
         return expr
     if is_zero(expr):
         return sp.Integer(0)
-    if not expr.is_Add or not _is_short(expr):
+    if not expr.is_Add or not _is_short(expr) or not _has_denominator(expr):
         return expr
     return min((expr, sp.cancel(expr)), key=lambda form: form.count_ops())
 
@@ -84,6 +84,33 @@ def solve(matrix: Sequence[Row], right: Sequence[Row]) -> list[Row]:
             if j >= size:
                 result[i][columns[j - size]] = domain.to_sympy(element)
     return result
+
+
+def combined(parts: Iterable[tuple[Mapping[int, sp.Expr], sp.Expr]]) -> Row:
+    """The sum of multiples of sparse rows, each entry cancelled once, however many terms it has.
+
+    >>> a, b = sp.symbols("a b")
+    >>> combined([({0: a}, sp.Integer(1)), ({0: b, 1: b}, sp.Integer(2)), ({0: a}, sp.Integer(-1))])
+    {0: 2*b, 1: 2*b}
+    """
+    terms: dict[int, list[sp.Expr]] = {}
+    for row, factor in parts:
+        for column, entry in row.items():
+            terms.setdefault(column, []).append(factor * entry)
+    result: Row = {}
+    for column, found in terms.items():
+        total = found[0] if len(found) == 1 else cancelled(sp.Add(*found))
+        if len(found) == 1 or not total.is_zero:
+            result[column] = total
+    return result
+
+
+def _has_denominator(expr: sp.Expr) -> bool:
+    """Whether anything but a number stands below a fraction line: else there is nothing to cancel."""
+    return any(
+        part.exp.could_extract_minus_sign() and part.base.free_symbols
+        for part in expr.atoms(sp.Pow)
+    )
 
 
 def _is_short(expr: sp.Expr) -> bool:

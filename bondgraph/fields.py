@@ -4,9 +4,10 @@ from collections.abc import Hashable, Mapping, Sequence
 
 import sympy as sp
 
+from bondgraph.elimination import ResidueRows
 from bondgraph.errors import ExpressionError, StructureError
 from bondgraph.expressions import expression, normal, symbol
-from bondgraph.residues import is_zero
+from bondgraph.residues import is_zero, residues
 
 MOST_PORTS = 64
 
@@ -59,7 +60,11 @@ def matrix(value: object, ports: Sequence[str], symmetric: bool, where: str) -> 
                     f"{where}: the entries of ports {ports[i]!r} and {ports[j]!r} differ, {found[i][j]} and "
                     f"{found[j][i]}: only a symmetric matrix stores energy"
                 )
-    if is_zero(sp.Matrix(found).det(method="berkowitz")):
+    value = residues()
+    rank = ResidueRows(
+        {j: v for j, entry in enumerate(row) if (v := value(entry))} for row in found
+    )
+    if not all(rank.pivot(i, jordan=False) for i in range(size)):
         raise StructureError(
             f"{where}: the determinant of the value vanishes; a field needs full rank"
         )

@@ -11,7 +11,7 @@ from bondgraph.causal_order import CausalEquations, causal_equations, causal_gro
 from bondgraph.causality import CausalGraph
 from bondgraph.elements import SOURCES, Element, Kind
 from bondgraph.errors import AlgebraicLoopError
-from bondgraph.exact import Row, SingularError, add_scaled, matrix_of, scaled, solve
+from bondgraph.exact import Row, SingularError, add_scaled, combined, matrix_of, scaled, solve
 from bondgraph.laws import ExpressionLaw
 from bondgraph.strokes import Strokes
 
@@ -144,10 +144,7 @@ def _signal(
         # Rows are never changed once made, so equal signals may share one.
         source, factor = terms[0]
         return signals[source] if factor == 1 else scaled(signals[source], factor)
-    row: Row = {}
-    for source, factor in terms:
-        add_scaled(row, signals[source], factor)
-    return row
+    return combined((signals[source], factor) for source, factor in terms)
 
 
 def _solve_loop(

@@ -1,7 +1,6 @@
 """Rules that hold between elements: names that must differ, and parts that must belong together."""
 
 from collections.abc import Hashable, Iterable, Sequence
-from itertools import combinations, pairwise
 from typing import Any
 
 import networkx as nx
@@ -82,39 +81,33 @@ def _check_assumptions(elements: Sequence[Element], signals: set[sp.Symbol]) -> 
 
 
 def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:
-    """Refuse parts that share neither a bond nor a signal: most often a bond was forgotten."""
-    joined = nx.Graph(graph.edges)
-    joined.add_nodes_from(graph)
+    """Refuse parts that share neither a bond nor a signal: most often a bond was forgotten.
+
+    A signal is shared where a law or value reads it, or where both have an input of its name.
+    """
+    joined: nx.Graph[Any] = nx.Graph()
+    joined.add_nodes_from(("node", name) for name in graph)
+    joined.add_edges_from((("node", tail), ("node", head)) for tail, head in graph.edges)
+    owned: set[sp.Symbol] = set()
     for name in graph:
-        owner = graph.nodes[name]["element"].owner
-        if owner is not None:
-            joined.add_edge(name, ("field", owner))
-    parts = [set(part) & set(graph) for part in nx.connected_components(joined)]
-    if len(parts) == 1:
-        return
+        owned |= set(named_by(graph.nodes[name]["element"]))
+    for name in graph:
+        element = graph.nodes[name]["element"]
+        if element.owner is not None:
+            joined.add_edge(("node", name), ("field", element.owner))
+        used = {symbol for part in (element.law, element.value) if part is not None
+                for symbol in part.free_symbols & owned}  # fmt: skip
+        for _, entry in element.row:
+            used |= entry.free_symbols & owned
+        joined.add_edges_from((("node", name), ("signal", s)) for s in {*used, *named_by(element)})
     position = {name: at for at, name in enumerate(graph)}
-    parts.sort(key=lambda part: min(position[name] for name in part))
-    together: nx.Graph[int] = nx.Graph()
-    together.add_nodes_from(range(len(parts)))
-    for first, second in combinations(range(len(parts)), 2):
-        if _share_a_signal(graph, parts[first], parts[second]):
-            together.add_edge(first, second)
-    groups = list(nx.connected_components(together))
-    for one, other in pairwise(sorted(groups, key=min)):
-        names = [min(parts[min(group)], key=lambda name: position[name]) for group in (one, other)]
+    first = sorted(
+        min(position[name] for kind, name in part if kind == "node")
+        for part in nx.connected_components(joined)
+    )
+    if len(first) > 1:
+        names = [list(graph)[at] for at in first[:2]]
         raise StructureError(
             f"the part of node {names[0]!r} and the part of node {names[1]!r} share neither a bond "
             "nor a signal; bond them, or derive each on its own"
         )
-
-
-def _share_a_signal(graph: Any, one: set[Hashable], other: set[Hashable]) -> bool:
-    """Whether a law or value of one part reads a signal of the other, or both share an input."""
-    named, inputs, read = [], [], []
-    for part in (one, other):
-        elements = [graph.nodes[name]["element"] for name in part]
-        named.append({name for element in elements for name in named_by(element)})
-        inputs.append({element.given for element in elements if element.given is not None})
-        used = [part for e in elements for part in (e.law, e.value) if part is not None]
-        read.append({name for part in used for name in part.free_symbols})
-    return bool(inputs[0] & inputs[1] or read[0] & named[1] or read[1] & named[0])

@@ -8,8 +8,8 @@ from bondgraph.elements import Kind
 from bondgraph.errors import StructureError
 from bondgraph.junction import JunctionStructure
 from bondgraph.modulation import Reading
-from bondgraph.reduction import Reduction
 from bondgraph.residues import is_zero
+from bondgraph.sorting import Reduction
 
 PortRow = Mapping[int, sp.Expr]
 """A signal over what the ports give."""

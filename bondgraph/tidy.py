@@ -10,7 +10,8 @@ from bondgraph.residues import is_rational_function, is_zero
 
 MOST_OPERATIONS = 150
 MOST_TERMS = 300
-"""An entry with more operations, or more terms when multiplied out, is left as it came."""
+MOST_SYMBOLS = 20
+"""An entry with more operations, symbols, or terms when multiplied out, is left as it came."""
 
 LARGEST_TIDIED = 2_000
 """Matrices with more entries in all are left as they were derived."""
@@ -38,6 +39,8 @@ def tidy(expr: sp.Expr) -> sp.Expr:
     J + l**2*m
     """
     if expr.is_Atom or expr.count_ops() > MOST_OPERATIONS or expanded_terms(expr) > MOST_TERMS:
+        return expr
+    if len(expr.free_symbols) > MOST_SYMBOLS:
         return expr
     turning = sorted(expr.atoms(sp.sin, sp.cos), key=str)
     # Sines and cosines count as symbols that know their squares' sum.

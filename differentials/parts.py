@@ -5,37 +5,14 @@ The order of the parts is the order of states and inputs.
 """
 
 from collections.abc import Hashable
-from typing import TypeAlias
 
 import networkx as nx
 
 import bondgraph as bg
+from bondgraph.composition import Part as Part
+from bondgraph.composition import assemble as assemble
 from bondgraph.elements import Node
 from differentials.laws import backlash
-
-Part: TypeAlias = "nx.DiGraph[Hashable]"
-"""A bond graph whose terminals may still lack their attributes."""
-
-
-def assemble(*parts: Part) -> Part:
-    """One graph of all parts. Terminals of one name are one shaft.
-
-    Raises `StructureError` if two parts declare one node differently, or one bond twice.
-    """
-    whole: nx.DiGraph[Hashable] = nx.DiGraph()
-    for part in parts:
-        for name, attributes in part.nodes(data=True):
-            known = whole.nodes[name] if name in whole else {}
-            if attributes and known and dict(known) != dict(attributes):
-                raise bg.StructureError(
-                    f"two parts declare node {name!r}: {known} and {attributes}"
-                )
-            whole.add_node(name, **attributes)
-        for bond in part.edges:
-            if whole.has_edge(*bond) or whole.has_edge(*reversed(bond)):
-                raise bg.StructureError(f"two parts declare the bond {bond[0]!r} -> {bond[1]!r}")
-            whole.add_edge(*bond)
-    return whole
 
 
 def shaft(name: str, speed: str | None = None) -> Part:

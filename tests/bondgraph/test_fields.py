@@ -137,6 +137,14 @@ def test_a_resistance_field_in_every_causality(inverted: tuple[int, ...]) -> Non
     assert np.array(equations.J, dtype=float) @ state == pytest.approx(-given)
 
 
+def test_a_diagonal_resistance_field_is_that_many_resistances() -> None:
+    nodes: list = [bg.R("R", [["a", 0], [0, "b"]], ports=["x", "y"])]
+    for port in "xy":
+        nodes += [bg.One(port), bg.I(f"m_{port}", 1)]
+    graph = _with_ports(nodes, "x>m_x x>R y>m_y y>R", {("x", "R"): "x", ("y", "R"): "y"})
+    assert -sp.diag(*sp.symbols("a b")) == bg.derive(graph, outputs=[]).J
+
+
 def test_a_modulated_field_obeys_energy() -> None:
     """A moving coil: the mutual inductance turns with the rotor, whose torque is i1 i2 dM/dtheta."""
     energy = "p_coils_one**2/(2*L1) + p_coils_two**2/(2*L2) - cos(theta)*p_coils_one*p_coils_two/K"

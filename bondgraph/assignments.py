@@ -1,0 +1,288 @@
+"""Causal-order assignments: one line per effort and flow, each from earlier ones, as textbooks write them."""
+
+import re
+from collections.abc import Hashable, Iterator
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import sympy as sp
+
+from bondgraph.causal_order import CausalEquations, Term, causal_equations, causal_groups
+from bondgraph.causality import CausalGraph, assign_causality
+from bondgraph.elements import DETECTORS, JUNCTIONS, STORAGES, Element, Kind
+from bondgraph.errors import AlgebraicLoopError
+from bondgraph.exact import Row, SingularError, solve
+from bondgraph.expressions import TIME, normal
+from bondgraph.graph import Bond
+from bondgraph.names import named_by
+from bondgraph.strokes import Strokes
+
+Rule = Literal["given", "balance", "transfer", "law", "rate"]
+"""The kinds of assignments."""
+
+Line = tuple[Rule, list[Term], sp.Expr]
+"""A right side: its kind, its terms in other signals, and what is left."""
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """``symbol = right``: one effort or flow of a bond.
+
+    ``kind``: "given" is a state, an input (what an open port, a source or a law gives), or the nothing
+    that a detector gives; "balance" the sum at a junction; "transfer" what a junction hands on and what
+    a transformer or gyrator makes of it; "law" a linear resistance. Of a "rate", what a storage in
+    derivative causality gives, ``right`` is the momentum or displacement: the signal is its rate.
+
+    ``bond`` is as declared, with power as `StateEquations.bond` counts it; ``node`` is the one whose
+    equation it is. ``group`` counts up; signals that form a loop share one number and are solved together.
+    """
+
+    symbol: sp.Symbol
+    right: sp.Expr
+    kind: Rule
+    variable: Literal["effort", "flow"]
+    bond: Bond
+    node: Hashable
+    group: int
+
+
+def assignments(graph: Any) -> tuple[Assignment, ...]:
+    """The bond equations of a causal or a declared graph in an order in which each follows from earlier ones.
+
+    Right sides hold symbols of earlier groups and, in a loop, of the own one; states, inputs and
+    values. A signal is called as its one-port calls it, else as the junction that takes it calls its
+    common variable, else ``e_<tail>_<head>`` or ``f_<tail>_<head>``; no two signals share a symbol. A law
+    that closes a port is in `StateEquations.laws`, its port's signal is given.
+
+    Raises what `assign_causality` raises.
+
+    >>> import bondgraph as bg
+    >>> import networkx as nx
+    >>> g = nx.DiGraph()
+    >>> g.add_nodes_from([bg.Se("source", "u"), bg.One("loop"), bg.I("L", "L", flow="i"), bg.R("R", "R")])
+    >>> g.add_edges_from([("source", "loop"), ("loop", "L"), ("loop", "R")])
+    >>> for line in assignments(g):
+    ...     print(line.kind, line.symbol, "=", line.right)
+    given u = u
+    given i = i
+    transfer f_source = i
+    transfer f_R = i
+    law e_R = R*f_R
+    balance e_L = -e_R + u
+    """
+    causal = graph if isinstance(graph, CausalGraph) else assign_causality(graph)
+    strokes = causal.assignment
+    equations = causal_equations(strokes)
+    symbols = _symbols(strokes, equations)
+    signals = _signals_by_name(strokes, equations)
+    lines = list(_lines(strokes, equations))
+    rights = [_right(line, symbols, signals) for line in lines]
+    order = [[*line[1], *more] for line, (_, more) in zip(lines, rights, strict=True)]
+    result: list[Assignment] = []
+    for group, members in enumerate(causal_groups(order)):
+        for signal in members:
+            bond, node = signal // 2, _owner(strokes, signal)
+            result.append(
+                Assignment(
+                    symbols[signal], rights[signal][0], lines[signal][0],
+                    "flow" if signal % 2 else "effort", strokes.declared[bond],
+                    strokes.elements[node].owner or strokes.names[node], group,
+                )
+            )  # fmt: skip
+    return tuple(result)
+
+
+def _owner(strokes: Strokes, signal: int) -> int:
+    """The node that gives the signal: a flow the one that receives the effort, an effort the other."""
+    tail, head = strokes.bonds[signal // 2]
+    at_head = strokes.end[signal // 2] == head
+    return head if at_head == (signal % 2 == 1) else tail
+
+
+def _right(
+    line: Line, symbols: list[sp.Symbol], signals: dict[sp.Symbol, Term]
+) -> tuple[sp.Expr, list[Term]]:
+    """The right side over symbols, and the terms it has beside the line's: signals that values read."""
+    _, terms, rest = line
+    parts = [rest] if rest != 0 else []
+    more: list[Term] = []
+    for signal, factor in terms:
+        read = [] if factor.is_Rational else [one for one in factor.free_symbols if one in signals]
+        more += [signals[one] for one in sorted(read, key=str)]
+        put = {one: signals[one][1] * symbols[signals[one][0]] for one in read}
+        parts.append((factor.xreplace(put) if put else factor) * symbols[signal])
+    return sp.Add(*parts), more
+
+
+def _lines(strokes: Strokes, equations: CausalEquations) -> Iterator[Line]:
+    """Every signal's right side, in the order of the signals."""
+    numbers = {name: at for at, name in enumerate(strokes.names)}
+    fields: dict[int, list[Term]] = {}
+    for signal, terms in enumerate(equations.terms):
+        if signal in equations.given:
+            node, sign = equations.given[signal]
+            yield _given(strokes, equations, node, sign, numbers, fields)
+        elif strokes.elements[_owner(strokes, signal)].kind in JUNCTIONS:
+            zero = strokes.elements[_owner(strokes, signal)].kind is Kind.ZERO
+            balance = (signal % 2 == 1) == zero
+            yield "balance" if balance else "transfer", list(terms), sp.Integer(0)
+        else:
+            yield "transfer", list(terms), sp.Integer(0)
+
+
+def _given(
+    strokes: Strokes, equations: CausalEquations, node: int, sign: int,
+    numbers: dict[Hashable, int], fields: dict[int, list[Term]],
+) -> Line:  # fmt: skip
+    """What a one-port gives; ``sign`` is the bond's over the element's."""
+    element, none = strokes.elements[node], sp.Integer(0)
+    if element.kind in DETECTORS:
+        return "given", [], none
+    if _independent(strokes, node):
+        return "given", [], sign * _variable(element, strokes.gives(node))
+    if element.kind in STORAGES:
+        row = element.row or ((element.name, element.constant),)
+        effort = element.kind is Kind.C
+        stored = [(numbers[name], value) for name, value in row if value != 0]
+        return "rate", [_term(strokes, at, effort, sign * value) for at, value in stored], none
+    if not element.row:
+        value = element.constant
+        signal, known = equations.received[node]
+        factor = value if strokes.gives(node) == "effort" else 1 / value
+        return "law", [(signal, sign * known * factor)], none
+    if node not in fields:
+        fields |= _field(strokes, [numbers[name] for name, _ in element.row])
+    return "law", [(signal, sign * factor) for signal, factor in fields[node]], none
+
+
+def _independent(strokes: Strokes, node: int) -> bool:
+    """Whether a one-port gives a state or an input."""
+    element = strokes.elements[node]
+    if element.gives is not None:
+        return element.kind not in DETECTORS
+    return element.kind in STORAGES and strokes.gives(node) == (
+        "flow" if element.kind is Kind.I else "effort"
+    )
+
+
+def _term(strokes: Strokes, node: int, effort: bool, factor: sp.Expr) -> Term:
+    """A multiple of a one-port's effort or flow, as a multiple of its bond's."""
+    bond = strokes.at[node][0]
+    turned = effort and strokes.bonds[bond][0] == node
+    return 2 * bond + (not effort), -factor if turned else factor
+
+
+def _field(strokes: Strokes, nodes: list[int]) -> dict[int, list[Term]]:
+    """``e = R f`` of a field of resistances, solved for what its ports give."""
+    matrix: list[Row] = []
+    right: list[Row] = []
+    for at, node in enumerate(nodes):
+        effort_given = strokes.gives(node) == "effort"
+        line: Row = {at: sp.Integer(1)} if effort_given else {}
+        known: Row = {} if effort_given else {at: sp.Integer(-1)}
+        for k, (_, value) in enumerate(strokes.elements[node].row):
+            if value != 0 and strokes.gives(nodes[k]) == "flow":
+                line[k] = -value
+            elif value != 0:
+                known[k] = value
+        matrix.append(line)
+        right.append(known)
+    try:
+        solved = solve(matrix, right)
+    except SingularError:
+        owner = strokes.elements[nodes[0]].owner
+        raise AlgebraicLoopError(
+            f"the field {owner!r} cannot give what it has to: that part of its matrix has no inverse; "
+            "change a value, or put a storage between"
+        ) from None
+    return {
+        node: [
+            _term(strokes, nodes[k], strokes.gives(nodes[k]) == "flow", factor)
+            for k, factor in row.items()
+        ]
+        for node, row in zip(nodes, solved, strict=True)
+    }
+
+
+def _variable(element: Element, which: str) -> sp.Symbol:
+    return element.effort if which == "effort" else element.flow
+
+
+def _names(
+    strokes: Strokes, equations: CausalEquations
+) -> Iterator[tuple[sp.Symbol, int, int, bool]]:
+    """Every name of a signal: symbol, signal, the sign of the signal over it, whether it is independent.
+
+    States and inputs come first, then what else one-ports give, what they receive, and what junctions
+    have in common.
+    """
+    given = [(signal, *equations.given[signal]) for signal in sorted(equations.given)]
+    for wanted in (True, False):
+        for signal, node, sign in given:
+            if _independent(strokes, node) is wanted:
+                element = strokes.elements[node]
+                yield _variable(element, strokes.gives(node)), signal, sign, wanted
+    for node, (signal, sign) in equations.received.items():
+        which = "flow" if strokes.gives(node) == "effort" else "effort"
+        yield _variable(strokes.elements[node], which), signal, sign, False
+    for node, element in enumerate(strokes.elements):
+        if element.kind not in JUNCTIONS:
+            continue
+        zero = element.kind is Kind.ZERO
+        source = next(b for b in strokes.at[node] if (strokes.end[b] == node) == zero)
+        name = element.effort if zero else element.flow
+        if name is not None:
+            yield name, 2 * source + (not zero), 1, False
+
+
+def _symbols(strokes: Strokes, equations: CausalEquations) -> list[sp.Symbol]:
+    """A symbol of its own for every signal."""
+    found: dict[int, sp.Symbol] = {}
+    taken: set[sp.Symbol] = set()
+    names = list(_names(strokes, equations))
+    states = {name for name, *_, independent in names if independent}
+    for name, signal, sign, independent in names:
+        free = name not in taken and (independent or name not in states)
+        if sign == 1 and signal not in found and free:
+            found[signal] = name
+            taken.add(name)
+    avoided = {name.name for name in _reserved(strokes)}
+    tries: dict[str, int] = {}
+    for signal in range(len(equations.terms)):
+        if signal not in found:
+            found[signal] = _made(strokes, signal, avoided, tries)
+    return [found[signal] for signal in range(len(equations.terms))]
+
+
+def _reserved(strokes: Strokes) -> Iterator[sp.Symbol]:
+    """Every name of the graph."""
+    yield TIME
+    for element in strokes.elements:
+        yield from named_by(element)
+        for part in (element.value, element.law, *(value for _, value in element.row)):
+            if part is not None:
+                yield from part.free_symbols
+
+
+def _made(strokes: Strokes, signal: int, avoided: set[str], tries: dict[str, int]) -> sp.Symbol:
+    """A new symbol ``e_<tail>_<head>`` or ``f_<tail>_<head>``, with a number where that is taken."""
+    tail, head = (strokes.names[end] for end in strokes.bonds[signal // 2])
+    text = str(normal(f"{'f' if signal % 2 else 'e'}_{tail}_{head}"))
+    text = re.sub(r"\W", "_", text)
+    made = text
+    while made in avoided:
+        tries[text] = tries.get(text, 1) + 1
+        made = f"{text}_{tries[text]}"
+    avoided.add(made)
+    return sp.Symbol(made)
+
+
+def _signals_by_name(strokes: Strokes, equations: CausalEquations) -> dict[sp.Symbol, Term]:
+    """What a name in a value stands for, states and inputs aside: a signal, and its sign."""
+    found: dict[sp.Symbol, Term] = {}
+    names = list(_names(strokes, equations))
+    states = {name for name, *_, independent in names if independent}
+    for name, signal, sign, _ in names:
+        if name not in states:
+            found.setdefault(name, (signal, sp.Integer(sign)))
+    return found
