@@ -27,9 +27,11 @@ def stored_rate(reduction: Reduction, port: int) -> Reading:
         add_scaled(result.H, ruled.F, value)
         add_scaled(result.K, ruled.D, value)
     if reduction.motion is not None:
-        for symbols, rates in ((reduction.names, result.H), (reduction.inputs, result.K)):
-            for j, entry in list(rates.items()):
-                reduction.motion.add_rate(result, entry, symbols[j])
+        # What the products gain goes to H and K itself, so their entries are listed first.
+        products = [(reduction.names[j], entry) for j, entry in result.H.items()]
+        products += [(reduction.inputs[j], entry) for j, entry in result.K.items()]
+        for symbol, entry in products:
+            reduction.motion.add_rate(result, entry, symbol)
     return result
 
 

@@ -161,7 +161,6 @@ class ClosedModel:
         xi, z = s[:n], s[n : n + own]
         u, du, y, caps = np.zeros(m), np.zeros(m), np.zeros(p), np.zeros(len(mode))
         now = Instant(t, xi, z, u, du, y, w, dw, caps, None)  # type: ignore[arg-type]
-        numbers = now.numbers = self.numbers(now)
         now.u[self._outside], now.du[self._outside] = (
             w[: len(self._outside)],
             dw[: len(self._outside)],
@@ -170,6 +169,7 @@ class ClosedModel:
         now.u[known] = self._known(now)
         if self._rated:
             now.du[known] = self._known_rates(now)
+        numbers = now.numbers = self.numbers(now)
         if not program.varying:
             now.x = xi + numbers.R @ now.u
         now.y = numbers.F @ now.x + numbers.D @ now.u + numbers.G @ now.du

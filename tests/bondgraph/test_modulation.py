@@ -127,6 +127,16 @@ def test_a_ratio_of_time_enters_j() -> None:
     assert sp.expand(equations.J[0] + m * (1 + t)) == 0
 
 
+def test_a_ratio_of_an_input_enters_e() -> None:
+    """v = n w with n from outside: (m n w)' = m n w' + m w n', once and not twice."""
+    nodes = [bg.Se("lever", "n"), bg.R("rest", 1)]
+    equations = bg.derive(_moving_mass("n", *nodes, bonds="lever>rest"), outputs=[])
+    n = sp.Symbol("n")
+    assert sp.expand(equations.A[0] - (J + m * n**2)) == 0
+    assert sp.zeros(1, 1) == equations.J
+    assert equations.E[0, equations.inputs.index(n)] == -m * n * SPEED
+
+
 def test_a_storage_that_loses_mass_has_its_rate_in_j() -> None:
     nodes = [bg.Se("push", "P"), bg.One("j"), bg.I("rocket", "m - k*t", flow="v")]
     equations = bg.derive(bond_graph(nodes, "push>j>rocket"))

@@ -73,9 +73,20 @@ def test_a_rocket_gains_what_its_mass_loses() -> None:
 
 def test_a_ratio_that_an_input_sets() -> None:
     """A steplessly variable gear: v = n w, n from outside; (J + m n^2) w' = tau - m n n' w."""
-    ready = simulator(bg.derive(_crank(ratio="n"), outputs=[]), {**NUMBERS, "c": 0.0, "n": 2.0})
-    fixed = ready.run(TIMES, {"omega": 1.0}, {"tau": 1.0})
-    assert fixed["omega"] == pytest.approx(1 + TIMES / (0.5 + 8.0), abs=1e-9)
+    nodes = [bg.Se("lever", "n"), bg.R("rest", 1)]
+    graph = _crank(*nodes, ratio="n", bonds="lever>rest")
+    ready = simulator(bg.derive(graph, outputs=[]), {**NUMBERS, "c": 0.0})
+    assert ready.inputs == ("tau", "n")
+    moving = Sine(0.5, 0.4, offset=2.0)
+    run = ready.run(TIMES, {"omega": 1.0}, {"tau": 1.0, "n": moving})
+
+    def rhs(t: float, y: np.ndarray) -> list[float]:
+        n, rate = 2 + 0.5 * np.sin(0.8 * np.pi * t), 0.4 * np.pi * np.cos(0.8 * np.pi * t)
+        return [(1.0 - 2.0 * n * rate * y[0]) / (0.5 + 2.0 * n**2)]
+
+    assert run["omega"] == pytest.approx(_tight(rhs, [1.0])[0], abs=1e-9)
+    with pytest.raises(bg.SimulationError, match="input 'n' steps"):
+        ready.run(TIMES, {"omega": 1.0}, {"tau": 1.0, "n": Step(1.0, 2.0, initial=1.0)})
 
 
 def test_friction_beside_a_moving_ratio_sticks_and_slips() -> None:
