@@ -9,7 +9,7 @@ READY := $(VENV)/ready
 help:
 	@echo "make demo   derive and simulate differentials; tables and pictures in out/"
 	@echo "make test   format, lint, types, tests and doctests"
-	@echo "make bench  how the time to derive grows with the size of a graph"
+	@echo "make bench  how time and memory to derive grow with the size of a graph"
 	@echo "make clean  remove the environment and what was generated"
 
 $(READY): pyproject.toml constraints.txt
