@@ -9,7 +9,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, SignalError, SingularStorageError
 from bondgraph.exact import Row, SingularError, add_scaled, solve
 from bondgraph.expressions import TIME
-from bondgraph.holding import add_reading, balances_of, solve_for
+from bondgraph.holding import balances_of, solve_for
 from bondgraph.junction import Port
 from bondgraph.laws import ExpressionLaw, Law
 from bondgraph.modulation import Reading, slope_of
@@ -90,7 +90,8 @@ class ClosedRows:
         result = Reading.zero()
         for mine, theirs in zip(result.parts, row.parts, strict=True):
             for j, entry in theirs.items():
-                add_scaled(mine, {j: sp.Integer(1)}, self._there(entry))
+                if (value := self._there(entry)) != 0:
+                    mine[j] = value
         for names, part in ((self.states, row.F), (self.columns, row.D)):
             for j, entry in part.items():
                 for name in sorted(entry.free_symbols & moving - {TIME}, key=str):
@@ -109,9 +110,9 @@ class ClosedRows:
         return expr.subs({name: self._point[name] for name in expr.free_symbols & moving})
 
     def _combined(self, slope: Mapping[sp.Symbol, sp.Expr]) -> Reading:
-        result = Reading({}, {}, {}, {})
+        result = Reading.zero()
         for name, factor in slope.items():
-            add_reading(result, self.signal(name), factor)
+            result.add(self.signal(name), factor)
         return result
 
     def put_in(self, row: Reading) -> Reading:
@@ -125,7 +126,7 @@ class ClosedRows:
         result = Reading(dict(row.F), kept, dict(row.H), dict(row.K))
         for j, entry in row.D.items():
             if j in self._given:
-                add_reading(result, self._given[j], entry)
+                result.add(self._given[j], entry)
         return result
 
     def dynamics(self) -> tuple[list[Row], list[Reading]]:

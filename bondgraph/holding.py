@@ -8,7 +8,7 @@ import sympy as sp
 from bondgraph.constrained import echelon
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, StructureError
-from bondgraph.exact import Row, SingularError, add_scaled, rows_of, solve
+from bondgraph.exact import Row, SingularError, rows_of, solve
 from bondgraph.junction import Port
 from bondgraph.modulation import Reading
 from bondgraph.rates import resolved
@@ -81,21 +81,11 @@ def split(rows: Sequence[Reading], held: Sequence[int]) -> tuple[list[Reading], 
     direct = [rows[i] for i in pivots]
     bound = []
     for weights in D.T.nullspace(simplify=sp.cancel):
-        sums = [Reading({}, {}, {}, {})]
+        total = Reading.zero()
         for row, weight in zip(rows, weights, strict=True):
-            add_reading(sums[0], row, weight)
-        bound += sums
+            total.add(row, weight)
+        bound.append(total)
     return direct, bound
-
-
-def add_reading(target: Reading, row: Reading, factor: sp.Expr) -> None:
-    """Add a multiple of one row to another in place."""
-    if factor == 0:
-        return
-    add_scaled(target.F, row.F, factor)
-    add_scaled(target.D, row.D, factor)
-    add_scaled(target.H, row.H, factor)
-    add_scaled(target.K, row.K, factor)
 
 
 def balances_of(equations: StateEquations) -> tuple[list[Row], list[Reading]]:

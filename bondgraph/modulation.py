@@ -28,6 +28,8 @@ class Reading:
 
     def add(self, other: "Reading", factor: sp.Expr) -> None:
         """Add a multiple of another reading in place."""
+        if factor == 0:
+            return
         for mine, theirs in zip(self.parts, other.parts, strict=True):
             add_scaled(mine, theirs, factor)
 
@@ -95,10 +97,8 @@ def moving_names(structure: JunctionStructure) -> set[sp.Symbol]:
     """The signals that values of the graph use, and the time if one does."""
     used: set[sp.Symbol] = set()
     for element in structure.elements.values():
-        if element.value is not None and not element.value.is_Symbol:
+        if element.value is not None:
             used |= element.value.free_symbols
-        elif element.value is not None:
-            used.add(element.value)
         for _, entry in element.row:
             used |= entry.free_symbols
     named = {TIME, *structure.states_of_laws}
