@@ -3,7 +3,7 @@
 from bondgraph.assignments import Assignment, assignments
 from bondgraph.causality import CausalGraph, assign_causality
 from bondgraph.composition import assemble, prefixed
-from bondgraph.elements import GY, TF, C, De, Df, I, Kind, One, R, Se, Sf, Zero
+from bondgraph.elements import GY, TF, C, De, Df, I, Kind, One, R, Se, Sf, Sw, Switch, Zero
 from bondgraph.equations import StateEquations, derive, state_equations
 from bondgraph.errors import (
     AlgebraicLoopError,
@@ -30,6 +30,7 @@ from bondgraph.latex import latex
 from bondgraph.laws import DryFriction, ExpressionLaw
 from bondgraph.linear import LinearModel, linearize
 from bondgraph.nodelink import from_json, to_json
+from bondgraph.switches import in_mode, switches
 
 __all__ = [
     "GY",
@@ -62,6 +63,8 @@ __all__ = [
     "SingularStorageError",
     "StateEquations",
     "StructureError",
+    "Sw",
+    "Switch",
     "Zero",
     "assemble",
     "assign_causality",
@@ -72,6 +75,7 @@ __all__ = [
     "from_graphml",
     "from_json",
     "holding_efforts",
+    "in_mode",
     "junction_structure",
     "latex",
     "linearize",
@@ -79,6 +83,7 @@ __all__ = [
     "read_graphml",
     "read_json",
     "state_equations",
+    "switches",
     "to_graphml",
     "to_json",
     "validate",

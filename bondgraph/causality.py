@@ -14,6 +14,7 @@ from bondgraph.graph import Bond, validate
 from bondgraph.regularity import regular_ports
 from bondgraph.stories import contradiction_story, stroke_story
 from bondgraph.strokes import Contradiction, Reason, Strokes
+from bondgraph.switches import refuse_switches
 
 TRIALS_PER_BOND = 20
 """Beyond this the search for strokes stops and exact rank decides the ports first."""
@@ -52,9 +53,11 @@ def assign_causality(graph: Any) -> CausalGraph:
 
     Raises `CausalityError` when sources and fixed ports contradict each other, `AlgebraicLoopError`
     when the structure is singular under every causality. Both are genuine: a graph is refused only
-    if the determinant of its bond equations vanishes identically.
+    if the determinant of its bond equations vanishes identically. `StructureError` for a graph with
+    switches, which has a causality in each of its modes: see `in_mode`.
     """
     checked = validate(graph)
+    refuse_switches(checked)
     strokes = Strokes(checked)
     order, preferred = _preferences(strokes)
     _impose_fixed(strokes, order)

@@ -17,7 +17,7 @@ Part: TypeAlias = "nx.DiGraph[Hashable]"
 Names = Mapping[str, str]
 """Old names of signals and parameters to new ones."""
 
-_READ = ("value", "law", "energy")
+_READ = ("value", "law", "energy", "inverse", "on", "off")
 """The attributes that read names; the others own them, or hold none."""
 
 _OWN_SLIP = sp.Dummy("slip of a curve")

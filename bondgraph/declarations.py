@@ -77,7 +77,7 @@ def _plain(key: str, value: Any, kind: object, where: str) -> Any:
         return _priority(value, where)
     if key == "law":
         return _law(value, kind, where)
-    if key in ("value", "energy"):
+    if key in ("value", "energy", "inverse", "on", "off"):
         rows = value.tolist() if isinstance(value, sp.MatrixBase) else value
         if isinstance(rows, Sequence) and not isinstance(rows, str):
             return [[_written(entry, where) for entry in row] for row in rows]

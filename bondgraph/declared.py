@@ -1,4 +1,4 @@
-"""Node attributes as checked elements: the only reader of what a user wrote at a node."""
+"""Nodes as checked elements: which kind of element the attributes of a node declare."""
 
 from collections.abc import Hashable, Mapping
 from typing import Any
@@ -6,20 +6,25 @@ from typing import Any
 import sympy as sp
 
 from bondgraph import fields
-from bondgraph.elements import (
-    DETECTORS,
-    JUNCTIONS,
-    KEYS,
-    SOURCES,
-    STORAGES,
-    TWO_PORTS,
-    Element,
-    Kind,
+from bondgraph.attributes import (
+    check_keys,
+    check_node_name,
+    energy_of,
+    gives_of,
+    inverse_of,
+    kind_of,
+    law_of,
+    port_variables,
+    priority_of,
+    switch_of,
+    unit_of,
+    value_of,
+    variable,
 )
-from bondgraph.errors import ExpressionError, StructureError
-from bondgraph.expressions import TIME, expression, number, symbol
-from bondgraph.laws import DryFriction, ExpressionLaw, Law, law
-from bondgraph.residues import is_zero
+from bondgraph.elements import DETECTORS, JUNCTIONS, SOURCES, STORAGES, TWO_PORTS, Element, Kind
+from bondgraph.errors import StructureError
+from bondgraph.expressions import TIME, expression, symbol
+from bondgraph.laws import ExpressionLaw, law
 
 
 def elements_of(name: Hashable, attributes: Mapping[str, Any]) -> dict[Hashable, Element]:
@@ -28,15 +33,17 @@ def elements_of(name: Hashable, attributes: Mapping[str, Any]) -> dict[Hashable,
     Raises `StructureError` or `ExpressionError`, naming the node.
     """
     if attributes.get("ports") is None:
-        return {name: _element(name, attributes)}
+        made = [_element(name, attributes)]
+        if made[0].kind in JUNCTIONS and (attributes.keys() & {"on", "off"}):
+            made.append(_control(made[0], attributes))
+        return {element.name: element for element in made}
     where = f"node {name!r}"
-    _element_name(name)
-    kind = _kind(attributes, where)
-    _check_keys(kind, attributes, where)
+    check_node_name(name)
+    kind = kind_of(attributes, where)
+    check_keys(kind, attributes, where)
     ports = fields.port_names(attributes["ports"], where)
     build = _energy_field if attributes.get("energy") is not None else _matrix_field
-    made = build(name, kind, ports, attributes)
-    return {element.name: element for element in made}
+    return {element.name: element for element in build(name, kind, ports, attributes)}
 
 
 def _matrix_field(
@@ -55,8 +62,8 @@ def _matrix_field(
     parts = [fields.part(name, port) for port in ports]
     return [
         Element(
-            parts[at], kind, rows[at][at], *_port_variables(name, port, attributes),
-            priority=_priority(attributes, where), unit=_unit(attributes, where),
+            parts[at], kind, rows[at][at], *port_variables(name, port, attributes),
+            priority=priority_of(attributes, where), unit=unit_of(attributes, where),
             row=tuple(zip(parts, rows[at], strict=True)), owner=name,
         )
         for at, port in enumerate(ports)
@@ -76,105 +83,37 @@ def _energy_field(
     energy, slopes = fields.gradient(attributes["energy"], states, where)
     return [
         Element(
-            fields.part(name, port), kind, None, *_port_variables(name, port, attributes),
-            law=ExpressionLaw(slope, state), priority=_priority(attributes, where),
-            gives="flow" if kind is Kind.I else "effort", unit=_unit(attributes, where),
+            fields.part(name, port), kind, None, *port_variables(name, port, attributes),
+            law=ExpressionLaw(slope, state), priority=priority_of(attributes, where),
+            gives="flow" if kind is Kind.I else "effort", unit=unit_of(attributes, where),
             owner=name, energy=energy,
         )
         for port, state, slope in zip(ports, states, slopes, strict=True)
     ]  # fmt: skip
 
 
-def _port_variables(
-    name: Hashable, port: str, attributes: Mapping[str, Any]
-) -> tuple[sp.Symbol, sp.Symbol]:
-    where = f"node {name!r}"
-    effort, flow = (
-        fields.port_variable(attributes.get(key), port, f"{key[0]}_{name}_{port}", where)
-        for key in ("effort", "flow")
-    )
-    return effort, flow
-
-
-def _unit(attributes: Mapping[str, Any], where: str) -> str | None:
-    unit = attributes.get("unit")
-    if unit is not None and not isinstance(unit, str):
-        raise StructureError(f"{where}: unit {unit!r} must be a text")
-    return unit
-
-
-def _element_name(name: Hashable) -> None:
-    if isinstance(name, bool) or not isinstance(name, str | int):
-        raise StructureError(f"node {name!r}: a node's name must be a text or an integer")
-
-
 def _element(name: Hashable, attributes: Mapping[str, Any]) -> Element:
-    _element_name(name)
+    check_node_name(name)
     where = f"node {name!r}"
-    kind = _kind(attributes, where)
-    _check_keys(kind, attributes, where)
-    unit = _unit(attributes, where)
+    kind = kind_of(attributes, where)
+    check_keys(kind, attributes, where)
+    unit = unit_of(attributes, where)
     if kind in JUNCTIONS:
         common = "effort" if kind is Kind.ZERO else "flow"
-        variable = _name(attributes, common, name, strict=False)
-        effort, flow = (variable, None) if kind is Kind.ZERO else (None, variable)
+        own = variable(attributes, common, name, strict=False)
+        effort, flow = (own, None) if kind is Kind.ZERO else (None, own)
         return Element(name, kind, None, effort, flow)
     if kind in TWO_PORTS:
-        return Element(name, kind, _value(attributes, where), None, None, unit=unit)
+        return Element(name, kind, value_of(attributes, where), None, None, unit=unit)
     if kind in SOURCES:
         return _source(name, kind, attributes, unit)
     if kind in DETECTORS:
         return _detector(name, kind, attributes, unit)
+    if kind is Kind.SW:
+        switch = switch_of(name, attributes, "effort")
+        effort, flow = (variable(attributes, key, name) for key in ("effort", "flow"))
+        return Element(name, kind, None, effort, flow, switch=switch)
     return _passive(name, kind, attributes, unit)
-
-
-def _kind(attributes: Mapping[str, Any], where: str) -> Kind:
-    if "kind" not in attributes:
-        raise StructureError(f"{where} has no kind; give one of {', '.join(Kind)}")
-    try:
-        return Kind(attributes["kind"])
-    except ValueError:
-        raise StructureError(
-            f"{where}: unknown kind {attributes['kind']!r}; there are {', '.join(Kind)}"
-        ) from None
-
-
-def _check_keys(kind: Kind, attributes: Mapping[str, Any], where: str) -> None:
-    for key in attributes:
-        if key != "kind" and key not in KEYS[kind]:
-            allowed = ", ".join(sorted(KEYS[kind]))
-            raise StructureError(
-                f"{where}: unknown attribute {key!r}; kind {kind} may have {allowed}"
-            )
-
-
-def _name(
-    attributes: Mapping[str, Any], key: str, name: Hashable, strict: bool = True
-) -> sp.Symbol | None:
-    """The symbol of the node's effort or flow: the given name, or ``e_<name>`` or ``f_<name>``.
-
-    Not ``strict``: None where the node's name makes no symbol.
-    """
-    where = f"node {name!r}"
-    if attributes.get(key) is not None:
-        given = attributes[key]
-        text = given.name if isinstance(given, sp.Symbol) else given
-        return symbol(text, f"{where}, {key}")
-    try:
-        return symbol(f"{key[0]}_{name}", where)
-    except ExpressionError as error:
-        if strict:
-            raise StructureError(f"{error}; rename the node, or name its effort and flow") from None
-        return None
-
-
-def _value(attributes: Mapping[str, Any], where: str) -> sp.Expr:
-    if attributes.get("value") is None:
-        raise StructureError(f"{where} has no value; give a number, a name or an expression")
-    value = expression(attributes["value"], where)
-    if is_zero(value):
-        raise StructureError(f"{where}: its value is zero, which leaves it without a meaning")
-    return value
 
 
 def _source(name: Hashable, kind: Kind, attributes: Mapping[str, Any], unit: str | None) -> Element:
@@ -185,10 +124,10 @@ def _source(name: Hashable, kind: Kind, attributes: Mapping[str, Any], unit: str
     gives, receives = ("effort", "flow") if kind is Kind.SE else ("flow", "effort")
     value = expression(attributes["value"], where)
     bare = isinstance(value, sp.Symbol) and value != TIME
-    given = sp.Symbol(value.name) if bare else _name({}, gives, name)
+    given = sp.Symbol(value.name) if bare else variable({}, gives, name)
     if bare and value != given:
         raise StructureError(f"{where}: the input {value} must be a symbol without assumptions")
-    received = _name(attributes, receives, name)
+    received = variable(attributes, receives, name)
     effort, flow = (given, received) if kind is Kind.SE else (received, given)
     known = None if bare else law(value, where)
     return Element(name, kind, None, effort, flow, law=known, gives=gives, unit=unit)
@@ -202,7 +141,7 @@ def _detector(
     if integral is not None:
         text = integral.name if isinstance(integral, sp.Symbol) else integral
         integral = symbol(text, f"node {name!r}, integrate")
-    effort, flow = (_name(attributes, variable, name) for variable in ("effort", "flow"))
+    effort, flow = (variable(attributes, key, name) for key in ("effort", "flow"))
     gives = "flow" if kind is Kind.DE else "effort"
     return Element(name, kind, None, effort, flow, gives=gives, unit=unit, integral=integral)
 
@@ -218,86 +157,29 @@ def _passive(
     if kind in STORAGES and not given:
         raise StructureError(f"{where} has no value; give a number, a name, an expression or a law")
     valued = given == ["value"]
-    gives = _gives(kind, attributes, where, valued)
-    effort, flow = (_name(attributes, variable, name) for variable in ("effort", "flow"))
-    closed = _given_law(name, kind, attributes, gives)
-    inverse = _inverse(attributes, closed, flow if kind is Kind.I else effort, where)
+    gives = gives_of(kind, attributes, where, valued)
+    effort, flow = (variable(attributes, key, name) for key in ("effort", "flow"))
+    closed = law_of(name, kind, attributes, gives)
+    inverse = inverse_of(attributes, closed, flow if kind is Kind.I else effort, where)
     return Element(
         name,
         kind,
-        _value(attributes, where) if valued else None,
+        value_of(attributes, where) if valued else None,
         effort,
         flow,
         law=closed,
-        priority=_priority(attributes, where),
+        priority=priority_of(attributes, where),
         gives=gives if inverse is None else None,
         unit=unit,
-        energy=_energy(name, kind, attributes)[0] if given == ["energy"] else None,
+        energy=energy_of(name, kind, attributes)[0] if given == ["energy"] else None,
         inverse=inverse,
     )
 
 
-def _inverse(
-    attributes: Mapping[str, Any], closed: Law | None, given: sp.Symbol | None, where: str
-) -> sp.Expr | None:
-    """A law's inverse, checked: the law of it is the variable that the law gives."""
-    if attributes.get("inverse") is None:
-        return None
-    if not isinstance(closed, ExpressionLaw) or closed.state is None:
-        raise StructureError(f"{where}: an inverse belongs to the law or the energy of an I or a C")
-    inverse = expression(attributes["inverse"], f"{where}, inverse")
-    if not fields.inverts(closed.expression.subs(closed.state, inverse), given):
-        raise StructureError(
-            f"{where}: {inverse} is not the inverse of {closed.expression}: put in, it does not give {given}"
-        )
-    return inverse
-
-
-def _given_law(
-    name: Hashable, kind: Kind, attributes: Mapping[str, Any], gives: str | None
-) -> Law | None:
-    """The law declared, or the slope of the energy declared."""
-    if attributes.get("energy") is not None:
-        return _energy(name, kind, attributes)[1]
-    return _law(name, kind, attributes["law"], gives) if attributes.get("law") is not None else None
-
-
-def _energy(
-    name: Hashable, kind: Kind, attributes: Mapping[str, Any]
-) -> tuple[sp.Expr, ExpressionLaw]:
-    """The energy of a one-port and the law that follows from it."""
-    where = f"node {name!r}"
-    state = symbol(f"{'p' if kind is Kind.I else 'q'}_{name}", where)
-    energy, (slope,) = fields.gradient(attributes["energy"], [state], where)
-    return energy, ExpressionLaw(slope, state)
-
-
-def _law(name: Hashable, kind: Kind, given: object, gives: str | None) -> Law:
-    where = f"node {name!r}, law"
-    state = None
-    if kind in STORAGES:
-        state = symbol(f"{'p' if kind is Kind.I else 'q'}_{name}", where)
-    result = law(given, where, state)
-    if isinstance(result, DryFriction) and gives != "effort":
-        raise StructureError(f"{where}: dry friction gives an effort; leave gives='effort'")
-    return result
-
-
-def _gives(kind: Kind, attributes: Mapping[str, Any], where: str, linear: bool) -> str | None:
-    gives = attributes.get("gives", "effort")
-    if gives not in ("effort", "flow"):
-        raise StructureError(f"{where}: gives is {gives!r}; it must be 'effort' or 'flow'")
-    if linear:
-        if "gives" in attributes:
-            raise StructureError(f"{where}: gives is for open ports and laws; leave it out here")
-        return None
-    if kind in STORAGES:
-        return "flow" if kind is Kind.I else "effort"
-    return str(gives)
-
-
-def _priority(attributes: Mapping[str, Any], where: str) -> float:
-    try:
-        return float(number(attributes.get("priority", 0), f"{where}, priority"))
-    except ExpressionError as error:
-        raise StructureError(f"{error}; priority must be a number") from None
+def _control(junction: Element, attributes: Mapping[str, Any]) -> Element:
+    """The switch that makes a junction a controlled one: a port of its own, ``<name>_switch``."""
+    gives = "effort" if junction.kind is Kind.ONE else "flow"
+    switch = switch_of(junction.name, attributes, gives)
+    name = f"{junction.name}_switch"
+    effort, flow = (variable({}, key, name) for key in ("effort", "flow"))
+    return Element(name, Kind.SW, None, effort, flow, switch=switch)

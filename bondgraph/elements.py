@@ -26,6 +26,7 @@ class Kind(StrEnum):
     ONE = "One"
     DE = "De"
     DF = "Df"
+    SW = "Sw"
 
 
 SOURCES = frozenset({Kind.SE, Kind.SF})
@@ -33,7 +34,7 @@ STORAGES = frozenset({Kind.I, Kind.C})
 TWO_PORTS = frozenset({Kind.TF, Kind.GY})
 JUNCTIONS = frozenset({Kind.ZERO, Kind.ONE})
 DETECTORS = frozenset({Kind.DE, Kind.DF})
-POWER_INTO = frozenset({Kind.I, Kind.C, Kind.R, *DETECTORS})
+POWER_INTO = frozenset({Kind.I, Kind.C, Kind.R, Kind.SW, *DETECTORS})
 """Power counts into these whichever way the arrow points."""
 
 KEYS: dict[Kind, frozenset[str]] = {
@@ -48,12 +49,27 @@ KEYS: dict[Kind, frozenset[str]] = {
     Kind.R: frozenset({"value", "effort", "flow", "law", "ports", "gives", "unit"}),
     Kind.TF: frozenset({"value", "unit"}),
     Kind.GY: frozenset({"value", "unit"}),
-    Kind.ZERO: frozenset({"effort"}),
-    Kind.ONE: frozenset({"flow"}),
+    Kind.ZERO: frozenset({"effort", "on", "off"}),
+    Kind.ONE: frozenset({"flow", "on", "off"}),
     Kind.DE: frozenset({"effort", "integrate", "unit"}),
     Kind.DF: frozenset({"flow", "integrate", "unit"}),
+    Kind.SW: frozenset({"effort", "flow", "on", "off"}),
 }
 """The attributes a node of each kind may carry beside ``kind``."""
+
+
+@dataclass(frozen=True)
+class Switch:
+    """When a switch or a controlled junction of this name changes over.
+
+    Off, it turns on as ``on`` rises above zero; on, it turns off as ``off`` does. While on, its port
+    gives zero effort, or zero flow, as ``gives`` says; while off it gives zero of the other.
+    """
+
+    name: Hashable
+    on: sp.Expr
+    off: sp.Expr
+    gives: str
 
 
 @dataclass(frozen=True)
@@ -65,7 +81,8 @@ class Element:
     ``integral``: the state that a detector makes of what it reads. ``row``: of a port of a field, what
     it has per unit of each port's variable, by the ports' names; ``owner``: the field's node.
     ``energy``: of a storage with an energy function, that function. ``inverse``: of one with a law, its
-    state as a function of what the law gives, so that it may have derivative causality.
+    state as a function of what the law gives, so that it may have derivative causality. ``switch``: of an
+    ideal switch, when it turns on and off.
     """
 
     name: Hashable
@@ -82,6 +99,7 @@ class Element:
     owner: Hashable | None = None
     energy: sp.Expr | None = None
     inverse: sp.Expr | None = None
+    switch: Switch | None = None
 
     @property
     def one_port(self) -> bool:
@@ -169,12 +187,18 @@ def GY(name: Hashable, r: object, **more: object) -> Node:
 
 
 def Zero(name: Hashable, effort: object = None, **more: object) -> Node:
-    """A 0-junction: one effort, flows that sum to zero. ``effort`` names the common effort."""
+    """A 0-junction: one effort, flows that sum to zero. ``effort`` names the common effort.
+
+    With ``on=`` (and ``off=``, see `Sw`) it is a controlled junction: off, its effort is zero.
+    """
     return _node(name, Kind.ZERO, effort=effort, **more)
 
 
 def One(name: Hashable, flow: object = None, **more: object) -> Node:
-    """A 1-junction: one flow, efforts that sum to zero. ``flow`` names the common flow."""
+    """A 1-junction: one flow, efforts that sum to zero. ``flow`` names the common flow.
+
+    With ``on=`` (and ``off=``, see `Sw`) it is a controlled junction: off, its flow is zero.
+    """
     return _node(name, Kind.ONE, flow=flow, **more)
 
 
@@ -192,6 +216,18 @@ def Df(name: Hashable, flow: object = None, integrate: object = None, **more: ob
     ('sensor', {'kind': 'Df', 'integrate': 'theta'})
     """
     return _node(name, Kind.DF, flow=flow, integrate=integrate, **more)
+
+
+def Sw(name: Hashable, on: object, off: object = None, **more: object) -> Node:
+    """An ideal switch: zero effort while it is on (closed), zero flow while it is off (open).
+
+    Off, it turns on as the expression ``on`` rises above zero; on, it turns off as ``off`` does, which
+    is ``-on`` unless given. They may use any signal, its own effort and flow among them; so a diode is
+
+    >>> Sw("d", on="e_d", off="-f_d")
+    ('d', {'kind': 'Sw', 'on': 'e_d', 'off': '-f_d'})
+    """
+    return _node(name, Kind.SW, on=on, off=off, **more)
 
 
 def _node(name: Hashable, kind: Kind, **attributes: object) -> Node:

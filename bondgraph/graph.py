@@ -1,6 +1,6 @@
 """`validate`: what passes is complete, checked and frozen; no other stage sees what the user wrote."""
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import networkx as nx
@@ -41,21 +41,29 @@ def validate(graph: Any) -> "nx.DiGraph[Hashable]":
     if len(graph) == 0:
         raise StructureError("the graph has no nodes; add elements and bonds first")
     result = _Validated()
-    fields: set[Hashable] = set()
-    for name, attributes in graph.nodes(data=True):
-        for own, element in elements_of(name, attributes).items():
-            _add(result, own, element)
-            if own != name:
-                fields.add(name)
+    fields, controls = _add_elements(result, graph)
     for tail, head, attributes in graph.edges(data=True):
         _check_bond(graph, tail, head, attributes)
         ends = _ends(result, fields, (tail, head), attributes)
         first, last = _oriented(result, *ends)
         result.add_edge(first, last, declared=(tail, head))
+    for bond in controls:
+        result.add_edge(*bond, declared=bond)
     for name in result:
         _check_degree(result, name)
     check_names([result.nodes[name]["element"] for name in result])
     check_one_whole(result)
+    nx.freeze(result)
+    return result
+
+
+def with_elements(
+    graph: "nx.DiGraph[Hashable]", elements: Mapping[Hashable, Element]
+) -> "nx.DiGraph[Hashable]":
+    """A validated graph with other elements at some of its nodes, of as many ports and the same names."""
+    result = _Validated(graph)
+    for name, element in elements.items():
+        result.nodes[name]["element"] = element
     nx.freeze(result)
     return result
 
@@ -76,10 +84,25 @@ def _check_bond(graph: Any, tail: Hashable, head: Hashable, attributes: dict[str
         )
 
 
+def _add_elements(result: _Validated, graph: Any) -> tuple[set[Hashable], list[Bond]]:
+    """Add every node's elements; the fields among the nodes, and the bonds of controlled junctions."""
+    fields: set[Hashable] = set()
+    controls: list[Bond] = []
+    for name, attributes in graph.nodes(data=True):
+        for own, element in elements_of(name, attributes).items():
+            _add(result, own, element)
+            if element.owner is not None:
+                fields.add(name)
+            elif own != name:
+                controls.append((name, own))
+    return fields, controls
+
+
 def _add(graph: _Validated, name: Hashable, element: Element) -> None:
     if name in graph:
         raise StructureError(
-            f"two nodes are called {name!r}: a field's port and another; rename one"
+            f"two nodes are called {name!r}: the port of a field or of a controlled junction, and another; "
+            "rename one"
         )
     graph.add_node(name, element=element)
 

@@ -9,7 +9,7 @@ import sympy as sp
 from bondgraph.elements import SOURCES, Element
 from bondgraph.errors import StructureError
 from bondgraph.expressions import TIME
-from bondgraph.laws import ExpressionLaw
+from bondgraph.laws import ExpressionLaw, Law
 
 
 def check_names(elements: Sequence[Element]) -> None:
@@ -31,6 +31,8 @@ def check_names(elements: Sequence[Element]) -> None:
 def _owned(element: Element) -> Iterable[sp.Symbol]:
     """The quantities that this element alone imposes or keeps: its input and its law's state."""
     own = [element.given] if element.given is not None else []
+    if element.switch is not None:
+        own += [name for name in (element.effort, element.flow) if name is not None]
     if element.integral is not None:
         own.append(element.integral)
     if isinstance(element.law, ExpressionLaw) and element.law.state is not None:
@@ -70,14 +72,20 @@ def _check_assumptions(elements: Sequence[Element], signals: set[sp.Symbol]) -> 
     seen: dict[str, sp.Symbol] = {name.name: name for name in signals}
     for element in elements:
         used: set[sp.Symbol] = set()
-        for part in (element.value, element.law):
-            used |= part.free_symbols if part is not None else set()
+        for part in _read(element):
+            used |= part.free_symbols
         for name in sorted(used, key=str):
             if seen.setdefault(name.name, name) != name:
                 raise StructureError(
                     f"node {element.name!r}: the symbol {name} is used elsewhere with different "
                     "assumptions; use one symbol for one name, or plain text"
                 )
+
+
+def _read(element: Element) -> list[Law | sp.Expr]:
+    """What an element reads names in."""
+    conditions = (element.switch.on, element.switch.off) if element.switch else ()
+    return [part for part in (element.value, element.law, *conditions) if part is not None]
 
 
 def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:
@@ -95,8 +103,7 @@ def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:
         element = graph.nodes[name]["element"]
         if element.owner is not None:
             joined.add_edge(("node", name), ("field", element.owner))
-        used = {symbol for part in (element.law, element.value) if part is not None
-                for symbol in part.free_symbols & owned}  # fmt: skip
+        used = {symbol for part in _read(element) for symbol in part.free_symbols & owned}
         for _, entry in element.row:
             used |= entry.free_symbols & owned
         joined.add_edges_from((("node", name), ("signal", s)) for s in {*used, *named_by(element)})

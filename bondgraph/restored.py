@@ -15,6 +15,9 @@ SCALARS = (str, int, float)
 TYPES: Mapping[str, tuple[type, ...]] = {
     "value": (*SCALARS, list),
     "energy": SCALARS,
+    "inverse": SCALARS,
+    "on": SCALARS,
+    "off": SCALARS,
     "law": (*SCALARS, dict),
     "priority": (int, float),
     "effort": (str, dict),

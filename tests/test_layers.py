@@ -11,8 +11,8 @@ ROOT = Path(__file__).parents[1]
 #: Each package may import the ones before it; each file of a package the files before it.
 ORDER = {
     "bondgraph": [
-        "errors", "residues", "expressions", "laws", "elements", "elimination", "fields", "declared",
-        "names", "graph", "strokes", "causal_order", "regularity", "stories", "causality", "exact",
+        "errors", "residues", "expressions", "laws", "elements", "elimination", "fields",
+        "attributes", "declared", "names", "graph", "switches", "strokes", "causal_order", "regularity", "stories", "causality", "exact",
         "assignments", "tidy", "junction", "modulation", "sorting", "resistances", "stored", "reduction",
         "rates", "outputs", "readings", "equations", "closures", "slopes", "constrained", "holding",
         "closed_rows", "response", "linear", "explicit", "latex", "composition", "declarations", "restored",

@@ -33,7 +33,7 @@ def test_constructor_gives_a_node_of_plain_data(node: tuple, expected: tuple) ->
 
 
 def test_kinds_are_those_of_textbooks() -> None:
-    kinds = ["Se", "Sf", "I", "C", "R", "TF", "GY", "Zero", "One", "De", "Df"]
+    kinds = ["Se", "Sf", "I", "C", "R", "TF", "GY", "Zero", "One", "De", "Df", "Sw"]
     assert [str(kind) for kind in bg.Kind] == kinds
 
 
