@@ -1,6 +1,6 @@
 """Switches and controlled junctions: a graph without them for every mode that they can be in."""
 
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -35,7 +35,17 @@ def in_mode(graph: Any, on: Iterable[Hashable] = ()) -> "nx.DiGraph[Hashable]":
     ((e_cap,), (), ['E', 'f_key'])
     """
     checked = validate(graph)
-    known = [switch.name for switch in switches(checked)]
+    chosen = checked_modes([switch.name for switch in switches(checked)], on)
+    settled = {
+        element.name: _settled(element, element.switch, element.switch.name in chosen)
+        for element in _elements(checked)
+        if element.switch is not None
+    }
+    return with_elements(checked, settled)
+
+
+def checked_modes(known: Sequence[Hashable], on: Any) -> frozenset[Hashable]:
+    """The switches that are told to be on; `StructureError` for others than the ``known``."""
     if isinstance(on, str) or not isinstance(on, Iterable):
         raise StructureError(f"on must be a list of switches, not {on!r}")
     chosen = list(on)
@@ -43,12 +53,7 @@ def in_mode(graph: Any, on: Iterable[Hashable] = ()) -> "nx.DiGraph[Hashable]":
         if name not in known:
             listed = ", ".join(map(repr, known)) or "none"
             raise StructureError(f"{name!r} is no switch of this graph; there are {listed}")
-    settled = {
-        element.name: _settled(element, element.switch, element.switch.name in chosen)
-        for element in _elements(checked)
-        if element.switch is not None
-    }
-    return with_elements(checked, settled)
+    return frozenset(chosen)
 
 
 def refuse_switches(graph: "nx.DiGraph[Hashable]") -> None:

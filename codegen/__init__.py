@@ -5,6 +5,7 @@ from codegen.program import Block, Program, lower
 from codegen.result import Result
 from codegen.signals import Constant, Lag, Ramp, Sampled, Signal, Sine, Step
 from codegen.simulate import Simulator, simulator
+from codegen.switched import SwitchedSimulator, switched_simulator
 from codegen.trim import trim
 
 __all__ = [
@@ -20,7 +21,9 @@ __all__ = [
     "Simulator",
     "Sine",
     "Step",
+    "SwitchedSimulator",
     "lower",
     "simulator",
+    "switched_simulator",
     "trim",
 ]

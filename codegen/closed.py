@@ -66,6 +66,7 @@ class ClosedModel:
         self._groups = [binding.function(group.values) for group in program.groups]
         self._coupled = binding.function(program.coupled.values)
         self._friction = binding.function(program.friction_values)
+        self._guards = binding.function(program.guards)
         self._outside = [program.inputs.index(n) for n in program.external if n in program.inputs]
         self._coefficients = binding.function(program.coefficients)
         self._constant = None if program.varying else numbers(program, equations, exact)
@@ -130,6 +131,15 @@ class ClosedModel:
                 if not mode or min(now.caps) >= 0:
                     return now
         return self.evaluate(t, s, w, dw, mode)
+
+    def guards(self, t: float, now: Snapshot) -> Array:
+        """The conditions at an instant: one below zero ends the run."""
+        zeros = np.zeros(len(now.external))
+        return self._guards(
+            Instant(
+                t, now.x, now.z, now.u, now.du, now.y, now.external, zeros, now.caps, now.numbers
+            )
+        )
 
     def given(self, t: float, pieces: Sequence[Piece]) -> tuple[Array, Array]:
         """The external inputs, and their rates where anything asks for them."""

@@ -39,12 +39,18 @@ class Closing:
 
 
 def close_ports(
-    equations: StateEquations, overrides: Mapping[Hashable, object], parameters: set[str]
+    equations: StateEquations,
+    overrides: Mapping[Hashable, object],
+    parameters: set[str],
+    watched: frozenset[sp.Symbol] = frozenset(),
 ) -> Closing:
-    """Merge declared and given laws, sort their names, and find an order of evaluation."""
+    """Merge declared and given laws, sort their names, and find an order of evaluation.
+
+    ``watched``: names that are asked for beside those that laws read.
+    """
     by_port = merged_laws(equations, overrides)
     _check_assumptions(equations, by_port)
-    read = {name for closed in by_port.values() for name in closed.free_symbols}
+    read = {name for closed in by_port.values() for name in closed.free_symbols} | watched
     equations = equations.with_readings({*read, *equations.integrals.values()})
     ports = {port.element.name: port for port in equations.ports}
     _check_parameters(equations, by_port, parameters)
@@ -72,7 +78,7 @@ def close_ports(
         owner,
         received,
         states,
-        _external(equations, laws, set(states), parameters),
+        _external(equations, laws, watched, set(states), parameters),
         known,
         order,
         friction,
@@ -110,14 +116,14 @@ def _check_parameters(
 def _external(
     equations: StateEquations,
     laws: Mapping[sp.Symbol, Law],
+    watched: frozenset[sp.Symbol],
     law_states: set[sp.Symbol],
     parameters: set[str],
 ) -> tuple[sp.Symbol, ...]:
-    """Inputs nothing in the model gives: open ports and sources first, then what laws ask for."""
+    """Inputs nothing in the model gives: open ports and sources first, then what else is asked for."""
     known = {*equations.signals, *law_states, TIME}
-    asked: set[sp.Symbol] = set()
-    for closed in laws.values():
-        asked |= {name for name in closed.free_symbols - known if name.name not in parameters}
+    names = watched.union(*(closed.free_symbols for closed in laws.values()))
+    asked = {name for name in names - known if name.name not in parameters}
     return tuple(name for name in equations.inputs if name not in laws) + tuple(
         sorted(asked, key=str)
     )

@@ -1,4 +1,4 @@
-"""Events inside one integration step: where a slip or a margin falls through zero."""
+"""Events inside one integration step: where a slip, a margin or a guard falls through zero."""
 
 from collections.abc import Callable, Hashable, Sequence
 from typing import NamedTuple
@@ -8,6 +8,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from codegen.arrays import Array
 from codegen.closed import CAPS, INPUTS, READINGS, ClosedModel, Mode, Snapshot
+from codegen.guards import guard_rounding
 from codegen.modes import LOOK_AHEAD, Peaks, scales
 from codegen.pieces import Piece
 
@@ -19,7 +20,10 @@ Dense = Callable[[float | Array], Array]
 
 
 class Event(NamedTuple):
-    """What happened at a friction port: "stick", "slip" (it was released) or "cross" (through zero)."""
+    """What happened: at a friction port "stick", "slip" (it was released) or "cross" (through zero).
+
+    At a switch or a controlled junction "on" or "off".
+    """
 
     time: float
     port: Hashable
@@ -27,12 +31,12 @@ class Event(NamedTuple):
 
 
 class Watch:
-    """Watches the friction ports through one leg.
+    """Watches the friction ports, and then the guards, through one leg.
 
     Each port has a trigger that is positive while the mode holds: the magnitude of its slip, or, where
-    it sticks, the margin to its breakaway effort. A trigger that starts at zero is armed once it has
-    risen above rounding; until then only a fall well below zero counts, and only after a moment too
-    short to matter, so that a leg out of complete rest makes progress.
+    it sticks, the margin to its breakaway effort; a guard is one itself. A trigger that
+    starts at zero is armed once it has risen above rounding; until then only a fall well below zero
+    counts, and only after a moment too short to matter, so that a leg out of complete rest makes progress.
     """
 
     def __init__(
@@ -46,7 +50,8 @@ class Watch:
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
         self._blind = t + LOOK_AHEAD * (peaks.time if peaks else 0.0)
-        affine = model.affine_map(mode, len(pieces)) if mode else None
+        guarded = bool(model.program.guards.results)
+        affine = model.affine_map(mode, len(pieces)) if mode and not guarded else None
         self._affine = None if affine is None else (
             affine.rows(INPUTS)[model.friction_inputs],
             affine.rows(READINGS)[model.friction_readings],
@@ -57,20 +62,23 @@ class Watch:
         if mode:
             size = scales(model, now, t, peaks)
             self._limits = np.where(np.array(mode) == 0, size.effort, size.slip)
-        self._armed = [False] * len(mode)
-        self._before = self._triggers(now)
+        if guarded:
+            limits = guard_rounding(model, t, s, pieces, mode, peaks)
+            self._limits = np.concatenate([self._limits, limits])
+        self._armed = [False] * len(self._limits)
+        self._before = self._triggers(t, now)
 
     def first_event(
         self, t_old: float, t_new: float, dense: Dense
     ) -> tuple[float, frozenset[int]] | None:
-        """The first time in a step at which the mode ends, and the ports that end it."""
-        if not self._mode:
+        """The first time in a step at which the mode ends, and the ports or guards that end it."""
+        if not self._armed:
             return None
         grid = np.linspace(t_old, t_new, CHECKS + 2).tolist()
         values = [self._before, *self._series(grid[1:], dense)]
         self._before = values[-1]
         roots: dict[int, float] = {}
-        for i in range(len(self._mode)):
+        for i in range(len(self._armed)):
             root = self._first_fall(i, grid, [value[i] for value in values], dense)
             if root is not None:
                 roots[i] = root
@@ -97,13 +105,13 @@ class Watch:
     def _series(self, times: Sequence[float], dense: Dense) -> list[Array]:
         """The triggers at several times; in one product where everything is affine."""
         if self._affine is None:
-            return [self._triggers(self._snapshot(t, dense(t))) for t in times]
+            return [self._triggers(t, self._snapshot(t, dense(t))) for t in times]
         given = np.array([np.concatenate(self._model.given(t, self._pieces)) for t in times])
         vectors = np.hstack([dense(np.array(times)).T, given, np.ones((len(times), 1))])
         efforts, slips, caps = (vectors @ rows.T for rows in self._affine)
         if caps.min() < 0:
             # One by one, so that a friction level below zero is refused with its time.
-            return [self._triggers(self._snapshot(t, dense(t))) for t in times]
+            return [self._triggers(t, self._snapshot(t, dense(t))) for t in times]
         signs = np.array(self._mode)
         margins = caps - np.abs(efforts)
         return list(np.where(signs == 0, margins, signs * slips))
@@ -111,12 +119,13 @@ class Watch:
     def _snapshot(self, t: float, s: Array) -> Snapshot:
         return self._model.at(t, s, self._pieces, self._mode)
 
-    def _triggers(self, now: Snapshot) -> Array:
+    def _triggers(self, t: float, now: Snapshot) -> Array:
         efforts, slips = now.u[self._model.friction_inputs], now.y[self._model.friction_readings]
-        return np.array([
+        ports = [
             sign * slips[i] if sign else now.caps[i] - abs(efforts[i])
             for i, sign in enumerate(self._mode)
-        ])  # fmt: skip
+        ]
+        return np.concatenate([ports, self._model.guards(t, now)])
 
     def _fall(
         self, i: int, t_a: float, t_b: float, a: float, b: float, dense: Dense
@@ -135,7 +144,7 @@ class Watch:
 
     def _crossing(self, i: int, t_a: float, t_b: float, level: float, dense: Dense) -> float:
         def above(t: float) -> float:
-            return float(self._triggers(self._snapshot(t, dense(t)))[i] - level)
+            return float(self._triggers(t, self._snapshot(t, dense(t)))[i] - level)
 
         if above(t_a) <= 0:
             return t_a
@@ -157,7 +166,7 @@ class Watch:
         if b - slope**2 / (2 * curve) > 0.5 * min(values):
             return None
         lowest = minimize_scalar(
-            lambda t: float(self._triggers(self._snapshot(t, dense(t)))[i]),
+            lambda t: float(self._triggers(t, self._snapshot(t, dense(t)))[i]),
             bounds=(grid[0], grid[2]), method="bounded", options={"xatol": 1e-9 * (grid[2] - grid[0])},
         )  # fmt: skip
         if lowest.fun > 0:

@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.closed import ClosedModel, Mode
 from codegen.events import Event
+from codegen.guards import fallen_guards
 from codegen.legs import Leg, Settings, Track
 from codegen.modes import LOOK_AHEAD, Peaks, decide, scales
 from codegen.pieces import Piece
@@ -21,29 +23,43 @@ APART = 1e-9
 """Hardly apart: closer than this fraction of the run, or than what decides ties."""
 
 
+@dataclass(frozen=True)
+class Stretch:
+    """How far a run came: the end of its time, or the first instant at which guards fell."""
+
+    track: Track
+    t: float
+    s: Array
+    mode: Mode
+    fallen: frozenset[int]
+
+
 def run_hybrid(
     model: ClosedModel,
     times: Array,
     start: Array,
     signals: Sequence[Signal],
     settings: Settings,
-) -> Track:
-    """Integrate from the first to the last of ``times`` [s], recording the vector at each of them.
+    begin: float,
+    span: float,
+) -> Stretch:
+    """Integrate from ``begin`` to the last of ``times`` [s], recording the vector at each of them.
 
-    At a breakpoint or an event a sample shows the instant just after.
+    At a breakpoint or an event a sample shows the instant just after. ``span`` [s]: the length of the
+    whole run, of which this may be the rest. Ends where a guard falls below zero.
     """
-    t, end, s = float(times[0]), float(times[-1]), start
-    span = end - t
+    t, end, s = begin, float(times[-1]), start
     track = Track(np.zeros((len(times), model.size)), [])
     breaks = sorted({b for signal in signals for b in signal.breakpoints if t < b <= end})
     mode: Mode = tuple(1 for _ in model.friction_inputs)
     touched, started, peaks = frozenset[int](), False, Peaks.none(model)
     rounds: deque[float] = deque(maxlen=STALLED)
-    while t < end or touched or t in breaks:
+    while not started or t < end or touched or t in breaks:
         pieces = [signal.piece(t) for signal in signals]
         peaks.see(model, t, s, pieces, mode)
         leg = Leg(model, pieces, mode, settings, span, peaks)
-        peaks.time = 1 / max(leg.fastest(t, s), 100.0 / span) if mode else 0.0
+        watched = bool(mode) or bool(model.program.guards.results)
+        peaks.time = 1 / max(leg.fastest(t, s), 100.0 / span) if watched else 0.0
         ahead = LOOK_AHEAD * peaks.time
         # A breakpoint may set the slips anew, so sticking ports are decided again with the others.
         loose = touched | {i for i, sign in enumerate(mode) if sign == 0}
@@ -53,15 +69,23 @@ def run_hybrid(
             _note(model, track.events, t, mode, new)
             if touched:
                 _check_progress(rounds, t, max(APART * span, 2 * STALLED * ahead), track.events)
-        mode, started = new, True
+        mode = new
         s = _at_rest(model, t, s, pieces, mode)
+        fallen = fallen_guards(model, t, s, pieces, mode, peaks) if started else frozenset()
+        if fallen:
+            return Stretch(track, t, s, mode, fallen)
+        started = True
         if t >= end:
             break
         stop = next((b for b in breaks if b > t), end)
         leg = Leg(model, pieces, mode, settings, span, peaks)
-        t, s, touched = leg.run(t, s, stop, times, track)
+        t, s, ended = leg.run(t, s, stop, times, track)
+        fallen = frozenset(i - len(mode) for i in ended if i >= len(mode))
+        if fallen:
+            return Stretch(track, t, s, mode, fallen)
+        touched = ended
     track.record(s, mode)
-    return track
+    return Stretch(track, t, s, mode, frozenset())
 
 
 def _still(

@@ -94,6 +94,8 @@ class Program:
     joint: bool
     #: Readings that a step must not turn into an impulse: outputs, and what laws read.
     read: tuple[int, ...]
+    #: Conditions that end a run where one falls below zero.
+    guards: Block
     #: Whether coefficients change in time, with states, external inputs or the time itself.
     varying: bool
     #: Whether each friction mode is an affine system with constant coefficients.
@@ -104,11 +106,13 @@ def lower(
     equations: StateEquations,
     laws: Mapping[Any, object] | None = None,
     parameters: Iterable[str] = (),
+    guards: Sequence[sp.Expr] = (),
 ) -> Program:
     """Sort names into parameters and inputs, order the laws, and share common subexpressions.
 
     ``laws``: node (or the input it gives) to the law that closes its port, over those declared.
     ``parameters``: the names that will be given numbers; any other name in a law is an input.
+    ``guards``: expressions that end a run where one of them falls below zero.
 
     Raises `ParameterError` if the matrices use a name that is no parameter, `DependentSourceError`
     if a law would have to be differentiated.
@@ -119,10 +123,11 @@ def lower(
         raise ParameterError(
             f"missing parameter(s) {', '.join(missing)}; give each a number in parameters"
         )
-    closing = close_ports(equations, {} if laws is None else laws, given)
+    watched = frozenset[sp.Symbol]().union(*(guard.free_symbols for guard in guards))
+    closing = close_ports(equations, {} if laws is None else laws, given, watched)
     equations = closing.equations
     _check_varying(closing)
-    taken = _all_names(equations, closing)
+    taken = _all_names(equations, closing) | watched
     expressions, layout = _coefficients(equations)
     friction, values = _friction(closing)
     readings = tuple(equations.readings)
@@ -148,6 +153,7 @@ def lower(
         coupled=_group(closing, closing.coupled, True, taken),
         joint=closing.joint,
         read=_read(closing),
+        guards=block(guards, taken),
         varying=bool(equations.varying),
         affine=_is_affine(closing, values, given),
     )

@@ -3,21 +3,37 @@
 from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, field
 from os import PathLike
+from typing import Protocol
 
 import numpy as np
 
 from codegen.arrays import Array
 from codegen.events import Event
-from codegen.observer import Observer
+
+
+class Watcher(Protocol):
+    """What works out a run's signals, bonds, powers and energies."""
+
+    def signal(self, name: str) -> Array:
+        """A named effort or flow."""
+
+    def bond(self, tail: Hashable, head: Hashable) -> tuple[Array, Array]:
+        """Effort and flow of a bond."""
+
+    def power(self, node: Hashable) -> Array:
+        """Effort times flow of a one-port."""
+
+    def energy(self, node: Hashable) -> Array:
+        """What a storage holds."""
 
 
 @dataclass(frozen=True)
 class Result:
     """The record of a run: ``result["omega_1"]`` is any named signal of the graph over ``result.time``.
 
-    ``events``: what happened at friction ports, in order. At a step or an event a sample shows the
-    instant just after. ``columns``: the signals that a table of the run holds: states, inputs, outputs
-    and what laws read.
+    ``events``: what happened at friction ports and switches, in order. At a step or an event a sample
+    shows the instant just after. ``columns``: the signals that a table of the run holds: states, inputs,
+    outputs and what laws read.
     """
 
     time: Array = field(repr=False)
@@ -26,7 +42,7 @@ class Result:
     outputs: tuple[str, ...]
     events: tuple[Event, ...]
     columns: Mapping[str, Array] = field(repr=False)
-    observer: Observer = field(repr=False, compare=False)
+    observer: Watcher = field(repr=False, compare=False)
 
     def __getitem__(self, name: str) -> Array:
         """The values of one signal; `KeyError` naming what there is."""

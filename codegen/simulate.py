@@ -6,20 +6,21 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+import sympy as sp
 from numpy.typing import ArrayLike
 
 from bondgraph import ParameterError, SignalError, SimulationError, StateEquations
-from bondgraph.expressions import normal
+from codegen.arguments import checked_times, initial_values, numbers_of, settings_of, signals_for
 from codegen.arrays import Array
 from codegen.closed import ClosedModel
 from codegen.hybrid import run_hybrid
-from codegen.legs import METHODS, Settings, Track
+from codegen.legs import Track
 from codegen.modes import LOOK_AHEAD, Peaks, decide
 from codegen.observer import Observer
 from codegen.pieces import Piece, constant_piece
 from codegen.program import lower
 from codegen.result import Result
-from codegen.signals import Constant, Signal, as_signal
+from codegen.signals import Constant, Signal
 
 BACKENDS = ("numpy",)
 
@@ -42,14 +43,14 @@ class Simulator:
 
         Raises `SignalError` for arrays of another length than ``states`` and ``inputs``.
         """
-        state, given = _numbers(x, "x"), _numbers(u, "u")
+        state, given = numbers_of(x, "x"), numbers_of(u, "u")
         for array, names, what in ((state, self.states, "states"), (given, self.inputs, "inputs")):
             if array.shape != (len(names),):
                 raise SignalError(
                     f"{what} must have shape ({len(names)},), not {array.shape}: {names}"
                 )
         pieces = [Constant(float(value)).pieces[0] for value in given]
-        s = self._vector(t, state, given)
+        s = self.vector(t, state, given)
         slipping, peaks = self._all_slipping(), Peaks.none(self.closed)
         with np.errstate(all="ignore"):
             peaks.see(self.closed, t, s, pieces, slipping)
@@ -79,22 +80,20 @@ class Simulator:
 
         Raises `SignalError` for unusable arguments, `SimulationError` if the run can't go on.
         """
-        times = _times(time)
-        for given, what in ((initial, "initial"), (inputs, "inputs")):
-            if given is not None and not isinstance(given, Mapping):
-                raise SignalError(f"{what} must map names to values, not be {given!r}")
-        signals = self._signals(inputs or {})
-        for tolerance, what in ((rtol, "rtol"), (atol, "atol")):
-            if not isinstance(tolerance, int | float | np.number) or not tolerance > 0:
-                raise SignalError(f"{what} must be a positive number, not {tolerance!r}")
-        if method != "auto" and method not in METHODS:
-            raise SignalError(f"unknown method {method!r}; there are auto, {', '.join(METHODS)}")
-        self._check_steps(signals, times)
+        times = checked_times(time)
+        signals = signals_for({} if inputs is None else inputs, self.inputs)
+        settings = settings_of(method, rtol, atol)
+        self.check_steps(signals, times)
         at_start = np.array([signal(times[0]) for signal in signals])
-        start = self._vector(float(times[0]), self._initial(initial or {}), at_start)
+        start = self.vector(
+            float(times[0]),
+            initial_values({} if initial is None else initial, self.states),
+            at_start,
+        )
         with np.errstate(all="ignore"):
-            track = run_hybrid(self.closed, times, start, signals, Settings(method, rtol, atol))
-            columns, observer = self._columns(times, signals, track)
+            begin, span = float(times[0]), float(times[-1] - times[0])
+            track = run_hybrid(self.closed, times, start, signals, settings, begin, span).track
+            columns, observer = self.columns(times, signals, track)
         return Result(
             times,
             self.states,
@@ -109,15 +108,15 @@ class Simulator:
         self, inputs: Mapping[str, float], initial: Mapping[str, float]
     ) -> tuple[list[Piece], Array]:
         """Constant inputs as pieces, and the integrated vector at these states."""
-        signals = self._signals(inputs)
+        signals = signals_for(inputs, self.inputs)
         given = np.array([signal(0.0) for signal in signals])
         pieces = [constant_piece(0.0, value) for value in given.tolist()]
-        return pieces, self._vector(0.0, self._initial(initial), given)
+        return pieces, self.vector(0.0, initial_values(initial, self.states), given)
 
     def _all_slipping(self) -> tuple[int, ...]:
         return tuple(1 for _ in self.closed.program.friction)
 
-    def _vector(self, t: float, state: Array, given: Array) -> Array:
+    def vector(self, t: float, state: Array, given: Array) -> Array:
         """The integrated vector at a state: x less what inputs that drive dependent storages add."""
         s = np.zeros(self.closed.size)
         s[: len(state)] = state
@@ -127,34 +126,7 @@ class Simulator:
             s[: len(program.states)] -= known.numbers.R @ known.u
         return s
 
-    def _initial(self, initial: Mapping[str, float]) -> Array:
-        state = np.zeros(len(self.states))
-        for given, value in initial.items():
-            name = str(normal(given))
-            if name not in self.states:
-                raise SignalError(f"{name!r} is not a state; there are {', '.join(self.states)}")
-            if isinstance(value, bool) or not isinstance(value, int | float | np.number):
-                raise SignalError(f"initial {name}: {value!r} is not a number")
-            if not np.isfinite(value):
-                raise SignalError(f"initial {name}: {value!r} is not finite")
-            state[self.states.index(name)] = value
-        return state
-
-    def _signals(self, inputs: Mapping[str, object]) -> list[Signal]:
-        inputs = {str(normal(name)): value for name, value in inputs.items()}
-        for name in inputs:
-            if name not in self.inputs:
-                known = ", ".join(self.inputs) or "none"
-                raise SignalError(f"unknown input {name!r}; the model's inputs are {known}")
-        missing = [name for name in self.inputs if name not in inputs]
-        if missing:
-            raise SignalError(
-                f"missing input(s) {', '.join(missing)}: give each a signal or a number in inputs, "
-                "a law in laws, or, if it is a parameter, a number in parameters"
-            )
-        return [as_signal(inputs[name], name) for name in self.inputs]
-
-    def _check_steps(self, signals: Sequence[Signal], times: Array) -> None:
+    def check_steps(self, signals: Sequence[Signal], times: Array) -> None:
         """Refuse steps of inputs whose rate an output shows: it would be an impulse.
 
         So are steps of inputs that drive a dependent storage by way of a ratio that changes.
@@ -194,9 +166,10 @@ class Simulator:
             shown[i, list(driven.columns)] = 1.0
         return shown
 
-    def _columns(
+    def columns(
         self, times: Array, signals: Sequence[Signal], track: Track
     ) -> tuple[dict[str, Array], Observer]:
+        """The recorded samples as columns by name, and what works out all other signals."""
         program = self.closed.program
         shots = [
             self.closed.at(t, s, [signal.piece(t) for signal in signals], mode)
@@ -237,9 +210,19 @@ def simulator(
     """
     if backend not in BACKENDS:
         raise SignalError(f"unknown backend {backend!r}; there is {', '.join(BACKENDS)}")
+    return guarded_simulator(equations, parameters, laws, ())
+
+
+def guarded_simulator(
+    equations: StateEquations,
+    parameters: Mapping[str, object],
+    laws: Mapping[Any, object] | None,
+    guards: Sequence[sp.Expr],
+) -> Simulator:
+    """A simulator whose model has guards: conditions that end a stretch where one falls below zero."""
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
-    program = lower(equations, laws, parameters)
+    program = lower(equations, laws, parameters, guards)
     closed = ClosedModel(program, equations, parameters)
     return Simulator(
         tuple(name.name for name in (*program.states, *program.law_states)),
@@ -247,23 +230,3 @@ def simulator(
         tuple(name.name for name in program.outputs),
         closed,
     )
-
-
-def _numbers(values: ArrayLike, what: str) -> Array:
-    """A fresh array of floats; `SignalError` for what makes none."""
-    try:
-        return np.array(values, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise SignalError(f"{what} must be numbers: {error}") from None
-
-
-def _times(time: ArrayLike) -> Array:
-    times = _numbers(time, "time")
-    if times.ndim != 1 or len(times) < 2:
-        raise SignalError(f"time must be a list of two or more points, not of shape {times.shape}")
-    if not np.isfinite(times).all():
-        raise SignalError("time: a point is not finite")
-    if not (np.diff(times) > 0).all():
-        at = int(np.argmin(np.diff(times)))
-        raise SignalError(f"time must increase; {times[at]:g} is followed by {times[at + 1]:g}")
-    return times

@@ -20,8 +20,8 @@ ORDER = {
     ],
     "codegen": [
         "arrays", "pieces", "signals", "affine", "closing", "program", "numpy_backend", "numbers",
-        "friction", "instant", "loops", "closed", "sizes", "modes", "events", "legs", "hybrid",
-        "observer", "result", "simulate", "trim",
+        "friction", "instant", "loops", "closed", "sizes", "modes", "guards", "events", "legs", "hybrid",
+        "arguments", "observer", "result", "simulate", "trim", "handover", "phases", "spliced", "switched",
     ],
     "differentials": [
         "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "model",
