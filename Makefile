@@ -4,12 +4,13 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: demo test lint types unit bench clean help
+.PHONY: demo test lint types unit bench bench-peers clean help
 
 help:
 	@echo "make demo   derive and simulate differentials; tables and pictures in out/"
 	@echo "make test   format, lint, types, tests and doctests"
 	@echo "make bench  how time and memory to derive grow with the size of a graph"
+	@echo "make bench-peers  the same graphs with other packages, each in an environment of its own"
 	@echo "make clean  remove the environment and what was generated"
 
 $(READY): pyproject.toml constraints.txt
@@ -35,6 +36,11 @@ unit: $(READY)
 
 bench: $(READY)
 	$(BIN)/python benchmarks/derivation.py
+	$(BIN)/python benchmarks/writing.py
+	$(BIN)/python benchmarks/peers.py
+
+bench-peers: $(READY)
+	$(BIN)/python benchmarks/peers.py
 
 clean:
-	rm -rf $(VENV) out build *.egg-info .mypy_cache .pytest_cache .ruff_cache
+	rm -rf $(VENV) .peers out build *.egg-info .mypy_cache .pytest_cache .ruff_cache

@@ -9,19 +9,12 @@ import sympy as sp
 
 from bondgraph.causal_order import CausalEquations, Term, causal_equations, causal_groups
 from bondgraph.causality import CausalGraph, assign_causality
-from bondgraph.elements import DETECTORS, JUNCTIONS, STORAGES, Element, Kind
-from bondgraph.errors import AlgebraicLoopError
-from bondgraph.exact import Row, SingularError, solve
+from bondgraph.elements import JUNCTIONS, Kind
 from bondgraph.expressions import TIME, normal
 from bondgraph.graph import Bond
+from bondgraph.lines import Line, Rule, is_independent, owner, signal_lines, variable_of
 from bondgraph.names import named_by
 from bondgraph.strokes import Strokes
-
-Rule = Literal["given", "balance", "transfer", "law", "rate"]
-"""The kinds of assignments."""
-
-Line = tuple[Rule, list[Term], sp.Expr]
-"""A right side: its kind, its terms in other signals, and what is left."""
 
 
 @dataclass(frozen=True)
@@ -75,13 +68,13 @@ def assignments(graph: Any) -> tuple[Assignment, ...]:
     equations = causal_equations(strokes)
     symbols = _symbols(strokes, equations)
     signals = _signals_by_name(strokes, equations)
-    lines = list(_lines(strokes, equations))
+    lines = list(signal_lines(strokes, equations))
     rights = [_right(line, symbols, signals) for line in lines]
     order = [[*line[1], *more] for line, (_, more) in zip(lines, rights, strict=True)]
     result: list[Assignment] = []
     for group, members in enumerate(causal_groups(order)):
         for signal in members:
-            bond, node = signal // 2, _owner(strokes, signal)
+            bond, node = signal // 2, owner(strokes, signal)
             result.append(
                 Assignment(
                     symbols[signal], rights[signal][0], lines[signal][0],
@@ -90,13 +83,6 @@ def assignments(graph: Any) -> tuple[Assignment, ...]:
                 )
             )  # fmt: skip
     return tuple(result)
-
-
-def _owner(strokes: Strokes, signal: int) -> int:
-    """The node that gives the signal: a flow the one that receives the effort, an effort the other."""
-    tail, head = strokes.bonds[signal // 2]
-    at_head = strokes.end[signal // 2] == head
-    return head if at_head == (signal % 2 == 1) else tail
 
 
 def _right(
@@ -114,100 +100,6 @@ def _right(
     return sp.Add(*parts), more
 
 
-def _lines(strokes: Strokes, equations: CausalEquations) -> Iterator[Line]:
-    """Every signal's right side, in the order of the signals."""
-    numbers = {name: at for at, name in enumerate(strokes.names)}
-    fields: dict[int, list[Term]] = {}
-    for signal, terms in enumerate(equations.terms):
-        if signal in equations.given:
-            node, sign = equations.given[signal]
-            yield _given(strokes, equations, node, sign, numbers, fields)
-        elif strokes.elements[_owner(strokes, signal)].kind in JUNCTIONS:
-            zero = strokes.elements[_owner(strokes, signal)].kind is Kind.ZERO
-            balance = (signal % 2 == 1) == zero
-            yield "balance" if balance else "transfer", list(terms), sp.Integer(0)
-        else:
-            yield "transfer", list(terms), sp.Integer(0)
-
-
-def _given(
-    strokes: Strokes, equations: CausalEquations, node: int, sign: int,
-    numbers: dict[Hashable, int], fields: dict[int, list[Term]],
-) -> Line:  # fmt: skip
-    """What a one-port gives; ``sign`` is the bond's over the element's."""
-    element, none = strokes.elements[node], sp.Integer(0)
-    if element.kind in DETECTORS:
-        return "given", [], none
-    if _independent(strokes, node):
-        return "given", [], sign * _variable(element, strokes.gives(node))
-    if element.kind in STORAGES:
-        row = element.row or ((element.name, element.constant),)
-        effort = element.kind is Kind.C
-        stored = [(numbers[name], value) for name, value in row if value != 0]
-        return "rate", [_term(strokes, at, effort, sign * value) for at, value in stored], none
-    if not element.row:
-        value = element.constant
-        signal, known = equations.received[node]
-        factor = value if strokes.gives(node) == "effort" else 1 / value
-        return "law", [(signal, sign * known * factor)], none
-    if node not in fields:
-        fields |= _field(strokes, [numbers[name] for name, _ in element.row])
-    return "law", [(signal, sign * factor) for signal, factor in fields[node]], none
-
-
-def _independent(strokes: Strokes, node: int) -> bool:
-    """Whether a one-port gives a state or an input."""
-    element = strokes.elements[node]
-    if element.gives is not None:
-        return element.kind not in DETECTORS
-    return element.kind in STORAGES and strokes.gives(node) == (
-        "flow" if element.kind is Kind.I else "effort"
-    )
-
-
-def _term(strokes: Strokes, node: int, effort: bool, factor: sp.Expr) -> Term:
-    """A multiple of a one-port's effort or flow, as a multiple of its bond's."""
-    bond = strokes.at[node][0]
-    turned = effort and strokes.bonds[bond][0] == node
-    return 2 * bond + (not effort), -factor if turned else factor
-
-
-def _field(strokes: Strokes, nodes: list[int]) -> dict[int, list[Term]]:
-    """``e = R f`` of a field of resistances, solved for what its ports give."""
-    matrix: list[Row] = []
-    right: list[Row] = []
-    for at, node in enumerate(nodes):
-        effort_given = strokes.gives(node) == "effort"
-        line: Row = {at: sp.Integer(1)} if effort_given else {}
-        known: Row = {} if effort_given else {at: sp.Integer(-1)}
-        for k, (_, value) in enumerate(strokes.elements[node].row):
-            if value != 0 and strokes.gives(nodes[k]) == "flow":
-                line[k] = -value
-            elif value != 0:
-                known[k] = value
-        matrix.append(line)
-        right.append(known)
-    try:
-        solved = solve(matrix, right)
-    except SingularError:
-        owner = strokes.elements[nodes[0]].owner
-        raise AlgebraicLoopError(
-            f"the field {owner!r} cannot give what it has to: that part of its matrix has no inverse; "
-            "change a value, or put a storage between"
-        ) from None
-    return {
-        node: [
-            _term(strokes, nodes[k], strokes.gives(nodes[k]) == "flow", factor)
-            for k, factor in row.items()
-        ]
-        for node, row in zip(nodes, solved, strict=True)
-    }
-
-
-def _variable(element: Element, which: str) -> sp.Symbol:
-    return element.effort if which == "effort" else element.flow
-
-
 def _names(
     strokes: Strokes, equations: CausalEquations
 ) -> Iterator[tuple[sp.Symbol, int, int, bool]]:
@@ -219,12 +111,12 @@ def _names(
     given = [(signal, *equations.given[signal]) for signal in sorted(equations.given)]
     for wanted in (True, False):
         for signal, node, sign in given:
-            if _independent(strokes, node) is wanted:
+            if is_independent(strokes, node) is wanted:
                 element = strokes.elements[node]
-                yield _variable(element, strokes.gives(node)), signal, sign, wanted
+                yield variable_of(element, strokes.gives(node)), signal, sign, wanted
     for node, (signal, sign) in equations.received.items():
         which = "flow" if strokes.gives(node) == "effort" else "effort"
-        yield _variable(strokes.elements[node], which), signal, sign, False
+        yield variable_of(strokes.elements[node], which), signal, sign, False
     for node, element in enumerate(strokes.elements):
         if element.kind not in JUNCTIONS:
             continue

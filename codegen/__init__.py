@@ -5,6 +5,8 @@ from codegen.program import Block, Program, lower
 from codegen.result import Result
 from codegen.signals import Constant, Lag, Ramp, Sampled, Signal, Sine, Step
 from codegen.simulate import Simulator, simulator
+from codegen.sparse import SparseModel, sparse_model
+from codegen.sparse_run import run_sparse
 from codegen.switched import SwitchedSimulator, switched_simulator
 from codegen.trim import trim
 
@@ -20,10 +22,13 @@ __all__ = [
     "Signal",
     "Simulator",
     "Sine",
+    "SparseModel",
     "Step",
     "SwitchedSimulator",
     "lower",
+    "run_sparse",
     "simulator",
+    "sparse_model",
     "switched_simulator",
     "trim",
 ]

@@ -11,16 +11,22 @@ from codegen.program import Block
 def compiled(code: Block) -> Callable[..., list[Any]]:
     """A function of the block's arguments, in their order, that returns its results as a list.
 
-    The block's own temporaries are used, and arguments are renamed inside, so that a name like
-    ``exp`` or ``array`` is as good as any other.
+    The block's own temporaries are used. Arguments and temporaries are renamed inside, so that a name
+    like ``exp`` or ``array`` is as good as any other.
     """
     if not code.results:
         return lambda *arguments: []
+    arguments = [sp.Symbol(f"_a{at}") for at in range(len(code.arguments))]
+    temporaries = [sp.Symbol(f"_c{at}") for at in range(len(code.assignments))]
+    inside = dict(zip(code.arguments, arguments, strict=True))
+    inside |= dict(zip((name for name, _ in code.assignments), temporaries, strict=True))
+    values = [value.xreplace(inside) for _, value in code.assignments]
+    results = [result.xreplace(inside) for result in code.results]
 
     def shared(expressions: Sequence[sp.Expr]) -> tuple[list[Any], list[Any]]:
-        return list(code.assignments), list(expressions)
+        return list(zip(temporaries, values, strict=True)), list(expressions)
 
     function: Callable[..., list[Any]] = sp.lambdify(
-        list(code.arguments), list(code.results), modules="numpy", cse=shared, dummify=True
+        arguments, results, modules="numpy", cse=shared
     )
     return function

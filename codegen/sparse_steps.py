@@ -1,0 +1,81 @@
+"""Integration of ``A v' = J v + g(t)`` with sparse A and J that are never inverted or filled in."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sps
+import scipy.sparse.linalg as spl
+from scipy.integrate import DOP853, OdeSolver, Radau
+
+from bondgraph import SimulationError
+from codegen.arrays import Array
+
+STIFF = 2e3
+"""Length of a stretch over the shortest time constant from which the implicit method is chosen."""
+
+
+def mass_radau(
+    rate: Callable[[float, Array], Array], t: float, v: Array, stop: float, rtol: float, atol: float,
+    mass: sps.csc_array, jac: sps.csc_array,
+) -> OdeSolver:  # fmt: skip
+    """scipy's Radau for ``A v' = J v + g``, of which ``rate`` is v'.
+
+    Its systems ``(mu/h - A^-1 J) d = r`` are solved as ``(mu/h A - J) d = A r``, so that only A and J
+    have to be sparse.
+    """
+    solver: Any = Radau(rate, t, v, stop, rtol=rtol, atol=atol, jac=jac)
+    solver.I = mass
+    solver.solve_lu = lambda factors, right: factors.solve(mass @ right)
+    made: OdeSolver = solver
+    return made
+
+
+class SparseSystem:
+    """``A v' = J v + g(t)``, A factored once."""
+
+    def __init__(self, A: sps.csr_array, J: sps.csr_array) -> None:
+        self.A, self.J = sps.csc_array(A), sps.csc_array(J)
+        self._factors = spl.splu(self.A) if A.shape[0] else None
+
+    def solve(self, right: Array) -> Array:
+        """``A^-1 right``, one column or several."""
+        return right if self._factors is None else np.asarray(self._factors.solve(right))
+
+    @property
+    def fastest(self) -> float:
+        """A bound on the largest rate [1/s], exact to a small factor where A is nearly diagonal."""
+        scale = sps.diags_array(1 / np.sqrt(self.A.diagonal()))
+        return float(spl.norm(scale @ self.J @ scale, np.inf)) if self.J.nnz else 0.0
+
+    def stepper(
+        self, forced: Callable[[float], Array], t: float, v: Array, stop: float, method: str,
+        rtol: float, atol: float,
+    ) -> OdeSolver:  # fmt: skip
+        """An integrator from t to ``stop``; ``forced``: g over time."""
+
+        def rate(time: float, values: Array) -> Array:
+            return self.solve(self.J @ values + forced(time))
+
+        implicit = method == "Radau"
+        if method == "auto":
+            implicit = self.fastest * (stop - t) > STIFF
+        if not implicit:
+            return DOP853(rate, t, v, stop, rtol=rtol, atol=atol)
+        return mass_radau(rate, t, v, stop, rtol, atol, self.A, self.J)
+
+
+def integrate(
+    solver: OdeSolver, times: Array, until: float, record: Callable[[Array], None]
+) -> Array:
+    """Step to the end, recording at those of ``times`` that lie before ``until``; the last vector."""
+    done = 0
+    while solver.status == "running":
+        message = solver.step()
+        if message is not None:
+            raise SimulationError(f"at t = {solver.t:.9g} the integrator failed: {message}")
+        dense = solver.dense_output()
+        while done < len(times) and times[done] < until and times[done] <= solver.t:
+            record(np.asarray(dense(float(times[done]))))
+            done += 1
+    return np.asarray(solver.y)
