@@ -29,8 +29,9 @@ from bondgraph.junction import JunctionStructure, junction_structure
 from bondgraph.latex import latex
 from bondgraph.laws import DryFriction, ExpressionLaw
 from bondgraph.linear import LinearModel, linearize
+from bondgraph.loop_gains import Loop, loops
 from bondgraph.nodelink import from_json, to_json
-from bondgraph.switches import in_mode, switches
+from bondgraph.switching import in_mode, switches
 
 __all__ = [
     "GY",
@@ -52,6 +53,7 @@ __all__ = [
     "JunctionStructure",
     "Kind",
     "LinearModel",
+    "Loop",
     "MissingExtraError",
     "One",
     "ParameterError",
@@ -79,6 +81,7 @@ __all__ = [
     "junction_structure",
     "latex",
     "linearize",
+    "loops",
     "prefixed",
     "read_graphml",
     "read_json",

@@ -91,6 +91,19 @@ def _two_port(strokes: Strokes, node: int) -> Iterator[tuple[int, tuple[Term, ..
         yield f_in, ((e_out, 1 / value),)
 
 
+def loop_rows(equations: CausalEquations, group: Sequence[int]) -> list[dict[int, sp.Expr]]:
+    """``1 - W`` of a loop's signals ``s = W s + r``, as sparse rows."""
+    place = {signal: at for at, signal in enumerate(group)}
+    rows: list[dict[int, sp.Expr]] = []
+    for at, signal in enumerate(group):
+        row: dict[int, sp.Expr] = {at: sp.Integer(1)}
+        for source, factor in equations.terms[signal]:
+            if source in place:
+                row[place[source]] = row.get(place[source], sp.Integer(0)) - factor
+        rows.append(row)
+    return rows
+
+
 def causal_groups(terms: Sequence[Sequence[Term]]) -> Iterator[tuple[int, ...]]:
     """Signals in an order in which each follows from earlier ones; a loop comes as one group."""
     users: list[list[int]] = [[] for _ in terms]

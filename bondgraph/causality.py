@@ -7,14 +7,15 @@ from typing import Any
 
 import networkx as nx
 
-from bondgraph.causal_order import causal_equations, causal_groups
-from bondgraph.elements import SOURCES, STORAGES, Kind
-from bondgraph.errors import CausalityError
-from bondgraph.graph import Bond, validate
+from bondgraph.causal_order import causal_equations, causal_groups, loop_rows
+from bondgraph.elements import SOURCES, STORAGES, TWO_PORTS, Kind
+from bondgraph.errors import AlgebraicLoopError, BondGraphError, CausalityError
+from bondgraph.graph import Bond, validate, with_elements
 from bondgraph.regularity import regular_ports
 from bondgraph.stories import contradiction_story, stroke_story
 from bondgraph.strokes import Contradiction, Reason, Strokes
-from bondgraph.switches import refuse_switches
+from bondgraph.switching import refuse_switches
+from bondgraph.vanishing import elements_in, generic, told
 
 TRIALS_PER_BOND = 20
 """Beyond this the search for strokes stops and exact rank decides the ports first."""
@@ -58,6 +59,13 @@ def assign_causality(graph: Any) -> CausalGraph:
     """
     checked = validate(graph)
     refuse_switches(checked)
+    try:
+        return _assigned(checked)
+    except AlgebraicLoopError as error:
+        raise AlgebraicLoopError(f"{error}{_vanishing(checked)}") from None
+
+
+def _assigned(checked: "nx.DiGraph[Hashable]") -> CausalGraph:
     strokes = Strokes(checked)
     order, preferred = _preferences(strokes)
     _impose_fixed(strokes, order)
@@ -67,6 +75,20 @@ def assign_causality(graph: Any) -> CausalGraph:
         if not found or any(strokes.gives(node) != gives for node, gives in chosen.items()):
             _search_with(strokes, order, preferred, chosen)
     return _causal_graph(checked, strokes)
+
+
+def _vanishing(checked: "nx.DiGraph[Hashable]") -> str:
+    """The determinant that vanishes: of a loop of a causality that the graph has with other ratios."""
+    made, values = generic({n: e for n, e in elements_in(checked).items() if e.kind in TWO_PORTS})
+    try:
+        equations = causal_equations(_assigned(with_elements(checked, made)).assignment)
+    except BondGraphError:
+        return "; so it is with any ratios"
+    for group in causal_groups(equations.terms):
+        text = told(loop_rows(equations, group), values) if len(group) > 1 else None
+        if text is not None:
+            return f"; {text}"
+    return ""
 
 
 def _preferences(strokes: Strokes) -> tuple[list[int], dict[int, str]]:

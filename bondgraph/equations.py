@@ -9,24 +9,18 @@ import sympy as sp
 
 from bondgraph.causality import assign_causality
 from bondgraph.elements import Element
-from bondgraph.elimination import ResidueRows
-from bondgraph.errors import SingularStorageError, StructureError
-from bondgraph.exact import Row
+from bondgraph.errors import StructureError
 from bondgraph.expressions import TIME
+from bondgraph.inertia import check_regular, inertia
 from bondgraph.junction import JunctionStructure, Port, junction_structure
 from bondgraph.laws import Law
 from bondgraph.modulation import Reading
 from bondgraph.outputs import PortRow, named_signals, shown_signals
-from bondgraph.rates import reached, resolved
+from bondgraph.rates import resolved
 from bondgraph.readings import check_laws
 from bondgraph.reduction import reduce_ports
-from bondgraph.residues import decided_by_residues, is_zero, residues
 from bondgraph.sorting import Reduction
-from bondgraph.stored import stored_rate
 from bondgraph.tidy import tidy_matrices
-
-LARGEST_ROOTED = 6
-"""Blocks of A of more states are decided by residues alone, roots and functions or not."""
 
 
 @dataclass(frozen=True)
@@ -157,14 +151,9 @@ def state_equations(
     """
     reduction = reduce_ports(structure)
     structure, ports = reduction.structure, reduction.structure.ports
-    balances = [reduction.reading(structure.rows[port]) for port in reduction.states]
-    A = []
-    for port, balance in zip(reduction.states, balances, strict=True):
-        stored = stored_rate(reduction, port)
-        balance.add(stored, -sp.Integer(1))
-        A.append({j: -entry for j, entry in balance.H.items()})
-    states = tuple(ports[port].given for port in reduction.states)
-    _check_regular(A, states)
+    A, balances = inertia(reduction)
+    states = reduction.names
+    check_regular(reduction, A)
     signals = named_signals(reduction)
     shown = shown_signals(structure, outputs)
     rows = [(ports[port].received, structure.rows[port]) for port in reduction.imposed]
@@ -190,37 +179,3 @@ def state_equations(
         laws=MappingProxyType(laws), ports=imposed, readings=MappingProxyType(readings),
         signals=MappingProxyType(signals), reduction=reduction,
     )  # fmt: skip
-
-
-def _check_regular(A: list[Row], states: tuple[sp.Symbol, ...]) -> None:
-    """Refuse an A whose determinant vanishes: exactly for its diagonal part, by residues for the rest."""
-    coupled = {i for i, row in enumerate(A) for j in row if i != j}
-    coupled |= {j for i, row in enumerate(A) for j in row if i != j}
-    for i, row in enumerate(A):
-        if i not in coupled and (i not in row or (not row[i].is_Symbol and is_zero(row[i]))):
-            raise SingularStorageError(
-                f"the storages that rule {states[i]}' cancel each other; change a value"
-            )
-    value = residues()
-    rows = ResidueRows(
-        {j: entry for j, expr in A[i].items() if (entry := value(expr))} for i in sorted(coupled)
-    )
-    for i in sorted(coupled):
-        if not rows.pivot(i, jordan=False) or _vanishes_by_roots(A, i):
-            raise SingularStorageError(
-                f"the matrix A is singular: {states[i]}' is not determined by the storages' values; "
-                "change a value, or leave out a storage that cancels another"
-            )
-
-
-def _vanishes_by_roots(A: list[Row], state: int) -> bool:
-    """Whether the block that a state begins has a determinant that only roots or functions cancel.
-
-    Residues don't see every such identity; a small block's determinant is looked at as it is.
-    """
-    block = reached(A, [state])
-    entries = [entry for i in block for entry in A[i].values()]
-    if state != block[0] or len(block) > LARGEST_ROOTED or all(map(decided_by_residues, entries)):
-        return False
-    determinant = sp.Matrix(len(block), len(block), lambda i, j: A[block[i]].get(block[j], 0)).det()
-    return is_zero(determinant)

@@ -86,6 +86,21 @@ def solve(matrix: Sequence[Row], right: Sequence[Row]) -> list[Row]:
     return result
 
 
+def determinant(matrix: Sequence[Row]) -> sp.Expr:
+    """The determinant of a square system given as sparse rows.
+
+    >>> a, b = sp.symbols("a b")
+    >>> determinant([{0: a, 1: sp.Integer(1)}, {0: sp.Integer(1), 1: b}])
+    a*b - 1
+    """
+    size = len(matrix)
+    entries = [row.get(j, sp.Integer(0)) for row in matrix for j in range(size)]
+    domain, elements = construct_domain(entries, field=True, extension=True)
+    rows = [elements[i * size : (i + 1) * size] for i in range(size)]
+    found: sp.Expr = domain.to_sympy(DomainMatrix(rows, (size, size), domain).det())
+    return found
+
+
 def combined(parts: Iterable[tuple[Mapping[int, sp.Expr], sp.Expr]]) -> Row:
     """The sum of multiples of sparse rows, each entry cancelled once, however many terms it has.
 

@@ -1,6 +1,7 @@
 """Linear resistances and fields of them, solved loop by loop for what they give."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import networkx as nx
 import sympy as sp
@@ -10,10 +11,28 @@ from bondgraph.exact import Row, SingularError, add_scaled, solve
 from bondgraph.junction import JunctionStructure, Port
 from bondgraph.modulation import Reading
 from bondgraph.sorting import Reduction
+from bondgraph.vanishing import generic, told
 
 
 def resistances(reduction: Reduction) -> dict[int, Reading]:
     """What each linear resistance gives, ``z_r = L (1 - S_rr L)^-1 (S_rx x + S_ru u)``, loop by loop."""
+    result: dict[int, Reading] = {}
+    for group in _groups(reduction):
+        for port, given in zip(group, _closed(reduction, group), strict=True):
+            result[port] = given
+    return result
+
+
+def resistive_loops(reduction: Reduction) -> Iterator[tuple[list[int], list[Row]]]:
+    """Ports of resistances that hang together, and ``1 - S_rr L`` of each such group."""
+    for group in _groups(reduction):
+        place = {port: at for at, port in enumerate(group)}
+        laws = _given_by_received(reduction, group, place)
+        yield group, _inside(reduction.structure, group, place, laws)
+
+
+def _groups(reduction: Reduction) -> Iterator[list[int]]:
+    """The ports of resistances, those together that see one another or belong to one field."""
     structure, resistive = reduction.structure, set(reduction.resistive)
     loops: nx.Graph[int] = nx.Graph()
     loops.add_nodes_from(reduction.resistive)
@@ -22,12 +41,7 @@ def resistances(reduction: Reduction) -> dict[int, Reading]:
         # All ports of a field belong together, whatever entries of its matrix are zero.
         row = structure.ports[port].element.row
         loops.add_edges_from((port, structure.places[name]) for name, _ in row)
-    result: dict[int, Reading] = {}
-    for members in nx.connected_components(loops):
-        group = sorted(members)
-        for port, given in zip(group, _closed(reduction, group), strict=True):
-            result[port] = given
-    return result
+    yield from (sorted(members) for members in nx.connected_components(loops))
 
 
 def _closed(reduction: Reduction, group: Sequence[int]) -> list[Reading]:
@@ -39,13 +53,7 @@ def _closed(reduction: Reduction, group: Sequence[int]) -> list[Reading]:
         reduction.reading({i: s for i, s in structure.rows[port].items() if i not in place})
         for port in group
     ]
-    inside: list[Row] = []
-    for at, port in enumerate(group):
-        line: Row = {at: sp.Integer(1)}
-        for i, entry in structure.rows[port].items():
-            if i in place:
-                add_scaled(line, laws[place[i]], -entry)
-        inside.append(line)
+    inside = _inside(structure, group, place, laws)
     if all(len(line) == 1 for line in inside):
         received = [(row.F, row.D) for row in outside]
     else:
@@ -120,7 +128,7 @@ def _solved(
     except SingularError:
         names = ", ".join(repr(structure.ports[port].element.name) for port in group)
         raise AlgebraicLoopError(
-            f"the resistances {names} form a loop whose determinant vanishes; "
+            f"the resistances {names} form a loop whose determinant vanishes{_told(structure, group)}; "
             "change a value, or put a storage between them"
         ) from None
     return [
@@ -130,6 +138,40 @@ def _solved(
         )
         for row in rows
     ]
+
+
+def _told(structure: JunctionStructure, group: Sequence[int]) -> str:
+    """The determinant that vanishes, over resistances under names of their own."""
+    made, values = generic(
+        {structure.ports[i].element.name: structure.ports[i].element for i in group}
+    )
+    if len(made) < len(group):
+        return ""
+    place = {port: at for at, port in enumerate(group)}
+    laws = [
+        {
+            at: _conductance(
+                replace(structure.ports[i], element=made[structure.ports[i].element.name])
+            )
+        }
+        for at, i in enumerate(group)
+    ]
+    text = told(_inside(structure, group, place, laws), values)
+    return "" if text is None else f": {text}"
+
+
+def _inside(
+    structure: JunctionStructure, group: Sequence[int], place: Mapping[int, int], laws: list[Row]
+) -> list[Row]:
+    """``1 - S_rr L`` of a loop of resistances, as sparse rows."""
+    inside: list[Row] = []
+    for at, port in enumerate(group):
+        line: Row = {at: sp.Integer(1)}
+        for i, entry in structure.rows[port].items():
+            if i in place:
+                add_scaled(line, laws[place[i]], -entry)
+        inside.append(line)
+    return inside
 
 
 def _conductance(port: Port) -> sp.Expr:

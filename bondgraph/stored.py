@@ -19,7 +19,7 @@ def stored_rate(reduction: Reduction, port: int) -> Reading:
     if element.inverse is not None and reduction.motion is not None:
         _add_inverse_rate(reduction, port, result)
         return result
-    for other, value in _field_row(reduction, port):
+    for other, value in field_row(reduction, port):
         if other in reduction.columns_of_states:
             ruled = Reading({reduction.columns_of_states[other]: sp.Integer(1)}, {}, {}, {})
         else:
@@ -48,7 +48,7 @@ def _add_inverse_rate(reduction: Reduction, port: int, result: Reading) -> None:
     )
 
 
-def _field_row(reduction: Reduction, port: int) -> list[tuple[int, sp.Expr]]:
+def field_row(reduction: Reduction, port: int) -> list[tuple[int, sp.Expr]]:
     """The ports of a storage's field with its matrix's entries; of a one-port itself and its value."""
     element = reduction.structure.ports[port].element
     if not element.row:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bondgraph import SimulationError, StructureError, validate
-from bondgraph.switches import checked_modes
+from bondgraph.switching import checked_modes
 from codegen.arguments import checked_times, named_numbers, settings_of, signals_for
 from codegen.arrays import Array
 from codegen.closed import Snapshot

@@ -12,17 +12,18 @@ ROOT = Path(__file__).parents[1]
 ORDER = {
     "bondgraph": [
         "errors", "residues", "expressions", "laws", "elements", "elimination", "fields",
-        "attributes", "declared", "names", "graph", "switches", "strokes", "causal_order", "regularity", "stories", "causality", "exact",
-        "lines", "assignments", "tidy", "junction", "modulation", "sorting", "resistances", "stored", "reduction",
-        "rates", "outputs", "readings", "equations", "closures", "slopes", "constrained", "holding",
-        "closed_rows", "response", "linear", "explicit", "latex", "composition", "declarations", "restored",
-        "nodelink", "safexml", "graphml", "files",
+        "attributes", "declared", "names", "graph", "switching", "strokes", "causal_order",
+        "regularity", "stories", "exact", "vanishing", "causality", "lines", "assignments", "tidy",
+        "junction", "modulation", "sorting", "resistances", "stored", "reduction", "rates",
+        "inertia", "loop_gains", "outputs", "readings", "equations", "closures", "slopes",
+        "constrained", "holding", "closed_rows", "response", "linear", "explicit", "latex",
+        "composition", "declarations", "restored", "nodelink", "safexml", "graphml", "files",
     ],
     "codegen": [
         "arrays", "pieces", "signals", "affine", "closing", "program", "numpy_backend", "numbers",
-        "friction", "instant", "loops", "closed", "sizes", "modes", "guards", "events", "legs", "hybrid",
-        "arguments", "observer", "result", "simulate", "trim", "handover", "phases", "spliced", "switched",
-        "signal_rows", "sparse", "sparse_steps", "sparse_run",
+        "friction", "instant", "loops", "closed", "sizes", "modes", "guards", "events", "legs",
+        "hybrid", "arguments", "observer", "result", "simulate", "trim", "handover", "phases",
+        "spliced", "switched", "signal_rows", "sparse", "sparse_steps", "sparse_run",
     ],
     "differentials": [
         "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "model",
