@@ -18,7 +18,7 @@ from bondgraph.junction import Port
 from bondgraph.laws import ExpressionLaw, Law
 from bondgraph.modulation import Reading
 from bondgraph.rates import resolved
-from bondgraph.slopes import operating_point
+from bondgraph.slopes import operating_point, with_given
 from bondgraph.tidy import tidy_matrices
 
 if TYPE_CHECKING:
@@ -124,7 +124,11 @@ def linearize(
     equations = equations.with_readings({*read, *shown, *equations.integrals.values()})
     outer = _outer(equations, closed, read, inputs)
     known = {*equations.signals, *equations.integrals, *equations.parameters, *read, TIME}
-    system = ClosedRows(equations, closed, outer, operating_point(at, known))
+    by_input = {p.given: closed[p.element.name] for p in equations.ports if p.element.name in closed}
+    own = {law.state for law in closed.values() if isinstance(law, ExpressionLaw) and law.state}
+    moving = {*equations.signals, *equations.integrals, *own, *outer, TIME}
+    point = with_given(operating_point(at, known), by_input, moving)
+    system = ClosedRows(equations, closed, outer, point)
     gone = [equations.inputs.index(port.given) for port in held]
     slips = _slips(system, held, gone)
     A, balances = system.dynamics()

@@ -7,7 +7,7 @@ import sympy as sp
 
 from bondgraph.errors import SignalError
 from bondgraph.expressions import TIME, expression, normal
-from bondgraph.laws import SLIP, DryFriction, Law
+from bondgraph.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.residues import is_zero
 
 Point = Mapping[sp.Symbol, sp.Expr]
@@ -29,6 +29,25 @@ def operating_point(at: Mapping[object, object] | None, known: Iterable[sp.Symbo
     if unknown:
         raise SignalError(f"at: no signal, state or parameter is called {unknown[0]}")
     return point
+
+
+def with_given(point: Point, closed: Mapping[sp.Symbol, Law], moving: set[sp.Symbol]) -> Point:
+    """The point with what laws give there, as far as it has what they read.
+
+    ``closed``: input to the law that gives it. ``moving``: the names that have a value at a point.
+
+    Raises `SignalError` where the point contradicts a law that reads nothing.
+    """
+    found = dict(point)
+    left = {name: law for name, law in closed.items() if isinstance(law, ExpressionLaw)}
+    while ready := [name for name, law in left.items() if law.free_symbols & moving <= found.keys()]:
+        for name in ready:
+            law = left.pop(name)
+            value = law.expression.subs({s: found[s] for s in law.free_symbols & moving})
+            if not law.free_symbols & moving and not is_zero(found.setdefault(name, value) - value):
+                raise SignalError(f"at: {name} is {found[name]}, but its law gives {value}; leave it out")
+            found.setdefault(name, value)
+    return found
 
 
 def slopes(

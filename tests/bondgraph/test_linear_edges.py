@@ -1,5 +1,6 @@
 """Linear analysis where it is easily wrong: rates, mixed holds, drifting poles, singular points."""
 
+import networkx as nx
 import numpy as np
 import pytest
 import sympy as sp
@@ -133,3 +134,27 @@ def test_a_port_named_twice_is_refused() -> None:
     for act in (bg.holding_efforts, lambda e, stuck: bg.linearize(e, stuck=stuck)):
         with pytest.raises(bg.StructureError, match="names 'b' twice"):
             act(_mixed(), ["b", "b"])
+
+
+def _weight_on_a_crank() -> bg.StateEquations:
+    g: nx.DiGraph[str] = nx.DiGraph()
+    g.add_nodes_from([
+        bg.Se("W", "-m*g"), bg.One("y"), bg.One("turn"), bg.I("J", "J", flow="w"),
+        bg.Df("sensor", integrate="theta"), bg.TF("crank", "sin(theta)"),
+    ])  # fmt: skip
+    g.add_edges_from([
+        ("turn", "J"), ("turn", "sensor"), ("turn", "crank"), ("crank", "y"), ("W", "y"),
+    ])  # fmt: skip
+    return bg.derive(g, outputs=[])
+
+
+def test_a_known_source_behind_a_moving_ratio_has_its_value_at_the_point() -> None:
+    m, g = sp.symbols("m g")
+    # J theta'' = -m g sin(theta), which is -m g theta about 0.
+    model = bg.linearize(_weight_on_a_crank(), at={"theta": 0})
+    assert sp.Matrix([[0, -m * g], [1, 0]]) == model.J
+
+
+def test_a_point_that_contradicts_a_known_source_is_refused() -> None:
+    with pytest.raises(bg.SignalError, match="e_W is 7, but its law gives"):
+        bg.linearize(_weight_on_a_crank(), at={"theta": 0, "e_W": 7})
