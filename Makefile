@@ -36,6 +36,7 @@ unit: $(READY)
 
 bench: $(READY)
 	$(BIN)/python benchmarks/derivation.py
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/sparse.py
 	$(BIN)/python benchmarks/writing.py
 	$(BIN)/python benchmarks/peers.py
 

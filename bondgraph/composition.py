@@ -182,9 +182,17 @@ def _quantities(
             yield key[0], "", _text(given)
         for port in ports or ():
             yield key[0], f"_{port}", _text((given or {}).get(port))
+    yield from _further(kind, attributes)
+
+
+def _further(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str, str, str | None]]:
+    """The same beside effort and flow: states of laws, integrals, the ports of controlled junctions."""
+    ports = attributes.get("ports")
     if kind in STORAGES and any(attributes.get(key) is not None for key in ("law", "energy")):
         for ending in ("",) if ports is None else (f"_{port}" for port in ports):
             yield "p" if kind is Kind.I else "q", ending, None
+    if kind in JUNCTIONS and (attributes.keys() & {"on", "off"}):
+        yield from (("e", "_switch", None), ("f", "_switch", None))
     if attributes.get("integrate") is not None:
         yield "", "", _text(attributes["integrate"])
 

@@ -189,7 +189,8 @@ def GY(name: Hashable, r: object, **more: object) -> Node:
 def Zero(name: Hashable, effort: object = None, **more: object) -> Node:
     """A 0-junction: one effort, flows that sum to zero. ``effort`` names the common effort.
 
-    With ``on=`` (and ``off=``, see `Sw`) it is a controlled junction: off, its effort is zero.
+    With ``on=`` (and ``off=``, see `Sw`) it is a controlled junction: off, its effort is zero. What it
+    then takes to keep it there are ``e_<name>_switch`` and ``f_<name>_switch``.
     """
     return _node(name, Kind.ZERO, effort=effort, **more)
 
@@ -197,7 +198,8 @@ def Zero(name: Hashable, effort: object = None, **more: object) -> Node:
 def One(name: Hashable, flow: object = None, **more: object) -> Node:
     """A 1-junction: one flow, efforts that sum to zero. ``flow`` names the common flow.
 
-    With ``on=`` (and ``off=``, see `Sw`) it is a controlled junction: off, its flow is zero.
+    With ``on=`` (and ``off=``, see `Sw`) it is a controlled junction: off, its flow is zero. What it
+    then takes to keep it there are ``e_<name>_switch`` and ``f_<name>_switch``.
     """
     return _node(name, Kind.ONE, flow=flow, **more)
 

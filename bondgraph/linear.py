@@ -124,7 +124,9 @@ def linearize(
     equations = equations.with_readings({*read, *shown, *equations.integrals.values()})
     outer = _outer(equations, closed, read, inputs)
     known = {*equations.signals, *equations.integrals, *equations.parameters, *read, TIME}
-    by_input = {p.given: closed[p.element.name] for p in equations.ports if p.element.name in closed}
+    by_input = {
+        p.given: closed[p.element.name] for p in equations.ports if p.element.name in closed
+    }
     own = {law.state for law in closed.values() if isinstance(law, ExpressionLaw) and law.state}
     moving = {*equations.signals, *equations.integrals, *own, *outer, TIME}
     point = with_given(operating_point(at, known), by_input, moving)

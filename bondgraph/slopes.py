@@ -40,12 +40,16 @@ def with_given(point: Point, closed: Mapping[sp.Symbol, Law], moving: set[sp.Sym
     """
     found = dict(point)
     left = {name: law for name, law in closed.items() if isinstance(law, ExpressionLaw)}
-    while ready := [name for name, law in left.items() if law.free_symbols & moving <= found.keys()]:
+    while ready := [
+        name for name, law in left.items() if law.free_symbols & moving <= found.keys()
+    ]:
         for name in ready:
             law = left.pop(name)
             value = law.expression.subs({s: found[s] for s in law.free_symbols & moving})
             if not law.free_symbols & moving and not is_zero(found.setdefault(name, value) - value):
-                raise SignalError(f"at: {name} is {found[name]}, but its law gives {value}; leave it out")
+                raise SignalError(
+                    f"at: {name} is {found[name]}, but its law gives {value}; leave it out"
+                )
             found.setdefault(name, value)
     return found
 

@@ -1,6 +1,7 @@
 """Models whose laws are affine: in each friction mode everything is one matrix times one vector."""
 
 from collections.abc import Iterable, Sequence
+from functools import cached_property
 
 import numpy as np
 import sympy as sp
@@ -29,10 +30,10 @@ def is_affine(expressions: Iterable[sp.Expr], parameters: set[str]) -> bool:
 
 
 class AffineMap:
-    """``v = T [s, w, dw, 1]``, cut into the parts of ``v``."""
+    """``v = T [s, w, dw, 1]``, cut into the parts of ``v``, of which ``rate`` is the rate of s."""
 
-    def __init__(self, sizes: Sequence[int], matrix: Array) -> None:
-        self.matrix = matrix
+    def __init__(self, sizes: Sequence[int], matrix: Array, rate: int) -> None:
+        self.matrix, self._rate = matrix, rate
         ends = np.cumsum(sizes).tolist()
         self.parts = [slice(end - size, end) for end, size in zip(ends, sizes, strict=True)]
 
@@ -40,6 +41,12 @@ class AffineMap:
         """The parts at one point."""
         values = self.matrix @ np.concatenate((*vectors, (1.0,)))
         return [values[part] for part in self.parts]
+
+    @cached_property
+    def fastest(self) -> float:
+        """The largest rate [1/s] of s by itself."""
+        rate = self.rows(self._rate)
+        return float(np.abs(np.linalg.eigvals(rate[:, : len(rate)])).max(initial=0.0))
 
     def rows(self, part: int) -> Array:
         """The rows of one part."""

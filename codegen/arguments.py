@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from bondgraph import SignalError
 from bondgraph.expressions import normal
 from codegen.arrays import Array
-from codegen.legs import METHODS, Settings
+from codegen.legs import EXACT, METHODS, Settings
 from codegen.signals import Signal, as_signal
 
 
@@ -79,6 +79,7 @@ def settings_of(method: str, rtol: float, atol: float) -> Settings:
     for tolerance, what in ((rtol, "rtol"), (atol, "atol")):
         if not isinstance(tolerance, int | float | np.number) or not tolerance > 0:
             raise SignalError(f"{what} must be a positive number, not {tolerance!r}")
-    if method != "auto" and method not in METHODS:
-        raise SignalError(f"unknown method {method!r}; there are auto, {', '.join(METHODS)}")
+    known = ("auto", EXACT, *METHODS)
+    if method not in known:
+        raise SignalError(f"unknown method {method!r}; there are {', '.join(known)}")
     return Settings(method, rtol, atol)

@@ -215,7 +215,7 @@ class ClosedModel:
         origin = np.concatenate(parts)
         # Far out the constant part of a law no longer swallows digits of its slope.
         columns = [(np.concatenate(point(FAR * e)) - origin) / FAR for e in np.eye(length)]
-        affine = AffineMap([len(part) for part in parts], np.column_stack([*columns, origin]))
+        affine = AffineMap([len(part) for part in parts], np.column_stack([*columns, origin]), RATE)
         rate, du = affine.rows(RATE), affine.rows(RATES_OF_INPUTS)
         rate += self._correction(mode, rate, du, self.constant)
         return affine

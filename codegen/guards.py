@@ -59,6 +59,13 @@ def fallen_guards(
     """The guards that are below zero, by more than rounding."""
     if not model.program.guards.results:
         return frozenset()
-    values = model.guards(t, model.at(t, s, pieces, mode))
-    limits = guard_rounding(model, t, s, pieces, mode, peaks)
+    values, limits = guard_values(model, t, s, pieces, mode, peaks)
     return frozenset(np.flatnonzero(values < -limits).tolist())
+
+
+def guard_values(
+    model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode, peaks: Peaks
+) -> tuple[Array, Array]:
+    """The guards, and below what they count as zero."""
+    values = model.guards(t, model.at(t, s, pieces, mode))
+    return values, guard_rounding(model, t, s, pieces, mode, peaks)

@@ -89,6 +89,16 @@ class Handover:
             ruling[i] = given.get(name, ruling[i])
         return np.asarray(self._values(at) @ ruling, dtype=float)
 
+    def sizes(self, t: float, now: Snapshot, largest: Array | float = 0.0) -> Array:
+        """The magnitudes of the terms that make up the momenta: what their rounding is relative to.
+
+        ``largest``: magnitudes that the states have reached.
+        """
+        at = _instant(t, now)
+        x = np.maximum(np.abs(now.x), largest)
+        terms = np.abs(self._x(at)) @ x + np.abs(self._u(at)) @ np.abs(now.u)
+        return np.asarray(np.abs(self._values(at)) @ terms, dtype=float)
+
     def begin(self, t: float, momenta: Array, own: Array, w: Array, dw: Array) -> Array:
         """The integrated vector with which the phase begins, of momenta and the states of laws."""
         model, program = self._model, self._model.program

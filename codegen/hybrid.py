@@ -10,8 +10,9 @@ from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.closed import ClosedModel, Mode
 from codegen.events import Event
+from codegen.exact import ExactLeg
 from codegen.guards import fallen_guards
-from codegen.legs import Leg, Settings, Track
+from codegen.legs import EXACT, Leg, Settings, Track
 from codegen.modes import LOOK_AHEAD, Peaks, decide, scales
 from codegen.pieces import Piece
 from codegen.signals import Signal
@@ -25,13 +26,17 @@ APART = 1e-9
 
 @dataclass(frozen=True)
 class Stretch:
-    """How far a run came: the end of its time, or the first instant at which guards fell."""
+    """How far a run came: the end of its time, or the first instant at which guards fell.
+
+    ``ahead`` [s]: a time too short to matter, in which ties are decided.
+    """
 
     track: Track
     t: float
     s: Array
     mode: Mode
     fallen: frozenset[int]
+    ahead: float
 
 
 def run_hybrid(
@@ -49,7 +54,7 @@ def run_hybrid(
     whole run, of which this may be the rest. Ends where a guard falls below zero.
     """
     t, end, s = begin, float(times[-1]), start
-    track = Track(np.zeros((len(times), model.size)), [])
+    track = Track(np.zeros((len(times), model.size)), [], np.abs(start))
     breaks = sorted({b for signal in signals for b in signal.breakpoints if t < b <= end})
     mode: Mode = tuple(1 for _ in model.friction_inputs)
     touched, started, peaks = frozenset[int](), False, Peaks.none(model)
@@ -73,19 +78,41 @@ def run_hybrid(
         s = _at_rest(model, t, s, pieces, mode)
         fallen = fallen_guards(model, t, s, pieces, mode, peaks) if started else frozenset()
         if fallen:
-            return Stretch(track, t, s, mode, fallen)
+            return Stretch(track, t, s, mode, fallen, ahead)
         started = True
         if t >= end:
             break
         stop = next((b for b in breaks if b > t), end)
-        leg = Leg(model, pieces, mode, settings, span, peaks)
-        t, s, ended = leg.run(t, s, stop, times, track)
+        exact = _exact(model, pieces, mode, settings, t, s, stop, peaks)
+        if exact is not None:
+            t, s, ended = exact.run(stop, times, track)
+        else:
+            leg = Leg(model, pieces, mode, settings, span, peaks)
+            t, s, ended = leg.run(t, s, stop, times, track)
         fallen = frozenset(i - len(mode) for i in ended if i >= len(mode))
         if fallen:
-            return Stretch(track, t, s, mode, fallen)
+            return Stretch(track, t, s, mode, fallen, ahead)
         touched = ended
     track.record(s, mode)
-    return Stretch(track, t, s, mode, frozenset())
+    return Stretch(track, t, s, mode, frozenset(), ahead)
+
+
+def _exact(
+    model: ClosedModel, pieces: Sequence[Piece], mode: Mode, settings: Settings, t: float, s: Array,
+    stop: float, peaks: Peaks,
+) -> ExactLeg | None:  # fmt: skip
+    """The stretch ahead as an exact one, where the mode is affine and exact steps are asked for."""
+    if settings.method not in ("auto", EXACT) or model.program.guards.results:
+        return None
+    affine = model.affine_map(mode, len(pieces))
+    leg = None if affine is None else ExactLeg(model, affine, pieces, mode, t, s, peaks)
+    if leg is not None and leg.steppable(stop):
+        return leg
+    if settings.method == EXACT:
+        raise SimulationError(
+            f"at t = {t:.9g} the model is not affine, or too stiff for exact steps; let method be auto"
+        )
+    return None
 
 
 def _still(

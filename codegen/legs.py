@@ -15,6 +15,9 @@ from codegen.pieces import Piece
 
 METHODS = {"DOP853": DOP853, "Radau": Radau}
 
+EXACT = "exact"
+"""The method of models that are affine in each friction mode: no integrator, matrix exponentials."""
+
 STIFF = 2e5
 """Time span over shortest time constant from which the implicit method is chosen."""
 
@@ -32,14 +35,27 @@ REFRESH = 50
 """Steps after which a nonlinear model's time constants are looked at again."""
 
 
+Ended = tuple[float, Array, frozenset[int]]
+"""How a stretch ended: time, integrated vector, and the ports and guards whose event it was."""
+
+
 @dataclass
 class Track:
-    """What a run has recorded: the integrated vector and the mode at each sample, and the events."""
+    """What a run has recorded: the integrated vector and the mode at each sample, and the events.
+
+    ``largest``: the magnitudes that the vector's components have reached, between samples, too.
+    """
 
     vectors: Array
     modes: list[Mode]
+    largest: Array
     events: list[Event] = field(default_factory=list)
     recorded: int = 0
+
+    def see(self, vectors: Array) -> None:
+        """Take the magnitudes of some vectors, the rows, into account."""
+        if len(vectors):
+            self.largest = np.maximum(self.largest, np.abs(vectors).max(axis=0))
 
     def record(self, vector: Array, mode: Mode) -> None:
         """The next sample."""
@@ -75,12 +91,16 @@ class Leg:
 
     def fastest(self, t: float, s: Array) -> float:
         """The largest rate [1/s] of the mode's linearisation and of the inputs."""
+        affine = self._model.affine_map(self._mode, len(self._pieces))
+        inner = self._fastest(t, s) if affine is None else affine.fastest
+        return max(inner, *(piece.fastest for piece in self._pieces), 0.0)
+
+    def _fastest(self, t: float, s: Array) -> float:
         base = self._rate(t, s)
         jacobian = np.empty((len(s), len(s)))
         for j in range(len(s)):
             jacobian[:, j] = self._slope(t, s, j, base)
-        inner = float(np.abs(np.linalg.eigvals(jacobian)).max(initial=0.0))
-        return max(inner, *(piece.fastest for piece in self._pieces), 0.0)
+        return float(np.abs(np.linalg.eigvals(jacobian)).max(initial=0.0))
 
     def _slope(self, t: float, s: Array, j: int, base: Array) -> Array:
         """How the rates change with one component, by a difference that stays where laws have values."""
@@ -96,9 +116,7 @@ class Leg:
             f"at t = {t:g} the rates are not finite beside the state {s.tolist()}"
         )
 
-    def run(
-        self, t: float, s: Array, stop: float, times: Array, track: Track
-    ) -> tuple[float, Array, frozenset[int]]:
+    def run(self, t: float, s: Array, stop: float, times: Array, track: Track) -> Ended:
         """Integrate to ``stop`` or the first event; the ports whose event it was come third.
 
         Samples strictly before the end are recorded: at the end the next leg shows the instant after.
@@ -122,6 +140,7 @@ class Leg:
             dense = solver.dense_output()
             found = watch.first_event(solver.t_old, solver.t, dense)
             until = solver.t if found is None else found[0]
+            track.see(solver.y[None])
             self._sample(times, track, until, dense)
             if found is not None:
                 return until, dense(until), found[1]

@@ -159,7 +159,7 @@ def _complaint(
             model, now, size, i, mode[i]
         )  # fmt: skip
         if verdict == 0:
-            later = later or _later(model, t, s, pieces, mode, ahead)
+            later = later or a_moment_later(model, t, s, pieces, mode, ahead)
             verdict = _later_verdict(model, later, size, i, mode[i])
         if verdict < 0:
             name = model.program.friction[i].name
@@ -202,7 +202,7 @@ def slip_rates(model: ClosedModel, now: Snapshot) -> Array:
     return result
 
 
-def _later(
+def a_moment_later(
     model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode, ahead: float
 ) -> Snapshot:
     """The model a little later in a mode, by one midpoint step."""

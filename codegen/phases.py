@@ -12,9 +12,10 @@ import numpy as np
 from bondgraph import BondGraphError, SimulationError, derive, in_mode, switches
 from codegen.arrays import Array
 from codegen.closed import Mode
-from codegen.guards import fallen_guards
+from codegen.guards import guard_values
 from codegen.handover import Handover
-from codegen.modes import LOOK_AHEAD, TOLERANCE, Peaks, decide
+from codegen.legs import Leg, Settings
+from codegen.modes import LOOK_AHEAD, TOLERANCE, Peaks, a_moment_later, decide
 from codegen.pieces import Piece
 from codegen.simulate import Simulator, guarded_simulator
 
@@ -40,6 +41,18 @@ class Held:
 
     momenta: Mapping[Hashable, float]
     own: Mapping[str, float]
+    #: The largest momenta that the run has seen: what rounding is relative to.
+    peaks: Mapping[Hashable, float]
+
+
+@dataclass(frozen=True)
+class Moment:
+    """When a phase begins, with the inputs' pieces by name; ``span`` [s]: of the whole run."""
+
+    t: float
+    pieces: Mapping[str, Piece]
+    settings: Settings
+    span: float
 
 
 Keeping = Callable[[Phase], Held]
@@ -94,10 +107,8 @@ class Phases:
         simulator = guarded_simulator(equations, self._parameters, self._laws, guards)
         return Phase(on, simulator, Handover(simulator.closed))
 
-    def begin(
-        self, t: float, held: Keeping, pieces: Mapping[str, Piece], last: On, changed: On
-    ) -> tuple[Phase, Array]:
-        """The phase that begins at t and its integrated vector; ``changed``: switches whose guard fell.
+    def begin(self, now: Moment, held: Keeping, last: On, changed: On) -> tuple[Phase, Array]:
+        """The phase that begins and its integrated vector; ``changed``: switches whose guard fell.
 
         ``held`` tells what the phase is handed.
 
@@ -109,7 +120,7 @@ class Phases:
         tried: dict[On, str] = {}
         on = last ^ changed
         while on not in tried:
-            phase, vector, broken = self._try(on, t, held, pieces, tried)
+            phase, vector, broken = self._try(on, now, held, tried)
             if phase is not None and not broken:
                 return phase, vector
             if phase is None:
@@ -117,12 +128,13 @@ class Phases:
             on = on ^ broken
         for on in self._all_modes(last):
             if on not in tried:
-                phase, vector, broken = self._try(on, t, held, pieces, tried)
+                phase, vector, broken = self._try(on, now, held, tried)
                 if phase is not None and not broken:
                     return phase, vector
         complaints = "; ".join(f"{_listed(on)}: {text}" for on, text in list(tried.items())[:8])
         raise SimulationError(
-            f"at t = {t:.9g} no mode of the switches is consistent; tried {complaints}"
+            f"at t = {now.t:.9g} no mode of the switches is consistent; tried {complaints}. "
+            "A switch that both modes send back needs a hysteresis: an off of its own"
         )
 
     def _all_modes(self, last: On) -> Iterator[On]:
@@ -132,12 +144,12 @@ class Phases:
                 yield last ^ frozenset(changed)
 
     def _try(
-        self, on: On, t: float, held: Keeping, pieces: Mapping[str, Piece], tried: dict[On, str]
+        self, on: On, now: Moment, held: Keeping, tried: dict[On, str]
     ) -> tuple[Phase | None, Array, On]:
         """A mode at one instant, and the switches whose guards it breaks; None for one without equations."""
         try:
             phase = self[on]
-            vector, broken = enter(phase, t, held(phase), pieces)
+            vector, broken = enter(phase, now, held(phase))
         except BondGraphError as error:
             tried[on] = str(error)
             return None, np.zeros(0), frozenset()
@@ -146,29 +158,45 @@ class Phases:
         return phase, vector, names
 
 
-def enter(
-    phase: Phase, t: float, held: Held, pieces: Mapping[str, Piece]
-) -> tuple[Array, frozenset[int]]:
+def enter(phase: Phase, start: Moment, held: Held) -> tuple[Array, frozenset[int]]:
     """The vector with which a phase begins, and the guards that have fallen there already.
 
-    A guard in which an impulse shows is judged by the impulse.
+    A guard in which an impulse shows is judged by the impulse, one at zero by what it does next.
     """
-    model = phase.simulator.closed
-    given = [pieces[name] for name in phase.simulator.inputs]
-    before = np.array([held.momenta[name] for name in phase.handover.storages])
+    model, t = phase.simulator.closed, start.t
+    given = [start.pieces[name] for name in phase.simulator.inputs]
     own = np.array([held.own[name.name] for name in model.program.law_states])
+    before = np.array([held.momenta[name] for name in phase.handover.storages])
     s = phase.handover.begin(t, before, own, *model.given(t, given))
     peaks, mode = Peaks.none(model), _friction_mode(phase, t, s, given)
     peaks.see(model, t, s, given, mode)
-    now = model.at(t, s, given, mode)
-    change = phase.handover.momenta(t, now) - before
-    size = np.abs(before).max(initial=0.0) + np.abs(phase.handover.momenta(t, now)).max(initial=0.0)
-    change[np.abs(change) <= TOLERANCE * size] = 0.0
-    pushed = phase.handover.falling(t, now, change)
-    fallen = set(fallen_guards(model, t, s, given, mode, peaks))
-    judged = np.abs(pushed) > TOLERANCE
-    fallen -= set(np.flatnonzero(judged).tolist())
-    return s, frozenset(fallen | set(np.flatnonzero(judged & (pushed < 0)).tolist()))
+    values, limits = guard_values(model, t, s, given, mode, peaks)
+    fallen = values < -limits
+    tied = np.abs(values) <= limits
+    if tied.any():
+        leg = Leg(model, given, mode, start.settings, start.span, peaks)
+        ahead = LOOK_AHEAD / max(leg.fastest(t, s), 100.0 / start.span)
+        later = a_moment_later(model, t, s, given, mode, ahead)
+        fallen |= tied & (model.guards(t + ahead, later) < -limits)
+    pushed = _pushed(phase, start, s, given, mode, before, held)
+    fallen = np.where(pushed == 0, fallen, pushed < 0)
+    return s, frozenset(np.flatnonzero(fallen).tolist())
+
+
+def _pushed(
+    phase: Phase, start: Moment, s: Array, given: Sequence[Piece], mode: Mode, before: Array,
+    held: Held,
+) -> Array:  # fmt: skip
+    """The way that impulses drive each guard at the beginning of a phase; zero for most."""
+    now = phase.simulator.closed.at(start.t, s, given, mode)
+    after = phase.handover.momenta(start.t, now)
+    seen = np.array([held.peaks.get(name, 0.0) for name in phase.handover.storages])
+    size = np.maximum(seen, phase.handover.sizes(start.t, now))
+    change = after - before
+    change[np.abs(change) <= TOLERANCE * (np.abs(before) + size)] = 0.0
+    pushed = phase.handover.falling(start.t, now, change)
+    pushed[np.abs(pushed) <= TOLERANCE] = 0.0
+    return pushed
 
 
 def _friction_mode(phase: Phase, t: float, s: Array, pieces: Sequence[Piece]) -> Mode:

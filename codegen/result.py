@@ -67,7 +67,7 @@ class Result:
         return self.observer.energy(node)
 
     def work(self, node: Hashable) -> Array:
-        """Power integrated over the samples by trapezoids, 0 at the first."""
+        """Power integrated over the samples by trapezoids, 0 at the first; no impulses are in it."""
         power = self.power(node)
         steps = np.diff(self.time) * (power[1:] + power[:-1]) / 2
         return np.concatenate([[0.0], np.cumsum(steps)])

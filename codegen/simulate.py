@@ -76,7 +76,8 @@ class Simulator:
         """Integrate over the given times [s] and sample every signal at them.
 
         ``initial``: states by name, the rest start at 0. ``inputs``: a signal or a number for each
-        of ``inputs``. ``method``: "DOP853", "Radau" (stiff models), or "auto".
+        of ``inputs``. ``method``: "exact" (matrix exponentials, for models that are affine in each friction
+        mode), "DOP853", "Radau" (stiff models), or "auto".
 
         Raises `SignalError` for unusable arguments, `SimulationError` if the run can't go on.
         """

@@ -18,7 +18,7 @@ from codegen.closed import Snapshot
 from codegen.events import Event
 from codegen.hybrid import APART, STALLED, run_hybrid
 from codegen.legs import Settings
-from codegen.phases import Held, Keeping, On, Phase, Phases
+from codegen.phases import Held, Keeping, Moment, On, Phase, Phases
 from codegen.result import Result
 from codegen.signals import Signal
 from codegen.spliced import Spliced
@@ -42,16 +42,16 @@ class SwitchedSimulator:
         time: ArrayLike,
         initial: Mapping[str, float] | None = None,
         inputs: Mapping[str, object] | None = None,
-        on: Iterable[Hashable] = (),
+        initially_on: Iterable[Hashable] = (),
         method: str = "auto",
         rtol: float = 1e-10,
         atol: float = 1e-11,
     ) -> Result:
         """Integrate over the given times [s], as `Simulator.run` does, from phase to phase.
 
-        ``on``: the switches that are on at first, as far as their conditions let them. ``initial``: states
-        by name; the others start at 0, or follow those on which they depend at first. What is named but
-        cannot stay as it is shares its momentum or charge at once.
+        ``initially_on``: the switches that are on at first, as far as their conditions let them.
+        ``initial``: states by name; the others start at 0, or follow those on which they depend at first.
+        What is named but cannot stay as it is shares its momentum or charge at once.
 
         The result's ``events`` tell which switch went on or off when; each switch also is a column, 1 or 0.
 
@@ -62,7 +62,7 @@ class SwitchedSimulator:
         signals = dict(zip(self.inputs, given, strict=True))
         values = named_numbers({} if initial is None else initial, self.states)
         settings = settings_of(method, rtol, atol)
-        first = checked_modes(self.switches, on)
+        first = checked_modes(self.switches, initially_on)
         with np.errstate(all="ignore"):
             return _Journey(self, times, signals, settings).run(first, values)
 
@@ -82,24 +82,29 @@ class _Journey:
         self._parts: list[Result] = []
         self._modes: list[On] = []
         self._events: list[Event] = []
+        self._span = float(times[-1] - times[0])
+        self._peaks: dict[Hashable, float] = {}
 
     def run(self, on: On, initial: Mapping[str, float]) -> Result:
         """From phase to phase to the end."""
-        phases, t, end = self._simulator.phases, float(self._times[0]), float(self._times[-1])
+        phases, t = self._simulator.phases, float(self._times[0])
         held: Keeping = partial(self._started, t, initial)
         changed, rounds = On(), deque[float](maxlen=STALLED)
         while True:
             pieces = {name: signal.piece(t) for name, signal in self._signals.items()}
-            phase, vector = phases.begin(t, held, pieces, on, changed)
+            moment = Moment(t, pieces, self._settings, self._span)
+            phase, vector = phases.begin(moment, held, on, changed)
             if rounds:
                 self._note(t, on, phase.on)
             on = phase.on
-            t, kept, changed = self._pass(phase, t, vector)
+            t, kept, changed, ahead = self._pass(phase, t, vector)
             held = partial(_same, kept)
             if not changed:
                 return self._result()
             rounds.append(t)
-            if len(rounds) == STALLED and t - rounds[0] < APART * (end - float(self._times[0])):
+            if len(rounds) == STALLED and t - rounds[0] < max(
+                APART * self._span, 2 * STALLED * ahead
+            ):
                 raise SimulationError(
                     f"{STALLED} switchings within a moment of t = {t:.12g}: the run makes no progress; "
                     f"the last were {', '.join(map(repr, changed))}"
@@ -113,18 +118,21 @@ class _Journey:
         s = simulator.vector(t, state, given)
         pieces = [signal.piece(t) for signal in signals]
         slipping = tuple(1 for _ in simulator.closed.program.friction)
-        return _held(phase, t, simulator.closed.at(t, s, pieces, slipping), initial)
+        return _held(phase, t, simulator.closed.at(t, s, pieces, slipping), initial, self._peaks)
 
     def _given(self, phase: Phase) -> list[Signal]:
         return [self._signals[name] for name in phase.simulator.inputs]
 
-    def _pass(self, phase: Phase, t: float, vector: Array) -> tuple[float, Held, On]:
-        """One phase: to the end of the run or the first switching, whose switches come third."""
+    def _pass(self, phase: Phase, t: float, vector: Array) -> tuple[float, Held, On, float]:
+        """One phase: to the end of the run or the first switching, whose switches come third.
+
+        Fourth comes a time too short to matter.
+        """
         model, signals = phase.simulator.closed, self._given(phase)
         done = sum(len(part.time) for part in self._parts)
-        rest, span = self._times[done:], float(self._times[-1] - self._times[0])
+        rest = self._times[done:]
         phase.simulator.check_steps(signals, rest)
-        stretch = run_hybrid(model, rest, vector, signals, self._settings, t, span)
+        stretch = run_hybrid(model, rest, vector, signals, self._settings, t, self._span)
         track = stretch.track
         self._events += track.events
         if track.recorded:
@@ -140,7 +148,12 @@ class _Journey:
         pieces = [signal.piece(stretch.t) for signal in signals]
         now = model.at(stretch.t, stretch.s, pieces, stretch.mode)
         names = self._simulator.switches
-        return stretch.t, _held(phase, stretch.t, now), On(names[k] for k in stretch.fallen)
+        largest = track.largest[: len(model.program.states)]
+        sizes = phase.handover.sizes(stretch.t, now, largest).tolist()
+        for name, size in zip(phase.handover.storages, sizes, strict=True):
+            self._peaks[name] = max(size, self._peaks.get(name, 0.0))
+        held = _held(phase, stretch.t, now, {}, self._peaks)
+        return stretch.t, held, On(names[k] for k in stretch.fallen), stretch.ahead
 
     def _note(self, t: float, old: On, new: On) -> None:
         for name in self._simulator.switches:
@@ -170,15 +183,14 @@ def _same(held: Held, phase: Phase) -> Held:
 
 
 def _held(
-    phase: Phase, t: float, now: Snapshot, given: Mapping[str, float] = MappingProxyType({})
-) -> Held:
+    phase: Phase, t: float, now: Snapshot, given: Mapping[str, float],
+    peaks: Mapping[Hashable, float],
+) -> Held:  # fmt: skip
     """What is kept at an instant: the momenta of storages, and the states of laws."""
-    momenta = phase.handover.momenta(t, now, given)
+    found = phase.handover.momenta(t, now, given).tolist()
+    momenta = dict(zip(phase.handover.storages, found, strict=True))
     own = (name.name for name in phase.simulator.closed.program.law_states)
-    return Held(
-        dict(zip(phase.handover.storages, momenta.tolist(), strict=True)),
-        dict(zip(own, now.z.tolist(), strict=True)),
-    )
+    return Held(momenta, dict(zip(own, now.z.tolist(), strict=True)), dict(peaks))
 
 
 def switched_simulator(

@@ -20,10 +20,11 @@ ORDER = {
         "composition", "declarations", "restored", "nodelink", "safexml", "graphml", "files",
     ],
     "codegen": [
-        "arrays", "pieces", "signals", "affine", "closing", "program", "numpy_backend", "numbers",
-        "friction", "instant", "loops", "closed", "sizes", "modes", "guards", "events", "legs",
-        "hybrid", "arguments", "observer", "result", "simulate", "trim", "handover", "phases",
-        "spliced", "switched", "signal_rows", "sparse", "sparse_steps", "sparse_run",
+        "arrays", "pieces", "generators", "polynomials", "signals", "affine", "closing", "program",
+        "numpy_backend", "numbers", "friction", "instant", "loops", "closed", "sizes", "modes",
+        "guards", "events", "legs", "exact", "hybrid", "arguments", "observer", "result",
+        "simulate", "trim", "handover", "phases", "spliced", "switched", "signal_rows", "sparse",
+        "sparse_steps", "sparse_run",
     ],
     "differentials": [
         "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "model",
