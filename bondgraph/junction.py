@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from bondgraph.causal_order import CausalEquations, causal_equations, causal_groups
+from bondgraph.causal_order import CausalEquations, causal_equations, causal_groups, loop_rows
 from bondgraph.causality import CausalGraph
 from bondgraph.elements import SOURCES, Element, Kind
 from bondgraph.errors import AlgebraicLoopError
@@ -66,6 +66,8 @@ class JunctionStructure:
     common: Mapping[Hashable, Mapping[int, sp.Expr]]
     bonds: Mapping[tuple[Hashable, Hashable], tuple[Mapping[int, sp.Expr], Mapping[int, sp.Expr]]]
     elements: Mapping[Hashable, Element]
+    #: Of each loop of signals ``s = W s + r`` that was solved the rows of ``1 - W``.
+    loops: tuple[tuple[Row, ...], ...] = ()
 
     @cached_property
     def places(self) -> Mapping[Hashable, int]:
@@ -95,7 +97,7 @@ def junction_structure(causal: CausalGraph) -> JunctionStructure:
     equations = causal_equations(strokes)
     one_ports = [node for node, element in enumerate(strokes.elements) if element.one_port]
     index = {node: at for at, node in enumerate(one_ports)}
-    signals = _signals(strokes, equations, index)
+    signals, loops = _signals(strokes, equations, index)
     rows = []
     for node in one_ports:
         signal, sign = equations.received[node]
@@ -112,6 +114,7 @@ def junction_structure(causal: CausalGraph) -> JunctionStructure:
         common=MappingProxyType(common),
         bonds=MappingProxyType(dict(zip(strokes.declared, pairs, strict=True))),
         elements=MappingProxyType(dict(zip(strokes.names, strokes.elements, strict=True))),
+        loops=loops,
     )
 
 
@@ -122,15 +125,19 @@ def _port(strokes: Strokes, node: int) -> Port:
     return Port(element, strokes.gives(node), inward)
 
 
-def _signals(strokes: Strokes, equations: CausalEquations, index: dict[int, int]) -> list[Row]:
-    """Every signal as a sparse row over what the ports give."""
+def _signals(
+    strokes: Strokes, equations: CausalEquations, index: dict[int, int]
+) -> tuple[list[Row], tuple[tuple[Row, ...], ...]]:
+    """Every signal as a sparse row over what the ports give, and the loops on the way."""
     signals: list[Row] = [{} for _ in equations.terms]
+    loops: list[tuple[Row, ...]] = []
     for group in causal_groups(equations.terms):
         if len(group) == 1:
             signals[group[0]] = _signal(equations, group[0], index, signals)
         else:
             _solve_loop(strokes, equations, group, signals)
-    return signals
+            loops.append(tuple(loop_rows(equations, group)))
+    return signals, tuple(loops)
 
 
 def _signal(

@@ -8,7 +8,7 @@ from bondgraph.exact import Row, matrix_of
 from bondgraph.expressions import expanded_terms
 from bondgraph.residues import is_rational_function, is_zero
 
-MOST_OPERATIONS = 150
+MOST_OPERATIONS = 100
 MOST_TERMS = 300
 MOST_SYMBOLS = 20
 """An entry with more operations, symbols, or terms when multiplied out, is left as it came."""

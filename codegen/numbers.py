@@ -1,6 +1,6 @@
 """A program with numbers for its parameters: dense arrays, checked exactly before floats are trusted."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from bondgraph.elimination import ResidueRows
 from bondgraph.exact import Row, rows_of
 from bondgraph.expressions import normal, number
 from bondgraph.residues import residues
+from bondgraph.resistances import resistive_loops
 from codegen.arrays import Array
 from codegen.numpy_backend import compiled
 from codegen.program import Program
@@ -63,8 +64,9 @@ def numbers(
 
 
 def check_values(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
-    """Refuse parameters that make a value zero or A singular, whatever changes in time."""
+    """Refuse parameters that make a value zero, or a loop or A singular, whatever changes in time."""
     _check_elements(equations, parameters)
+    _check_loops(equations, parameters)
     _check_regular(equations, parameters)
 
 
@@ -148,6 +150,27 @@ def _check_elements(equations: StateEquations, parameters: Mapping[str, sp.Ratio
 def _listed(expr: sp.Expr, parameters: Mapping[str, sp.Rational]) -> str:
     names = sorted(expr.free_symbols, key=str)
     return ", ".join(f"{s} = {float(parameters[s.name]):g}" for s in names if s.name in parameters)
+
+
+def _check_loops(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
+    """Refuse parameters at which a loop of bonds or resistances has no solution, by exact rank."""
+    value = residues()
+    reduction = equations.reduction
+    ports = reduction.structure.ports
+    loops: list[tuple[str, Sequence[Row]]] = [("bonds", rows) for rows in reduction.structure.loops]
+    for group, inside in resistive_loops(reduction):
+        names = ", ".join(repr(ports[i].element.name) for i in group)
+        loops.append((f"the resistances {names}", inside))
+    for what, rows in loops:
+        found = [
+            {j: value(at_parameters(entry, parameters)) for j, entry in row.items()} for row in rows
+        ]
+        exact = ResidueRows({j: entry for j, entry in row.items() if entry} for row in found)
+        if not all(exact.pivot(i, jordan=False) for i in range(len(rows))):
+            raise ParameterError(
+                f"at these parameters {what} form a loop without a solution; change one, or put the number "
+                "into the graph, for which another causality may be found"
+            )
 
 
 def _check_regular(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:

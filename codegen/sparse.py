@@ -11,12 +11,13 @@ from typing import Any
 
 import scipy.sparse as sps
 
-from bondgraph import StructureError, assign_causality
+from bondgraph import CausalGraph, StructureError, assign_causality
 from bondgraph.elements import JUNCTIONS, Kind
 from bondgraph.laws import ExpressionLaw
 from bondgraph.lines import variable_of
 from codegen.signal_rows import Matrix, Row, SignalRows, matrix
 from codegen.signals import Constant
+from codegen.valued import valued_graph
 
 
 @dataclass(frozen=True)
@@ -48,8 +49,9 @@ def sparse_model(
     ``outputs``: nodes, as for `derive`: of a one-port the variable it receives, of a junction its
     common one. Linear storages and resistances with constant values, and constant laws.
 
-    Raises what `assign_causality` raises; `ParameterError` for missing parameters; `StructureError` for
-    values that change and other laws; `SingularStorageError` for storages that may cancel one another.
+    Raises what `assign_causality` raises at these numbers, `AlgebraicLoopError` for loops that they make
+    singular, decided exactly; `ParameterError` for missing parameters; `StructureError` for values that
+    change and other laws; `SingularStorageError` for storages that may cancel one another.
 
     >>> import bondgraph as bg, networkx as nx
     >>> g = nx.DiGraph()
@@ -59,15 +61,16 @@ def sparse_model(
     >>> model.A.toarray(), model.J.toarray(), model.B.toarray(), model.F.toarray()
     (array([[2.]]), array([[-3.]]), array([[1.]]), array([[1.]]))
     """
-    causal = graph if hasattr(graph, "assignment") else assign_causality(graph)
-    return _assembled(SignalRows(causal.assignment, parameters), outputs)
+    declared = graph.graph if isinstance(graph, CausalGraph) else graph
+    causal = assign_causality(valued_graph(declared, parameters))
+    return _assembled(SignalRows(causal.assignment), outputs)
 
 
 def _assembled(rows: SignalRows, outputs: Iterable[Hashable]) -> SparseModel:
     """The matrices, dependent storages folded in."""
     n, m, elements = len(rows.states), len(rows.inputs), rows.strokes.elements
     names, shown = _shown(rows, outputs)
-    values = [rows.number(elements[node].constant) for node in rows.states]
+    values = [float(elements[node].constant) for node in rows.states]
     received = matrix([rows.received(node) for node in rows.states], 2 * (n + m))
     seen = matrix(shown, 2 * (n + m))
     rates, last = n + m, 2 * n + m
@@ -88,11 +91,12 @@ def _assembled(rows: SignalRows, outputs: Iterable[Hashable]) -> SparseModel:
 
 
 def _known(rows: SignalRows) -> Mapping[str, Constant]:
-    laws = {rows.given(node): rows.strokes.elements[node].law for node in rows.sources}
+    """The inputs that laws give."""
+    elements = [rows.strokes.elements[node] for node in rows.sources]
     return MappingProxyType({
-        name.name: Constant(rows.number(law.expression))
-        for name, law in laws.items()
-        if isinstance(law, ExpressionLaw)
+        e.given.name: Constant(float(e.law.expression))
+        for e in elements
+        if e.given is not None and isinstance(e.law, ExpressionLaw)
     })  # fmt: skip
 
 

@@ -7,7 +7,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bondgraph import SignalError
+from bondgraph import SimulationError
 from codegen.arguments import checked_times, initial_values, settings_of, signals_for
 from codegen.arrays import Array
 from codegen.result import Result
@@ -142,7 +142,7 @@ def _check_steps(model: SparseModel, signals: Sequence[Signal], times: Array) ->
         ):
             jump = abs(one(b) - other(b))
             if times[0] < b <= times[-1] and jump > 1e-12 * (abs(one(b)) + abs(other(b))):
-                raise SignalError(
+                raise SimulationError(
                     f"input {model.inputs[at]!r} steps at t = {b:g}, where an output shows its rate and "
                     "would be an impulse; smooth it with Lag or Ramp"
                 )

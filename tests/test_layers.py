@@ -21,10 +21,10 @@ ORDER = {
     ],
     "codegen": [
         "arrays", "pieces", "generators", "polynomials", "signals", "affine", "closing", "program",
-        "numpy_backend", "numbers", "friction", "instant", "loops", "closed", "sizes", "modes",
-        "guards", "events", "legs", "exact", "hybrid", "arguments", "observer", "result",
-        "simulate", "trim", "handover", "phases", "spliced", "switched", "signal_rows", "sparse",
-        "sparse_steps", "sparse_run",
+        "identifiers", "printing", "numpy_backend", "numbers", "friction", "instant", "loops",
+        "closed", "sizes", "modes", "guards", "events", "legs", "exact", "hybrid", "arguments",
+        "observer", "result", "simulate", "trim", "handover", "phases", "spliced", "switched",
+        "valued", "signal_rows", "sparse", "sparse_steps", "sparse_run",
     ],
     "differentials": [
         "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "model",

@@ -243,7 +243,7 @@ def test_parameters_that_make_a_loop_singular_in_decimals_are_refused(
     """r1 + r2 = a + b + c = 0: there is no current."""
     equations = bg.derive(_resistances("a + b", "c"))
     values = {name: form(value) for name, value in SUM.items()}
-    with pytest.raises(bg.ParameterError, match="no finite real value"):
+    with pytest.raises(bg.ParameterError, match=r"no finite real value|without a solution"):
         simulator(equations, values)
 
 
