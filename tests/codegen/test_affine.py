@@ -38,7 +38,7 @@ def test_a_name_is_a_signal_unless_it_is_a_parameter() -> None:
 def test_the_map_is_one_matrix_cut_into_parts() -> None:
     rng = np.random.default_rng(1)
     matrix = rng.normal(size=(6, 5))
-    affine = AffineMap([2, 0, 1, 3], matrix)
+    affine = AffineMap([2, 0, 1, 3], matrix, 0)
     s, w = rng.normal(size=3), rng.normal(size=1)
     parts = affine(s, w)
     assert [len(part) for part in parts] == [2, 0, 1, 3]
