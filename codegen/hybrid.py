@@ -53,66 +53,100 @@ def run_hybrid(
     At a breakpoint or an event a sample shows the instant just after. ``span`` [s]: the length of the
     whole run, of which this may be the rest. Ends where a guard falls below zero.
     """
-    t, end, s = begin, float(times[-1]), start
-    track = Track(np.zeros((len(times), model.size)), [], np.abs(start))
-    breaks = sorted({b for signal in signals for b in signal.breakpoints if t < b <= end})
-    mode: Mode = tuple(1 for _ in model.friction_inputs)
-    touched, started, peaks = frozenset[int](), False, Peaks.none(model)
-    rounds: deque[float] = deque(maxlen=STALLED)
-    while not started or t < end or touched or t in breaks:
-        pieces = [signal.piece(t) for signal in signals]
-        peaks.see(model, t, s, pieces, mode)
-        leg = Leg(model, pieces, mode, settings, span, peaks)
-        watched = bool(mode) or bool(model.program.guards.results)
-        peaks.time = 1 / max(leg.fastest(t, s), 100.0 / span) if watched else 0.0
-        ahead = LOOK_AHEAD * peaks.time
+    course = _Course(model, times, start, signals, settings, begin, span)
+    fallen = frozenset[int]()
+    while course.unfinished and not fallen:
+        fallen = course.settle()
+        if not fallen and course.t < course.end:
+            fallen = course.advance()
+    if not fallen:
+        course.track.record(course.s, course.mode)
+    return Stretch(course.track, course.t, course.s, course.mode, fallen, course.ahead)
+
+
+class _Course:
+    """Where a run is: time, integrated vector, friction mode; and the ports whose event it has come to."""
+
+    def __init__(
+        self, model: ClosedModel, times: Array, start: Array, signals: Sequence[Signal],
+        settings: Settings, begin: float, span: float,
+    ) -> None:  # fmt: skip
+        self.t, self.s, self.end, self.ahead = begin, start, float(times[-1]), 0.0
+        self.mode: Mode = tuple(1 for _ in model.friction_inputs)
+        self.track = Track(np.zeros((len(times), model.size)), [], np.abs(start))
+        self._model, self._times, self._signals = model, times, signals
+        self._settings, self._span = settings, span
+        points = {b for signal in signals for b in signal.breakpoints if begin < b <= self.end}
+        self._breaks = sorted(points)
+        self._touched = frozenset[int]()
+        self._settled: float | None = None
+        self._peaks, self._rounds = Peaks.none(model), deque[float](maxlen=STALLED)
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether there is anything left to decide or to integrate."""
+        undecided = self.t in self._breaks and self.t != self._settled
+        return self._settled is None or self.t < self.end or bool(self._touched) or undecided
+
+    @property
+    def _pieces(self) -> list[Piece]:
+        return [signal.piece(self.t) for signal in self._signals]
+
+    def settle(self) -> frozenset[int]:
+        """Decide the mode just after t and bring sticking ports to rest; the guards that have fallen."""
+        model, t, pieces, peaks = self._model, self.t, self._pieces, self._peaks
+        peaks.see(model, t, self.s, pieces, self.mode)
+        if self.mode or model.program.guards.results:
+            fastest = self._leg(pieces).fastest(t, self.s)
+            peaks.time = 1 / max(fastest, 100.0 / self._span)
+        self.ahead = LOOK_AHEAD * peaks.time
         # A breakpoint may set the slips anew, so sticking ports are decided again with the others.
-        loose = touched | {i for i, sign in enumerate(mode) if sign == 0}
-        at_zero = _still(model, t, s, pieces, mode, loose, peaks)
-        new = decide(model, t, s, pieces, mode, at_zero, ahead, peaks, touched)
-        if started:
-            _note(model, track.events, t, mode, new)
-            if touched:
-                _check_progress(rounds, t, max(APART * span, 2 * STALLED * ahead), track.events)
-        mode = new
-        s = _at_rest(model, t, s, pieces, mode)
-        fallen = fallen_guards(model, t, s, pieces, mode, peaks) if started else frozenset()
-        if fallen:
-            return Stretch(track, t, s, mode, fallen, ahead)
-        started = True
-        if t >= end:
-            break
-        stop = next((b for b in breaks if b > t), end)
-        exact = _exact(model, pieces, mode, settings, t, s, stop, peaks)
+        loose = self._touched | {i for i, sign in enumerate(self.mode) if sign == 0}
+        at_zero = _still(model, t, self.s, pieces, self.mode, loose, peaks)
+        new = decide(model, t, self.s, pieces, self.mode, at_zero, self.ahead, peaks, self._touched)
+        if self._settled is not None:
+            _note(model, self.track.events, t, self.mode, new)
+            if self._touched:
+                least = max(APART * self._span, 2 * STALLED * self.ahead)
+                _check_progress(self._rounds, t, least, self.track.events)
+        self.mode, self._touched = new, frozenset()
+        self.s = _at_rest(model, t, self.s, pieces, new)
+        # Where a run or a phase begins, whoever began it has looked at the guards.
+        first, self._settled = self._settled is None, t
+        return frozenset() if first else fallen_guards(model, t, self.s, pieces, new, peaks)
+
+    def advance(self) -> frozenset[int]:
+        """Integrate to the next breakpoint or event; the guards that fell."""
+        pieces, ports = self._pieces, len(self.mode)
+        stop = next((b for b in self._breaks if b > self.t), self.end)
+        exact = self._exact(pieces, stop)
         if exact is not None:
-            t, s, ended = exact.run(stop, times, track)
+            self.t, self.s, ended = exact.run(stop, self._times, self.track)
         else:
-            leg = Leg(model, pieces, mode, settings, span, peaks)
-            t, s, ended = leg.run(t, s, stop, times, track)
-        fallen = frozenset(i - len(mode) for i in ended if i >= len(mode))
-        if fallen:
-            return Stretch(track, t, s, mode, fallen, ahead)
-        touched = ended
-    track.record(s, mode)
-    return Stretch(track, t, s, mode, frozenset(), ahead)
+            leg = self._leg(pieces)
+            self.t, self.s, ended = leg.run(self.t, self.s, stop, self._times, self.track)
+        self._touched = frozenset(i for i in ended if i < ports)
+        return frozenset(i - ports for i in ended if i >= ports)
 
+    def _leg(self, pieces: Sequence[Piece]) -> Leg:
+        return Leg(self._model, pieces, self.mode, self._settings, self._span, self._peaks)
 
-def _exact(
-    model: ClosedModel, pieces: Sequence[Piece], mode: Mode, settings: Settings, t: float, s: Array,
-    stop: float, peaks: Peaks,
-) -> ExactLeg | None:  # fmt: skip
-    """The stretch ahead as an exact one, where the mode is affine and exact steps are asked for."""
-    if settings.method not in ("auto", EXACT) or model.program.guards.results:
+    def _exact(self, pieces: Sequence[Piece], stop: float) -> ExactLeg | None:
+        """The stretch ahead as an exact one, where the mode is affine and exact steps are asked for."""
+        model, method = self._model, self._settings.method
+        if method not in ("auto", EXACT) or model.program.guards.results:
+            return None
+        affine = model.affine_map(self.mode, len(pieces))
+        if affine is not None:
+            leg = ExactLeg(model, affine, pieces, self.mode, self.t, self.s, self._peaks)
+            if leg.steppable(stop):
+                return leg
+        if method == EXACT:
+            raise SimulationError(
+                f"at t = {self.t:.9g} the model is not affine, or too stiff for exact steps; let method be "
+                "auto"
+            )
         return None
-    affine = model.affine_map(mode, len(pieces))
-    leg = None if affine is None else ExactLeg(model, affine, pieces, mode, t, s, peaks)
-    if leg is not None and leg.steppable(stop):
-        return leg
-    if settings.method == EXACT:
-        raise SimulationError(
-            f"at t = {t:.9g} the model is not affine, or too stiff for exact steps; let method be auto"
-        )
-    return None
 
 
 def _still(
