@@ -17,7 +17,7 @@ ORDER = {
         "junction", "modulation", "sorting", "resistances", "stored", "reduction", "rates",
         "inertia", "loop_gains", "outputs", "readings", "equations", "closures", "slopes",
         "constrained", "holding", "closed_rows", "response", "linear", "explicit", "latex",
-        "composition", "declarations", "restored", "nodelink", "safexml", "graphml", "files",
+        "renaming", "composition", "declarations", "restored", "nodelink", "safexml", "graphml", "files",
     ],
     "codegen": [
         "arrays", "pieces", "generators", "polynomials", "signals", "affine", "closing", "program",
