@@ -4,6 +4,7 @@ from collections.abc import Hashable, Mapping, Sequence
 
 import sympy as sp
 
+from bondgraph.elements import STORAGES
 from bondgraph.errors import DependentSourceError
 from bondgraph.exact import Row
 from bondgraph.junction import Port
@@ -33,10 +34,12 @@ def check_laws(
         reading = readings[port.received]
         if reading.H or reading.K or any(column in row for row in E):
             other = "flow" if port.gives == "effort" else "effort"
+            way = f"let it give its {other} (gives={other!r})"
+            if port.element.kind in STORAGES:
+                way = "put a resistance between"
             raise DependentSourceError(
                 f"the law at {port.element.name!r} drives a dependent storage, so its slope in time "
-                f"would be needed; let it give its {other} (gives={other!r}), or put a storage that "
-                "can be independent beside it"
+                f"would be needed; {way}, or put a storage that can be independent beside it"
             )
 
 

@@ -135,11 +135,18 @@ class ClosedModel:
     def guards(self, t: float, now: Snapshot) -> Array:
         """The conditions at an instant: one below zero ends the run."""
         zeros = np.zeros(len(now.external))
-        return self._guards(
+        values = self._guards(
             Instant(
                 t, now.x, now.z, now.u, now.du, now.y, now.external, zeros, now.caps, now.numbers
             )
         )
+        if not np.isfinite(values).all():
+            at = int(np.argmin(np.isfinite(values)))
+            raise SimulationError(
+                f"at t = {t:.9g} the condition of switch number {at + 1}, in the order of their declaration, "
+                "has no finite value"
+            )
+        return values
 
     def given(self, t: float, pieces: Sequence[Piece]) -> tuple[Array, Array]:
         """The external inputs, and their rates where anything asks for them."""
@@ -147,6 +154,11 @@ class ClosedModel:
         if not self._rated:
             return w, np.zeros(len(w))
         return w, np.array([piece.derivative(t) for piece in pieces])
+
+    @property
+    def rated(self) -> bool:
+        """Whether anything asks for the rates of the external inputs."""
+        return self._rated
 
     def rates(self, pieces: Sequence[Piece], mode: Mode) -> Callable[[float, Array], Array]:
         """The rate of s in a mode as a function of t and s; quicker than `at`, which gives all else too."""

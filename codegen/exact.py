@@ -2,7 +2,7 @@
 by matrix exponentials, and its events are roots of power series that no step can hide."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg
@@ -21,6 +21,9 @@ DEGREE = 18
 
 MOST_STEPS = 300_000
 """Steps are so short that ``|M| h <= 1``; stretches that would need more of them are left to step control."""
+
+MOST_LENGTHS = 8
+"""So many different steps between samples each get an exponential of their own."""
 
 BLOCK = 256
 """So many steps are taken before events are looked for."""
@@ -77,6 +80,8 @@ class ExactLeg:
         points = np.concatenate([times[first:last], [stop]])
         t, z = self._t, self._z
         lengths = np.diff(np.concatenate([[t], points]))
+        if _kinds(lengths) > MOST_LENGTHS:
+            return self._run_ragged(stop, points[:-1], track)
         at = 0
         while at < len(points):
             count = _alike(lengths, at)
@@ -84,11 +89,36 @@ class ExactLeg:
             ended, rows = self._steps(t, z, h, count)
             track.see(rows[:, : self._n])
             recorded = min(len(rows), last - first - at)
-            self._check_levels(rows, t, h)
+            self._check_levels(rows, np.asarray(t + h * np.arange(1, len(rows) + 1), dtype=float))
             self._record(track, rows[:recorded])
             if ended is not None:
                 return ended
             at, t, z = at + count, float(points[at + count - 1]), rows[-1]
+        return stop, z[: self._n], frozenset()
+
+    def _run_ragged(self, stop: float, times: Array, track: Track) -> Ended:
+        """The same where samples lie anywhere: steps of one length, and samples by the series inside them."""
+        t, z, system = self._t, self._z, self._system
+        count = max(1, int(np.ceil(system.norm * (stop - t))))
+        step = (stop - t) / count
+        leap, series = scipy.linalg.expm(system.M * step), _series(system, step)
+        inside = _series(replace(system, triggers=np.eye(len(z))), step)
+        for begin in range(0, count, BLOCK):
+            states = powers_of(leap, z, min(BLOCK, count - begin))
+            start = t + begin * step
+            found = self._first_event(states[:-1], series, start, step)
+            track.see(states[:, : self._n])
+            until = start + step * (len(states) - 1 if found is None else found[0] + found[1])
+            now = times[(times >= start) & (times < until)]
+            rows = _between(states, inside, (now - start) / step)
+            self._check_levels(rows, now)
+            self._record(track, rows)
+            if found is not None:
+                whole, tau, ports = found
+                end = scipy.linalg.expm(system.M * (tau * step)) @ states[whole]
+                return until, end[: self._n], ports
+            z = states[-1]
+        self._record(track, np.repeat(z[None], np.count_nonzero(times >= until), axis=0))
         return stop, z[: self._n], frozenset()
 
     def _record(self, track: Track, rows: Array) -> None:
@@ -97,10 +127,10 @@ class ExactLeg:
         track.modes += [self._mode] * len(rows)
         track.recorded = b
 
-    def _check_levels(self, rows: Array, t: float, h: float) -> None:
+    def _check_levels(self, rows: Array, times: Array) -> None:
         """Where a friction level is below zero, let the model refuse it with its time."""
         for at in np.flatnonzero((rows @ self._system.caps.T < 0).any(axis=1)).tolist():
-            self._model.at(t + (at + 1) * h, rows[at, : self._n], self._pieces, self._mode)
+            self._model.at(float(times[at]), rows[at, : self._n], self._pieces, self._mode)
 
     def _steps(self, t: float, z: Array, h: float, count: int) -> tuple[Ended | None, Array]:
         """``count`` steps of h from t: what ended them, and z at the end of each step that was whole."""
@@ -221,6 +251,21 @@ def _series(system: Affine, step: float) -> Array:
         rows = rows @ system.M * (step / k)
         series.append(rows)
     return np.array(series)
+
+
+def _between(states: Array, series: Array, places: Array) -> Array:
+    """z inside steps that begin at ``states``: at 3.25 a quarter into the fourth."""
+    whole = np.minimum(places.astype(int), len(states) - 2)
+    tau, begins = (places - whole)[:, None], states[whole]
+    rows = np.zeros_like(begins)
+    for term in series[::-1]:
+        rows = rows * tau + begins @ term.T
+    return np.asarray(rows, dtype=float)
+
+
+def _kinds(lengths: Array) -> int:
+    """How many stretches of equal lengths there are."""
+    return 1 + int(np.count_nonzero(np.abs(np.diff(lengths)) > 1e-9 * lengths[1:]))
 
 
 def _alike(lengths: Array, at: int) -> int:

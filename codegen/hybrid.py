@@ -134,17 +134,20 @@ class _Course:
     def _exact(self, pieces: Sequence[Piece], stop: float) -> ExactLeg | None:
         """The stretch ahead as an exact one, where the mode is affine and exact steps are asked for."""
         model, method = self._model, self._settings.method
-        if method not in ("auto", EXACT) or model.program.guards.results:
+        if method not in ("auto", EXACT):
             return None
-        affine = model.affine_map(self.mode, len(pieces))
-        if affine is not None:
-            leg = ExactLeg(model, affine, pieces, self.mode, self.t, self.s, self._peaks)
-            if leg.steppable(stop):
-                return leg
+        reason = "the model has switches"
+        if not model.program.guards.results:
+            reason = "the model is not affine, or ports that stick share a load"
+            affine = model.affine_map(self.mode, len(pieces))
+            if affine is not None:
+                leg = ExactLeg(model, affine, pieces, self.mode, self.t, self.s, self._peaks)
+                if leg.steppable(stop):
+                    return leg
+                reason = "rates of the model or of its inputs are too fast"
         if method == EXACT:
             raise SimulationError(
-                f"at t = {self.t:.9g} the model is not affine, or too stiff for exact steps; let method be "
-                "auto"
+                f"at t = {self.t:.9g} {reason} for exact steps; let method be auto"
             )
         return None
 

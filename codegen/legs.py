@@ -24,6 +24,9 @@ STIFF = 2e5
 STEP_BOUND = 1.0
 """An explicit step's length in shortest time constants: beyond, its interpolant is unreliable."""
 
+FOLLOWED = 0.1
+"""An implicit step's length in shortest time constants of the inputs."""
+
 LEAST_STEPS = 200
 """Steps are never longer than the span of the run divided by this."""
 
@@ -122,6 +125,8 @@ class Leg:
         Samples strictly before the end are recorded: at the end the next leg shows the instant after.
         """
         if stop - t <= 8 * np.spacing(max(abs(t), abs(stop))):
+            while track.recorded < len(times) and times[track.recorded] < stop:
+                track.record(s, self._mode)
             return stop, s, frozenset()
         fastest = self.fastest(t, s)
         name = self._settings.method
@@ -158,7 +163,11 @@ class Leg:
     def _bound(self, name: str, fastest: float) -> float:
         """The longest step: events and inputs must not fall between, nor the interpolant be strained."""
         bound = self._span / LEAST_STEPS
-        return min(bound, STEP_BOUND / fastest) if name == "DOP853" and fastest > 0 else bound
+        driven = max((piece.fastest for piece in self._pieces), default=0.0)
+        if name == "Radau":
+            # Its error estimate is blind to what follows an input at once.
+            return min(bound, FOLLOWED / driven) if driven > 0 else bound
+        return min(bound, STEP_BOUND / fastest) if fastest > 0 else bound
 
     def _sample(self, times: Array, track: Track, until: float, dense: Dense) -> None:
         while track.recorded < len(times) and times[track.recorded] < until:

@@ -7,9 +7,10 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bondgraph import SimulationError
+from bondgraph import SignalError, SimulationError
 from codegen.arguments import checked_times, initial_values, settings_of, signals_for
 from codegen.arrays import Array
+from codegen.legs import EXACT
 from codegen.result import Result
 from codegen.signals import Signal
 from codegen.sparse import SparseModel
@@ -65,6 +66,8 @@ def run_sparse(
     [0.0, 1.5537397, 2.0]
     """
     times, settings = checked_times(time), settings_of(method, rtol, atol)
+    if method == EXACT:
+        raise SignalError("sparse models are integrated; let method be auto, DOP853 or Radau")
     state = initial_values({} if initial is None else initial, model.states)
     asked = tuple(name for name in model.inputs if name not in model.known)
     given = dict(zip(asked, signals_for({} if inputs is None else inputs, asked), strict=True))
@@ -99,7 +102,8 @@ def _vectors(
         def forced(time: float, pieces: list = pieces) -> Array:  # type: ignore[type-arg]
             return np.asarray(forcing @ np.array([piece(time) for piece in pieces]))
 
-        solver = system.stepper(forced, t, v, stop, method, rtol, atol)
+        fastest = max((piece.fastest for piece in pieces), default=0.0)
+        solver = system.stepper(forced, t, v, stop, method, rtol, atol, fastest)
         v = integrate(solver, times[len(found) :], stop, found.append)
         t = stop
     found.append(v)

@@ -15,16 +15,24 @@ STIFF = 2e3
 """Length of a stretch over the shortest time constant from which the implicit method is chosen."""
 
 
+LEAST_STEPS = 100
+"""Steps are never longer than a stretch divided by this."""
+
+FOLLOWED = 0.05
+"""A step's length in shortest time constants of the inputs."""
+
+
 def mass_radau(
     rate: Callable[[float, Array], Array], t: float, v: Array, stop: float, rtol: float, atol: float,
-    mass: sps.csc_array, jac: sps.csc_array,
+    longest: float, mass: sps.csc_array, jac: sps.csc_array,
 ) -> OdeSolver:  # fmt: skip
     """scipy's Radau for ``A v' = J v + g``, of which ``rate`` is v'.
 
     Its systems ``(mu/h - A^-1 J) d = r`` are solved as ``(mu/h A - J) d = A r``, so that only A and J
-    have to be sparse.
+    have to be sparse. ``longest``: its error estimate is blind to what follows an input at once, so a step
+    must not be long beside the inputs' own changes.
     """
-    solver: Any = Radau(rate, t, v, stop, rtol=rtol, atol=atol, jac=jac)
+    solver: Any = Radau(rate, t, v, stop, rtol=rtol, atol=atol, jac=jac, max_step=longest)
     solver.I = mass
     solver.solve_lu = lambda factors, right: factors.solve(mass @ right)
     made: OdeSolver = solver
@@ -50,9 +58,9 @@ class SparseSystem:
 
     def stepper(
         self, forced: Callable[[float], Array], t: float, v: Array, stop: float, method: str,
-        rtol: float, atol: float,
+        rtol: float, atol: float, driven: float,
     ) -> OdeSolver:  # fmt: skip
-        """An integrator from t to ``stop``; ``forced``: g over time."""
+        """An integrator from t to ``stop``; ``forced``: g over time, ``driven`` [1/s]: its largest rate."""
 
         def rate(time: float, values: Array) -> Array:
             return self.solve(self.J @ values + forced(time))
@@ -60,9 +68,10 @@ class SparseSystem:
         implicit = method == "Radau"
         if method == "auto":
             implicit = self.fastest * (stop - t) > STIFF
+        longest = min((stop - t) / LEAST_STEPS, FOLLOWED / driven if driven else np.inf)
         if not implicit:
-            return DOP853(rate, t, v, stop, rtol=rtol, atol=atol)
-        return mass_radau(rate, t, v, stop, rtol, atol, self.A, self.J)
+            return DOP853(rate, t, v, stop, rtol=rtol, atol=atol, max_step=longest)
+        return mass_radau(rate, t, v, stop, rtol, atol, longest, self.A, self.J)
 
 
 def integrate(

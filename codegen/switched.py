@@ -1,7 +1,7 @@
 """`switched_simulator`: graphs with switches, one phase after another, momenta handed over between."""
 
 from collections import deque
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from types import MappingProxyType
@@ -221,8 +221,22 @@ def switched_simulator(
     if not names:
         raise StructureError("the graph has no switches; derive it and make a simulator of that")
     first = phases.any()
+    _check_names(names, first)
     handover, model = first.handover, first.simulator.closed
     own = tuple(name.name for name in model.program.law_states)
     return SwitchedSimulator(
         (*handover.variables, *own), first.simulator.inputs, names, phases
     )  # fmt: skip
+
+
+def _check_names(switches: Sequence[Hashable], phase: Phase) -> None:
+    """Refuse switches whose columns would hide a signal's."""
+    model = phase.simulator.closed
+    taken = {*map(str, model.equations.signals), *phase.simulator.inputs, *phase.simulator.states}
+    taken |= {name.name for name in model.program.law_states}
+    for at, name in enumerate(switches):
+        if str(name) in taken or str(name) in map(str, switches[:at]):
+            raise StructureError(
+                f"switch {name!r} is called like a signal or another switch, and each is a column of a "
+                "result; rename it"
+            )

@@ -44,6 +44,10 @@ def _valued(element: Element, exact: Mapping[str, sp.Rational], signals: Iterabl
         value = _number(value, where, exact, signals)
         if value.is_zero and element.kind is not Kind.R:
             raise ParameterError(f"{where}: its value {element.value} is zero or infinite")
+    if element.kind is Kind.R and value is not None and value.is_zero:
+        # Nothing at all between effort and flow: it gives the effort zero, whatever flows.
+        zero = ExpressionLaw(sp.Integer(0))
+        return replace(element, value=None, row=(), gives="effort", law=zero)
     if row:
         row = tuple((name, _number(entry, where, exact, signals)) for name, entry in row)
     if element.kind in STORAGES and (row or value is None or not value.is_positive):

@@ -9,9 +9,9 @@ from collections.abc import Hashable
 import networkx as nx
 
 import bondgraph as bg
-from bondgraph.composition import Part as Part
 from bondgraph.composition import assemble as assemble
 from bondgraph.elements import Node
+from bondgraph.renaming import Part as Part
 from differentials.laws import backlash
 
 
