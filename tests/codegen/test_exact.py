@@ -114,3 +114,12 @@ def test_powers_come_by_doubling(count: int) -> None:
     rows = powers_of(leap, z, count)
     expected = [np.linalg.matrix_power(leap, k) @ z for k in range(count + 1)]
     assert rows == pytest.approx(np.array(expected), abs=1e-13)
+
+
+def test_thousands_of_ragged_samples_are_those_of_step_control() -> None:
+    rng = np.random.default_rng(8)
+    time = np.sort(np.concatenate([[0.0, 2.0], rng.uniform(0, 2, 2000)]))
+    exact = _made().run(time, {"v": 0.4}, INPUTS, method="exact")
+    other = _made().run(time, {"v": 0.4}, INPUTS, method="DOP853", rtol=1e-12, atol=1e-13)
+    for name in exact.columns:
+        assert np.abs(exact[name] - other[name]).max() <= 1e-8 * (1 + np.ptp(other[name])), name

@@ -75,3 +75,12 @@ def test_rates_that_are_not_finite_end_the_run_with_time_and_state() -> None:
         bg.SimulationError, match=r"at t = 0 (a law has no value|the rates are not finite)"
     ):
         run.run([0.0, 1.0], {"v": 1.0}, {"P": 0.0})
+
+
+@pytest.mark.parametrize("method", ["DOP853", "exact"])
+def test_samples_inside_a_stretch_of_rounding_are_recorded(method: str) -> None:
+    """Half a microsecond between samples, long after the epoch: a few roundings of the time."""
+    times = [1.7e9 + k * 5e-7 for k in range(4)]
+    ready = simulator(bg.derive(block()), {"m": 1.0, "F_c": 1.0})
+    run = ready.run(times, {"v": 0.3}, {"P": 0.0}, method=method)
+    assert run["v"] == pytest.approx([0.3 - (t - times[0]) for t in times], abs=1e-6)

@@ -375,3 +375,15 @@ def test_a_parameter_named_like_an_input_gives_it_as_for_simulator() -> None:
     assert simulator(bg.derive(_gear()), NUMBERS | {"u": 3}).inputs == ()
     model = sparse_model(_gear(), NUMBERS | {"u": 3})
     assert {name: signal(0.0) for name, signal in model.known.items()} == {"u": 3.0}
+
+
+@pytest.mark.parametrize(("zero", "flow"), [("R2", 1.0), ("R3", 1.0), ("R1", 2.0)])
+def test_a_resistance_of_zero_is_a_short_circuit(zero: str, flow: float) -> None:
+    """1 V over R1 in series with R2 and R3 side by side, all of 1 ohm but one."""
+    nodes = [
+        bg.Se("e", "u"), bg.One("w"), bg.R("R1", "R1"), bg.Zero("n"), bg.R("R2", "R2"), bg.R("R3", "R3"),
+    ]  # fmt: skip
+    graph = bond_graph(nodes, "e>w w>R1 w>n n>R2 n>R3")
+    values = dict.fromkeys(("R1", "R2", "R3"), 1) | {zero: 0}
+    model = sparse_model(graph, values, ["w"])
+    assert model.D[0, model.inputs.index("u")] == pytest.approx(flow)

@@ -315,3 +315,23 @@ def test_couplings_that_cancel_in_decimals_make_no_impulse() -> None:
     graph = _balanced()
     assert not bg.derive(graph).E.todok()
     _compare(graph, {}, {"V": Step(0.5, 4.0)}, ["last"], {"x": 1.0})
+
+
+@pytest.mark.parametrize("L", [1e-9, 1e-6, 1e-4])
+def test_what_follows_an_input_at_once_is_not_stepped_over(L: float) -> None:
+    """L i' = sin(w t) - i: the error estimate of an implicit method does not see i."""
+    nodes = [bg.Se("e", "u"), bg.One("j"), bg.R("R", 1), bg.I("L", L, flow="i")]
+    model = sparse(bond_graph(nodes, "e>j j>R j>L"), {})
+    times = np.linspace(0, 10, 101)
+    run = run_sparse(model, times, inputs={"u": Sine(1.0, 1.0)})
+    w = 2 * np.pi
+    steady = (np.sin(w * times) - w * L * np.cos(w * times)) / (1 + (w * L) ** 2)
+    expected = steady - steady[0] * np.exp(-times / L)
+    assert np.abs(run["i"] - expected).max() <= 2e-7
+
+
+def test_exact_steps_are_no_method_of_sparse_models() -> None:
+    nodes = [bg.Se("e", "u"), bg.One("j"), bg.R("R", 1), bg.I("L", 1, flow="i")]
+    model = sparse(bond_graph(nodes, "e>j j>R j>L"), {})
+    with pytest.raises(bg.SignalError, match="sparse models are integrated"):
+        run_sparse(model, [0.0, 1.0], inputs={"u": 1.0}, method="exact")
