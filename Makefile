@@ -16,7 +16,7 @@ help:
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -c "import sys; sys.exit('Python 3.11 or newer is needed: make PYTHON=...' if sys.version_info < (3, 11) else 0)"
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[pictures,control,test]"
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[pictures,control,c,sweep,cluster,export,test]"
 	@touch $(READY)
 
 demo: $(READY)
@@ -38,6 +38,7 @@ bench: $(READY)
 	$(BIN)/python benchmarks/derivation.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/sparse.py
 	$(BIN)/python benchmarks/writing.py
+	$(BIN)/python benchmarks/rhs.py
 	$(BIN)/python benchmarks/peers.py
 
 bench-peers: $(READY)

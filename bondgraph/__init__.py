@@ -17,6 +17,7 @@ from bondgraph.errors import (
     SignalError,
     SimulationError,
     SingularStorageError,
+    StoreError,
     StructureError,
 )
 from bondgraph.explicit import explicit
@@ -64,6 +65,7 @@ __all__ = [
     "SimulationError",
     "SingularStorageError",
     "StateEquations",
+    "StoreError",
     "StructureError",
     "Sw",
     "Switch",

@@ -45,5 +45,9 @@ class MissingExtraError(BondGraphError):
     """A package that only an optional extra installs is missing."""
 
 
+class StoreError(BondGraphError):
+    """A folder holds other runs than those asked for, or a file in it cannot be read."""
+
+
 class SimulationError(BondGraphError):
     """A run cannot go on; the message gives the time and the numbers."""

@@ -138,11 +138,14 @@ class ExactLeg:
             return None, np.repeat(z[None], count, axis=0)
         parts = max(1, int(np.ceil(self._system.norm * h)))
         step = h / parts
-        leap = scipy.linalg.expm(self._system.M * step)
+        leap = scipy.linalg.expm(_beyond(self._system.M, z, self._n) * step)
+        moved = np.eye(1, len(z), self._n)[0]
         series = _series(self._system, step)
         rows = np.empty((0, len(z)))
         for begin in range(0, count * parts, BLOCK):
-            states = powers_of(leap, z, min(BLOCK, count * parts - begin))
+            further = powers_of(leap, moved, min(BLOCK, count * parts - begin))
+            states, moved = z + further, further[-1]
+            states[:, self._n] = z[self._n]
             found = self._first_event(states[:-1], series, t + begin * step, step)
             if found is not None:
                 whole, tau, ports = found
@@ -150,7 +153,7 @@ class ExactLeg:
                 rows = np.vstack([rows, states[1 : whole + 1]])[parts - 1 :: parts]
                 time = t + (begin + whole + tau) * step
                 return (time, end[: self._n], ports), rows
-            rows, z = np.vstack([rows, states[1:]]), states[-1]
+            rows = np.vstack([rows, states[1:]])
         return None, rows[parts - 1 :: parts]
 
     def _first_event(
@@ -203,6 +206,16 @@ class ExactLeg:
             below[0] += self._limits[row]
             return root if first_fall(below, root) is not None else None
         return root
+
+
+def _beyond(M: Array, z: Array, one: int) -> Array:
+    """The same system told from z on, so that nothing large is rounded in every step.
+
+    Component ``one``, which is 1 for ever, brings the rate that there is at z.
+    """
+    further = M.copy()
+    further[:, one] = M @ z
+    return further
 
 
 def powers_of(leap: Array, z: Array, count: int) -> Array:

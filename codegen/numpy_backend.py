@@ -1,6 +1,7 @@
 """Blocks of a program as Python functions over numpy."""
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
@@ -8,11 +9,13 @@ import sympy as sp
 from codegen.program import Block
 
 
+@lru_cache(maxsize=256)
 def compiled(code: Block) -> Callable[..., list[Any]]:
     """A function of the block's arguments, in their order, that returns its results as a list.
 
     The block's own temporaries are used. Arguments and temporaries are renamed inside, so that a name
-    like ``exp`` or ``array`` is as good as any other.
+    like ``exp`` or ``array`` is as good as any other. The last ones are kept: the blocks of a model are
+    the same whatever its numbers.
     """
     if not code.results:
         return lambda *arguments: []

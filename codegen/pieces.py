@@ -6,6 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
+from codegen.arrays import Array
+
 Term = tuple[complex, tuple[complex, ...]]
 """A rate [1/s] and a polynomial's coefficients, lowest power first."""
 
@@ -33,6 +37,19 @@ class Piece:
                 value = value * tau + coefficient
             if rate:
                 value *= cmath.exp(rate * tau) if rate.imag else math.exp(rate.real * tau)
+            total += value.real
+        return total
+
+    def values(self, times: Array) -> Array:
+        """The values at many times."""
+        tau = times - self.start
+        total = np.zeros(len(tau))
+        for rate, polynomial in self.terms:
+            value = np.zeros(len(tau), dtype=complex)
+            for coefficient in reversed(polynomial):
+                value = value * tau + coefficient
+            if rate:
+                value = value * np.exp(rate * tau if rate.imag else rate.real * tau)
             total += value.real
         return total
 

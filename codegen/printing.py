@@ -1,6 +1,7 @@
 """Expressions and blocks of a program as text in C or Python, one assignment a line."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 
 import sympy as sp
 from sympy.printing.c import C99CodePrinter
@@ -8,7 +9,10 @@ from sympy.printing.pycode import PythonCodePrinter
 
 
 class _C(C99CodePrinter):  # type: ignore[misc]
-    """C99 with doubles only: no integer division, no pow where a product is shorter."""
+    """C99 with doubles only: no integer division, no macros that strict C99 lacks, products for powers."""
+
+    def __init__(self) -> None:
+        super().__init__({"math_macros": {}})
 
     def _print_Symbol(self, expr: sp.Symbol) -> str:
         return str(expr.name)
@@ -18,6 +22,76 @@ class _C(C99CodePrinter):  # type: ignore[misc]
             product = "*".join([self._print(expr.base)] * abs(int(expr.exp)))
             return f"({product})" if expr.exp > 0 else f"1.0/({product})"
         return str(super()._print_Pow(expr))
+
+    def _print_Integer(self, expr: sp.Integer) -> str:
+        return _double(expr)
+
+    def _print_Rational(self, expr: sp.Rational) -> str:
+        if max(abs(expr.p), expr.q) < 2**53:
+            return f"{expr.p}.0/{expr.q}.0"
+        return _double(expr)
+
+    def _print_Float(self, expr: sp.Float) -> str:
+        return _double(expr)
+
+    def _print_NumberSymbol(self, expr: sp.NumberSymbol) -> str:
+        return _double(expr)
+
+    _print_Pi = _print_Exp1 = _print_NumberSymbol
+
+    def _print_sign(self, expr: sp.Expr) -> str:
+        inside = self._print(expr.args[0])
+        return f"((double)((({inside}) > 0) - (({inside}) < 0)))"
+
+    def _print_Piecewise(self, expr: sp.Piecewise) -> str:
+        """Conditions in turn; not a number where none holds."""
+        text = "NAN"
+        for value, condition in reversed(expr.args):
+            chosen = self._print(value)
+            plain = condition == sp.true
+            text = chosen if plain else f"({self._print(condition)}) ? {chosen} : {text}"
+            text = f"({text})"
+        return text
+
+    def _print_And(self, expr: sp.And) -> str:
+        return " && ".join(f"({self._print(part)})" for part in expr.args)
+
+    def _print_Or(self, expr: sp.Or) -> str:
+        return " || ".join(f"({self._print(part)})" for part in expr.args)
+
+    def _print_Not(self, expr: sp.Not) -> str:
+        return f"!({self._print(expr.args[0])})"
+
+    def _print_BooleanTrue(self, expr: sp.Expr) -> str:
+        return "1"
+
+    def _print_BooleanFalse(self, expr: sp.Expr) -> str:
+        return "0"
+
+
+class _CheckedC(_C):
+    """C that calls bg_min, bg_max and bg_sign, which give no number where an argument is none."""
+
+    def _print_Min(self, expr: sp.Min) -> str:
+        return self._nested("bg_min", expr.args)
+
+    def _print_Max(self, expr: sp.Max) -> str:
+        return self._nested("bg_max", expr.args)
+
+    def _nested(self, call: str, parts: Sequence[sp.Expr]) -> str:
+        text = str(self._print(parts[0]))
+        for part in parts[1:]:
+            text = f"{call}({text}, {self._print(part)})"
+        return text
+
+    def _print_sign(self, expr: sp.Expr) -> str:
+        return f"bg_sign({self._print(expr.args[0])})"
+
+
+def _double(expr: sp.Expr) -> str:
+    """A number as the nearest double, in digits that give it back."""
+    value = float(expr)
+    return repr(value) if math.isfinite(value) else "HUGE_VAL"
 
 
 class _Python(PythonCodePrinter):  # type: ignore[misc]
@@ -34,11 +108,13 @@ class _Python(PythonCodePrinter):  # type: ignore[misc]
         return f"(({inside} > 0) - ({inside} < 0))"
 
 
-PRINTERS: Mapping[str, type] = {"c": _C, "python": _Python}
+PRINTERS: Mapping[str, type] = {"c": _C, "checked_c": _CheckedC, "python": _Python}
 
 
 def printed(expr: sp.Expr, language: str, names: Mapping[str, str]) -> str:
     """An expression as text, its symbols under the names given.
+
+    ``language``: "c", "python", or "checked_c", where ``bg_min``, ``bg_max`` and ``bg_sign`` are called.
 
     >>> x = sp.Symbol("double")
     >>> printed(sp.sin(x)/3 + x**2, "c", {"double": "double_"})

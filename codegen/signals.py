@@ -9,6 +9,7 @@ import cmath
 import math
 from abc import ABC, abstractmethod
 from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -263,7 +264,23 @@ def as_signal(value: object, name: str) -> Signal:
 
 def sampled_values(signal: Signal, times: NDArray[np.float64]) -> NDArray[np.float64]:
     """The signal's values at many times."""
-    return np.array([signal(t) for t in times.tolist()])
+    return _sampled(signal.pieces, signal, times)
+
+
+def sampled_rates(signal: Signal, times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How fast the signal changes at many times; at a breakpoint just after it."""
+    return _sampled([piece.derivative for piece in signal.pieces], signal, times)
+
+
+def _sampled(
+    pieces: Sequence[Piece], signal: Signal, times: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    which = np.searchsorted(np.array(signal.breakpoints, dtype=float), times, side="right")
+    result = np.zeros(len(times))
+    for at in np.unique(which).tolist():
+        here = which == at
+        result[here] = pieces[at].values(times[here])
+    return result
 
 
 def _check_finite(signal: Signal, *numbers: float) -> None:

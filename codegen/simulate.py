@@ -1,7 +1,7 @@
 """`simulator` and what it returns: a model with numbers, ready to run, and the record of a run."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -12,17 +12,20 @@ from numpy.typing import ArrayLike
 from bondgraph import ParameterError, SignalError, SimulationError, StateEquations
 from codegen.arguments import checked_times, initial_values, numbers_of, settings_of, signals_for
 from codegen.arrays import Array
+from codegen.c_backend import CRuns
 from codegen.closed import ClosedModel
 from codegen.hybrid import run_hybrid
-from codegen.legs import Track
+from codegen.legs import EXACT, Settings, Track
 from codegen.modes import LOOK_AHEAD, Peaks, decide
 from codegen.observer import Observer
 from codegen.pieces import Piece, constant_piece
-from codegen.program import lower
+from codegen.program import Program, lower
 from codegen.result import Result
 from codegen.signals import Constant, Signal
+from codegen.snapshots import snapshots
 
-BACKENDS = ("numpy",)
+BACKENDS = ("numpy", "c")
+"""What runs models; "c" those that are affine in each friction mode."""
 
 
 @dataclass(frozen=True)
@@ -30,13 +33,15 @@ class Simulator:
     """A model with numbers for its parameters; every call returns fresh arrays.
 
     ``states``: names in the order of ``x``, states that laws own last. ``inputs``: names in the order
-    of ``u``, what the model must be given. ``signals``: every name a `Result` holds.
+    of ``u``, what the model must be given. ``signals``: every name a `Result` holds. ``engine``: what
+    runs it, if not numpy.
     """
 
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     closed: ClosedModel
+    engine: CRuns | None = field(default=None, repr=False, compare=False)
 
     def rhs(self, t: float, x: ArrayLike, u: ArrayLike = ()) -> Array:
         """The rate of the states at one instant, inputs held; friction sticks where it can.
@@ -92,8 +97,7 @@ class Simulator:
             at_start,
         )
         with np.errstate(all="ignore"):
-            begin, span = float(times[0]), float(times[-1] - times[0])
-            track = run_hybrid(self.closed, times, start, signals, settings, begin, span).track
+            track = self._track(times, start, signals, settings)
             columns, observer = self.columns(times, signals, track)
         return Result(
             times,
@@ -104,6 +108,21 @@ class Simulator:
             MappingProxyType(columns),
             observer,
         )
+
+    def _track(
+        self, times: Array, start: Array, signals: Sequence[Signal], settings: Settings
+    ) -> Track:
+        """The run by the C engine, or where that cannot go on by the loop that tells why, or can."""
+        if self.engine is not None:
+            if settings.method not in ("auto", EXACT):
+                raise SignalError(
+                    f"backend 'c' steps exactly; method {settings.method!r} needs backend='numpy'"
+                )
+            track = self.engine.run(times, start, signals).track
+            if track is not None:
+                return track
+        begin, span = float(times[0]), float(times[-1] - times[0])
+        return run_hybrid(self.closed, times, start, signals, settings, begin, span).track
 
     def steady(
         self, inputs: Mapping[str, float], initial: Mapping[str, float]
@@ -172,27 +191,22 @@ class Simulator:
     ) -> tuple[dict[str, Array], Observer]:
         """The recorded samples as columns by name, and what works out all other signals."""
         program = self.closed.program
-        shots = [
-            self.closed.at(t, s, [signal.piece(t) for signal in signals], mode)
-            for t, s, mode in zip(times.tolist(), track.vectors, track.modes, strict=True)
-        ]
+        found = snapshots(self.closed, times, signals, track)
         groups = (
-            (program.states, [shot.x for shot in shots]),
-            (program.law_states, [shot.z for shot in shots]),
-            (program.inputs, [shot.u for shot in shots]),
-            (program.external, [shot.external for shot in shots]),
-            (program.readings, [shot.y for shot in shots]),
+            (program.states, found.x),
+            (program.law_states, found.z),
+            (program.inputs, found.u),
+            (program.external, found.external),
+            (program.readings, found.y),
         )
         columns: dict[str, Array] = {}
-        for names, rows in groups:
-            table = np.array(rows)
+        for names, table in groups:
             for at, name in enumerate(names):
                 columns.setdefault(name.name, table[:, at].copy())
-        x, u, du = (np.array([getattr(s, part) for s in shots]) for part in ("x", "u", "du"))
-        dx = np.array([shot.rate[: len(program.states)] for shot in shots])
+        dx = found.rate[:, : len(program.states)]
         if not program.varying:
-            dx = dx + du @ self.closed.constant.R.T
-        return columns, Observer(times, self.closed, columns, x, dx, u, du)
+            dx = dx + found.du @ self.closed.constant.R.T
+        return columns, Observer(times, self.closed, columns, found.x, dx, found.u, found.du)
 
 
 def simulator(
@@ -205,13 +219,16 @@ def simulator(
 
     ``parameters``: name to number. ``laws``: node (or the input it gives) to an expression or
     `DryFriction`, over the laws declared in the graph. A name in a law that parameters don't have is
-    an input.
+    an input. ``backend``: "numpy", or "c" for models that are affine in each friction mode, which a C
+    compiler and the extra ``c`` run much faster.
 
-    Raises `ParameterError`, `StructureError` or `DependentSourceError` for what cannot be used.
+    Raises `ParameterError`, `StructureError` or `DependentSourceError` for what cannot be used,
+    `SignalError` for what the backend cannot run, `MissingExtraError` for what it needs.
     """
     if backend not in BACKENDS:
         raise SignalError(f"unknown backend {backend!r}; there is {', '.join(BACKENDS)}")
-    return guarded_simulator(equations, parameters, laws, ())
+    ready = guarded_simulator(equations, parameters, laws, ())
+    return replace(ready, engine=CRuns(ready.closed)) if backend == "c" else ready
 
 
 def guarded_simulator(
@@ -223,7 +240,13 @@ def guarded_simulator(
     """A simulator whose model has guards: conditions that end a stretch where one falls below zero."""
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
-    program = lower(equations, laws, parameters, guards)
+    return bound(lower(equations, laws, parameters, guards), equations, parameters)
+
+
+def bound(
+    program: Program, equations: StateEquations, parameters: Mapping[str, object]
+) -> Simulator:
+    """A simulator of a program that was lowered for parameters of these names."""
     closed = ClosedModel(program, equations, parameters)
     return Simulator(
         tuple(name.name for name in (*program.states, *program.law_states)),

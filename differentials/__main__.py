@@ -8,6 +8,7 @@ from typing import NoReturn
 
 import bondgraph as bg
 from differentials import commands
+from differentials.exporting import TARGETS
 from differentials.figures import figures
 from differentials.topologies import catalog
 
@@ -17,6 +18,7 @@ examples:
   python -m differentials show superposition_tvd
   python -m differentials simulate alsd --scenario fig11 --set k=4300 --out out
   python -m differentials figures --out out
+  python -m differentials export alsd --to fmu3 --scenario fig11 --set I_1=0.008 --out out
 """
 
 
@@ -48,6 +50,10 @@ def _run(options: argparse.Namespace) -> None:
         case "simulate":
             changed = dict(options.set)
             commands.run(options.name, options.scenario, changed, options.backlash, options.out)
+        case "export":
+            commands.write_export(
+                options.name, options.to, options.scenario, dict(options.set), options.out
+            )
         case "figures":
             commands.draw_figures(options.figure, options.out)
         case _:
@@ -80,17 +86,22 @@ def _parser() -> argparse.ArgumentParser:
     show.add_argument("--halfshafts", action="store_true", help="the full model's equations")
     show.add_argument("--unlumped", action="store_true", help="every inertia an element of its own")
     simulate = _command(added, "simulate", "run a scenario; writes a table and a picture")
-    simulate.add_argument("name", metavar="NAME", help=f"one of {', '.join(catalog)}")
-    simulate.add_argument("--scenario", help="a name that `list` shows (the differential's own)")
-    simulate.add_argument(
-        "--set", action="append", default=[], type=_assignment, metavar="NAME=NUMBER",
-        help="another value for a parameter, in SI units; may be repeated (`show` lists them)",
-    )  # fmt: skip
+    exported = _command(
+        added, "export", "write a differential in a scenario as Python, C or an FMU"
+    )
+    exported.add_argument("--to", required=True, choices=TARGETS, help="what to write")
+    for command in (simulate, exported):
+        command.add_argument("name", metavar="NAME", help=f"one of {', '.join(catalog)}")
+        command.add_argument("--scenario", help="a name that `list` shows (the differential's own)")
+        command.add_argument(
+            "--set", action="append", default=[], type=_assignment, metavar="NAME=NUMBER",
+            help="another value for a parameter, in SI units; may be repeated (`show` lists them)",
+        )  # fmt: skip
     simulate.add_argument("--backlash", action="store_true", help="with play (parameter gap, rad)")
     drawn = _command(added, "figures", "run and draw the paper's Figs. 11 to 14")
     drawn.add_argument("figure", nargs="*", metavar="FIGURE", help=f"some of {', '.join(figures)}")
     demo = _command(added, "demo", "a tour: equations, causality, modes, two simulations")
-    for command in (simulate, drawn, demo):
+    for command in (simulate, exported, drawn, demo):
         command.add_argument(
             "--out", type=Path, default=Path("out"), metavar="DIR", help="folder for files (out)"
         )

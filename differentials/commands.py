@@ -6,6 +6,7 @@ from pathlib import Path
 
 import bondgraph as bg
 from codegen import Result
+from differentials.exporting import export
 from differentials.figures import Figure, draw, figures, panels
 from differentials.identification import linear_model
 from differentials.model import model
@@ -21,6 +22,14 @@ from differentials.report import (
 from differentials.scenarios import named, scenarios, simulate
 from differentials.speeds import zero_slip_ratios
 from differentials.topologies import Differential, catalog, differential, equations, graph
+
+NEXT = {
+    "python": "cd {out} && python run_{name}.py",
+    "c": "cc -std=c99 -O2 {out}/{name}/*.c -lm -o run_{name}",
+    "fmu2": "load {out}/{name}.fmu into any tool that knows FMI 2.0",
+    "fmu3": "load {out}/{name}.fmu into any tool that knows FMI 3.0",
+}
+"""What to do with an export."""
 
 
 def list_all() -> None:
@@ -70,6 +79,16 @@ def run(
         (result,),
         out,
     )
+
+
+def write_export(
+    name: str, target: str, scenario: str | None, changed: dict[str, float], out: Path
+) -> None:
+    """Write a differential in a scenario as Python, C or an FMU, and say how to go on."""
+    paths = export(name, target, scenario or differential(name).scenario, changed, out)
+    for path in paths:
+        print(path)
+    print(f"\nNext: {NEXT[target].format(name=name, out=out)}")
 
 
 def draw_figures(names: Sequence[str], out: Path) -> None:

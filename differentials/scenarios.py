@@ -1,10 +1,11 @@
 """The paper's simulations as data, and `simulate`, which runs a differential through one."""
 
-from collections.abc import Mapping
+from collections.abc import Container, Hashable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import NDArray
 
 import bondgraph as bg
 import codegen
@@ -62,6 +63,18 @@ scenarios: Mapping[str, Scenario] = MappingProxyType(
 """Named scenarios: the paper's figures, and two for the passive differentials, which have no figure."""
 
 
+@dataclass(frozen=True)
+class Prepared:
+    """A differential's full model in a scenario: equations, numbers, laws, start, inputs, samples [s]."""
+
+    equations: bg.StateEquations
+    parameters: Mapping[str, float]
+    laws: Mapping[Hashable, object]
+    initial: Mapping[str, float]
+    inputs: Mapping[str, codegen.Signal]
+    times: NDArray[np.float64]
+
+
 def simulate(
     name: str,
     scenario: str | Scenario,
@@ -81,6 +94,19 @@ def simulate(
 
     Raises `BondGraphError` for names and numbers that don't fit the differential.
     """
+    ready = prepared(name, scenario, parameters, laws, backlash)
+    simulator = codegen.simulator(ready.equations, ready.parameters, ready.laws, backend)
+    return simulator.run(ready.times, ready.initial, ready.inputs)
+
+
+def prepared(
+    name: str,
+    scenario: str | Scenario,
+    parameters: Mapping[str, float] | None = None,
+    laws: Mapping[str, object] | None = None,
+    backlash: bool = False,
+) -> Prepared:
+    """What `simulate` runs, with the same arguments; to be exported, or swept."""
     case = named(scenario)
     full = model(name, laws, backlash)
     clutches = full.differential.clutches
@@ -90,9 +116,16 @@ def simulate(
             f"{len(case.clutch_torques)} clutch torques"
         )
     values = _parameters(full, case, parameters or {})
-    ready = codegen.simulator(full.equations, values, laws=full.laws, backend=backend)
     times = np.linspace(0.0, case.duration, round(case.duration / SAMPLE) + 1)
-    return ready.run(times, _initial(full, case, values, ready), _inputs(full, case))
+    states = {state.name for state in full.equations.states}
+    return Prepared(
+        full.equations,
+        values,
+        full.laws,
+        _initial(full, case, values, states),
+        _inputs(full, case),
+        times,
+    )
 
 
 def named(scenario: str | Scenario) -> Scenario:
@@ -126,15 +159,15 @@ def _parameters(full: Model, case: Scenario, changed: Mapping[str, float]) -> di
 
 
 def _initial(
-    full: Model, case: Scenario, values: Mapping[str, float], ready: codegen.Simulator
+    full: Model, case: Scenario, values: Mapping[str, float], states: Container[str]
 ) -> dict[str, float]:
     """Steady motion: shafts without torque, the input turning with the case."""
     speeds = dict(enumerate(_speeds(full, case), start=1))
     initial = {f"omega_{j}": w for j, w in speeds.items()}
     initial |= {f"omega_t{j}": w for j, w in speeds.items()}
-    if "omega_e" in ready.states:
+    if "omega_e" in states:
         initial["omega_e"] = values["i"] * (speeds[1] + speeds[2]) / 2
-    return {name: speed for name, speed in initial.items() if name in ready.states}
+    return {name: speed for name, speed in initial.items() if name in states}
 
 
 def _inputs(full: Model, case: Scenario) -> dict[str, codegen.Signal]:

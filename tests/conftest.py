@@ -1,4 +1,4 @@
-"""Ends a test that would never end by itself."""
+"""Ends a test that would never end by itself; the option that rewrites files of exported text."""
 
 import signal
 from collections.abc import Iterator
@@ -7,6 +7,17 @@ import pytest
 
 LONGEST = 180
 """Seconds after which a test counts as hanging: many times what the longest one takes."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """``--update-golden``: write the files that exports are compared with."""
+    parser.addoption("--update-golden", action="store_true", help="rewrite files of exported text")
+
+
+@pytest.fixture
+def update_golden(request: pytest.FixtureRequest) -> bool:
+    """Whether files that exports are compared with are to be written anew."""
+    return bool(request.config.getoption("--update-golden"))
 
 
 @pytest.fixture(autouse=True)

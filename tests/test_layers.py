@@ -23,12 +23,18 @@ ORDER = {
         "arrays", "pieces", "generators", "polynomials", "signals", "affine", "closing", "program",
         "identifiers", "printing", "numpy_backend", "numbers", "friction", "instant", "loops",
         "closed", "sizes", "modes", "guards", "events", "legs", "exact", "hybrid", "arguments",
-        "observer", "result", "simulate", "trim", "handover", "phases", "spliced", "switched",
-        "valued", "signal_rows", "sparse", "sparse_steps", "sparse_run",
+        "observer", "result", "snapshots", "build", "engine_sizes", "engine_modes", "engine_inputs",
+        "c_backend", "simulate", "packing", "family", "measures", "sweep_design",
+        "sweep_job", "sweep_crews", "sweep_cluster", "sweep_drive", "sweep_result", "sweep_store",
+        "sweep", "sticking", "python_text", "python_blocks", "python_tables", "python",
+        "trim", "handover", "phases", "spliced", "switched",
+        "valued", "signal_rows", "sparse", "sparse_steps", "sparse_run", "c_text", "c_structure",
+        "c_constants", "c_rhs", "c_blocks", "c_rates", "c_tables", "c",
+        "fmu_variables", "fmu_switches", "fmu_model", "fmu_dependencies", "fmu_xml", "fmu_binaries", "fmu",
     ],
     "differentials": [
         "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "model",
-        "identification", "speeds", "scenarios", "figures", "report", "commands",
+        "identification", "speeds", "scenarios", "exporting", "figures", "report", "commands",
     ],
 }  # fmt: skip
 

@@ -1,0 +1,49 @@
+"""Where laws switch: the expressions at whose zeros their slopes or values jump."""
+
+from collections.abc import Iterator
+
+import sympy as sp
+
+from codegen.program import Block, Program
+
+MOST_CHOICES = 4
+"""The least or largest of more values is not looked into."""
+
+
+def switching(program: Program) -> tuple[sp.Expr, ...]:
+    """Arguments of Abs, sign and Heaviside, differences that Min, Max and conditions compare.
+
+    Not those of parameters alone, nor the slips of friction ports, which are events anyway.
+    """
+    slips = {program.readings[port.reading] for port in program.friction}
+    blocks = [program.known.values, *(group.values for group in program.groups)]
+    blocks += [program.coupled.values, program.friction_values, program.coefficients]
+    found: dict[sp.Expr, None] = {}
+    for code in blocks:
+        for expr in _whole(code):
+            for argument in _arguments(expr):
+                size = sp.sympify(argument)
+                constant = not size.free_symbols - set(program.parameters)
+                if not constant and size not in slips and -size not in slips:
+                    found.setdefault(-size if -size in found else size)
+    return tuple(sorted(found, key=sp.default_sort_key))
+
+
+def _whole(code: Block) -> Iterator[sp.Expr]:
+    """The results of a block without its temporaries."""
+    values: dict[sp.Symbol, sp.Expr] = {}
+    for name, value in code.assignments:
+        values[name] = value.xreplace(values)
+    return (result.xreplace(values) for result in code.results)
+
+
+def _arguments(expr: sp.Expr) -> Iterator[sp.Expr]:
+    for part in sorted(expr.atoms(sp.Abs, sp.sign, sp.Heaviside), key=sp.default_sort_key):
+        yield part.args[0]
+    for part in sorted(expr.atoms(sp.Min, sp.Max), key=sp.default_sort_key):
+        choices = sorted(part.args, key=sp.default_sort_key)
+        if len(choices) <= MOST_CHOICES:
+            for at, one in enumerate(choices):
+                yield from (one - other for other in choices[at + 1 :])
+    for part in sorted(expr.atoms(sp.core.relational.Relational), key=sp.default_sort_key):
+        yield part.lhs - part.rhs

@@ -1,0 +1,199 @@
+"""The variables of a functional mock-up unit: their names, what they are, where they start."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from bondgraph import StateEquations
+from codegen.program import Program
+
+STEP = "fixed_internal_step"
+"""The parameter that is the length of co-simulation's internal steps [s]."""
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One variable; its place in the list is its value reference.
+
+    ``kind`` and ``index``: what it is to the C glue (`enum fmu_kind`). ``derivative``: the value
+    reference of the state that it is the rate of.
+    """
+
+    name: str
+    kind: str
+    index: int = 0
+    causality: str = "local"
+    variability: str = "continuous"
+    initial: str | None = "calculated"
+    start: float | None = None
+    unit: str = ""
+    derivative: int | None = None
+
+    @property
+    def integer(self) -> bool:
+        """Friction modes are whole numbers."""
+        return self.kind == "FMU_MODE"
+
+
+@dataclass(frozen=True)
+class Starts:
+    """Where parameters, states and inputs start; ``sources``: external inputs with sources inside."""
+
+    parameters: Sequence[float]
+    states: Sequence[float]
+    inputs: Sequence[float]
+    sources: frozenset[int]
+    step: float
+
+
+def moved(program: Program) -> bool:
+    """Whether inputs drive dependent storages, so that the integrated vector is not the states."""
+    return bool(program.layout["E"].rows) and not program.varying
+
+
+def rated(program: Program) -> bool:
+    """Whether anything asks for the rates of inputs."""
+    return any(program.layout[letter].rows for letter in "EDHK")
+
+
+def variables(
+    program: Program, equations: StateEquations, starts: Starts, indicators: int
+) -> tuple[Variable, ...]:
+    """All variables, names made unique; those of the model come before those that are made up."""
+    listing = _Listing(program, units(equations), starts)
+    listing.known()
+    listing.unknown()
+    listing.made_up(indicators)
+    return tuple(listing.found)
+
+
+def units(equations: StateEquations) -> Mapping[sp.Symbol, str]:
+    """What elements tell of their unit: that of what they give, or of their state."""
+    result: dict[sp.Symbol, str] = {}
+    named = {*equations.states, *equations.inputs}
+    for element in equations.elements.values():
+        for symbol in (element.given, element.effort, element.flow):
+            if element.unit and symbol in named:
+                result.setdefault(symbol, element.unit)
+    return result
+
+
+class _Listing:
+    """Variables in the order of their value references."""
+
+    def __init__(self, program: Program, unit: Mapping[sp.Symbol, str], starts: Starts) -> None:
+        self.found: list[Variable] = []
+        self._program, self._unit, self._starts = program, unit, starts
+        self._moved = moved(program)
+        self._places: dict[sp.Symbol, int] = {}
+        symbols = [*program.parameters, *program.states, *program.law_states, *program.external]
+        symbols += [*program.inputs, *program.readings]
+        self._reserved = {plain(symbol.name) for symbol in symbols}
+        self._used: set[str] = set()
+
+    def known(self) -> None:
+        """Time, parameters, inputs and where states start."""
+        program, starts = self._program, self._starts
+        self._made("time", "FMU_TIME", causality="independent", initial=None, unit="s")
+        kept = "fixed" if self._moved else "tunable"
+        for at, (symbol, value) in enumerate(
+            zip(program.parameters, starts.parameters, strict=True)
+        ):
+            self._named(
+                symbol, "FMU_PARAMETER", at, "parameter", variability=kept, initial="exact",
+                start=value,
+            )  # fmt: skip
+        self._made(
+            STEP, "FMU_INTERNAL_STEP", causality="parameter", variability="fixed", initial="exact",
+            start=starts.step, unit="s",
+        )  # fmt: skip
+        free = [at for at in range(len(program.external)) if at not in starts.sources]
+        for at in free:
+            self._named(
+                program.external[at], "FMU_INPUT", at, "input", initial=None,
+                start=starts.inputs[at],
+            )  # fmt: skip
+        for at in free if rated(program) else []:
+            name = f"der({program.external[at].name})"
+            self._made(name, "FMU_SLOPE", at, causality="input", initial=None, start=0.0)
+        for at, symbol in enumerate((*program.states, *program.law_states)):
+            self._named(symbol, "FMU_STATE", at, initial="exact", start=starts.states[at])
+
+    def unknown(self) -> None:
+        """Readings, outputs among them, and what laws and sources give."""
+        program = self._program
+        for at, symbol in enumerate(program.readings):
+            shown = "output" if symbol in program.outputs else "local"
+            place = self._places.get(symbol)
+            if place is None:
+                self._named(symbol, "FMU_READING", at, shown)
+            elif shown == "output" and self.found[place].causality == "local":
+                self.found[place] = replace(self.found[place], causality=shown)
+            elif shown == "output":
+                self._made(symbol.name, "FMU_READING", at, causality=shown)
+        for at in sorted(self._starts.sources):
+            self._named(program.external[at], "FMU_SOURCE", at)
+        for at, symbol in enumerate(program.inputs):
+            if symbol not in self._places:
+                self._named(symbol, "FMU_GIVEN", at)
+
+    def made_up(self, indicators: int) -> None:
+        """The integrated vector where it is none of the states, its rates, modes and indicators."""
+        program = self._program
+        symbols = (*program.states, *program.law_states)
+        places = [self._places[symbol] for symbol in symbols]
+        for at, symbol in enumerate(program.states if self._moved else ()):
+            places[at] = len(self.found)
+            self._made(f"integrated({symbol.name})", "FMU_VECTOR", at)
+        for at, (symbol, place) in enumerate(zip(symbols, places, strict=True)):
+            unit = self._unit.get(symbol)
+            rate = f"{unit}/s" if unit else ""
+            base = self.found[place].name
+            self._made(f"der({base})", "FMU_RATE", at, derivative=place, unit=rate)
+        for at, port in enumerate(program.friction):
+            self._made(f"mode({port.name})", "FMU_MODE", at, variability="discrete")
+        for at in range(indicators):
+            self._made(f"event_indicator({at + 1})", "FMU_INDICATOR", at)
+
+    def _named(
+        self, symbol: sp.Symbol, kind: str, index: int, causality: str = "local",
+        variability: str = "continuous", initial: str | None = "calculated",
+        start: float | None = None,
+    ) -> None:  # fmt: skip
+        """A variable under a name of the model's."""
+        self._places[symbol] = len(self.found)
+        name = self._free(plain(symbol.name), self._used)
+        unit = self._unit.get(symbol, "")
+        self.found.append(Variable(name, kind, index, causality, variability, initial, start, unit))
+
+    def _made(
+        self, name: str, kind: str, index: int = 0, causality: str = "local",
+        variability: str = "continuous", initial: str | None = "calculated",
+        start: float | None = None, unit: str = "", derivative: int | None = None,
+    ) -> None:  # fmt: skip
+        """A variable under a name that the model leaves free."""
+        name = self._free(plain(name), self._used | self._reserved)
+        self.found.append(
+            Variable(name, kind, index, causality, variability, initial, start, unit, derivative)
+        )
+
+    def _free(self, name: str, taken: set[str]) -> str:
+        while name in taken:
+            name += "_"
+        self._used.add(name)
+        return name
+
+
+def plain(name: str) -> str:
+    """A name without characters that XML's attributes do not keep.
+
+    >>> plain("a\\tb\\x00 c")
+    'a_b_ c'
+    """
+    text = "".join(one if _kept(one) else "_" for one in name)
+    return text or "_"
+
+
+def _kept(one: str) -> bool:
+    return one == " " or (one.isprintable() and not one.isspace())

@@ -1,0 +1,191 @@
+/* One stretch: to a breakpoint or the first event, recording the samples on the way. */
+#include "bg_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Where a stretch has come to. `base`: the sample that is there, -1 if none is. */
+typedef struct {
+    double t, stop, z[BG_Z];
+    int at, last, base;
+    unsigned ports;
+} bg_place;
+
+/* The first sample that is not before a time. */
+static int first_not_before(const bg_task *task, int low, double stop)
+{
+    int high = task->samples;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        if (task->times[middle] < stop)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Refuses a friction level below zero: a rough look at a sample, an exact one where it may be. */
+static int check_levels(bg_context *c, double t, double *row)
+{
+    int below = 0;
+    for (int i = 0; i < BG_K; i++) {
+        const double *pair = row + BG_Z + 2 * i;
+        below |= (c->mode[i] ? 2.0 * pair[1] : pair[0] + pair[1]) < 0.0;
+    }
+    if (!below)
+        return BG_OK;
+    bg_shot shot;
+    return bg_look(c, t, row, c->stretch.entry->mode, shot);
+}
+
+/* Writes the state as the sample `p->at`, which is at p->t. */
+static int record(bg_context *c, bg_place *p)
+{
+    double *row = c->task->rows[p->at];
+    memcpy(row, p->z, sizeof p->z);
+    bg_fill(&c->stretch, row);
+    c->task->modes[p->at] = bg_number(c->mode);
+    p->base = p->at++;
+    return check_levels(c, p->t, row);
+}
+
+/* How many steps from the present sample on have one length, but for rounding; the stop, too. */
+static int alike(const bg_context *c, const bg_place *p, double *h)
+{
+    const double *times = c->task->times;
+    int end = p->last;
+    *h = c->task->grid;
+    if (*h <= 0.0) {
+        *h = p->at < p->last ? times[p->at] - p->t : 0.0;
+        for (end = p->at; end < p->last; end++)
+            if (fabs(times[end] - times[end - 1] - *h) > 1e-9 * *h)
+                break;
+    }
+    if (end == p->last && fabs(p->stop - times[end - 1] - *h) <= 1e-9 * *h)
+        end++;
+    return end - p->at;
+}
+
+/* Whether all triggers are armed; those are that have risen above rounding. */
+static int armed(bg_context *c, const double *row)
+{
+    int all = 1;
+    for (int i = 0; i < BG_T; i++) {
+        c->stretch.armed[i] |= row[BG_Z + i] >= c->stretch.limit[i];
+        all &= c->stretch.armed[i];
+    }
+    return all;
+}
+
+/* Keeps those of `count` steps in scratch that are samples; `done` were there before. */
+static void keep(const bg_context *c, const bg_place *p, int done, int count)
+{
+    const int parts = c->stretch.entry->parts;
+    for (int k = parts - done % parts; k <= count; k += parts)
+        memcpy(c->task->rows[p->base + (done + k) / parts], c->scratch[k], sizeof c->scratch[k]);
+}
+
+/* A step that leaps could not be sure of; its end is written to `next`. */
+static int doubtful(bg_context *c, bg_place *p, int done, double *next)
+{
+    const bg_entry *e = c->stretch.entry;
+    double end;
+    const int status = bg_series(c, p->t + done * e->step, e->step, p->z, &end, &p->ports);
+    if (status || p->ports) {
+        p->stop = end;
+        return status;
+    }
+    memcpy(next, p->z, sizeof p->z);
+    bg_fill(&c->stretch, next);
+    return (done + 1) % e->parts ? BG_OK : check_levels(c, end, next);
+}
+
+/* `count` samples by leaps of steps from sample `base`; how many steps there were goes to *done. */
+static int steps(bg_context *c, bg_place *p, int count, int *done)
+{
+    const int parts = c->stretch.entry->parts, total = count * parts;
+    *done = 0;
+    if (parts > 1)
+        memcpy(c->scratch[0], c->task->rows[p->base], sizeof c->scratch[0]);
+    while (*done < total) {
+        const int left = total - *done, ahead = parts > 1 && left > BG_BLOCK ? BG_BLOCK : left;
+        double(*rows)[BG_ROW] = parts > 1 ? c->scratch : c->task->rows + p->base + *done;
+        int sure = bg_leap(&c->stretch, ahead, rows);
+        if (parts > 1)
+            keep(c, p, *done, sure);
+        *done += sure;
+        memcpy(p->z, rows[sure], sizeof p->z);
+        if (sure < ahead) {
+            const int status = doubtful(c, p, *done, rows[++sure]);
+            if (status || p->ports)
+                return status;
+            if (parts > 1 && ++*done % parts == 0)
+                memcpy(c->task->rows[p->base + *done / parts], rows[sure], sizeof rows[sure]);
+            else
+                *done += parts == 1;
+        }
+        if (parts > 1)
+            memcpy(c->scratch[0], rows[sure], sizeof c->scratch[0]);
+    }
+    return BG_OK;
+}
+
+/* Leaps over samples of one distance, as far as they reach. */
+static int leap_on(bg_context *c, bg_place *p, int count)
+{
+    int done;
+    const int status = steps(c, p, count, &done), made = done / c->stretch.entry->parts;
+    const int number = bg_number(c->mode), until = p->at + made;
+    for (; p->at < until && p->at < p->last; p->at++)
+        c->task->modes[p->at] = number;
+    if (status || p->ports)
+        return status;
+    p->base = p->at - 1;
+    p->t = until > p->last ? p->stop : c->task->times[p->base];
+    return BG_OK;
+}
+
+/* One step by power series, to the next sample or the stop. */
+static int step_on(bg_context *c, bg_place *p)
+{
+    const int sample = p->at < p->last;
+    const double to = sample ? c->task->times[p->at] : p->stop;
+    double end;
+    const int status = bg_series(c, p->t, to - p->t, p->z, &end, &p->ports);
+    if (p->ports)
+        p->stop = end;
+    if (status || p->ports)
+        return status;
+    p->t = to;
+    p->base = -1;
+    return sample ? record(c, p) : BG_OK;
+}
+
+int bg_advance(bg_context *c, int *at, double stop)
+{
+    bg_place p = {.t = c->t, .stop = stop, .at = *at, .base = -1};
+    int status = BG_OK;
+    p.last = first_not_before(c->task, *at, stop);
+    memcpy(p.z, c->s, sizeof c->s);
+    bg_slots(c->inputs, c->segment, c->t, p.z + BG_N);
+    while (!status && !p.ports && (p.t < stop || p.at < p.last)) {
+        double h = 0.0;
+        const int count = p.base >= 0 ? alike(c, &p, &h) : 0;
+        if (count >= BG_STRIDE && armed(c, c->task->rows[p.base])) {
+            if (!c->stretch.leaping || c->stretch.entry->h != h) {
+                bg_leaps(c, &c->stretch, h, c->task->rows[p.base]);
+                bg_fill(&c->stretch, c->task->rows[p.base]);
+            }
+            status = leap_on(c, &p, count);
+        } else {
+            status = step_on(c, &p);
+        }
+    }
+    *at = p.at;
+    memcpy(c->s, p.z, sizeof c->s);
+    c->t = p.ports ? p.stop : stop;
+    for (int i = 0; i < BG_K; i++)
+        c->touched[i] = p.ports >> i & 1u;
+    return status;
+}

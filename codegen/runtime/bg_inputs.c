@@ -1,0 +1,75 @@
+/* Inputs: chains of polynomials times exponentials between breakpoints. */
+#include "bg_internal.h"
+
+#include <math.h>
+
+/* The segment that holds at t and just after. */
+int bg_segment(const bg_inputs *inputs, double t)
+{
+    int low = 0, high = inputs->segments - 1;
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        if (inputs->breaks[middle] <= t)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The derivative of order `order` of a polynomial, one of every `width` coefficients. */
+static double derivative(const double *c, int depth, int width, int order, double tau)
+{
+    double sum = 0.0;
+    for (int k = depth - 1; k >= order; k--) {
+        double factor = 1.0;
+        for (int j = 0; j < order; j++)
+            factor *= k - j;
+        sum = sum * tau + factor * c[k * width];
+    }
+    return sum;
+}
+
+void bg_slots(const bg_inputs *inputs, int segment, double t, double *g)
+{
+    const bg_chains *chains = inputs->structures + inputs->chains[segment];
+    const double *c = inputs->polynomial[segment], *start = inputs->start[segment];
+    for (int i = 0; i < BG_G; i++)
+        g[i] = 0.0;
+    for (int i = 0; i < chains->count; i++) {
+        const int first = chains->first[i], depth = chains->depth[i], width = chains->width[i];
+        const double tau = t - start[i];
+        const double size = chains->rate[i][0] != 0.0 ? exp(chains->rate[i][0] * tau) : 1.0;
+        const double turn = chains->rate[i][1] * tau;
+        const double re = width == 2 ? size * cos(turn) : size;
+        const double im = width == 2 ? size * sin(turn) : 0.0;
+        for (int k = 0; k < depth; k++) {
+            const double a = derivative(c + first, depth, width, k, tau);
+            if (width == 1) {
+                g[first + k] = a * re;
+                continue;
+            }
+            const double b = derivative(c + first + 1, depth, width, k, tau);
+            g[first + 2 * k] = a * re - b * im;
+            g[first + 2 * k + 1] = a * im + b * re;
+        }
+    }
+}
+
+void bg_given(const bg_inputs *inputs, int segment, const double *g, double *w, double *dw)
+{
+    const bg_chains *chains = inputs->structures + inputs->chains[segment];
+    for (int j = 0; j < BG_W; j++) {
+        w[j] = inputs->constant[segment][j];
+        dw[j] = 0.0;
+    }
+    for (int i = 0; i < chains->count; i++) {
+        const int first = chains->first[i], width = chains->width[i], j = chains->input[i];
+        w[j] += g[first];
+        dw[j] += chains->rate[i][0] * g[first];
+        if (width == 2)
+            dw[j] -= chains->rate[i][1] * g[first + 1];
+        if (chains->depth[i] > 1)
+            dw[j] += g[first + width];
+    }
+}

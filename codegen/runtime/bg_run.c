@@ -1,0 +1,170 @@
+/* The event-driven loop: stretches between breakpoints, sticking, release and zero crossings. */
+#include "bg_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+void bg_sizes(unsigned long *sizes)
+{
+    sizes[0] = (unsigned long)sizeof(bg_context);
+    sizes[1] = (unsigned long)sizeof(bg_model);
+    sizes[2] = (unsigned long)sizeof(bg_mode);
+    sizes[3] = (unsigned long)sizeof(bg_chains);
+    sizes[4] = (unsigned long)(BG_ROW * sizeof(double));
+}
+
+void bg_forget(bg_context *c)
+{
+    c->clock = 0;
+    memset(c->used, 0, sizeof c->used);
+}
+
+/* Removes the slip that is left at sticking ports: no energy but the slip's own. */
+static int come_to_rest(bg_context *c)
+{
+    const bg_mode *mode;
+    double v[BG_L];
+    const int status = bg_find(c, bg_number(c->mode), &mode);
+    if (status)
+        return status;
+    if (mode->held == 0)
+        return BG_OK;
+    bg_vector(c, c->t, c->s, v);
+    for (int k = 0; k < mode->held; k++) {
+        double slip = 0.0;
+        for (int j = 0; j < BG_L; j++)
+            slip += mode->left[j][k] * v[j];
+        for (int i = 0; i < BG_N; i++)
+            c->s[i] += mode->take_away[k][i] * slip;
+    }
+    return BG_OK;
+}
+
+/* Notes what has become of the ports. */
+static int note(bg_context *c, const signed char *before)
+{
+    bg_task *task = c->task;
+    for (int i = 0; i < BG_K; i++) {
+        if (c->mode[i] == before[i])
+            continue;
+        if (task->count >= task->capacity)
+            return BG_FULL;
+        const int kind = c->mode[i] == 0 ? BG_STICK : before[i] == 0 ? BG_SLIP : BG_CROSS;
+        task->events[task->count++] = (bg_event){c->t, i, kind};
+    }
+    return BG_OK;
+}
+
+/* Refuses to go on when too many of the latest stretches end in an event within `least`. */
+static int check_progress(bg_context *c, double least)
+{
+    const int full = c->round >= BG_STALLED - 1;
+    c->rounds[c->round % BG_STALLED] = c->t;
+    c->round++;
+    const double oldest = c->rounds[full ? c->round % BG_STALLED : 0];
+    if (c->round >= 2 * BG_STALLED)
+        c->round -= BG_STALLED;
+    return full && c->t - oldest < least ? BG_STALLS : BG_OK;
+}
+
+/* Takes the present instant into account, decides the mode there and removes slips that stick. */
+static int settle(bg_context *c, int started)
+{
+    const bg_mode *mode;
+    signed char before[BG_PORTS], touched = 0;
+    int status = BG_OK;
+    memcpy(before, c->mode, sizeof before);
+    for (int i = 0; i < BG_K; i++)
+        touched |= c->touched[i];
+    status = bg_find(c, bg_number(c->mode), &mode);
+    if (status || BG_K == 0)
+        return status;
+    const double fastest = bg_greater(mode->fastest, c->inputs->fastest[c->segment]);
+    status = bg_decide(c, 1.0 / bg_greater(fastest, 100.0 / c->span));
+    if (status == BG_OK && started) {
+        const double ahead = BG_LOOK_AHEAD * c->peaks.time;
+        status = note(c, before);
+        if (status == BG_OK && touched)
+            status = check_progress(c, bg_greater(1e-9 * c->span, 2 * BG_STALLED * ahead));
+    }
+    return status ? status : come_to_rest(c);
+}
+
+static void begin(bg_context *c, const bg_model *model, const bg_inputs *inputs, bg_task *task)
+{
+    c->model = model;
+    c->inputs = inputs;
+    c->task = task;
+    c->t = task->times[0];
+    c->span = task->times[task->samples - 1] - c->t;
+    c->known = 0;
+    c->round = 0;
+    memcpy(c->s, task->start, sizeof c->s);
+    memset(&c->peaks, 0, sizeof c->peaks);
+    memset(c->touched, 0, sizeof c->touched);
+    memset(c->mode, 1, sizeof c->mode);
+    task->count = 0;
+    task->where = -1;
+}
+
+/* Whether the run is not over: at its end a step or an event is still decided. */
+static int goes_on(const bg_context *c, double end)
+{
+    int touched = c->t < end;
+    for (int i = 0; i < BG_K; i++)
+        touched |= c->touched[i];
+    return touched || (c->segment > 0 && c->inputs->breaks[c->segment - 1] == c->t);
+}
+
+static int run(bg_context *c, int *at)
+{
+    const double end = c->task->times[c->task->samples - 1];
+    const double most = 16.0 * c->task->capacity + c->inputs->segments + 1000.0;
+    int status = BG_OK;
+    for (double turns = 0.0; !status && turns < most; turns += 1.0) {
+        c->segment = bg_segment(c->inputs, c->t);
+        if (turns > 0 && !goes_on(c, end))
+            return BG_OK;
+        status = settle(c, turns > 0);
+        if (status || c->t >= end)
+            return status;
+        double stop = end;
+        if (c->segment + 1 < c->inputs->segments)
+            stop = bg_lesser(c->inputs->breaks[c->segment], end);
+        status = bg_begin(c, stop);
+        if (status == BG_OK)
+            status = bg_advance(c, at, stop);
+    }
+    return status ? status : BG_FULL;
+}
+
+int bg_run(bg_context *c, const bg_model *model, const bg_inputs *inputs, bg_task *task)
+{
+    int at = 0;
+    begin(c, model, inputs, task);
+    int status = run(c, &at);
+    if (status != BG_NEGATIVE)
+        task->time = c->t;
+    if (status) {
+        task->where = c->where;
+        return status;
+    }
+    memcpy(task->rows[at], c->s, sizeof c->s);
+    task->modes[at] = bg_number(c->mode);
+    for (int i = 0; i < BG_N; i++)
+        if (!isfinite(c->s[i]))
+            status = BG_UNUSABLE;
+    return status;
+}
+
+int bg_run_often(bg_context *c, const bg_model *model, const bg_inputs *inputs, bg_task *task,
+                 int repeats, int anew)
+{
+    int status = BG_OK;
+    for (int k = 0; k < repeats && !status; k++) {
+        if (anew)
+            bg_forget(c);
+        status = bg_run(c, model, inputs, task);
+    }
+    return status;
+}

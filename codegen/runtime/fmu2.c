@@ -1,0 +1,175 @@
+/* FMI 2.0: the functions of model exchange and co-simulation alike. */
+#include <string.h>
+
+#include "fmi2Functions.h"
+#include "fmu2.h"
+
+fmi2Status fmu2_tell(fmu2 *f, fmu_error failed)
+{
+    if (!failed)
+        return fmi2OK;
+    if (f->call.logger)
+        f->call.logger(f->call.componentEnvironment, f->name, fmi2Error, "logStatusError", "%s",
+                       failed);
+    return fmi2Error;
+}
+
+const char *fmi2GetTypesPlatform(void)
+{
+    return fmi2TypesPlatform;
+}
+
+const char *fmi2GetVersion(void)
+{
+    return fmi2Version;
+}
+
+fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count,
+                               const fmi2String categories[])
+{
+    (void)c, (void)on, (void)count, (void)categories;
+    return fmi2OK;
+}
+
+fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
+                              const fmi2CallbackFunctions *functions, fmi2Boolean visible,
+                              fmi2Boolean logging)
+{
+    fmu2 *f;
+    (void)resources, (void)visible, (void)logging;
+    if (!functions || !functions->allocateMemory || !functions->freeMemory || !guid
+        || strcmp(guid, FMU_TOKEN) != 0)
+        return NULL;
+    f = functions->allocateMemory(1, sizeof *f);
+    if (!f)
+        return NULL;
+    memset(f, 0, sizeof *f);
+    f->call = *functions;
+    f->name = functions->allocateMemory(name ? strlen(name) + 1 : 1, 1);
+    if (!f->name) {
+        functions->freeMemory(f);
+        return NULL;
+    }
+    strcpy(f->name, name ? name : "");
+    fmu_reset(&f->core, type == fmi2ModelExchange);
+    return f;
+}
+
+void fmi2FreeInstance(fmi2Component c)
+{
+    fmu2 *const f = c;
+    if (!f)
+        return;
+    f->call.freeMemory(f->name);
+    f->call.freeMemory(f);
+}
+
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean limited, fmi2Real tolerance,
+                               fmi2Real start, fmi2Boolean ends, fmi2Real stop)
+{
+    fmu2 *const f = c;
+    (void)limited, (void)tolerance, (void)ends, (void)stop;
+    if (f->core.at.phase != FMU_MADE)
+        return fmu2_tell(f, "fmi2SetupExperiment: not before initialization");
+    fmu_set_time(&f->core, start);
+    return fmi2OK;
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component c)
+{
+    fmu2 *const f = c;
+    if (f->core.at.phase != FMU_MADE)
+        return fmu2_tell(f, "fmi2EnterInitializationMode: not after instantiation");
+    f->core.at.phase = FMU_INITIALIZING;
+    fmu_pass(&f->core, f->core.at.time);
+    return fmi2OK;
+}
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component c)
+{
+    fmu2 *const f = c;
+    if (f->core.at.phase != FMU_INITIALIZING)
+        return fmu2_tell(f, "fmi2ExitInitializationMode: not in initialization mode");
+    return fmu2_tell(f, fmu_initialize(&f->core));
+}
+
+fmi2Status fmi2Terminate(fmi2Component c)
+{
+    ((fmu2 *)c)->core.at.phase = FMU_ENDED;
+    return fmi2OK;
+}
+
+fmi2Status fmi2Reset(fmi2Component c)
+{
+    fmu2 *const f = c;
+    fmu_reset(&f->core, f->core.at.exchange);
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[])
+{
+    fmu2 *const f = c;
+    fmu_error failed = NULL;
+    for (size_t i = 0; i < nvr && !failed; i++)
+        failed = fmu_get(&f->core, vr[i], &value[i]);
+    return fmu2_tell(f, failed);
+}
+
+fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                       const fmi2Real value[])
+{
+    fmu2 *const f = c;
+    fmu_error failed = NULL;
+    for (size_t i = 0; i < nvr && !failed; i++)
+        failed = fmu_set(&f->core, vr[i], value[i]);
+    return fmu2_tell(f, failed);
+}
+
+/* The only integers are friction modes. */
+fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                          fmi2Integer value[])
+{
+    fmu2 *const f = c;
+    fmu_error failed = NULL;
+    for (size_t i = 0; i < nvr && !failed; i++) {
+        double found = 0.0;
+        failed = vr[i] < FMU_VARIABLES && fmu_variables[vr[i]].kind == FMU_MODE
+            ? fmu_get(&f->core, vr[i], &found) : "this variable is no integer";
+        value[i] = (fmi2Integer)found;
+    }
+    return fmu2_tell(f, failed);
+}
+
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[],
+                                        size_t rows, const fmi2ValueReference knowns[],
+                                        size_t columns, const fmi2Real seed[], fmi2Real result[])
+{
+    fmu2 *const f = c;
+    return fmu2_tell(f, fmu_derive(&f->core, unknowns, rows, knowns, columns, seed, result));
+}
+
+fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state)
+{
+    fmu2 *const f = c;
+    if (!*state)
+        *state = f->call.allocateMemory(1, sizeof f->core.at);
+    if (!*state)
+        return fmu2_tell(f, "fmi2GetFMUstate: no memory");
+    memcpy(*state, &f->core.at, sizeof f->core.at);
+    return fmi2OK;
+}
+
+fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state)
+{
+    fmu_restore(&((fmu2 *)c)->core, state);
+    return fmi2OK;
+}
+
+fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state)
+{
+    if (state && *state) {
+        ((fmu2 *)c)->call.freeMemory(*state);
+        *state = NULL;
+    }
+    return fmi2OK;
+}

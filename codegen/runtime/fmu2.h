@@ -1,0 +1,17 @@
+/* An instance as FMI 2.0 sees it. */
+#ifndef BG_FMU2_H
+#define BG_FMU2_H
+
+#include "fmi2TypesPlatform.h"
+#include "fmi2FunctionTypes.h"
+#include "fmu_common.h"
+
+typedef struct {
+    fmu_instance core;
+    fmi2CallbackFunctions call;
+    char *name;
+} fmu2;
+
+fmi2Status fmu2_tell(fmu2 *f, fmu_error failed);
+
+#endif

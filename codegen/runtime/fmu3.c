@@ -1,0 +1,163 @@
+/* FMI 3.0: the functions of model exchange and co-simulation alike. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "fmi3Functions.h"
+#include "fmu3.h"
+
+fmi3Status fmu3_tell(fmu3 *f, fmu_error failed)
+{
+    if (!failed)
+        return fmi3OK;
+    if (f->log)
+        f->log(f->environment, fmi3Error, "logStatusError", failed);
+    return fmi3Error;
+}
+
+const char *fmi3GetVersion(void)
+{
+    return fmi3Version;
+}
+
+fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t count,
+                               const fmi3String categories[])
+{
+    (void)c, (void)on, (void)count, (void)categories;
+    return fmi3OK;
+}
+
+static fmi3Instance make(fmi3String token, int exchange, fmi3InstanceEnvironment environment,
+                         fmi3LogMessageCallback log)
+{
+    fmu3 *f;
+    if (!token || strcmp(token, FMU_TOKEN) != 0)
+        return NULL;
+    f = calloc(1, sizeof *f);
+    if (!f)
+        return NULL;
+    f->environment = environment;
+    f->log = log;
+    fmu_reset(&f->core, exchange);
+    return f;
+}
+
+fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources,
+                                          fmi3Boolean visible, fmi3Boolean logging,
+                                          fmi3InstanceEnvironment environment,
+                                          fmi3LogMessageCallback log)
+{
+    (void)name, (void)resources, (void)visible, (void)logging;
+    return make(token, 1, environment, log);
+}
+
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources,
+                                         fmi3Boolean visible, fmi3Boolean logging,
+                                         fmi3Boolean events, fmi3Boolean early,
+                                         const fmi3ValueReference intermediate[], size_t count,
+                                         fmi3InstanceEnvironment environment,
+                                         fmi3LogMessageCallback log,
+                                         fmi3IntermediateUpdateCallback update)
+{
+    (void)name, (void)resources, (void)visible, (void)logging, (void)events, (void)early;
+    (void)intermediate, (void)count, (void)update;
+    return make(token, 0, environment, log);
+}
+
+fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token,
+                                               fmi3String resources, fmi3Boolean visible,
+                                               fmi3Boolean logging,
+                                               fmi3InstanceEnvironment environment,
+                                               fmi3LogMessageCallback log,
+                                               fmi3ClockUpdateCallback update,
+                                               fmi3LockPreemptionCallback lock,
+                                               fmi3UnlockPreemptionCallback unlock)
+{
+    (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)environment;
+    (void)log, (void)update, (void)lock, (void)unlock;
+    return NULL;
+}
+
+void fmi3FreeInstance(fmi3Instance c)
+{
+    free(c);
+}
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean limited, fmi3Float64 tolerance,
+                                       fmi3Float64 start, fmi3Boolean ends, fmi3Float64 stop)
+{
+    fmu3 *const f = c;
+    (void)limited, (void)tolerance, (void)ends, (void)stop;
+    if (f->core.at.phase != FMU_MADE)
+        return fmu3_tell(f, "fmi3EnterInitializationMode: not after instantiation");
+    f->core.at.phase = FMU_INITIALIZING;
+    fmu_set_time(&f->core, start);
+    fmu_pass(&f->core, start);
+    return fmi3OK;
+}
+
+fmi3Status fmi3ExitInitializationMode(fmi3Instance c)
+{
+    fmu3 *const f = c;
+    if (f->core.at.phase != FMU_INITIALIZING)
+        return fmu3_tell(f, "fmi3ExitInitializationMode: not in initialization mode");
+    return fmu3_tell(f, fmu_initialize(&f->core));
+}
+
+fmi3Status fmi3Terminate(fmi3Instance c)
+{
+    ((fmu3 *)c)->core.at.phase = FMU_ENDED;
+    return fmi3OK;
+}
+
+fmi3Status fmi3Reset(fmi3Instance c)
+{
+    fmu3 *const f = c;
+    fmu_reset(&f->core, f->core.at.exchange);
+    return fmi3OK;
+}
+
+fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr,
+                          fmi3Float64 values[], size_t count)
+{
+    fmu3 *const f = c;
+    fmu_error failed = count == nvr ? NULL : "all variables are scalars";
+    for (size_t i = 0; i < nvr && !failed; i++)
+        failed = fmu_get(&f->core, vr[i], &values[i]);
+    return fmu3_tell(f, failed);
+}
+
+fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr,
+                          const fmi3Float64 values[], size_t count)
+{
+    fmu3 *const f = c;
+    fmu_error failed = count == nvr ? NULL : "all variables are scalars";
+    for (size_t i = 0; i < nvr && !failed; i++)
+        failed = fmu_set(&f->core, vr[i], values[i]);
+    return fmu3_tell(f, failed);
+}
+
+/* The only integers are friction modes. */
+fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr,
+                        fmi3Int32 values[], size_t count)
+{
+    fmu3 *const f = c;
+    fmu_error failed = count == nvr ? NULL : "all variables are scalars";
+    for (size_t i = 0; i < nvr && !failed; i++) {
+        double found = 0.0;
+        failed = vr[i] < FMU_VARIABLES && fmu_variables[vr[i]].kind == FMU_MODE
+            ? fmu_get(&f->core, vr[i], &found) : "this variable is no integer";
+        values[i] = (fmi3Int32)found;
+    }
+    return fmu3_tell(f, failed);
+}
+
+fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference unknowns[],
+                                        size_t rows, const fmi3ValueReference knowns[],
+                                        size_t columns, const fmi3Float64 seed[], size_t seeds,
+                                        fmi3Float64 result[], size_t results)
+{
+    fmu3 *const f = c;
+    if (seeds != columns || results != rows)
+        return fmu3_tell(f, "all variables are scalars");
+    return fmu3_tell(f, fmu_derive(&f->core, unknowns, rows, knowns, columns, seed, result));
+}

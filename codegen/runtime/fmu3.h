@@ -1,0 +1,17 @@
+/* An instance as FMI 3.0 sees it. */
+#ifndef BG_FMU3_H
+#define BG_FMU3_H
+
+#include "fmi3PlatformTypes.h"
+#include "fmi3FunctionTypes.h"
+#include "fmu_common.h"
+
+typedef struct {
+    fmu_instance core;
+    fmi3InstanceEnvironment environment;
+    fmi3LogMessageCallback log;
+} fmu3;
+
+fmi3Status fmu3_tell(fmu3 *f, fmu_error failed);
+
+#endif

@@ -1,0 +1,116 @@
+/* An instance of a functional mock-up unit over a generated model, for FMI 2 and 3 alike. What can fail
+ * gives a text that says why, or NULL. */
+#ifndef BG_FMU_COMMON_H
+#define BG_FMU_COMMON_H
+
+#include "fmu_config.h"
+#include "model_internal.h"
+
+enum {
+    FMU_STATES = BG_STATES + BG_LAW_STATES,
+    FMU_INDICATORS = 2 * BG_FRICTION + FMU_SWITCHES,
+    FMU_MOVED = BG_DRIVEN && !BG_VARYING /* inputs drive dependent storages: s differs from x */
+};
+
+typedef const char *fmu_error;
+
+enum fmu_kind {
+    FMU_TIME, FMU_PARAMETER, FMU_INTERNAL_STEP, FMU_INPUT, FMU_SLOPE, FMU_STATE, FMU_VECTOR, FMU_RATE,
+    FMU_READING, FMU_GIVEN, FMU_SOURCE, FMU_INDICATOR, FMU_MODE
+};
+
+enum fmu_phase { FMU_MADE, FMU_INITIALIZING, FMU_EVENT, FMU_CONTINUOUS, FMU_STEPPING, FMU_ENDED };
+
+typedef struct {
+    int kind, index;
+} fmu_variable;
+
+/* Sources inside the unit: pieces between breakpoints, each the real part of a sum of polynomials
+ * times exponentials of the time since the piece's start. */
+typedef struct {
+    double rate[2];
+    int first, count; /* coefficients, lowest power first */
+} fmu_term;
+
+typedef struct {
+    double start;
+    int first, count; /* terms */
+} fmu_piece;
+
+typedef struct {
+    int external, first_break, breaks, first_piece;
+} fmu_source;
+
+/* All that a run depends on: what is saved and restored. Plain numbers. `rest`, `margin`: how far a
+ * slip or a holding effort may go beyond its bound before it counts as an event. */
+typedef struct {
+    double time, step;
+    double parameters[BG_ROOM(BG_PARAMETERS)], start[BG_ROOM(FMU_STATES)], s[BG_SIZE];
+    double given[BG_ROOM(BG_EXTERNAL)], slopes[BG_ROOM(BG_EXTERNAL)];
+    double peak_x[BG_ROOM(BG_STATES)], peak_u[BG_ROOM(BG_INPUTS)];
+    double rest[BG_ROOM(BG_FRICTION)], margin[BG_ROOM(BG_FRICTION)];
+    double switch_peak[BG_ROOM(FMU_SWITCHES)], switch_rest[BG_ROOM(FMU_SWITCHES)];
+    int side[BG_ROOM(FMU_SWITCHES)], mode[BG_ROOM(BG_FRICTION)], segment[BG_ROOM(FMU_SOURCES)];
+    int phase, decided, exchange, stepped;
+} fmu_memory;
+
+typedef struct fmu_instance {
+    fmu_memory at;
+    int stale, changed, frozen; /* values, parameters; frozen: the mode is not to be decided */
+    bg_model model;
+    bg_snapshot shot, look[2];
+    double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)], point[2][BG_SIZE];
+    double magnitude_x[BG_ROOM(BG_STATES)], magnitude_u[BG_ROOM(BG_INPUTS)];
+    double flow[BG_ROOM(BG_STATES)], switches[BG_ROOM(FMU_SWITCHES)], steps[3 * BG_ROOM(BG_EXTERNAL)];
+} fmu_instance;
+
+/* What is generated: the variables by value reference, sources, start values, switching expressions. */
+extern const fmu_variable fmu_variables[];
+extern const fmu_source fmu_sources[];
+extern const fmu_piece fmu_pieces[];
+extern const fmu_term fmu_terms[];
+extern const double fmu_coefficients[][2], fmu_breaks[], fmu_starts[], fmu_inputs[];
+void fmu_switch_values(const bg_values *v, double *out);
+
+/* fmu_common.c */
+void fmu_reset(fmu_instance *f, int exchange);
+fmu_error fmu_apply(fmu_instance *f);
+fmu_error fmu_refresh(fmu_instance *f);
+fmu_error fmu_get(fmu_instance *f, unsigned reference, double *value);
+fmu_error fmu_set(fmu_instance *f, unsigned reference, double value);
+fmu_error fmu_set_states(fmu_instance *f, const double *states);
+void fmu_set_time(fmu_instance *f, double time);
+void fmu_restore(fmu_instance *f, const fmu_memory *from);
+
+/* fmu_sources.c: external inputs at a time; breakpoints that are passed; the next one. */
+void fmu_externals(const fmu_instance *f, double t, double *w, double *dw);
+void fmu_pass(fmu_instance *f, double t);
+int fmu_next_break(const fmu_instance *f, double *time);
+
+/* fmu_modes.c: everything at an instant; the friction mode from the slips and efforts there. */
+fmu_error fmu_look(fmu_instance *f, double t, const double *s, const int *mode, bg_snapshot *shot);
+fmu_error fmu_decide(fmu_instance *f);
+
+/* fmu_scales.c: below these, slips, margins and accelerations are rounding. */
+typedef struct {
+    double slip[BG_ROOM(BG_FRICTION)], effort[BG_ROOM(BG_FRICTION)];
+    double acceleration[BG_ROOM(BG_FRICTION)];
+} fmu_scales;
+double fmu_slip_rate(const fmu_instance *f, const bg_snapshot *now, int port);
+void fmu_scale(fmu_instance *f, const bg_snapshot *now, fmu_scales *size);
+void fmu_note_peaks(fmu_instance *f, const bg_snapshot *now);
+
+/* fmu_events.c */
+void fmu_indicators_of(const fmu_instance *f, const bg_snapshot *now, double *values);
+fmu_error fmu_indicators(fmu_instance *f, double *values);
+fmu_error fmu_initialize(fmu_instance *f);
+fmu_error fmu_event(fmu_instance *f, int *states_changed);
+
+/* fmu_step.c */
+fmu_error fmu_advance(fmu_instance *f, double t, double h);
+
+/* fmu_derive.c */
+fmu_error fmu_derive(fmu_instance *f, const unsigned *unknowns, size_t rows, const unsigned *knowns,
+                     size_t columns, const double *seed, double *result);
+
+#endif

@@ -1,0 +1,108 @@
+/* Events of model exchange: indicators that are positive while a mode holds, and what an event does. */
+#include <math.h>
+#include <string.h>
+
+#include "fmu_common.h"
+
+enum { K = BG_FRICTION };
+
+/* Two for each friction port: its slip in its direction; margins to breakaway where it sticks. Then one
+ * for each expression at whose zero a law switches. A little below zero still counts as holding. */
+void fmu_indicators_of(const fmu_instance *f, const bg_snapshot *now, double *values)
+{
+    for (int i = 0; i < K; i++) {
+        const int mode = f->at.mode[i];
+        const double effort = now->u[bg_friction_inputs[i]];
+        if (mode) {
+            values[2 * i] = mode * now->y[bg_friction_readings[i]] + f->at.rest[i];
+            values[2 * i + 1] = 1.0;
+        } else {
+            values[2 * i] = now->caps[i] - effort + f->at.margin[i];
+            values[2 * i + 1] = now->caps[i] + effort + f->at.margin[i];
+        }
+    }
+    for (int k = 0; k < FMU_SWITCHES; k++)
+        values[2 * K + k] = f->at.side[k] * f->switches[k] + f->at.switch_rest[k];
+}
+
+fmu_error fmu_indicators(fmu_instance *f, double *values)
+{
+    const fmu_error failed = fmu_refresh(f);
+    if (!failed)
+        fmu_indicators_of(f, &f->shot, values);
+    return failed;
+}
+
+/* The sides on which laws are, and how far beyond a change counts. */
+static void note_sides(fmu_instance *f)
+{
+    for (int k = 0; k < FMU_SWITCHES; k++) {
+        const double value = f->switches[k];
+        double *const peak = &f->at.switch_peak[k];
+        *peak = fmax(*peak, fabs(value));
+        if (f->at.side[k] == 0 || f->at.side[k] * value + f->at.switch_rest[k] <= 0)
+            f->at.side[k] = value >= 0 ? 1 : -1;
+        f->at.switch_rest[k] = 1e-9 * *peak + 1e-12;
+    }
+}
+
+/* Takes what slip is left at sticking ports from the states, along A^-1 F^T. */
+static fmu_error remove_slips(fmu_instance *f, int *moved)
+{
+    double slips[BG_ROOM(K)] = {0};
+    bg_hold *held = NULL;
+    int status = BG_OK, sticking = 0;
+    fmu_error failed = fmu_refresh(f);
+    for (int i = 0; i < K; i++)
+        sticking |= f->at.mode[i] == 0;
+    if (failed || !sticking)
+        return failed;
+    status = bg_hold_of(&f->model, f->at.mode, &held);
+    if (status != BG_OK)
+        return bg_model_message(status);
+    memcpy(f->point[0], f->at.s, sizeof f->at.s);
+    bg_multiply_add(held->kept, BG_STATES, held->slip_x, f->shot.x, slips);
+    bg_multiply_add(held->kept, BG_INPUTS, held->slip_u, f->shot.u, slips);
+    bg_multiply_add(BG_STATES, held->kept, held->take_away, slips, f->at.s);
+    if (memcmp(f->point[0], f->at.s, sizeof f->at.s) != 0)
+        *moved = f->stale = 1;
+    return NULL;
+}
+
+static fmu_error settle(fmu_instance *f, int *states_changed)
+{
+    fmu_error failed;
+    fmu_pass(f, f->at.time);
+    failed = fmu_apply(f);
+    if (!failed)
+        failed = fmu_decide(f);
+    if (!failed)
+        failed = remove_slips(f, states_changed);
+    if (!failed)
+        failed = fmu_refresh(f);
+    if (!failed)
+        note_sides(f);
+    return failed;
+}
+
+/* The end of initialization: the vector, the mode, and slips that stick at rest. */
+fmu_error fmu_initialize(fmu_instance *f)
+{
+    int moved = 0;
+    fmu_error failed;
+    fmu_pass(f, f->at.time);
+    failed = fmu_refresh(f);
+    if (failed)
+        return failed;
+    f->at.phase = f->at.exchange ? FMU_EVENT : FMU_STEPPING;
+    memcpy(f->model.mode, f->at.mode, sizeof f->model.mode);
+    return settle(f, &moved);
+}
+
+/* An event: breakpoints of sources, then the mode anew. Parameters of models whose states inputs move
+ * at once cannot change here, so the vector stays as it is. */
+fmu_error fmu_event(fmu_instance *f, int *states_changed)
+{
+    *states_changed = 0;
+    return settle(f, states_changed);
+}

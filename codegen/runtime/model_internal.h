@@ -1,0 +1,99 @@
+/* What the files of the runtime share with one another and with the generated model.c. */
+#ifndef BG_MODEL_INTERNAL_H
+#define BG_MODEL_INTERNAL_H
+
+#include "model_runtime.h"
+
+/* Where the nonzero entries of a matrix stand. */
+typedef struct {
+    int count;
+    const int *rows, *columns;
+} bg_pattern;
+
+enum { BG_A, BG_J, BG_B, BG_E, BG_F, BG_D, BG_H, BG_K, BG_MATRICES };
+
+typedef void bg_block(const bg_values *v, double *out);
+
+/* Laws evaluated together: the inputs they give, what their ports receive. */
+typedef struct {
+    int count, loop;
+    const int *inputs, *readings;
+    bg_block *values;
+} bg_group;
+
+/* Ranks of one set of sticking ports, exact: `direct` rows of D are independent in
+ * `direct_columns`; of the combinations that D leaves free (one for each of `null`, positions of
+ * the other ports), those of positions `kept` are independent in the states `kept_columns`. */
+typedef struct {
+    int direct, null, kept;
+    int direct_rows[BG_ROOM(BG_FRICTION)], direct_columns[BG_ROOM(BG_FRICTION)];
+    int null_rows[BG_ROOM(BG_FRICTION)];
+    int kept_rows[BG_ROOM(BG_FRICTION)], kept_columns[BG_ROOM(BG_FRICTION)];
+} bg_structure;
+
+/* As fmin, fmax and the sign, but no number where an argument is none. */
+static inline double bg_min(double a, double b)
+{
+    return a < b || a != a ? a : b;
+}
+
+static inline double bg_max(double a, double b)
+{
+    return a > b || a != a ? a : b;
+}
+
+static inline double bg_sign(double a)
+{
+    return a > 0 ? 1.0 : a < 0 ? -1.0 : a;
+}
+
+/* Generated. */
+extern const bg_pattern bg_layout[BG_MATRICES];
+extern const bg_group bg_known, bg_groups[], bg_coupled;
+extern const bg_structure bg_structures[];
+extern const int bg_law_rates[], bg_friction_inputs[], bg_friction_readings[];
+extern const int bg_outside_inputs[], bg_differentiable[], bg_output_readings[], bg_beside[];
+extern const double bg_defaults[];
+void bg_coefficients(const bg_values *v, double *out);
+void bg_known_rates(const bg_values *v, double *out);
+void bg_friction_values(const bg_values *v, double *out);
+void bg_prepare_rhs(bg_model *m);
+
+/* model_linear.c: by rows; n small or large. */
+int bg_factor(int n, double *a, int *pivots);
+void bg_solve(int n, const double *a, const int *pivots, int columns, double *right);
+int bg_inverse(int n, double *a, int *pivots, double *inverse);
+void bg_multiply_add(int rows, int columns, const double *a, const double *x, double *y);
+int bg_finite(int count, const double *values);
+
+/* model_numbers.c */
+int bg_assemble(bg_model *m);
+void bg_inverse_entries(bg_model *m, int count, const int *rows, const int *columns, double *out);
+void bg_solve_storages(const bg_numbers *a, int columns, double *right);
+
+/* model_hold.c */
+int bg_hold_of(bg_model *m, const int *mode, bg_hold **found);
+int bg_holding_efforts(bg_model *m, const bg_hold *held, double *efforts);
+void bg_correct(const bg_hold *held, double *rate, const double *du);
+
+/* model_share.c */
+void bg_fair_share(const bg_hold *held, const double *caps, double *efforts);
+
+/* model_loops.c: inputs at `columns` for which the residual vanishes; `rows` are what they act
+ * on. */
+typedef struct {
+    const bg_group *group; /* NULL for friction with the coupled laws */
+    const int *mode;
+    bg_hold *held;
+    int count, checked;
+    int columns[BG_ROOM(BG_LOOP)], rows[BG_ROOM(BG_LOOP)];
+} bg_loop;
+int bg_solve_loop(bg_model *m, const bg_loop *loop);
+
+/* model_evaluate.c */
+void bg_give(bg_model *m, int count, const int *columns, const double *values);
+int bg_residual(bg_model *m, const bg_loop *loop, double *left);
+int bg_evaluate(bg_model *m, double t, const double *s, const double *w, const double *dw,
+                const int *mode, int checked, bg_snapshot *shot);
+
+#endif

@@ -1,0 +1,159 @@
+"""Which numbers each run of a sweep has: a grid, a table, or samples."""
+
+import hashlib
+import math
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bondgraph import SignalError
+from bondgraph.expressions import normal
+from codegen.arrays import Array
+
+Draw = Callable[[np.random.Generator], float]
+"""Draws one number from a random generator."""
+
+
+class Table:
+    """A run for each row: columns of equal length, or a list of rows.
+
+    >>> table = Table(m=[1, 2, 3], k=[10, 10, 40])
+    >>> len(table), table.names, table.row(2)
+    (3, ('m', 'k'), (3.0, 40.0))
+    >>> Table([{"m": 1, "k": 10}, {"k": 10, "m": 2}]).row(1)
+    (2.0, 10.0)
+    """
+
+    names: tuple[str, ...]
+    #: The lengths of a grid's axes; None for other designs.
+    shape: tuple[int, ...] | None = None
+
+    def __init__(
+        self, rows: Sequence[Mapping[str, float]] | None = None, /, **columns: ArrayLike
+    ) -> None:
+        if rows is not None:
+            columns = _columns_of(rows, columns)
+        self._columns = _numbers(columns)
+        self.names = tuple(self._columns)
+        lengths = {name: len(column) for name, column in self._columns.items()}
+        if len(set(lengths.values())) != 1:
+            raise SignalError(f"the columns of a table must have one length, not {lengths}")
+        self._length = next(iter(lengths.values()))
+
+    def __len__(self) -> int:
+        return self._length
+
+    def row(self, index: int) -> tuple[float, ...]:
+        """The numbers of one run, in the order of ``names``."""
+        return tuple(float(column[index]) for column in self._columns.values())
+
+    def column(self, name: str) -> Array:
+        """The numbers of one name, one for each run."""
+        return self._columns[name]
+
+    def axis(self, name: str) -> Array:
+        """The numbers that a name takes."""
+        return self._columns[name]
+
+    def fingerprint(self) -> str:
+        """A digest of the names and the numbers."""
+        digest = hashlib.sha256(repr((self.shape, self.names)).encode())
+        for name in self.names:
+            digest.update(np.ascontiguousarray(self.axis(name)).tobytes())
+        return digest.hexdigest()
+
+
+class Grid(Table):
+    """A run for each combination; the last name changes fastest.
+
+    >>> grid = Grid(m=[1, 2], k=[10, 20, 30])
+    >>> len(grid), grid.row(1), grid.row(3)
+    (6, (1.0, 20.0), (2.0, 10.0))
+    """
+
+    def __init__(self, axes: Mapping[str, ArrayLike] | None = None, /, **more: ArrayLike) -> None:
+        self._columns = _numbers({**(axes or {}), **more})
+        self.names = tuple(self._columns)
+        self.shape = tuple(len(axis) for axis in self._columns.values())
+        self._length = math.prod(self.shape)
+
+    def row(self, index: int) -> tuple[float, ...]:
+        """The numbers of one run, in the order of ``names``."""
+        places = np.unravel_index(index, self.shape or (1,))
+        return tuple(
+            float(axis[at]) for axis, at in zip(self._columns.values(), places, strict=False)
+        )
+
+    def column(self, name: str) -> Array:
+        """The numbers of one name, one for each run."""
+        places = np.unravel_index(np.arange(len(self)), self.shape or (1,))
+        return self._columns[name][places[self.names.index(name)]]
+
+
+class Samples(Table):
+    """Random runs: uniform between two limits, or by a function of a `numpy.random.Generator`.
+
+    Every name has random numbers of its own: they change neither with other names nor, as far as they
+    go, with the number of runs.
+
+    >>> draws = Samples(100, seed=1, m=(1, 2), k=lambda generator: generator.normal(40, 2))
+    >>> draws.row(0) == Samples(1, seed=1, k=lambda generator: generator.normal(40, 2), m=(1, 2)).row(0)[::-1]
+    True
+    """
+
+    def __init__(
+        self, runs: int, /, seed: int, **draws: tuple[float, float] | Draw | list[float]
+    ) -> None:
+        columns: dict[str, ArrayLike] = {}
+        for name, draw in draws.items():
+            generator = np.random.default_rng([seed, *str(normal(name)).encode()])
+            if callable(draw):
+                columns[name] = [float(draw(generator)) for _ in range(runs)]
+                continue
+            if len(draw) != 2:
+                raise SignalError(f"samples of {name} need two limits or a function, not {draw!r}")
+            columns[name] = generator.uniform(draw[0], draw[1], runs)
+        super().__init__(**columns)
+
+
+def design(parameters: object) -> Table:
+    """A `Table` as it is, a mapping as a `Grid`, a list of mappings as a `Table`."""
+    if isinstance(parameters, Mapping):
+        parameters = Grid(parameters)
+    elif isinstance(parameters, list | tuple):
+        parameters = Table(parameters)
+    if not isinstance(parameters, Table):
+        raise SignalError(
+            f"parameters must be a Grid, a Table, Samples, a mapping or a list of rows, not {parameters!r}"
+        )
+    if not len(parameters):
+        raise SignalError("the sweep has no runs: a name has no values")
+    return parameters
+
+
+def _columns_of(
+    rows: Sequence[Mapping[str, float]], columns: Mapping[str, ArrayLike]
+) -> dict[str, ArrayLike]:
+    if columns:
+        raise SignalError("a table takes rows or columns, not both")
+    if not rows or not all(isinstance(row, Mapping) for row in rows):
+        raise SignalError("a table's rows must be one or more mappings of names to numbers")
+    for at, row in enumerate(rows):
+        if row.keys() != rows[0].keys():
+            raise SignalError(f"row {at} has the names {[*row]}, row 0 {[*rows[0]]}")
+    return {name: [row[name] for row in rows] for name in rows[0]}
+
+
+def _numbers(columns: Mapping[str, ArrayLike]) -> dict[str, Array]:
+    result: dict[str, Array] = {}
+    for name, values in columns.items():
+        try:
+            column = np.array(values, dtype=float)
+        except (TypeError, ValueError) as error:
+            raise SignalError(f"the values of {name} must be numbers: {error}") from None
+        if column.ndim != 1:
+            raise SignalError(f"the values of {name} must be a list, not of shape {column.shape}")
+        column.flags.writeable = False
+        result[str(normal(name))] = column
+    return result

@@ -1,0 +1,27 @@
+/* Sizes of alsd; written by bondgraph-toolkit. */
+#ifndef BG_CONFIG_H
+#define BG_CONFIG_H
+
+#define BG_STATES 6
+#define BG_LAW_STATES 0
+#define BG_INPUTS 4
+#define BG_EXTERNAL 2
+#define BG_OUTSIDE 1
+#define BG_READINGS 8
+#define BG_OUTPUTS 5
+#define BG_PARAMETERS 11
+#define BG_ENTRIES 46
+#define BG_GROUPS 2
+#define BG_LARGEST 1
+#define BG_LOOP 0
+#define BG_FRICTION 1
+#define BG_HOLDS 2
+#define BG_CONSTANTS 13
+#define BG_VARYING 0
+#define BG_AFFINE 1
+#define BG_JOINT 0
+#define BG_DRIVEN 0
+#define BG_RATED 0
+#define BG_STRAIGHT 1
+
+#endif

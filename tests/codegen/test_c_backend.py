@@ -1,0 +1,228 @@
+"""The C engine against the numpy loop: samples, events, statuses, and clean under sanitizers."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from oracles.chains import random_chain
+from oracles.models import belt, block, oscillator, stacked_blocks
+from references.build import bond_graph
+
+import bondgraph as bg
+import differentials
+from codegen import Constant, Lag, Ramp, Result, Sampled, Simulator, Sine, Step, simulator
+from codegen.arguments import initial_values, signals_for
+from codegen.build import FLAGS
+from codegen.c_backend import CRuns, Outcome, Status
+from codegen.engine_sizes import Sizes, engine
+from differentials.scenarios import scenarios
+
+CASES = [
+    ("passive", "engine_step"), ("passive_input_clutch", "input_clutch"),
+    ("passive_input_shaft", "engine_step"), ("passive_halfshafts", "engine_step"),
+    *(("alsd", name) for name in scenarios if name.startswith(("fig11", "fig12"))),
+    ("superposition_tvd", "fig13_superposition"), ("stationary_tvd", "fig13"),
+    ("four_wheel_drive_tvd", "fig14"),
+]  # fmt: skip
+
+
+def _outcome(ready: Simulator, times, initial=None, inputs=None) -> Outcome:
+    """A run by the engine alone."""
+    times = np.asarray(times, dtype=float)
+    signals = signals_for(inputs or {}, ready.inputs)
+    given = np.array([signal(times[0]) for signal in signals])
+    start = ready.vector(times[0], initial_values(initial or {}, ready.states), given)
+    return CRuns(ready.closed).run(times, start, signals)
+
+
+def _agree(one: Result, two: Result, near: float = 1e-9) -> None:
+    assert [(e.port, e.kind) for e in one.events] == [(e.port, e.kind) for e in two.events]
+    assert [e.time for e in one.events] == pytest.approx([e.time for e in two.events], abs=1e-9)
+    for name in one.columns:
+        size = max(np.ptp(two[name]), 1e-3 * np.abs(two[name]).max(), 1e-4)
+        assert np.abs(one[name] - two[name]).max() <= near * size, name
+
+
+def _both(equations, numbers, times, initial=None, inputs=None, near=1e-9, laws=None) -> Result:
+    ready = simulator(equations, numbers, laws)
+    assert _outcome(ready, times, initial, inputs).status == Status.OK
+    fast = simulator(equations, numbers, laws, "c").run(times, initial, inputs)
+    _agree(fast, ready.run(times, initial, inputs, method="exact"), near)
+    return fast
+
+
+@pytest.mark.parametrize(("name", "scenario"), CASES)
+def test_the_catalogs_figures(name: str, scenario: str) -> None:
+    fast = differentials.simulate(name, scenario, backend="c")
+    _agree(fast, differentials.simulate(name, scenario))
+
+
+def test_an_oscillator_on_a_belt_through_all_kinds_of_inputs() -> None:
+    inputs = {
+        "V_b": Lag(Step(0.2, 1.5), 0.05) + Sine(0.4, 1.7, offset=0.3) + Ramp(0.9, -2.0, end=1.8),
+    }
+    fast = _both(
+        bg.derive(belt(bg.C("spring", "1/k", effort="F"))), {"m": 1.0, "k": 40.0, "F_c": 2.0},
+        np.linspace(0, 4, 1601), {"v": 0.2}, inputs,
+    )  # fmt: skip
+    assert {event.kind for event in fast.events} >= {"stick", "slip"}
+
+
+def test_two_masses_that_swing_against_each_other_lock_in_one_instant() -> None:
+    nodes = [bg.One("n1"), bg.One("n2"), bg.Zero("z"), bg.C("k", "1/k", effort="F"),
+             bg.I("m1", "m", flow="v_1"), bg.I("m2", "m", flow="v_2"),
+             bg.R("rub1", law=bg.DryFriction("L"), effort="f_1", flow="s_1"),
+             bg.R("rub2", law=bg.DryFriction("L"), effort="f_2", flow="s_2")]  # fmt: skip
+    equations = bg.derive(bond_graph(nodes, "n1>m1 n1>rub1 n2>m2 n2>rub2 n1>z>n2 z>k"))
+    numbers = {"m": 2.0, "k": 50.0, "L": 3.0}
+    fast = _both(equations, numbers, np.linspace(0, 4, 81), {"F": 17.3 * 3.0}, near=1e-7)
+    assert [e.kind for e in fast.events] == ["cross"] * 16 + ["stick"] * 2
+    _both(equations, numbers, np.linspace(0, 2, 161), {"v_1": 1.2, "v_2": 1.2})
+
+
+PUSHES = [(0.0, 2.0, 0.5), (1.0, 4.5, 0.6), (2.0, 8.0, -2.0), (3.0, 1.0, 2.5), (4.0, -9.0, 0.0),
+          (5.0, 0.5, 0.1), (6.5, -4.4, -0.7), (7.5, 0.0, -1.7), (8.5, 3.9, 1.3), (9.5, 0.0, 0.0)]  # fmt: skip
+
+
+@pytest.mark.parametrize("samples", [641, 17])
+def test_blocks_on_top_of_each_other(samples: int) -> None:
+    total = [Constant(0.0), Constant(0.0)]
+    before = (0.0, 0.0)
+    for time, *values in PUSHES:
+        for i in range(2):
+            total[i] = total[i] + Step(time, values[i] - before[i])
+        before = tuple(values)
+    numbers = {"m_1": 2.0, "m_2": 1.0, "L_1": 3.0, "L_2": 1.0}
+    laws = {"ground": bg.DryFriction("L_1", 1, 1.2), "contact": bg.DryFriction("L_2", 1, 1.5)}
+    inputs = {"P_1": total[0], "P_2": total[1] + Sine(0.3, 1.1)}
+    times, equations = np.linspace(0, 12, samples), bg.derive(stacked_blocks())
+    fast = _both(equations, numbers, times, None, inputs, laws=laws)
+    assert len(fast.events) > 10
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_random_chains_with_random_inputs_at_ragged_times(seed: int) -> None:
+    rng = np.random.default_rng(100 + seed)
+    chain = random_chain(np.random.default_rng(seed))
+    inputs: dict[str, object] = {f"P{i}": push for i, push in enumerate(chain.pushes)}
+    inputs |= {f"L{i}": level for i, level in enumerate(chain.levels)}
+    knots = np.sort(rng.uniform(0, 2, 5))
+    inputs["P0"] = Lag(Sampled(knots, rng.normal(0, 3, 5)), 0.1) + Sine(2.0, 1.3, offset=0.5)
+    times = np.sort(np.concatenate([[0.0, 2.0], rng.uniform(0, 2, 60), 1.1 + np.arange(4) * 1e-13]))
+    start = {f"v{i}": v for i, v in enumerate(chain.start.tolist())}
+    _both(bg.derive(chain.graph()), {}, times, start, inputs, near=1e-7)
+
+
+def test_steps_much_longer_than_time_constants_are_divided() -> None:
+    """A tire's pole at 937 1/s, sampled every 50 ms."""
+    nodes = [bg.Se("push", "P"), bg.One("body"), bg.I("m", "m", flow="v"), bg.R("drag", "b"),
+             bg.R("ground", law=bg.DryFriction("L"), effort="f", flow="s")]  # fmt: skip
+    equations = bg.derive(bond_graph(nodes, "push>body>m body>drag body>ground"))
+    inputs = {"P": Sine(30.0, 2.0)}
+    fast = _both(equations, {"m": 1.0, "b": 900.0, "L": 5.0}, np.linspace(0, 3, 61), None, inputs)
+    assert len(fast.events) == 24
+
+
+def test_models_without_friction_run() -> None:
+    nodes = [bg.Se("push", "P"), bg.One("body"), bg.I("m", "m", flow="v"), bg.R("drag", "b")]
+    equations = bg.derive(bond_graph(nodes, "push>body>m body>drag"))
+    _both(equations, {"m": 1.0, "b": 2.0}, np.linspace(0, 3, 61), {"v": 1.0}, {"P": Ramp(1.0, 2.0)})
+
+
+BLOCK = bg.derive(block(bg.DryFriction("L")))
+
+
+def test_a_level_below_zero_has_its_status_and_its_time() -> None:
+    inputs = {"P": 0.0, "L": Ramp(0.0, -10.0, 5.0)}
+    times = np.linspace(0, 1, 11)
+    outcome = _outcome(simulator(BLOCK, {"m": 1.0}), times, {"v": 9.0}, inputs)
+    assert (outcome.status, outcome.track) == (Status.NEGATIVE, None)
+    assert outcome.time == pytest.approx(0.6)
+    with pytest.raises(bg.SimulationError, match=r"at t = 0\.6 the friction at 'ground' has level"):
+        simulator(BLOCK, {"m": 1.0}, backend="c").run(times, {"v": 9.0}, inputs)
+
+
+def test_redundant_ports_are_left_to_the_numpy_loop() -> None:
+    nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"),
+             *(bg.R(f"r{i}", law=bg.DryFriction(f"{i}*L"), effort=f"f_{i}") for i in (1, 2))]  # fmt: skip
+    equations = bg.derive(bond_graph(nodes, "push>n>m n>r1 n>r2"))
+    ready = simulator(equations, {"m": 1.0, "L": 1.0})
+    assert _outcome(ready, [0, 1], None, {"P": 1.0}).status == Status.UNSUPPORTED
+    shared = simulator(equations, {"m": 1.0, "L": 1.0}, backend="c").run([0, 1], None, {"P": 1.5})
+    assert (shared["f_1"][-1], shared["f_2"][-1]) == pytest.approx((0.5, 1.0))
+
+
+def test_too_many_steps_have_a_status() -> None:
+    ready = simulator(bg.derive(oscillator()), {"m": 1e-8, "k": 1e8, "F_c": 1.0})
+    assert _outcome(ready, [0, 1], {"v": 1.0}).status == Status.STIFF
+
+
+def test_room_for_events_grows() -> None:
+    ready = simulator(bg.derive(oscillator()), {"m": 1.0, "k": 1e4, "F_c": 0.01})
+    outcome = _outcome(ready, np.linspace(0, 20, 101), {"v": 30.0})
+    assert outcome.track is not None
+    assert len(outcome.track.events) > 500
+
+
+def test_laws_that_are_not_affine_are_named() -> None:
+    with pytest.raises(
+        bg.SignalError, match=r"the law at 'ground' is slip\*\*3; use backend='numpy'"
+    ):
+        simulator(bg.derive(oscillator()), {"m": 1, "k": 1}, {"ground": "slip**3"}, backend="c")
+    with pytest.raises(bg.SignalError, match="values of this one change in time"):
+        simulator(
+            bg.derive(oscillator(bg.R("d", "3 + t"))), {"m": 1, "k": 1, "F_c": 1}, backend="c"
+        )
+
+
+def test_step_control_is_not_the_engines() -> None:
+    with pytest.raises(bg.SignalError, match="method 'Radau' needs backend='numpy'"):
+        simulator(BLOCK, {"m": 1.0, "L": 1.0}, backend="c").run([0, 1], None, {"P": 0.0}, "Radau")
+
+
+STRICT = ("-O2", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion",
+          "-Wno-sign-conversion")  # fmt: skip
+
+
+@pytest.mark.parametrize("K", [0, 1, 3])
+def test_the_engine_compiles_without_warnings(K: int) -> None:
+    engine(Sizes(N=3, X=2, U=1, W=1, K=K, G=1), STRICT)
+    engine(
+        Sizes(N=3, X=2, U=1, W=1, K=K, G=1), (*FLAGS, "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+    )
+
+
+SANITIZED = """
+import sys
+import numpy as np
+sys.path[:0] = {paths!r}
+import test_c_backend as cases
+from codegen.c_backend import CRuns, Status
+CRuns.__init__.__defaults__ = (("-O1", "-g", "-std=c99", "-fsanitize=address,undefined",
+                                "-fno-sanitize-recover=all"),)
+cases.test_an_oscillator_on_a_belt_through_all_kinds_of_inputs()
+cases.test_blocks_on_top_of_each_other(641)
+cases.test_steps_much_longer_than_time_constants_are_divided()
+cases.test_random_chains_with_random_inputs_at_ragged_times(1)
+cases.test_a_level_below_zero_has_its_status_and_its_time()
+cases.test_models_without_friction_run()
+print("clean")
+"""
+
+
+@pytest.mark.slow
+def test_the_engine_is_clean_under_sanitizers() -> None:
+    here = os.path.dirname(__file__)
+    found = subprocess.run(
+        ["gcc", "-print-file-name=libasan.so"], capture_output=True, text=True, check=True
+    )
+    environment = os.environ | {
+        "LD_PRELOAD": found.stdout.strip(), "ASAN_OPTIONS": "detect_leaks=0",
+    }  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", SANITIZED.format(paths=[here, os.path.dirname(here)])],
+        env=environment, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.stdout == "clean\n", done.stderr[-3000:]

@@ -1,0 +1,64 @@
+"""Units run by fmpy's CVODE and its co-simulation, against the toolkit's own runs."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from oracles.units import Case, belt, divider, duffing, figure_11, ran
+
+CASES = {"fig11": figure_11, "duffing": duffing, "belt": belt, "divider": divider}
+
+MODES = {"fig11": ["mode(clutch)"], "duffing": ["mode(rub)"], "belt": ["mode(rub)"], "divider": []}
+
+#: What CVODE's tolerance of 1e-9 leaves of the states, of their largest magnitude.
+REACHED = {"fig11": 2e-6, "duffing": 2e-6, "belt": 5e-6, "divider": 2e-7}
+
+
+@pytest.fixture(scope="module", params=CASES)
+def named(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture(scope="module")
+def case(named: str) -> Case:
+    return CASES[named]()
+
+
+@pytest.fixture(scope="module")
+def units(case: Case, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("units")
+    return {v: case.written(folder / f"unit{v[0]}.fmu", v) for v in ("2.0", "3.0")}
+
+
+def _error(found, expected, names) -> float:
+    return max(
+        float(np.abs(found[name] - expected[name]).max() / np.abs(expected[name]).max())
+        for name in names
+    )
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_model_exchange_follows_the_simulator(
+    named: str, case: Case, units: dict[str, Path], version: str
+) -> None:
+    expected = case.run()
+    found, changes = ran(units[version], "ModelExchange", case, expected.states, modes=MODES[named])
+    assert _error(found, expected, expected.states) < REACHED[named]
+    assert changes == pytest.approx([event.time for event in expected.events], abs=1e-6)
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_co_simulation_converges_with_its_internal_step(
+    case: Case, units: dict[str, Path], version: str
+) -> None:
+    expected = case.run(101)
+    errors = []
+    for step in (1e-3, 1e-4, 2e-5):
+        found, _ = ran(
+            units[version], "CoSimulation", case, expected.states, 101,
+            start_values={"fixed_internal_step": step},
+        )  # fmt: skip
+        errors.append(_error(found, expected, expected.states))
+    # Events are found at the end of a step: the first order, unless nothing happens.
+    assert errors[1] < 0.3 * errors[0] or errors[0] < 1e-9
+    assert errors[2] < 5e-4
