@@ -16,7 +16,7 @@ from bondgraph.expressions import normal
 from codegen.numbers import exact_parameters
 from codegen.packing import packed
 from codegen.program import Program, lower
-from codegen.simulate import BACKENDS, Simulator, bound, simulator
+from codegen.simulate import BACKENDS, Simulator, bound, with_engine
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,9 +81,7 @@ class Family:
                 known = ", ".join(self.parameters) or "none"
                 raise ParameterError(f"{name!r} is not a parameter; there are {known}")
         values = {**self.parameters, **changes}
-        if self.backend == "numpy":
-            return bound(self.program, self.equations, values)
-        return simulator(self.equations, values, self.laws, self.backend)
+        return with_engine(bound(self.program, self.equations, values), self.backend)
 
     def fingerprint(self) -> str:
         """A digest of the model and its numbers, the same in every process.

@@ -227,7 +227,11 @@ def simulator(
     """
     if backend not in BACKENDS:
         raise SignalError(f"unknown backend {backend!r}; there is {', '.join(BACKENDS)}")
-    ready = guarded_simulator(equations, parameters, laws, ())
+    return with_engine(guarded_simulator(equations, parameters, laws, ()), backend)
+
+
+def with_engine(ready: Simulator, backend: str) -> Simulator:
+    """The simulator with what runs it."""
     return replace(ready, engine=CRuns(ready.closed)) if backend == "c" else ready
 
 
