@@ -4,12 +4,13 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: demo test lint types unit bench bench-peers clean help
+.PHONY: demo test lint types unit bench bench-peers bench-speed clean help
 
 help:
 	@echo "make demo   derive and simulate differentials; tables and pictures in out/"
 	@echo "make test   format, lint, types, tests and doctests"
 	@echo "make bench  how time and memory to derive grow with the size of a graph"
+	@echo "make bench-speed  how fast runs are: generated C, numpy and scipy beside C written by hand"
 	@echo "make bench-peers  the same graphs with other packages, each in an environment of its own"
 	@echo "make clean  remove the environment and what was generated"
 
@@ -38,8 +39,11 @@ bench: $(READY)
 	$(BIN)/python benchmarks/derivation.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/sparse.py
 	$(BIN)/python benchmarks/writing.py
-	$(BIN)/python benchmarks/rhs.py
 	$(BIN)/python benchmarks/peers.py
+
+bench-speed: $(READY)
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/speed.py
+	$(BIN)/python benchmarks/rhs.py
 
 bench-peers: $(READY)
 	$(BIN)/python benchmarks/peers.py

@@ -8,29 +8,29 @@ import statistics
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
+import sympy as sp
+from scipy.integrate import solve_ivp
 
 ROOT = Path(__file__).parents[1]
 sys.path[:0] = [str(ROOT), str(Path(__file__).parent / "floor")]
 
 import floor  # noqa: E402
 
+import bondgraph as bg  # noqa: E402
 import codegen  # noqa: E402
 from codegen.arguments import initial_values, signals_for  # noqa: E402
 from codegen.c_backend import Prepared, Status  # noqa: E402
-from differentials.model import model  # noqa: E402
-from differentials.scenarios import (  # noqa: E402
-    _initial,
-    _inputs,
-    _parameters,
-    scenarios,
-)
+from differentials.scenarios import prepared  # noqa: E402
 
 ROUNDS, FEW = 41, 3
 TIMES = np.linspace(0.0, 1.0, 1001)
+
+WIDTH = 0.01
+"""Of the tanh [rad/s] that stands for dry friction where an integrator knows no events."""
 
 Call = Callable[[], object]
 
@@ -38,7 +38,7 @@ Call = Callable[[], object]
 def main() -> None:
     """Measure and print."""
     with tempfile.TemporaryDirectory() as folder:
-        calls = {**floor_calls(Path(folder)), **engine_calls()}
+        calls = {**floor_calls(Path(folder)), **engine_calls(), **scipy_calls()}
         medians = measured(calls)
     base = medians["floor, anew"]
     print(f"{'Fig. 11, 1001 samples':<44}{'ms per run':>12}{'ratio':>10}")
@@ -79,14 +79,11 @@ def floor_calls(folder: Path) -> dict[str, tuple[Call, int]]:
 
 def engine_calls() -> dict[str, tuple[Call, int]]:
     """The C engine, alone, through cffi and with all of Python around it; and the numpy loop."""
-    case, full = scenarios["fig11"], model("alsd")
-    values = _parameters(full, case, {})
-    fast, slow = (
-        codegen.simulator(full.equations, values, laws=full.laws, backend=backend)
-        for backend in ("c", "numpy")
-    )
-    initial, inputs = _initial(full, case, values, fast), _inputs(full, case)
-    ready = prepared(fast, initial, inputs)
+    case = prepared("alsd", "fig11")
+    arguments = (case.equations, case.parameters, case.laws)
+    fast, slow = (codegen.simulator(*arguments, backend=backend) for backend in ("c", "numpy"))
+    initial, inputs = case.initial, case.inputs
+    ready = engine_run(fast, initial, inputs)
     if ready.call() != Status.OK:
         raise RuntimeError("the engine did not run")
     return {
@@ -96,7 +93,32 @@ def engine_calls() -> dict[str, tuple[Call, int]]:
         "engine through cffi, kept": (lambda: often(ready, 1, 0), 1),
         "Simulator.run, backend c": (lambda: fast.run(TIMES, initial, inputs), 1),
         "Simulator.run, backend numpy": (lambda: slow.run(TIMES, initial, inputs), 1),
-    }
+        "event loop over scipy's DOP853": (
+            lambda: slow.run(TIMES, initial, inputs, method="DOP853"), 1,
+        ),
+    }  # fmt: skip
+
+
+def scipy_calls() -> dict[str, tuple[Call, int]]:
+    """What people do without a toolkit: friction as a tanh, one lambdified function, an integrator."""
+    case = prepared("alsd", "fig11")
+    smooth = {**case.laws, "clutch": f"tau_h*tanh(omega_f/{WIDTH})"}
+    rates = bg.explicit(case.equations, laws=smooth)
+    names = [*rates, sp.Symbol("tau_e"), sp.Symbol("tau_h")]
+    numbers = {sp.Symbol(name): value for name, value in case.parameters.items()}
+    function = sp.lambdify(names, [rate.subs(numbers) for rate in rates.values()], modules="math")
+    start = [case.initial.get(str(state), 0.0) for state in rates]
+    engine, clutch = (case.inputs[name] for name in ("tau_e", "tau_h"))
+
+    def rate(t: float, x: np.ndarray) -> list[float]:
+        return function(*x.tolist(), engine(t), clutch(t))
+
+    def run(method: str) -> Call:
+        return lambda: solve_ivp(
+            rate, (0.0, 1.0), start, method=method, t_eval=TIMES, rtol=1e-8, atol=1e-8
+        )
+
+    return {f"tanh friction, scipy's {method}": (run(method), 1) for method in ("LSODA", "DOP853")}
 
 
 def often(ready: Prepared, repeats: int, anew: int) -> None:
@@ -105,8 +127,8 @@ def often(ready: Prepared, repeats: int, anew: int) -> None:
         raise RuntimeError("the engine did not run")
 
 
-def prepared(
-    simulator: codegen.Simulator, initial: dict[str, float], inputs: dict[str, codegen.Signal]
+def engine_run(
+    simulator: codegen.Simulator, initial: Mapping[str, float], inputs: Mapping[str, codegen.Signal]
 ) -> Prepared:
     """A run of the engine, ready to be started."""
     if simulator.engine is None:
