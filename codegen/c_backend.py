@@ -148,7 +148,7 @@ class CRuns:
             np.ascontiguousarray(start, dtype=np.float64),
             aligned(len(times), tables.engine.sizes.numbers["ROW"]),
             np.empty(len(times), dtype=np.intc),
-            _grid(times),
+            grid_of(times),
         )
 
     def _tables(self, made: Segments) -> tuple[Tables, tuple[Array, Any]]:
@@ -161,7 +161,7 @@ class CRuns:
 
 def check_affine(program: Program) -> None:
     """Refuse models that are not affine in each friction mode, naming the law; `SignalError`."""
-    reason = _not_affine(program)
+    reason = not_affine(program)
     if reason is not None:
         raise SignalError(
             f"backend 'c' runs models that are affine in each friction mode: {reason}; "
@@ -169,7 +169,8 @@ def check_affine(program: Program) -> None:
         )
 
 
-def _not_affine(program: Program) -> str | None:
+def not_affine(program: Program) -> str | None:
+    """Why a model is not affine in each friction mode; None if it is."""
     if program.guards.results:
         return "this one has guards"
     if len(program.friction) > MOST_PORTS:
@@ -203,7 +204,7 @@ def _expressions(block: Block) -> list[sp.Expr]:
     return results
 
 
-def _grid(times: Array) -> float:
+def grid_of(times: Array) -> float:
     """The distance of samples that are alike but for rounding; 0 where they are not."""
     step = float(times[-1] - times[0]) / (len(times) - 1)
     even = times[0] + step * np.arange(len(times))

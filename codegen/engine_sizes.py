@@ -1,6 +1,7 @@
 """The sizes that the C engine is compiled for, its library, and its arrays as numpy sees them."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -99,7 +100,7 @@ def sources() -> dict[str, str]:
 def engine(wanted: Sizes, flags: tuple[str, ...] = FLAGS) -> Engine:
     """The engine of these sizes, compiled if need be."""
     library = compiled({**sources(), "config.h": wanted.config}, flags)
-    ffi, opened = loaded(library, _declarations(wanted))
+    ffi, opened = loaded(library, declarations("bg_engine.h", wanted.numbers))
     expected = ffi.new("unsigned long[5]")
     opened.bg_sizes(expected)
     here = [ffi.sizeof(name) for name in ("bg_model", "bg_mode", "bg_chains")]
@@ -122,11 +123,17 @@ def view(engine: Engine, field: Any, *shape: int) -> Array:
     return array.reshape(shape) if shape else array
 
 
-def _declarations(wanted: Sizes) -> str:
-    """The engine's header as cffi reads it: without comments, and with its sizes as numbers."""
-    text = re.sub(r"/\*.*?\*/", "", sources()["bg_engine.h"], flags=re.DOTALL)
+def declarations(header: str, numbers: Mapping[str, int], prefix: str = "BG") -> str:
+    """A header as cffi reads it: without comments, and with its sizes as numbers."""
+    text = runtime_file(header)
+    text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
     text = "\n".join(line for line in text.splitlines() if not line.startswith("#"))
     text = re.sub(r"enum \{.*?\};", "", text, count=1, flags=re.DOTALL)
-    for name, value in wanted.numbers.items():
-        text = re.sub(rf"\bBG_{name}\b", str(value), text)
+    for name, value in numbers.items():
+        text = re.sub(rf"\b{prefix}_{name}\b", str(value), text)
     return text
+
+
+def runtime_file(name: str) -> str:
+    """The text of a hand-written file."""
+    return files("codegen").joinpath("runtime", name).read_text(encoding="utf-8")

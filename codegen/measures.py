@@ -3,8 +3,9 @@
 The ready ones here can be sent to other processes; so can any function at the top of a module.
 """
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -118,3 +119,13 @@ def _event_count(result: Result, port: Hashable, kind: str) -> float:
 
 def _work(result: Result, node: Hashable) -> float:
     return float(result.work(node)[-1])
+
+
+READY: Mapping[Callable[..., float | Array], str] = MappingProxyType(
+    {
+        _peak: "peak", _largest: "largest", _smallest: "smallest", _final: "final",
+        _integral: "integral", _samples: "samples", _first_event: "first_event",
+        _event_count: "event_count",
+    }  # fmt: skip
+)
+"""What loops in C can do, too."""

@@ -1,0 +1,73 @@
+/* Many runs of one model, each with its own numbers, reduced to measures.
+ *
+ * The sizes in config.h: those of the engine, and of the model
+ *   BATCH_STATES, BATCH_LAW_STATES, BATCH_INPUTS, BATCH_EXTERNAL, BATCH_READINGS,
+ *   BATCH_PARAMETERS
+ *
+ * Nothing is allocated and nothing is global: the caller owns a room for each thread. */
+#ifndef BATCH_H
+#define BATCH_H
+
+#include "bg_engine.h"
+
+enum { BATCH_MODES = BG_MODES < 27 ? BG_MODES : 27 };
+
+/* Beyond those of the engine: the model refuses these numbers. */
+enum { BATCH_REFUSED = 20 };
+
+enum batch_what {
+    BATCH_PEAK, BATCH_LARGEST, BATCH_SMALLEST, BATCH_FINAL, BATCH_INTEGRAL, BATCH_SAMPLES,
+    BATCH_FIRST, BATCH_COUNT
+};
+
+/* What to keep of a run, from place `at` of its results: of a signal, or of events. */
+typedef struct {
+    int what, signal, port, kind, at;
+} batch_measure;
+
+/* What runs share. `signal`: a row of affine maps, or -1 - j for the external input j. */
+typedef struct {
+    const double *times;
+    double grid;
+    int samples, width, signals, measures;
+    const int *signal;
+    const batch_measure *measure;
+} batch_job;
+
+/* What each run has of its own; `results` has `width` places for each. */
+typedef struct {
+    int runs;
+    const double *parameters, *states;
+    const bg_inputs *const *inputs;
+    double *results;
+    int *status;
+} batch_runs;
+
+/* A signal in a mode over (s, w, w', 1): a component of s alone, if `column` is one. */
+typedef struct {
+    int column, driven;
+    double row[BG_L];
+} batch_reader;
+
+/* Where runs are done, one at a time. The caller gives what is pointed to: `rows`, `modes`,
+ * `values` for the samples, `given` for samples times 2 BG_W, `readers` for BATCH_MODES times the
+ * signals. `number`: the `made` modes of the latest run. */
+typedef struct {
+    bg_context *context;
+    void *model;
+    double (*rows)[BG_ROW];
+    int *modes, capacity, made, number[BATCH_MODES], place[BG_MODES];
+    bg_event *events;
+    double *values, *given;
+    batch_reader *readers;
+    bg_model record;
+    bg_mode mode[BATCH_MODES];
+} batch_room;
+
+/* The sizes of a room, a reader and an instance of the model, in bytes. */
+void batch_sizes(unsigned long *sizes);
+
+/* Does every run; a status for each. */
+void batch_run(batch_room *room, const batch_job *job, const batch_runs *runs);
+
+#endif

@@ -1,0 +1,214 @@
+/* From a model's affine maps to the engine's records. */
+#include "batch_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { N = BG_N, STATES = BATCH_STATES, M = BATCH_INPUTS, ROUNDS = 10 };
+
+/* What an affine map over fewer inputs has in a column of the engine's maps; -1 for none. */
+static int column_of(int j)
+{
+    if (j < N)
+        return j;
+    if (j == BG_L - 1)
+        return BATCH_COLUMNS - 1;
+    const int rate = j >= N + BG_W, input = (j - N) % BG_W;
+    return input < BATCH_EXTERNAL ? N + rate * BATCH_EXTERNAL + input : -1;
+}
+
+/* The largest magnitude of an eigenvalue, nearly: from a high power of the matrix. */
+static double spectral_radius(double (*matrix)[N])
+{
+    double power[N][N], square[N][N], logarithm = 0.0, share = 1.0;
+    memcpy(power, matrix, sizeof power);
+    for (int k = 0; k <= ROUNDS; k++, share /= 2) {
+        double size = 0.0;
+        for (int i = 0; i < N; i++)
+            for (int j = 0; j < N; j++)
+                size = bg_greater(size, fabs(power[i][j]));
+        if (!(size > 0.0))
+            return 0.0;
+        logarithm += share * log(size);
+        if (k == ROUNDS)
+            break;
+        memset(square, 0, sizeof square);
+        for (int i = 0; i < N; i++)
+            for (int l = 0; l < N; l++)
+                for (int j = 0; j < N; j++)
+                    square[i][j] += power[i][l] * power[l][j] / size / size;
+        memcpy(power, square, sizeof power);
+    }
+    return exp(logarithm);
+}
+
+/* One over the scales, powers of 2, that make rows and columns alike. */
+static void balance(double (*matrix)[N], double *weight)
+{
+    for (int i = 0; i < N; i++)
+        weight[i] = 1.0;
+    for (int changed = 1, turn = 0; changed && turn < 50; turn++) {
+        changed = 0;
+        for (int i = 0; i < N; i++) {
+            double row = 0.0, column = 0.0, factor = 1.0;
+            for (int j = 0; j < N; j++) {
+                row += j == i ? 0.0 : fabs(matrix[i][j]) * weight[i] / weight[j];
+                column += j == i ? 0.0 : fabs(matrix[j][i]) * weight[j] / weight[i];
+            }
+            if (!(row > 0.0 && column > 0.0) || !isfinite(row + column))
+                continue;
+            const double before = row + column;
+            for (; column < row / 2; column *= 2, row /= 2)
+                factor *= 2;
+            for (; column >= row * 2; column /= 2, row *= 2)
+                factor /= 2;
+            if (row + column < 0.95 * before) {
+                weight[i] /= factor;
+                changed = 1;
+            }
+        }
+    }
+}
+
+void batch_magnitudes(bg_model *r, const batch_numbers *a)
+{
+    memset(r, 0, sizeof *r);
+    for (int i = 0; i < STATES; i++) {
+        for (int j = 0; j < STATES; j++)
+            r->P[j][i] = fabs(a->P[i * STATES + j]);
+        for (int j = 0; j < M; j++)
+            r->Q[j][i] = fabs(a->Q[i * M + j]);
+    }
+    for (int k = 0; k < BG_K; k++) {
+        const double *F = a->F + a->friction_readings[k] * STATES;
+        const double *D = a->D + a->friction_readings[k] * M;
+        for (int j = 0; j < STATES; j++) {
+            double moved = 0.0;
+            for (int l = 0; l < STATES; l++)
+                moved += F[l] * a->P[l * STATES + j];
+            r->F[j][k] = fabs(F[j]);
+            r->FP[j][k] = fabs(moved);
+        }
+        for (int j = 0; j < M; j++) {
+            double moved = 0.0;
+            for (int l = 0; l < STATES; l++)
+                moved += F[l] * a->Q[l * M + j];
+            r->D[j][k] = fabs(D[j]);
+            r->FQ[j][k] = fabs(moved);
+        }
+        const int own = a->friction_inputs[k];
+        r->inertia[k] = r->FQ[own][k] + r->D[own][k];
+        r->coupled[k] = a->beside[k];
+    }
+}
+
+/* sum of factors times entries of one column of a map, from a row on */
+static double product(const double *map, int first, int count, const double *factors, int column)
+{
+    double sum = 0.0;
+    for (int i = 0; i < count; i++)
+        sum += factors[i] * map[(first + i) * BATCH_COLUMNS + column];
+    return sum;
+}
+
+/* How fast the slip of a port changes: F x' + D u', where x' has that of driven storages, too. */
+static double push(const double *map, const batch_numbers *a, int reading, int column)
+{
+    double sum = product(map, BATCH_AT_U + M, M, a->D + reading * M, column);
+    for (int l = 0; l < STATES; l++) {
+        const double factor = a->F[reading * STATES + l];
+        if (factor != 0.0)
+            sum += factor * (product(map, 0, STATES, a->P + l * STATES, column)
+                             + product(map, BATCH_AT_U, M, a->Q + l * M, column)
+                             + product(map, BATCH_AT_U + M, M, a->R + l * M, column));
+    }
+    return sum;
+}
+
+static void fill_column(const double *map, const batch_numbers *a, int column, double *shot)
+{
+    for (int i = 0; i < STATES; i++)
+        shot[BG_AT_X + i] = map[i * BATCH_COLUMNS + column];
+    for (int i = 0; i < M; i++)
+        shot[BG_AT_U + i] = map[(BATCH_AT_U + i) * BATCH_COLUMNS + column];
+    for (int k = 0; k < BG_K; k++) {
+        const int reading = a->friction_readings[k], input = a->friction_inputs[k];
+        shot[BG_AT_SLIP + k] = map[(BATCH_AT_Y + reading) * BATCH_COLUMNS + column];
+        shot[BG_AT_EFFORT + k] = map[(BATCH_AT_U + input) * BATCH_COLUMNS + column];
+        shot[BG_AT_CAP + k] = map[(BATCH_AT_CAP + k) * BATCH_COLUMNS + column];
+        shot[BG_AT_PUSH + k] = push(map, a, reading, column);
+    }
+    for (int i = 0; i < N; i++)
+        shot[BG_AT_RATE + i] = map[(BATCH_AT_RATE + i) * BATCH_COLUMNS + column];
+}
+
+static void fill(bg_mode *made, const double *map, const batch_numbers *a, const batch_hold *held)
+{
+    double own[N][N];
+    memset(made, 0, sizeof *made);
+    for (int j = 0; j < BG_L; j++) {
+        const int column = column_of(j);
+        if (column < 0)
+            continue;
+        fill_column(map, a, column, made->shot[j]);
+        for (int k = 0; k < held->kept; k++)
+            made->left[j][k] = product(map, 0, STATES, held->slip_x + k * STATES, column)
+                               + product(map, BATCH_AT_U, M, held->slip_u + k * M, column);
+    }
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++)
+            own[i][j] = made->shot[j][BG_AT_RATE + i];
+    made->supported = 1;
+    made->fastest = spectral_radius(own);
+    balance(own, made->weight);
+    made->held = held->kept;
+    for (int k = 0; k < held->kept; k++)
+        for (int i = 0; i < STATES; i++)
+            made->take_away[k][i] = held->take_away[i * held->kept + k];
+}
+
+static void fill_readers(const batch_job *job, const double *map, batch_reader *readers)
+{
+    for (int s = 0; s < job->signals; s++) {
+        batch_reader *const reader = readers + s;
+        const int row = job->signal[s];
+        int others = 0;
+        reader->column = -1;
+        reader->driven = 0;
+        for (int j = 0; j < BG_L; j++) {
+            const int column = column_of(j);
+            double value = row < 0 && j == N - 1 - row ? 1.0 : 0.0;
+            if (row >= 0 && column >= 0)
+                value = map[row * BATCH_COLUMNS + column];
+            reader->row[j] = value;
+            if (value == 1.0 && j < N && reader->column < 0)
+                reader->column = j;
+            else
+                others |= value != 0.0;
+            reader->driven |= value != 0.0 && j >= N && j < BG_L - 1;
+        }
+        if (others)
+            reader->column = -1;
+    }
+}
+
+int batch_supply(batch_room *room, const batch_job *job, const batch_numbers *numbers, int number)
+{
+    static const int signs[3] = {0, 1, -1};
+    double map[BATCH_ROWS * BATCH_COLUMNS];
+    int mode[BG_PORTS], digits = number;
+    batch_hold held;
+    if (room->made >= BATCH_MODES)
+        return BG_UNSUPPORTED;
+    for (int i = 0; i < BG_K; i++, digits /= 3)
+        mode[i] = signs[digits % 3];
+    if (batch_model_mode(room->model, mode, map, &held))
+        return BG_UNSUPPORTED;
+    const int at = room->made++;
+    fill(room->mode + at, map, numbers, &held);
+    fill_readers(job, map, room->readers + at * job->signals);
+    room->record.modes[number] = room->mode + at;
+    room->place[number] = at;
+    room->number[at] = number;
+    return BG_OK;
+}
