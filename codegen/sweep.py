@@ -15,10 +15,10 @@ from codegen.arguments import checked_times, named_numbers, settings_of, signals
 from codegen.measures import Measure
 from codegen.result import Result
 from codegen.sweep_cluster import Cluster
-from codegen.sweep_crews import Crew, Here, Processes
+from codegen.sweep_crews import Crew, Here, Processes, Threads
 from codegen.sweep_design import Table, design
 from codegen.sweep_drive import Pace, Work, drive
-from codegen.sweep_job import Given, Job, Model, Outcome, sent
+from codegen.sweep_job import Given, Job, Model, Outcome, batch_of, sent
 from codegen.sweep_result import Collected, Sweep, SweepInterrupted
 from codegen.sweep_store import Store
 
@@ -51,7 +51,8 @@ def sweep(
     ``time``, ``initial``, ``inputs``, ``method``, ``rtol``, ``atol``: as of `Simulator.run`; ``initial``
     and ``inputs`` may be functions of a run's numbers by name, which then may have names of their own.
 
-    ``workers``: processes to run in, by default one for each core; 0: in this process. What is sent to
+    ``workers``: processes to run in, by default one for each core; 0: in this process. A family with
+    backend "c" and measures of this package is run by threads instead, many runs in one call of C. What is sent to
     them must be picklable, and a script needs the line ``if __name__ == "__main__":``. ``client``: a
     `distributed.Client` to run on instead. ``chunk``: how many runs are done together, by default some
     half a second to ten. None of these changes a number.
@@ -123,6 +124,8 @@ def _crew(job: Job, client: Any, workers: int | None, runs: int) -> Crew:
         workers = len(os.sched_getaffinity(0)) if known else os.cpu_count() or 1
     if workers == 0:
         return Here(job)
+    if batch_of(job) is not None:
+        return Threads(job, min(workers, runs))
     return Processes(sent(job), min(workers, runs))
 
 

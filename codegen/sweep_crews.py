@@ -1,11 +1,18 @@
-"""Who does the runs of a sweep: this process, or processes beside it."""
+"""Who does the runs of a sweep: this process, threads of it, or processes beside it."""
 
 import multiprocessing
 import os
 import pickle
 import signal
 from collections.abc import Iterator
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
 from contextlib import contextmanager
 from typing import NamedTuple, Protocol
 
@@ -68,6 +75,34 @@ class Here:
 
     def close(self, now: bool) -> None:
         """Nothing to end."""
+
+
+class Threads:
+    """Threads of this process, for runs that a loop in C does."""
+
+    shared = False
+
+    def __init__(self, job: Job, workers: int) -> None:
+        self._job, self._workers = job, workers
+        self._executor = ThreadPoolExecutor(workers)
+        self._begun: dict[Future[Outcome], Chunk] = {}
+
+    def slots(self) -> int:
+        """One for each thread."""
+        return self._workers
+
+    def start(self, chunk: Chunk) -> None:
+        """Give a chunk to a thread."""
+        self._begun[self._executor.submit(measured, self._job, chunk)] = chunk
+
+    def finished(self) -> list[tuple[Chunk, Outcome | Lost]]:
+        """Chunks that are through; waits for one."""
+        through = wait(self._begun, return_when=FIRST_COMPLETED).done
+        return [(self._begun.pop(future), future.result()) for future in through]
+
+    def close(self, now: bool) -> None:
+        """Let the threads end."""
+        self._executor.shutdown(wait=True, cancel_futures=now)
 
 
 class Processes:

@@ -6,12 +6,17 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
+from threading import Lock
 from typing import Any, NamedTuple, Protocol
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from bondgraph import BondGraphError, SignalError
 from codegen.arrays import Array
+from codegen.batch import Asked, Batch, batch
+from codegen.family import Family
+from codegen.legs import EXACT
 from codegen.measures import Measure
 from codegen.packing import packed
 from codegen.result import Result
@@ -129,8 +134,27 @@ class Job:
 def measured(job: Job, chunk: Chunk) -> Outcome:
     """The outcome of a chunk, run after run."""
     start = time.perf_counter()
-    results = tuple(job.run(row) for row in chunk.rows)
+    loop = batch_of(job)
+    found = [None] * len(chunk.rows) if loop is None else loop(chunk.rows)
+    results = tuple(
+        job.run(row) if one is None else one for one, row in zip(found, chunk.rows, strict=True)
+    )
     return Outcome(chunk.indices, results, time.perf_counter() - start)
+
+
+def batch_of(job: Job) -> Batch | None:
+    """The loop in C for the runs of a job, made once; None where there is none."""
+    with _making:
+        if job not in _batches:
+            family, exact = job.model, job.settings.get("method", "auto") in ("auto", EXACT)
+            able = isinstance(family, Family) and family.backend == "c" and exact
+            asked = (job.names, job.time, job.measures, job.initial, job.inputs)
+            _batches[job] = batch(Asked(family, *asked)) if able else None  # type: ignore[arg-type]
+        return _batches[job]
+
+
+_batches: WeakKeyDictionary[Job, Batch | None] = WeakKeyDictionary()
+_making = Lock()
 
 
 def sent(job: Job) -> bytes:
