@@ -1,5 +1,6 @@
 """A sweep's runs in one call of C for many, where the model is affine and the measures are ready ones."""
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
@@ -8,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from bondgraph import BondGraphError
 from bondgraph.elements import Kind
@@ -33,6 +35,7 @@ EVENTS = WHATS.index("first_event")
 
 Given = Mapping[str, Any] | Callable[[Mapping[str, float]], Mapping[str, Any]] | None
 Found = tuple[Array, ...] | None
+Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ class Batch:
         self._rooms: dict[int, list[Room]] = {}
         self._lock = Lock()
         self._shared: Any = None
-        self.statuses: dict[int, int] = {}
+        self.statuses: Counter[int] = Counter()
 
     def __call__(self, rows: Sequence[tuple[float, ...]]) -> list[Found]:
         """For each run its measures, or None where it has to be done another way."""
@@ -85,13 +88,14 @@ class Batch:
         for inputs in groups:
             indices = inputs.indices
             results, status = self._run(inputs, parameters[indices], states[indices])
+            with self._lock:
+                self.statuses.update(Counter(status.tolist()))
             for at, row, one in zip(indices.tolist(), results, status.tolist(), strict=True):
-                self.statuses[one] = self.statuses.get(one, 0) + 1
                 if one == 0:
                     found[at] = self._measures(row)
         return found
 
-    def _parameters(self, table: Array) -> tuple[Array, Array]:
+    def _parameters(self, table: Array) -> tuple[Array, Flags]:
         """The parameters of each run, and which runs' elements have values that can be used."""
         parameters = np.tile(self._defaults, (len(table), 1))
         for column, name in enumerate(self.asked.names):
@@ -102,7 +106,7 @@ class Batch:
             usable = self._values(parameters)
         return np.ascontiguousarray(parameters), usable
 
-    def _states(self, table: Array) -> tuple[Array, Array]:
+    def _states(self, table: Array) -> tuple[Array, Flags]:
         """The states at the start of each run, and which of them can be used."""
         asked, names = self.asked, self.asked.family.states
         states, usable = np.zeros((len(table), len(names))), np.ones(len(table), dtype=bool)
@@ -123,7 +127,7 @@ class Batch:
                 states[:, names.index(name)] = table[:, column]
         return states, usable & np.isfinite(states).all(axis=1)
 
-    def _inputs(self, table: Array, indices: Array) -> list[BatchInputs]:
+    def _inputs(self, table: Array, indices: NDArray[np.intp]) -> list[BatchInputs]:
         """The inputs of these runs, those of one engine together."""
         asked, names = self.asked, self.asked.family.inputs
         swept = {name: at for at, name in enumerate(asked.names) if name in names}
@@ -153,7 +157,9 @@ class Batch:
             self._engines[wanted.G] = batch_engine(self._sources, self.program, wanted)
         return self._engines[wanted.G]
 
-    def _run(self, inputs: BatchInputs, parameters: Array, states: Array) -> tuple[Array, Array]:
+    def _run(
+        self, inputs: BatchInputs, parameters: Array, states: Array
+    ) -> tuple[Array, NDArray[np.intc]]:
         engine, plan = inputs.engine, self.plan
         ffi, count = engine.ffi, len(inputs.indices)
         results, status = np.empty((count, plan.width)), np.empty(count, dtype=np.intc)
@@ -259,7 +265,7 @@ def _places(program: Program) -> dict[str, int]:
     return places
 
 
-def _checked_values(family: Family, program: Program) -> Callable[[Array], Array]:
+def _checked_values(family: Family, program: Program) -> Callable[[Array], Flags]:
     """Whether storages and moduli are certain not to be zero, for rows of parameters."""
     elements = [e for e in family.equations.elements.values() if e.kind is not Kind.R]
     values = [sp.sympify(e.value) for e in elements if e.value is not None]
@@ -268,7 +274,7 @@ def _checked_values(family: Family, program: Program) -> Callable[[Array], Array
     pairs = [(value, _size(value)) for value in constant]
     function = sp.lambdify(list(program.parameters), pairs, "numpy", cse=True)
 
-    def usable(parameters: Array) -> Array:
+    def usable(parameters: Array) -> Flags:
         found = np.ones(len(parameters), dtype=bool)
         for value, size in function(*parameters.T):
             found &= np.isfinite(size) & (np.abs(value) > 1e-12 * np.abs(size))

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bondgraph import SimulationError
-from codegen.arrays import Array
 from codegen.build import FLAGS, compiled, loaded
 from codegen.engine_sizes import Engine, Sizes, aligned, declarations, runtime_file, sources
 from codegen.program import Program
@@ -91,6 +91,6 @@ class Room:
             self.kept.append(made)
             setattr(self.record, name, made)
 
-    def _point(self, name: str, kind: str, array: Array) -> None:
+    def _point(self, name: str, kind: str, array: NDArray[Any]) -> None:
         self.kept.append(array)
         setattr(self.record, name, self.engine.ffi.cast(kind, array.ctypes.data))

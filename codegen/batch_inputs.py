@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from codegen.arrays import Array
 from codegen.engine_inputs import Packed, Segments
@@ -16,13 +17,13 @@ class BatchInputs:
     """A pointer to a record for each of the runs at ``indices``; ``kept`` is what these point to."""
 
     engine: Engine
-    indices: Array
+    indices: NDArray[np.intp]
     pointers: Any
     kept: Any
 
 
 def varied(
-    engine: Engine, made: Segments, places: Sequence[int], values: Array, indices: Array
+    engine: Engine, made: Segments, places: Sequence[int], values: Array, indices: NDArray[np.intp]
 ) -> BatchInputs:
     """One record for all runs, or the same with other constants at ``places`` for each of them."""
     ffi, count = engine.ffi, len(indices)

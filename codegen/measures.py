@@ -126,6 +126,6 @@ READY: Mapping[Callable[..., float | Array], str] = MappingProxyType(
         _peak: "peak", _largest: "largest", _smallest: "smallest", _final: "final",
         _integral: "integral", _samples: "samples", _first_event: "first_event",
         _event_count: "event_count",
-    }  # fmt: skip
-)
+    }
+)  # fmt: skip
 """What loops in C can do, too."""

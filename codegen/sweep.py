@@ -52,10 +52,10 @@ def sweep(
     and ``inputs`` may be functions of a run's numbers by name, which then may have names of their own.
 
     ``workers``: processes to run in, by default one for each core; 0: in this process. A family with
-    backend "c" and measures of this package is run by threads instead, many runs in one call of C. What is sent to
-    them must be picklable, and a script needs the line ``if __name__ == "__main__":``. ``client``: a
-    `distributed.Client` to run on instead. ``chunk``: how many runs are done together, by default some
-    half a second to ten. None of these changes a number.
+    backend "c" and measures of this package is run by threads instead, many runs in one call of C.
+    What is sent to processes must be picklable, and a script needs the line
+    ``if __name__ == "__main__":``. ``client``: a `distributed.Client` to run on instead. ``chunk``: how
+    many runs are done together, by default some half a second to ten. None of these changes a number.
 
     ``store``: a folder to keep finished runs in; the same call continues there. ``progress``: a bar, where
     tqdm is installed.

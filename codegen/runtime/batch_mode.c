@@ -17,29 +17,37 @@ static int column_of(int j)
     return input < BATCH_EXTERNAL ? N + rate * BATCH_EXTERNAL + input : -1;
 }
 
+/* The largest magnitude; of no elements 0. */
+static double largest(double (*matrix)[N])
+{
+    double size = 0.0;
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++)
+            size = bg_greater(fabs(matrix[i][j]), size);
+    return size;
+}
+
 /* The largest magnitude of an eigenvalue, nearly: from a high power of the matrix. */
 static double spectral_radius(double (*matrix)[N])
 {
-    double power[N][N], square[N][N], logarithm = 0.0, share = 1.0;
+    double power[N][N], square[N][N], size = largest(matrix), logarithm = 0.0, share = 1.0;
     memcpy(power, matrix, sizeof power);
-    for (int k = 0; k <= ROUNDS; k++, share /= 2) {
-        double size = 0.0;
+    for (int k = 0; k < ROUNDS && size > 0.0; k++) {
+        const double shrink = 1.0 / size;
+        logarithm += share * log(size);
+        share /= 2;
         for (int i = 0; i < N; i++)
             for (int j = 0; j < N; j++)
-                size = bg_greater(size, fabs(power[i][j]));
-        if (!(size > 0.0))
-            return 0.0;
-        logarithm += share * log(size);
-        if (k == ROUNDS)
-            break;
+                power[i][j] *= shrink;
         memset(square, 0, sizeof square);
         for (int i = 0; i < N; i++)
             for (int l = 0; l < N; l++)
                 for (int j = 0; j < N; j++)
-                    square[i][j] += power[i][l] * power[l][j] / size / size;
+                    square[i][j] += power[i][l] * power[l][j];
         memcpy(power, square, sizeof power);
+        size = largest(power);
     }
-    return exp(logarithm);
+    return size > 0.0 ? exp(logarithm + share * log(size)) : 0.0;
 }
 
 /* One over the scales, powers of 2, that make rows and columns alike. */

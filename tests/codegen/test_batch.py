@@ -8,8 +8,21 @@ import pytest
 from oracles.sweeping import LOCKING, locking, spring_mass
 
 from codegen import (
-    Family, Lag, Result, Step, Sweep, Table, event_count, final, first_event, integral, largest, peak,
-    samples, smallest, sweep,
+    Family,
+    Lag,
+    Result,
+    Step,
+    Sweep,
+    Table,
+    event_count,
+    final,
+    first_event,
+    integral,
+    largest,
+    peak,
+    samples,
+    smallest,
+    sweep,
 )  # fmt: skip
 from codegen.arrays import Array
 from codegen.sweep_job import Job, batch_of
