@@ -79,9 +79,10 @@ class ExactLeg:
         last = first + int(np.searchsorted(times[first:], stop, side="left"))
         points = np.concatenate([times[first:last], [stop]])
         t, z = self._t, self._z
-        lengths = np.diff(np.concatenate([[t], points]))
+        # An event may lie a rounding behind a sample that shows the instant after it.
+        lengths = np.maximum(np.diff(np.concatenate([[t], points])), 0.0)
         if _kinds(lengths) > MOST_LENGTHS:
-            return self._run_ragged(stop, points[:-1], track)
+            return self._run_ragged(stop, np.maximum(points[:-1], t), track)
         at = 0
         while at < len(points):
             count = _alike(lengths, at)

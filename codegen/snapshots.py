@@ -53,7 +53,7 @@ def _by_modes(
     which = np.array([number[mode] for mode in track.modes])
     w = np.array([sampled_values(signal, times) for signal in signals]).reshape(-1, len(times))
     dw = np.zeros_like(w)
-    if model.rated:
+    if model.rated and len(signals):
         dw[:] = [sampled_rates(signal, times) for signal in signals]
     vectors = np.column_stack([track.vectors, w.T, dw.T, np.ones(len(times))])
     tables: Array | None = None
