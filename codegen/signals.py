@@ -248,6 +248,15 @@ def _summands(signal: Signal) -> tuple[Signal, ...]:
     return signal.parts if isinstance(signal, _Sum) else (signal,)
 
 
+def first_step(signal: Signal, begin: float, end: float) -> float | None:
+    """The first time after ``begin``, up to ``end``, at which a signal jumps; None if it never does."""
+    for b, one, other in zip(signal.breakpoints, signal.pieces, signal.pieces[1:], strict=False):
+        jump = abs(one(b) - other(b))
+        if begin < b <= end and jump > 1e-12 * (abs(one(b)) + abs(other(b))):
+            return b
+    return None
+
+
 def as_signal(value: object, name: str) -> Signal:
     """A signal as it is, a number as a constant; anything else is refused, naming the input."""
     if isinstance(value, Signal):

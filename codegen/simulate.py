@@ -21,7 +21,7 @@ from codegen.observer import Observer
 from codegen.pieces import Piece, constant_piece
 from codegen.program import Program, lower
 from codegen.result import Result
-from codegen.signals import Constant, Signal
+from codegen.signals import Constant, Signal, first_step
 from codegen.snapshots import snapshots
 
 BACKENDS = ("numpy", "c")
@@ -164,15 +164,12 @@ class Simulator:
             where = (
                 f"{program.readings[rows[0]]} shows" if rows else "a dependent storage would see"
             )
-            for b, one, other in zip(
-                signal.breakpoints, signal.pieces, signal.pieces[1:], strict=False
-            ):
-                jump = abs(one(b) - other(b))
-                if times[0] < b <= times[-1] and jump > 1e-12 * (abs(one(b)) + abs(other(b))):
-                    raise SimulationError(
-                        f"input {name!r} steps at t = {b:g}, where {where} its rate and would be an "
-                        "impulse; smooth it with Lag or Ramp"
-                    )
+            step = first_step(signal, float(times[0]), float(times[-1]))
+            if step is not None:
+                raise SimulationError(
+                    f"input {name!r} steps at t = {step:g}, where {where} its rate and would be an "
+                    "impulse; smooth it with Lag or Ramp"
+                )
 
     def _shown_rates(self) -> Array:
         """Nonzero where a reading shows the rate of an input; where values change, where it may."""

@@ -1,37 +1,14 @@
 """Circuits and electric machines of textbooks, against Kirchhoff's laws and Newton's."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable
 
 import networkx as nx
 import sympy as sp
 from references.build import Node, bond_graph
 from references.matrices import differences
-from sympy.polys.matrices import DomainMatrix
+from references.textbook import agree, rates, s, transfer
 
 import bondgraph as bg
-
-s = sp.Symbol("s")
-
-
-def _rates(graph: "nx.DiGraph[Hashable]", energy: bool = True) -> dict[str, sp.Expr]:
-    found = bg.explicit(bg.derive(graph, outputs=[]), energy=energy)
-    return {str(state): rate for state, rate in found.items()}
-
-
-def _agree(found: Mapping[str, sp.Expr], expected: Mapping[str, str]) -> None:
-    """The same states, and rates that differ by nothing."""
-    assert set(found) == set(expected)
-    for state, text in expected.items():
-        assert sp.cancel(found[state] - bg.expression(text, state)) == 0, state
-
-
-def _transfer(model: bg.LinearModel | bg.StateEquations, at: int = 0) -> sp.Expr:
-    """The first output over one of the inputs, as a fraction of polynomials in s."""
-    pencil = DomainMatrix.from_Matrix(s * model.A - model.J).to_field()
-    driven = DomainMatrix.from_Matrix(model.B[:, at] + s * model.E[:, at]).to_field()
-    pencil, driven = pencil.unify(driven)
-    solved = pencil.lu_solve(driven).to_Matrix()
-    return sp.cancel((model.F * solved)[0] + model.D[0, at] + s * model.G[0, at])
 
 
 def _is(found: sp.Expr, text: str) -> bool:
@@ -48,8 +25,8 @@ def test_two_resistances_and_no_storage_between_them() -> None:
         bg.One("branch"), bg.I("L", "L_0"), bg.C("C", "C_0"),
     ]  # fmt: skip
     graph = bond_graph(nodes, "source>in>R1 in>node>R2 node>branch>L branch>C")
-    _agree(
-        _rates(graph),
+    agree(
+        rates(graph),
         {"p_L": "R_2*(E_0 - R_1*p_L/L_0)/(R_1 + R_2) - q_C/C_0", "q_C": "p_L/L_0"},
     )
     node = bg.derive(graph, outputs=["node"])
@@ -74,7 +51,7 @@ def test_two_capacitors_in_a_loop_with_a_source() -> None:
     assert differences(equations.J, [[-1 / R_0]]) == {}
     assert differences(equations.E, [[C_1]]) == {}
     assert equations.B.todok() == {}
-    assert _is(_transfer(equations), "C_1*s*(C_2*s + 1/R_0)/((C_1 + C_2)*s + 1/R_0)")
+    assert _is(transfer(equations), "C_1*s*(C_2*s + 1/R_0)/((C_1 + C_2)*s + 1/R_0)")
     assert differences(equations.G, [[C_1 * C_2 / (C_1 + C_2)]]) == {}
 
 
@@ -121,8 +98,8 @@ def test_a_bridge_with_a_coil_and_a_capacitor() -> None:
 
     ``u_a = (E_0/R_1 - i) R_1 R_3/(R_1 + R_3)``, ``C_4 u_b' = (E_0 - u_b)/R_2 + i``.
     """
-    found = _rates(_bridge(bg.I("L", "L_g", flow="i"), bg.C("C4", "C_4", effort="u_b")), False)
-    _agree(
+    found = rates(_bridge(bg.I("L", "L_g", flow="i"), bg.C("C4", "C_4", effort="u_b")), False)
+    agree(
         found,
         {
             "i": "((E_0/R_1 - i)*R_1*R_3/(R_1 + R_3) - u_b)/L_g",
@@ -161,7 +138,7 @@ def test_a_ladder_of_three_cells() -> None:
         bonds += f"{before}>j{at}>z{at}>C{at} j{at}>R{at} "
         before = f"z{at}"
     equations = bg.derive(bond_graph(nodes, bonds), outputs=["z3"])
-    assert _is(_transfer(equations), "1/((R_0*C_0*s)**3 + 5*(R_0*C_0*s)**2 + 6*R_0*C_0*s + 1)")
+    assert _is(transfer(equations), "1/((R_0*C_0*s)**3 + 5*(R_0*C_0*s)**2 + 6*R_0*C_0*s + 1)")
 
 
 def test_a_twin_t_stops_one_frequency() -> None:
@@ -177,7 +154,7 @@ def test_a_twin_t_stops_one_frequency() -> None:
     equations = bg.derive(graph, outputs=["out"])
     assert len(equations.states) == 3
     expected = "(1 + (R_0*C_0*s)**2)/(1 + 4*R_0*C_0*s + (R_0*C_0*s)**2)"
-    assert _is(_transfer(equations), expected)
+    assert _is(transfer(equations), expected)
 
 
 def test_a_gyrator_makes_a_capacitor_a_coil() -> None:
@@ -189,7 +166,7 @@ def test_a_gyrator_makes_a_capacitor_a_coil() -> None:
     assert _is(_transfer_without_states(equations), "R_0 + r**2*C_0*s")
     nodes[0] = bg.Se("source", "u")
     driven = bg.derive(bond_graph(nodes, "source>loop>R loop>turn>C"), outputs=["source"])
-    assert _is(_transfer(driven), "1/(R_0 + r**2*C_0*s)")
+    assert _is(transfer(driven), "1/(R_0 + r**2*C_0*s)")
 
 
 def _transfer_without_states(equations: bg.StateEquations) -> sp.Expr:
@@ -202,7 +179,7 @@ def test_two_gyrators_are_a_transformer() -> None:
                          bg.GY("second", "r_2"), bg.One("far"), bg.I("L", "L_0"),
                          bg.R("R", "R_0")]  # fmt: skip
     graph = bond_graph(nodes, "source>first>between>second>far>L far>R")
-    _agree(_rates(graph), {"p_L": "r_2*u/r_1 - R_0*p_L/L_0"})
+    agree(rates(graph), {"p_L": "r_2*u/r_1 - R_0*p_L/L_0"})
 
 
 def test_a_motor_with_a_geared_load() -> None:
@@ -220,8 +197,8 @@ def test_a_motor_with_a_geared_load() -> None:
     )
     equations = bg.derive(graph, outputs=["shaft"])
     J, b = "(J_m + J_l/n**2)", "(b_m + b_l/n**2)"
-    assert _is(_transfer(equations), f"K/((L_a*s + R_a)*({J}*s + {b}) + K**2)")
-    _agree(_rates(graph, False), {"i": "(u - R_a*i - K*w)/L_a", "w": f"(K*i - {b}*w)/{J}"})
+    assert _is(transfer(equations), f"K/((L_a*s + R_a)*({J}*s + {b}) + K**2)")
+    agree(rates(graph, False), {"i": "(u - R_a*i - K*w)/L_a", "w": f"(K*i - {b}*w)/{J}"})
 
 
 BUCK: list[Node] = [
@@ -238,8 +215,8 @@ def test_an_averaged_buck_converter() -> None:
     ``L i' = d E_0 - r_L i - v``, ``C v' = i - v/R``; the supply's current is d i.
     """
     graph = bond_graph(BUCK, BUCK_BONDS)
-    _agree(
-        _rates(graph, False),
+    agree(
+        rates(graph, False),
         {"i": "(d*E_0 - r_L*i - v)/L_0", "v": "(i - v/R_0)/C_0"},
     )
     current = bg.derive(graph, outputs=["supply"])
@@ -252,9 +229,9 @@ def test_an_averaged_buck_converter_answers_its_duty() -> None:
     model = bg.linearize(equations, at={"d": "D_0", "E_0": "U_0", "i": "i_0"})
     duty = model.inputs.index(sp.Symbol("d"))
     below = "(L_0*s + r_L)*(R_0*C_0*s + 1) + R_0"
-    assert _is(_transfer(model, duty), f"U_0*R_0/({below})")
+    assert _is(transfer(model, duty), f"U_0*R_0/({below})")
     supply = model.inputs.index(sp.Symbol("E_0"))
-    assert _is(_transfer(model, supply), f"D_0*R_0/({below})")
+    assert _is(transfer(model, supply), f"D_0*R_0/({below})")
 
 
 def test_an_averaged_boost_converter() -> None:
@@ -264,8 +241,8 @@ def test_an_averaged_boost_converter() -> None:
         bg.Zero("out"), bg.C("C", "C_0", effort="v"), bg.R("load", "R_0"),
     ]  # fmt: skip
     graph = bond_graph(nodes, "supply>coil>L coil>switch>out>C out>load")
-    _agree(
-        _rates(graph, False),
+    agree(
+        rates(graph, False),
         {"i": "(E_0 - (1 - d)*v)/L_0", "v": "((1 - d)*i - v/R_0)/C_0"},
     )
 
@@ -277,7 +254,7 @@ def test_a_series_motor_and_its_linearisation() -> None:
         bg.GY("motor", "K*i"), bg.One("shaft"), bg.I("J", "J_0", flow="w"), bg.R("b", "b"),
     ]  # fmt: skip
     graph = bond_graph(nodes, "source>loop>L loop>R loop>motor>shaft>J shaft>b")
-    _agree(_rates(graph, False), {"i": "(u - R_0*i - K*i*w)/L_0", "w": "(K*i**2 - b*w)/J_0"})
+    agree(rates(graph, False), {"i": "(u - R_0*i - K*i*w)/L_0", "w": "(K*i**2 - b*w)/J_0"})
     model = bg.linearize(bg.derive(graph, outputs=[]), at={"i": "i_0", "w": "w_0"})
     K, R_0, b, i_0, w_0 = sp.symbols("K R_0 b i_0 w_0")
     assert differences(model.J, [[-R_0 - K * w_0, -K * i_0], [2 * K * i_0, -b]]) == {}
@@ -297,4 +274,4 @@ def test_sallen_and_keys_filter() -> None:
     model = bg.linearize(bg.derive(graph, outputs=["y"]))
     assert model.inputs == sp.symbols("u,")
     damping = "(R_1*C_2 + R_2*C_2 + R_1*C_1*(1 - K))"
-    assert _is(_transfer(model), f"1/(R_1*R_2*C_1*C_2*s**2 + {damping}*s + 1)")
+    assert _is(transfer(model), f"1/(R_1*R_2*C_1*C_2*s**2 + {damping}*s + 1)")

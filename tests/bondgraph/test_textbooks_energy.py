@@ -6,32 +6,9 @@ import networkx as nx
 import sympy as sp
 from references.build import Node, bond_graph
 from references.matrices import differences
-from sympy.polys.matrices import DomainMatrix
+from references.textbook import agree, rates, s, transfer
 
 import bondgraph as bg
-
-s = sp.Symbol("s")
-
-
-def _rates(graph: "nx.DiGraph[Hashable]", energy: bool = True) -> dict[str, sp.Expr]:
-    found = bg.explicit(bg.derive(graph, outputs=[]), energy=energy)
-    return {str(state): rate for state, rate in found.items()}
-
-
-def _agree(found: Mapping[str, sp.Expr], expected: Mapping[str, str]) -> None:
-    """The same states, and rates that differ by nothing."""
-    assert set(found) == set(expected)
-    for state, text in expected.items():
-        assert sp.cancel(found[state] - bg.expression(text, state)) == 0, state
-
-
-def _transfer(model: bg.LinearModel | bg.StateEquations, at: int = 0) -> sp.Expr:
-    """The first output over one of the inputs, as a fraction of polynomials in s."""
-    pencil = DomainMatrix.from_Matrix(s * model.A - model.J).to_field()
-    driven = DomainMatrix.from_Matrix(model.B[:, at] + s * model.E[:, at]).to_field()
-    pencil, driven = pencil.unify(driven)
-    solved = pencil.lu_solve(driven).to_Matrix()
-    return sp.cancel((model.F * solved)[0] + model.D[0, at] + s * model.G[0, at])
 
 
 def _with_ports(
@@ -51,8 +28,8 @@ def test_a_cylinder_with_compressible_oil() -> None:
     ]  # fmt: skip
     graph = bond_graph(nodes, "pump>oil>C oil>leak oil>piston>rod>m rod>b load>rod")
     pressure = "beta*q_C/V_0"
-    _agree(
-        _rates(graph),
+    agree(
+        rates(graph),
         {
             "q_C": f"Q - {pressure}/R_l - A_p*p_m/m",
             "p_m": f"A_p*{pressure} - b*p_m/m + F",
@@ -73,7 +50,7 @@ def test_a_press_of_two_pistons() -> None:
     graph = bond_graph(
         nodes, "push>small>one small>first>liquid>second>large>two large>load liquid>gauge"
     )
-    _agree(_rates(graph, False), {"v": "(F_1 - A_1/A_2*W)/(m_1 + m_2*(A_1/A_2)**2)"})
+    agree(rates(graph, False), {"v": "(F_1 - A_1/A_2*W)/(m_1 + m_2*(A_1/A_2)**2)"})
     equations = bg.derive(graph, outputs=["liquid"])
     assert equations.inputs == sp.symbols("F_1 W")
     below = "(m_1*A_2**2 + m_2*A_1**2)"
@@ -117,8 +94,8 @@ def test_two_tanks_and_a_pipe() -> None:
         nodes, "inflow>first>C1 first>pipe>water pipe>walls pipe>second>C2 second>outlet"
     )
     flow = "A_0*p_water/(rho*l)"
-    _agree(
-        _rates(graph),
+    agree(
+        rates(graph),
         {
             "q_C1": f"Q - {flow}",
             "p_water": f"rho*g*(q_C1/A_1 - q_C2/A_2) - R_1*{flow}",
@@ -139,7 +116,7 @@ def test_torricellis_tanks_and_their_linearisation() -> None:
     between, out = (
         f"{k}*sign({p})*sqrt(abs({p}))" for k, p in (("k_1", "(P_1 - P_2)"), ("k_2", "P_2"))
     )
-    found = _rates(graph, False)
+    found = rates(graph, False)
     for state, text in {"P_1": f"(Q - {between})/c_1", "P_2": f"({between} - {out})/c_2"}.items():
         assert sp.expand(found[state] - bg.expression(text, state)) == 0
     model = bg.linearize(
@@ -150,7 +127,7 @@ def test_torricellis_tanks_and_their_linearisation() -> None:
     assert differences(model.A, sp.diag(c_1, c_2)) == {}
     assert differences(model.J, [[-one, one], [one, -one - two]]) == {}
     expected = one / ((c_1 * s + one) * (c_2 * s + one + two) - one**2)
-    assert sp.cancel(_transfer(model) - expected) == 0
+    assert sp.cancel(transfer(model) - expected) == 0
 
 
 def test_heat_through_a_wall() -> None:
@@ -166,8 +143,8 @@ def test_heat_through_a_wall() -> None:
     graph = bond_graph(
         nodes, "inside>in>first>mid>second>out>outside in>film first>C1 mid>core second>C2 out>air"
     )
-    _agree(
-        _rates(graph, False),
+    agree(
+        rates(graph, False),
         {
             "T_1": "((T_i - T_1)/R_0 - (T_1 - T_2)/R_1)/c_1",
             "T_2": "((T_1 - T_2)/R_1 - (T_2 - T_o)/R_2)/c_2",
@@ -187,9 +164,9 @@ def test_true_conduction_makes_entropy() -> None:
         nodes += [bg.Zero(f"z{at}", effort=f"T_{at}"), bg.R(f"out{at}", law=law, gives="flow"),
                   bg.C(f"S{at}", energy=f"c_{at}*T_0*exp(q_S{at}/c_{at})")]  # fmt: skip
         bonds += f"z{at}>S{at} z{at}>out{at} "
-    found = _rates(bond_graph(nodes, bonds), False)
+    found = rates(bond_graph(nodes, bonds), False)
     T_1, T_2 = (f"T_0*exp(q_S{at}/c_{at})" for at in (1, 2))
-    _agree(
+    agree(
         found,
         {"q_S1": f"-K*({T_1} - {T_2})/({T_1})", "q_S2": f"-K*({T_2} - {T_1})/({T_2})"},
     )
@@ -206,8 +183,8 @@ def test_a_resistor_heats_a_body() -> None:
         bg.R("heat", law="-R_0*i**2/T", gives="flow"),
     ]  # fmt: skip
     graph = bond_graph(nodes, "source>loop>L loop>R body>S body>heat")
-    _agree(
-        _rates(graph, False),
+    agree(
+        rates(graph, False),
         {"i": "(u - R_0*i)/L_0", "q_S": "R_0*i**2/(T_0*exp(q_S/c))"},
     )
 
@@ -235,8 +212,8 @@ def test_a_condenser_microphone() -> None:
     The plates' voltage is its slope along the charge, their pull the slope along the displacement.
     """
     q, x = "q_mic_plates", "q_mic_skin"
-    _agree(
-        _rates(_microphone(), False),
+    agree(
+        rates(_microphone(), False),
         {
             q: f"(E_0 - {q}*(d - {x})/epsA)/R_0",
             x: "v",
@@ -276,8 +253,8 @@ def test_a_solenoid() -> None:
         {("flux", "gap"): "flux", ("armature", "gap"): "x"},
     )
     flux = "q_gap_flux"
-    _agree(
-        _rates(graph, False),
+    agree(
+        rates(graph, False),
         {
             flux: f"u - R_0*{flux}*(1 + q_gap_x/d)/L_0",
             "q_gap_x": "v",
@@ -348,6 +325,6 @@ def test_a_loudspeaker() -> None:
         bg.One("cone"), bg.I("m", "m"), bg.R("b", "b"), bg.C("k", "1/k"),
     ]  # fmt: skip
     graph = bond_graph(nodes, "amplifier>coil>R coil>L coil>voice>cone>m cone>b cone>k")
-    admittance = _transfer(bg.derive(graph, outputs=["coil"]))
+    admittance = transfer(bg.derive(graph, outputs=["coil"]))
     impedance = bg.expression("R_0 + L_0*s + Bl**2*s/(m*s**2 + b*s + k)", "Z")
     assert sp.cancel(admittance * impedance - 1) == 0

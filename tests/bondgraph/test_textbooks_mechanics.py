@@ -5,32 +5,13 @@ from collections.abc import Mapping
 import sympy as sp
 from references.build import Node, bond_graph
 from references.matrices import differences
-from sympy.polys.matrices import DomainMatrix
+from references.textbook import agree, rates, transfer
 
 import bondgraph as bg
 
-s = sp.Symbol("s")
-
 
 def _rates(nodes: list[Node], bonds: str, energy: bool = True) -> dict[str, sp.Expr]:
-    found = bg.explicit(bg.derive(bond_graph(nodes, bonds), outputs=[]), energy=energy)
-    return {str(state): rate for state, rate in found.items()}
-
-
-def _agree(found: Mapping[str, sp.Expr], expected: Mapping[str, str]) -> None:
-    """The same states, and rates that differ by nothing."""
-    assert set(found) == set(expected)
-    for state, text in expected.items():
-        assert sp.cancel(found[state] - bg.expression(text, state)) == 0, state
-
-
-def _transfer(model: bg.LinearModel | bg.StateEquations, at: int = 0) -> sp.Expr:
-    """The first output over one of the inputs, as a fraction of polynomials in s."""
-    pencil = DomainMatrix.from_Matrix(s * model.A - model.J).to_field()
-    driven = DomainMatrix.from_Matrix(model.B[:, at] + s * model.E[:, at]).to_field()
-    pencil, driven = pencil.unify(driven)
-    solved = pencil.lu_solve(driven).to_Matrix()
-    return sp.cancel((model.F * solved)[0] + model.D[0, at] + s * model.G[0, at])
+    return rates(bond_graph(nodes, bonds), energy)
 
 
 QUARTER_CAR: list[Node] = [
@@ -51,7 +32,7 @@ def test_a_quarter_car() -> None:
     Newton for both masses; both deflections count as compression.
     """
     strut = "k_s*q_spring + b*(p_unsprung/m_u - p_sprung/m_s)"
-    _agree(
+    agree(
         _rates(QUARTER_CAR, QUARTER_CAR_BONDS),
         {
             "q_tire": "V - p_unsprung/m_u",
@@ -70,7 +51,7 @@ def test_a_quarter_cars_transmissibility() -> None:
         "m_u*m_s*s**4 + b*(m_u + m_s)*s**3 + (m_s*(k_s + k_t) + m_u*k_s)*s**2 + b*k_t*s + k_s*k_t"
     )
     expected = bg.expression(f"k_t*(b*s + k_s)/({below})", "expected")
-    assert sp.cancel(_transfer(equations) - expected) == 0
+    assert sp.cancel(transfer(equations) - expected) == 0
 
 
 def test_a_half_car_heaves_and_pitches() -> None:
@@ -89,7 +70,7 @@ def test_a_half_car_heaves_and_pitches() -> None:
         bonds += f"end_{end}>heave end_{end}>arm_{end}>pitch "
     front = "(V_f - p_m/m - a*p_J/J_y)"
     rear = "(V_r - p_m/m + b*p_J/J_y)"
-    _agree(
+    agree(
         _rates(nodes, bonds),
         {
             "q_k_f": front,
@@ -150,10 +131,10 @@ def test_a_seismograph_shows_the_frames_displacement() -> None:
     nodes: list[Node] = [bg.Sf("frame", "V"), bg.Zero("gap"), bg.One("link"), bg.C("k", "1/k"),
                          bg.R("b", "b"), bg.One("mass"), bg.I("m", "m")]  # fmt: skip
     bonds = "frame>gap>link>k link>b gap>mass>m"
-    _agree(_rates(nodes, bonds), {"q_k": "V - p_m/m", "p_m": "k*q_k + b*(V - p_m/m)"})
+    agree(_rates(nodes, bonds), {"q_k": "V - p_m/m", "p_m": "k*q_k + b*(V - p_m/m)"})
     model = bg.linearize(bg.derive(bond_graph(nodes, bonds), outputs=[]), outputs=["e_k"])
     force = bg.expression("k*m*s/(m*s**2 + b*s + k)", "expected")
-    assert sp.cancel(_transfer(model) - force) == 0
+    assert sp.cancel(transfer(model) - force) == 0
 
 
 CART: list[Node] = [
@@ -211,7 +192,7 @@ def test_a_free_body_turns_by_eulers_equations() -> None:
                   bg.Se(f"T_{at}", f"T_{at}"), bg.GY(f"g_{at}", f"J_{at}*w_{at}")]  # fmt: skip
         bonds += f"axis_{at}>I_{at} T_{at}>axis_{at} "
     bonds += "axis_1>g_3>axis_2 axis_2>g_1>axis_3 axis_3>g_2>axis_1"
-    _agree(
+    agree(
         _rates(nodes, bonds, energy=False),
         {
             "w_1": "(T_1 + (J_2 - J_3)*w_2*w_3)/J_1",
@@ -237,7 +218,7 @@ def test_a_car_that_corners_at_constant_speed() -> None:
         "aside>rear>tire_r yaw>to_rear>rear"
     )
     front, rear = "C_f*(v_y + a*w)/U", "C_r*(v_y - b*w)/U"
-    _agree(
+    agree(
         _rates(nodes, bonds, energy=False),
         {"v_y": f"-U*w - ({front} + {rear})/m", "w": f"(M_z - a*{front} + b*{rear})/J_z"},
     )
@@ -251,7 +232,7 @@ def test_two_weights_over_a_pulley() -> None:
         bg.One("up"), bg.I("two", "m_2", priority=-1), bg.Se("weight_2", "-m_2*g"),
     ]  # fmt: skip
     bonds = "pulley>J pulley>rim_1>down>one weight_1>down pulley>rim_2>up>two weight_2>up"
-    _agree(_rates(nodes, bonds, energy=False), {"v": "(m_1 - m_2)*g/(J_p/r**2 + m_1 + m_2)"})
+    agree(_rates(nodes, bonds, energy=False), {"v": "(m_1 - m_2)*g/(J_p/r**2 + m_1 + m_2)"})
 
 
 def test_an_absorber_stills_the_mass_at_its_own_frequency() -> None:
@@ -262,7 +243,7 @@ def test_an_absorber_stills_the_mass_at_its_own_frequency() -> None:
     ]  # fmt: skip
     graph = bond_graph(nodes, "shake>main>M main>K main>between>k between>absorber>m")
     expected = bg.expression("s*(m*s**2 + k)/((M*s**2 + K + k)*(m*s**2 + k) - k**2)", "expected")
-    assert sp.cancel(_transfer(bg.derive(graph, outputs=["main"])) - expected) == 0
+    assert sp.cancel(transfer(bg.derive(graph, outputs=["main"])) - expected) == 0
 
 
 def test_a_train_of_gears_reflects_its_inertias() -> None:
@@ -274,7 +255,7 @@ def test_a_train_of_gears_reflects_its_inertias() -> None:
     ]  # fmt: skip
     bonds = "drive>a>J_a a>first>b>J_b b>second>c>J_c c>load"
     total = "(J_1 + J_2/n_1**2 + J_3/(n_1*n_2)**2)"
-    _agree(_rates(nodes, bonds, energy=False), {"w": f"(T - c_l*w/(n_1*n_2)**2)/{total}"})
+    agree(_rates(nodes, bonds, energy=False), {"w": f"(T - c_l*w/(n_1*n_2)**2)/{total}"})
 
 
 def _along(expr: sp.Expr, rates: Mapping[str, sp.Expr]) -> sp.Expr:
