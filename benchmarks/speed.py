@@ -25,9 +25,9 @@ import floor  # noqa: E402
 
 import bondgraph as bg  # noqa: E402
 import codegen  # noqa: E402
-from codegen.arguments import initial_values, signals_for  # noqa: E402
-from codegen.c_backend import Prepared, Status  # noqa: E402
-from codegen.sweep_job import Job, batch_of  # noqa: E402
+from codegen.engine.runs import Prepared, Status  # noqa: E402
+from codegen.runs.arguments import initial_values, signals_for  # noqa: E402
+from codegen.sweeps.job import Job, batch_of  # noqa: E402
 from differentials.scenarios import prepared  # noqa: E402
 
 ROUNDS, FEW = 41, 3

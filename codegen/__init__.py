@@ -1,10 +1,18 @@
 """From state equations to simulators: signals, programs, the event-driven hybrid loop, and sweeps."""
 
-from codegen.c import to_c
-from codegen.events import Event
-from codegen.family import Family
-from codegen.fmu import write_fmu
-from codegen.measures import (
+from codegen.c.export import to_c
+from codegen.fmu.export import write_fmu
+from codegen.inputs.signals import Constant, Lag, Ramp, Sampled, Signal, Sine, Step
+from codegen.program import Block, Program, lower
+from codegen.python.export import to_python
+from codegen.runs.events import Event
+from codegen.runs.result import Result
+from codegen.simulate import Simulator, simulator
+from codegen.sparse.model import SparseModel, sparse_model
+from codegen.sparse.run import run_sparse
+from codegen.sweeps.design import Grid, Samples, Table
+from codegen.sweeps.family import Family
+from codegen.sweeps.measures import (
     event_count,
     final,
     first_event,
@@ -15,17 +23,9 @@ from codegen.measures import (
     smallest,
     work,
 )
-from codegen.program import Block, Program, lower
-from codegen.python import to_python
-from codegen.result import Result
-from codegen.signals import Constant, Lag, Ramp, Sampled, Signal, Sine, Step
-from codegen.simulate import Simulator, simulator
-from codegen.sparse import SparseModel, sparse_model
-from codegen.sparse_run import run_sparse
-from codegen.sweep import sweep
-from codegen.sweep_design import Grid, Samples, Table
-from codegen.sweep_result import Failure, Sweep, SweepInterrupted
-from codegen.switched import SwitchedSimulator, switched_simulator
+from codegen.sweeps.result import Failure, Sweep, SweepInterrupted
+from codegen.sweeps.sweep import sweep
+from codegen.switched.simulator import SwitchedSimulator, switched_simulator
 from codegen.trim import trim
 
 __all__ = [

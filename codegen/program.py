@@ -10,8 +10,8 @@ import sympy as sp
 from bondgraph import DryFriction, ParameterError, StateEquations, StructureError
 from bondgraph.expressions import TIME
 from bondgraph.laws import SLIP, ExpressionLaw, Law
-from codegen.affine import is_affine
 from codegen.closing import Closing, close_ports
+from codegen.model.affine import is_affine
 
 TEMPORARY = "c"
 """Temporaries are c0, c1, ...; names that are taken are passed over."""

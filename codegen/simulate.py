@@ -10,19 +10,25 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from bondgraph import ParameterError, SignalError, SimulationError, StateEquations
-from codegen.arguments import checked_times, initial_values, numbers_of, settings_of, signals_for
 from codegen.arrays import Array
-from codegen.c_backend import CRuns
-from codegen.closed import ClosedModel
-from codegen.hybrid import run_hybrid
-from codegen.legs import EXACT, Settings, Track
-from codegen.modes import LOOK_AHEAD, Peaks, decide
-from codegen.observer import Observer
-from codegen.pieces import Piece, constant_piece
+from codegen.engine.runs import CRuns
+from codegen.inputs.pieces import Piece, constant_piece
+from codegen.inputs.signals import Constant, Signal, first_step
+from codegen.model.closed import ClosedModel
+from codegen.model.modes import LOOK_AHEAD, Peaks, decide
 from codegen.program import Program, lower
-from codegen.result import Result
-from codegen.signals import Constant, Signal, first_step
-from codegen.snapshots import snapshots
+from codegen.runs.arguments import (
+    checked_times,
+    initial_values,
+    numbers_of,
+    settings_of,
+    signals_for,
+)
+from codegen.runs.hybrid import run_hybrid
+from codegen.runs.legs import EXACT, Settings, Track
+from codegen.runs.observer import Observer
+from codegen.runs.result import Result
+from codegen.runs.snapshots import snapshots
 
 BACKENDS = ("numpy", "c")
 """What runs models; "c" those that are affine in each friction mode."""

@@ -7,8 +7,8 @@ import numpy as np
 
 from bondgraph import SimulationError
 from codegen.arrays import Array
-from codegen.closed import ClosedModel, Mode, Snapshot
-from codegen.pieces import Piece
+from codegen.inputs.pieces import Piece
+from codegen.model.closed import ClosedModel, Mode, Snapshot
 from codegen.simulate import Simulator
 
 ITERATIONS = 50

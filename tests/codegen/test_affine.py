@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bondgraph.expressions import expression
-from codegen.affine import AffineMap, is_affine
+from codegen.model.affine import AffineMap, is_affine
 
 PARAMETERS = {"k", "b", "x_0"}
 AFFINE = [

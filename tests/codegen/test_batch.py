@@ -25,7 +25,7 @@ from codegen import (
     sweep,
 )  # fmt: skip
 from codegen.arrays import Array
-from codegen.sweep_job import Job, batch_of
+from codegen.sweeps.job import Job, batch_of
 from differentials.scenarios import prepared
 
 CASE = prepared("alsd", "fig11")

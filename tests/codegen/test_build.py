@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import bondgraph as bg
-from codegen import build
+from codegen.engine import build
 
 SOURCE = {
     "one.c": '#include "two.h"\nint one(void) { return TWO - 1; }\n',
@@ -49,7 +49,7 @@ def test_sources_and_flags_make_another_library() -> None:
 
 def test_several_processes_share_the_cache() -> None:
     program = (
-        "from codegen import build\n"
+        "from codegen.engine import build\n"
         f"path = build.compiled({SOURCE!r}, {FLAGS!r})\n"
         "print(path, build.loaded(path, 'int one(void);')[1].one())"
     )

@@ -10,7 +10,7 @@ import pytest
 from oracles.c_model import Pair
 from oracles.exported import catalog_cases, loaded, small_cases
 
-from codegen.python import to_python
+from codegen.python.export import to_python
 
 CASES = dict([*catalog_cases(), *small_cases()])
 CHOSEN = (

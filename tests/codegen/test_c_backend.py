@@ -13,10 +13,10 @@ from references.build import bond_graph
 import bondgraph as bg
 import differentials
 from codegen import Constant, Lag, Ramp, Result, Sampled, Simulator, Sine, Step, simulator
-from codegen.arguments import initial_values, signals_for
-from codegen.build import FLAGS
-from codegen.c_backend import CRuns, Outcome, Status
-from codegen.engine_sizes import Sizes, engine
+from codegen.engine.build import FLAGS
+from codegen.engine.runs import CRuns, Outcome, Status
+from codegen.engine.sizes import Sizes, engine
+from codegen.runs.arguments import initial_values, signals_for
 from differentials.scenarios import scenarios
 
 CASES = [
@@ -199,7 +199,7 @@ import sys
 import numpy as np
 sys.path[:0] = {paths!r}
 import test_c_backend as cases
-from codegen.c_backend import CRuns, Status
+from codegen.engine.runs import CRuns, Status
 CRuns.__init__.__defaults__ = (("-O1", "-g", "-std=c99", "-fsanitize=address,undefined",
                                 "-fno-sanitize-recover=all"),)
 cases.test_an_oscillator_on_a_belt_through_all_kinds_of_inputs()

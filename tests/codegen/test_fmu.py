@@ -14,14 +14,14 @@ from oracles.units import belt, divider, duffing, figure_11
 
 import bondgraph as bg
 import codegen
-from codegen import fmu_binaries
-from codegen.fmu_switches import switching
+from codegen.fmu import binaries as fmu_binaries
+from codegen.fmu.switches import switching
 
 
 @pytest.fixture
 def _no_binaries(monkeypatch: pytest.MonkeyPatch) -> None:
     """Descriptions and sources need no compiler."""
-    monkeypatch.setattr("codegen.fmu.binaries", lambda *_: {})
+    monkeypatch.setattr("codegen.fmu.export.binaries", lambda *_: {})
 
 
 def _description(path: Path) -> ET.Element:

@@ -9,7 +9,7 @@ from oracles.called import Unit
 from oracles.units import belt, divider
 
 import codegen
-from codegen import fmu_binaries
+from codegen.fmu import binaries as fmu_binaries
 
 VERSIONS = ["2.0", "3.0"]
 

@@ -12,8 +12,8 @@ from references.build import bond_graph
 
 import bondgraph as bg
 import codegen
-from codegen import fmu_binaries
-from codegen.fmu_variables import plain
+from codegen.fmu import binaries as fmu_binaries
+from codegen.fmu.variables import plain
 
 
 @pytest.fixture(autouse=True, scope="module")

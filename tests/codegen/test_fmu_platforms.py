@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from oracles.units import belt
 
-from codegen.fmu_binaries import PLATFORMS, this_platform
+from codegen.fmu.binaries import PLATFORMS, this_platform
 
 pytest.importorskip("ziglang")
 

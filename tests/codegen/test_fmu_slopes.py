@@ -7,7 +7,7 @@ import pytest
 from oracles.called import Unit
 from oracles.units import belt, divider, duffing, figure_11
 
-from codegen import fmu_binaries
+from codegen.fmu import binaries as fmu_binaries
 
 VERSIONS = ["2.0", "3.0"]
 

@@ -5,7 +5,7 @@ import pytest
 import scipy.linalg
 
 from codegen import Constant, Lag, Ramp, Sampled, Signal, Sine, Step
-from codegen.generators import generator
+from codegen.inputs.generators import generator
 
 SIGNALS: list[Signal] = [
     Constant(3.0),

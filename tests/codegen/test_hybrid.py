@@ -5,7 +5,8 @@ import pytest
 from oracles.models import block
 
 import bondgraph as bg
-from codegen import Constant, Ramp, Sine, Step, hybrid, simulator
+from codegen import Constant, Ramp, Sine, Step, simulator
+from codegen.runs import hybrid
 
 BLOCK = simulator(bg.derive(block()), {"m": 2.0, "F_c": 3.0})
 

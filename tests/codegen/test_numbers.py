@@ -11,7 +11,7 @@ from references.build import bond_graph
 
 import bondgraph as bg
 from codegen import simulator
-from codegen.numbers import exact_parameters, numbers
+from codegen.model.numbers import exact_parameters, numbers
 from codegen.program import lower
 
 CIRCUIT = bg.derive(series_circuit())

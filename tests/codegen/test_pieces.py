@@ -5,7 +5,7 @@ import cmath
 import numpy as np
 import pytest
 
-from codegen.pieces import Piece, Term, collected, constant_piece, lagged_terms, moved
+from codegen.inputs.pieces import Piece, Term, collected, constant_piece, lagged_terms, moved
 
 TIMES = (0.3, 0.7, 1.9)
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial import polynomial as npp
 
 from codegen.arrays import Array
-from codegen.polynomials import first_fall, to_bernstein, value
+from codegen.inputs.polynomials import first_fall, to_bernstein, value
 
 
 def _with_roots(rng: np.random.Generator) -> tuple[Array, list[float]]:

@@ -7,7 +7,7 @@ import pytest
 
 from bondgraph import SignalError
 from codegen import Constant, Lag, Ramp, Sampled, Sine, Step
-from codegen.signals import as_signal
+from codegen.inputs.signals import as_signal
 
 NOT_FINITE = [math.nan, math.inf, -math.inf]
 MAKERS = [

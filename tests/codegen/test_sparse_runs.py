@@ -11,7 +11,7 @@ from references.build import bond_graph
 import bondgraph as bg
 from codegen import Constant, Lag, Ramp, Sampled, Signal, Sine, Step, run_sparse, simulator
 from codegen import sparse_model as sparse
-from codegen.sparse_steps import STIFF
+from codegen.sparse.steps import STIFF
 
 if TYPE_CHECKING:
     Graph = nx.DiGraph[Any]

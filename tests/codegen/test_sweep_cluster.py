@@ -11,7 +11,7 @@ from oracles.sweeping import MEASURES, TIMES, Killer, Logged, spring_mass
 import bondgraph as bg
 import codegen
 from codegen import Sweep, sweep
-from codegen.sweep_drive import ENDED
+from codegen.sweeps.drive import ENDED
 
 SPEEDS = np.arange(1.0, 31.0)
 

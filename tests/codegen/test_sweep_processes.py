@@ -13,9 +13,9 @@ from oracles.sweeping import LOCKING, TIMES, Killer, Logged, locking, spring_mas
 import bondgraph as bg
 import codegen
 from codegen import Sweep, sweep
-from codegen.sweep_crews import THREADS, Processes
-from codegen.sweep_drive import ENDED, Pace, Work, drive
-from codegen.sweep_job import Chunk, Job, sent
+from codegen.sweeps.crews import THREADS, Processes
+from codegen.sweeps.drive import ENDED, Pace, Work, drive
+from codegen.sweeps.job import Chunk, Job, sent
 
 TESTS = Path(__file__).parents[1]
 SPEEDS = np.arange(1.0, 13.0)
@@ -68,7 +68,7 @@ def test_processes_use_one_thread_each_and_this_one_is_left_alone(monkeypatch) -
     job = Job(spring_mass(), ("v",), TIMES, {"threads": codegen.final("v")}, None, {"P": 0.0})
     seen: list[dict[str, str]] = []
     monkeypatch.setattr(
-        "codegen.sweep_crews.ProcessPoolExecutor.submit", lambda *_: seen.append({**os.environ})
+        "codegen.sweeps.crews.ProcessPoolExecutor.submit", lambda *_: seen.append({**os.environ})
     )
     Processes(sent(job), 1)
     assert [seen[0][name] for name in THREADS] == ["1"] * len(THREADS)
@@ -105,8 +105,8 @@ class _Fake:
         self.begun.append(chunk)
 
     def finished(self) -> list:
-        from codegen.sweep_crews import Lost
-        from codegen.sweep_job import Outcome
+        from codegen.sweeps.crews import Lost
+        from codegen.sweeps.job import Outcome
 
         begun, self.begun = self.begun, []
         if self.unblamed:

@@ -15,9 +15,9 @@ from oracles.sweeping import MEASURES, TIMES, Logged, Plain, spring_mass, twice
 import bondgraph as bg
 import codegen
 from codegen import Family, Sweep, SweepInterrupted, Table, sweep
-from codegen.sweep_design import Samples
-from codegen.sweep_job import Outcome
-from codegen.sweep_result import Collected
+from codegen.sweeps.design import Samples
+from codegen.sweeps.job import Outcome
+from codegen.sweeps.result import Collected
 
 TESTS = Path(__file__).parents[1]
 SPEEDS = {"v": np.arange(1.0, 41.0)}

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from codegen import to_c
-from codegen.closed import ClosedModel
+from codegen.model.closed import ClosedModel
 from codegen.program import Program, lower
 
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")

@@ -10,8 +10,8 @@ from references.build import bond_graph
 import bondgraph as bg
 import differentials
 from codegen import Simulator
-from codegen.modes import LOOK_AHEAD, Peaks, decide
-from codegen.pieces import Piece
+from codegen.inputs.pieces import Piece
+from codegen.model.modes import LOOK_AHEAD, Peaks, decide
 from differentials.model import model
 from oracles.models import belt, clutches, oscillator, stacked_blocks
 

@@ -1,0 +1,95 @@
+"""Blocks of a program as C functions of an instant, with readable local names."""
+
+from collections.abc import Mapping, Sequence
+
+import sympy as sp
+from sympy.printing.codeprinter import PrintMethodNotImplementedError
+
+from bondgraph import ExpressionError
+from bondgraph.expressions import TIME
+from codegen.c.text import comment, statement
+from codegen.identifiers import identifiers
+from codegen.printing import printed
+from codegen.program import Block, Program
+
+_MACROS = """
+    M_E M_LOG2E M_LOG10E M_LN2 M_LN10 M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2 M_SQRT1_2
+    HUGE MAXFLOAT HUGE_VALF HUGE_VALL SNAN DOMAIN SING OVERFLOW UNDERFLOW PLOSS TLOSS EOF
+    FP_NAN FP_INFINITE FP_ZERO FP_SUBNORMAL FP_NORMAL FP_FAST_FMA FP_ILOGB0 FP_ILOGBNAN
+    MATH_ERRNO MATH_ERREXCEPT math_errhandling isgreater isless islessgreater isunordered i386 vax
+"""
+
+TAKEN = frozenset({*_MACROS.split(), "v", "out", "m", "s", "w", "rate", "signs", "time"})
+"""Names that the functions use themselves, and macros of the headers they include."""
+
+
+def names_for(symbols: Sequence[sp.Symbol]) -> Mapping[str, str]:
+    """Identifiers for these symbols that nothing in generated code uses."""
+    texts = [symbol.name for symbol in symbols]
+    own = {text for text in texts if text.lower().startswith(("bg_", "fp_"))}
+    return identifiers(texts, "c", TAKEN | own)
+
+
+def places(program: Program) -> Mapping[sp.Symbol, str]:
+    """Where each name's value stands in an instant ``v``; a parameter before an input that it holds."""
+    found = {name: f"v->p[{at}]" for at, name in enumerate(program.parameters)}
+    found.setdefault(TIME, "v->t")
+    listed = (
+        ("x", program.states), ("z", program.law_states), ("y", program.readings),
+        ("u", program.inputs), ("w", program.external), ("dw", program.external_rates),
+    )  # fmt: skip
+    for part, symbols in listed:
+        for at, name in enumerate(symbols):
+            found.setdefault(name, f"v->{part}[{at}]")
+    return found
+
+
+def text_of(expr: sp.Expr, names: Mapping[str, str]) -> str:
+    """An expression as C; `ExpressionError` for a function that C does not have."""
+    try:
+        text = printed(expr, "checked_c", names)
+    except PrintMethodNotImplementedError:
+        text = "Not supported"
+    if "Not supported" in text:
+        raise ExpressionError(f"{expr} uses a function that C's math library does not have")
+    return text
+
+
+def body(code: Block, where: Mapping[sp.Symbol, str], result: str) -> list[str]:
+    """The lines of a block: its arguments by name, its temporaries, its results."""
+    names = names_for([*code.arguments, *(name for name, _ in code.assignments)])
+    lines = []
+    for name in code.arguments:
+        lines += statement(f"const double {names[name.name]} = {where[name]};")
+    for name, value in code.assignments:
+        lines += statement(f"const double {names[name.name]} = {text_of(value, names)};")
+    for at, value in enumerate(code.results):
+        lines += statement(f"{result}[{at}] = {text_of(value, names)};")
+    return lines
+
+
+def operations(code: Block) -> int:
+    """Additions, products and functions of a block, each assignment once."""
+    values = [*(value for _, value in code.assignments), *code.results]
+    return sum(int(sp.count_ops(value)) for value in values)
+
+
+def function(
+    name: str, what: str, code: Block, where: Mapping[sp.Symbol, str], local: bool = True
+) -> list[str]:
+    """A block as a function that writes its results to ``out``."""
+    count = operations(code)
+    counted = f"{count} operation{'s' if count != 1 else ''}"
+    unused = [
+        *([] if code.arguments else ["    (void)v;"]),
+        *([] if code.results else ["    (void)out;"]),
+    ]
+    return [
+        "",
+        *comment(f"{what}: {counted}."),
+        f"{'static ' if local else ''}void {name}(const bg_values *v, double *out)",
+        "{",
+        *body(code, where, "out"),
+        *unused,
+        "}",
+    ]

@@ -1,0 +1,144 @@
+"""`to_c`: a model as C99 that allocates nothing, ready for a real-time target."""
+
+from collections.abc import Mapping
+from importlib.metadata import version
+from importlib.resources import files
+from typing import Any
+
+from bondgraph import ParameterError, StateEquations
+from codegen.c.blocks import function, operations, places
+from codegen.c.rates import plain_rates, straight_rates
+from codegen.c.rhs import straight
+from codegen.c.structure import structures
+from codegen.c.tables import config, group_tables, name_tables, program_tables, structure_table
+from codegen.c.text import comment
+from codegen.model.closed import ClosedModel
+from codegen.program import Block, Program, lower
+
+RUNTIME = (
+    "model_runtime.h", "model_internal.h", "model_linear.c", "model_numbers.c", "model_hold.c",
+    "model_share.c", "model_loops.c", "model_evaluate.c", "model_instance.c", "model_step.c",
+)  # fmt: skip
+"""What is the same for every model."""
+
+_HEAD = """\
+/* {name}
+ *
+ *     A x' = J x + B u + E u'
+ *        y = F x + D u + G u'
+ *
+ * Written by bondgraph-toolkit {version}; change the graph rather than this file. C99, no memory is
+ * allocated and nothing is global: an instance is one `bg_model`, which the caller provides.
+ *
+ *     #include "model_runtime.h"
+ *     static bg_model model;                          size known when compiled
+ *     double s[BG_SIZE], w[3 * BG_ROOM(BG_EXTERNAL)]; states; inputs at t, t + h/2, t + h
+ *     bg_model_init(&model, NULL);                    NULL: the parameters written here
+ *     bg_model_vector(&model, 0, states, w, s);
+ *     for (...) bg_model_step(&model, t, h, s, w);    a real-time step; friction sticks and slips
+ *
+ * Every call gives a status, 0 for success; `bg_model_message` says what it means. Build all files
+ * of the folder, for example `cc -std=c99 -O2 *.c -lm`; with main.c that gives a program:
+ *     ./a.out END STEP [name=value ...]               prints states and outputs as CSV
+ *
+ * One evaluation takes {operations} operations beside those of the matrices.
+{names}
+ */
+#include <math.h>
+
+#include "model_internal.h"
+"""
+
+
+def to_c(
+    equations: StateEquations,
+    parameters: Mapping[str, object],
+    laws: Mapping[Any, object] | None = None,
+    name: str = "model",
+    main: bool = False,
+) -> dict[str, str]:
+    """The equations, closed by laws, as files of C99: name to text.
+
+    ``parameters``: name to number, the defaults of `bg_model_init`. ``laws``: as `simulator` takes them.
+    ``name``: what the model calls itself. ``main``: with a main program that prints a run as CSV. The
+    same arguments give the same text; `model.c` tells how it is used.
+
+    Which sticking ports are redundant is decided exactly, at these parameters; others at which that
+    changes are refused when the model is run.
+
+    Raises what `simulator` raises; `StructureError` for more than six friction ports; `ExpressionError` for
+    functions C lacks.
+    """
+    if not isinstance(parameters, Mapping):
+        raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
+    program = lower(equations, laws, parameters)
+    closed = ClosedModel(program, equations, parameters)
+    exact, ports = closed.parameters, range(len(program.friction))
+    fast = straight(program)
+    defaults = [float(exact[symbol.name]) for symbol in program.parameters]
+    lines = [
+        *_head(program, name),
+        *name_tables(program, equations, name),
+        "",
+        *program_tables(program, defaults, [closed.coupled_directly(i) for i in ports]),
+        "",
+        *structure_table(structures(program, equations, exact)),
+        *_functions(program),
+        "",
+        *group_tables(program),
+        *(straight_rates(program, fast) if fast else plain_rates()),
+    ]
+    names = (*RUNTIME, *(["main.c"] if main else []))
+    runtime = {file: _runtime(file) for file in names}
+    return {"config.h": config(program, fast, name), "model.c": "\n".join(lines) + "\n", **runtime}
+
+
+def _runtime(name: str) -> str:
+    return files("codegen").joinpath("runtime", name).read_text(encoding="utf-8")
+
+
+def _head(program: Program, name: str) -> list[str]:
+    parts = (
+        ("states", (*program.states, *program.law_states)), ("inputs", program.external),
+        ("outputs", program.outputs), ("parameters", program.parameters),
+    )  # fmt: skip
+    rows: list[str] = []
+    for what, symbols in parts:
+        listed = ", ".join(symbol.name for symbol in symbols) or "none"
+        # Less the marks of a comment of its own.
+        rows += comment(f"{what}: {listed}")
+    names = "\n".join(f" * {row.removeprefix('/* ').removesuffix(' */')}" for row in rows)
+    title = comment(name)[0].removeprefix("/* ").removesuffix(" */")
+    count = sum(operations(code) for code in _blocks(program))
+    text = _HEAD.format(
+        name=title, version=version("bondgraph-toolkit"), operations=count, names=names
+    )
+    return text.splitlines() + [""]
+
+
+def _blocks(program: Program) -> tuple[Block, ...]:
+    groups = (program.known, *program.groups, program.coupled)
+    return (
+        program.coefficients, *(group.values for group in groups), program.known_rates,
+        program.friction_values,
+    )  # fmt: skip
+
+
+def _functions(program: Program) -> list[str]:
+    """The blocks of the program as functions."""
+    where = places(program)
+    rows = [
+        ("bg_coefficients", "Nonzero entries of A, J, B, E, F, D, H, K", program.coefficients),
+        ("bg_known_rates", "Rates of what known laws give", program.known_rates),
+        ("bg_friction_values", "Level, breakaway level, curve and curve at rest of each friction port",
+         program.friction_values),
+    ]  # fmt: skip
+    lines: list[str] = []
+    for name, what, code in rows:
+        lines += function(name, what, code, where, local=False)
+    lines += function("known_values", "What known laws give", program.known.values, where)
+    for at, group in enumerate(program.groups):
+        ports = ", ".join(str(port) for port in group.ports)
+        lines += function(f"group_{at}_values", f"What {ports} gives", group.values, where)
+    coupled = program.coupled.values
+    return [*lines, *function("coupled_values", "Laws solved with friction", coupled, where)]

@@ -1,0 +1,151 @@
+"""The sizes and tables of a program as C."""
+
+from collections.abc import Iterable, Sequence
+
+import sympy as sp
+
+from bondgraph import StateEquations
+from codegen.c.rhs import Straight
+from codegen.c.structure import Structure
+from codegen.c.text import array, comment, doubles, integers, quoted, strings
+from codegen.program import Group, Program
+
+MOST_HOLDS = 4
+"""Holding equations of all sets of so many friction ports are kept once they are found."""
+
+
+def config(program: Program, fast: Straight | None, name: str) -> str:
+    """config.h: the sizes of everything."""
+    lines = [*comment(f"Sizes of {name}; written by bondgraph-toolkit."), "#ifndef BG_CONFIG_H"]
+    lines += ["#define BG_CONFIG_H", ""]
+    lines += [f"#define BG_{key} {value}" for key, value in _sizes(program, fast).items()]
+    return "\n".join([*lines, "", "#endif", ""])
+
+
+def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:
+    ports, coupled = len(program.friction), len(program.coupled.inputs)
+    sizes = [len(group.inputs) for group in program.groups]
+    loops = [len(group.inputs) for group in program.groups if group.loop]
+    largest = max(1, coupled, len(program.known.inputs), *sizes)
+    return {
+        "STATES": len(program.states),
+        "LAW_STATES": len(program.law_states),
+        "INPUTS": len(program.inputs),
+        "EXTERNAL": len(program.external),
+        "OUTSIDE": sum(name in program.inputs for name in program.external),
+        "READINGS": len(program.readings),
+        "OUTPUTS": len(program.outputs),
+        "PARAMETERS": len(program.parameters),
+        "ENTRIES": len(program.coefficients.results),
+        "GROUPS": len(program.groups),
+        "LARGEST": largest,
+        "LOOP": max([ports + coupled if program.joint else 0, *loops]),
+        "FRICTION": ports,
+        "HOLDS": 1 if program.varying or ports > MOST_HOLDS else 2**ports,
+        "CONSTANTS": len(fast.constants) if fast else 0,
+        "VARYING": int(program.varying),
+        "AFFINE": int(program.affine),
+        "JOINT": int(program.joint),
+        "DRIVEN": int(bool(program.layout["E"].rows)),
+        "RATED": int(any(program.layout[letter].rows for letter in "EDHK")),
+        "STRAIGHT": int(fast is not None),
+    }
+
+
+def name_tables(program: Program, equations: StateEquations, name: str) -> list[str]:
+    """Names and units, for whoever calls the model."""
+    units = _units(equations)
+    lines = [f"const char *const bg_model_name = {quoted(name)};"]
+    groups = (
+        ("state", (*program.states, *program.law_states)),
+        ("input", program.external),
+        ("output", program.outputs),
+    )
+    for what, symbols in groups:
+        lines += strings(f"bg_{what}_names", _names(symbols))
+        lines += strings(f"bg_{what}_units", [units.get(symbol, "") for symbol in symbols])
+    lines += strings("bg_parameter_names", _names(program.parameters))
+    return [*lines, *strings("bg_friction_names", [str(port.name) for port in program.friction])]
+
+
+def _names(symbols: Iterable[sp.Symbol]) -> list[str]:
+    return [symbol.name for symbol in symbols]
+
+
+def _units(equations: StateEquations) -> dict[sp.Symbol, str]:
+    """What elements tell of their unit: that of what they give, or of their state."""
+    units: dict[sp.Symbol, str] = {}
+    for element in equations.elements.values():
+        for symbol in (element.given, element.effort, element.flow):
+            if element.unit and symbol in {*equations.states, *equations.inputs}:
+                units.setdefault(symbol, element.unit)
+    return units
+
+
+def program_tables(
+    program: Program, defaults: Sequence[float], beside: Sequence[bool]
+) -> list[str]:
+    """Places of laws, friction ports, readings and outputs in the arrays."""
+    readings = list(program.readings)
+    friction, known = program.friction, set(program.known.inputs)
+    outside = [program.inputs.index(one) for one in program.external if one in program.inputs]
+    rubbed = {port.input for port in friction}
+    differentiable = [int(j in known | rubbed | {*outside}) for j in range(len(program.inputs))]
+    tables: list[tuple[str, Sequence[int]]] = [
+        ("bg_law_rates", program.law_rates),
+        ("bg_friction_inputs", [port.input for port in friction]),
+        ("bg_friction_readings", [port.reading for port in friction]),
+        ("bg_beside", [int(one) for one in beside]),
+        ("bg_outside_inputs", outside),
+        ("bg_differentiable", differentiable),
+        ("bg_output_readings", [readings.index(one) for one in program.outputs]),
+    ]
+    lines = doubles("bg_defaults", defaults)
+    for name, numbers in tables:
+        lines += integers(name, numbers)
+    return [*lines, "", *_layout(program)]
+
+
+def _layout(program: Program) -> list[str]:
+    """Where the entries of each matrix stand."""
+    lines, rows = [], []
+    for letter, pattern in program.layout.items():
+        lines += integers(f"rows_{letter}", pattern.rows, local=True)
+        lines += integers(f"columns_{letter}", pattern.columns, local=True)
+        rows.append(f"{{{len(pattern.rows)}, rows_{letter}, columns_{letter}}}")
+    return [*lines, *array("const bg_pattern bg_layout[BG_MATRICES]", rows)]
+
+
+def structure_table(found: Sequence[Structure]) -> list[str]:
+    """What holds each set of sticking ports, by its bits."""
+    rows = []
+    for one in found:
+        parts = (one.direct, one.direct_columns, one.null, one.kept, one.kept_columns)
+        listed = ", ".join(f"{{{', '.join(map(str, part)) or '0'}}}" for part in parts)
+        rows.append(f"{{{len(one.direct)}, {len(one.null)}, {len(one.kept)}, {listed}}}")
+    return array("const bg_structure bg_structures[]", rows)
+
+
+def group_tables(program: Program) -> list[str]:
+    """The groups of laws in their order, with the functions that evaluate them."""
+    lines: list[str] = []
+    for at, group in enumerate(program.groups):
+        lines += _places(f"group_{at}", group)
+    lines += [*_places("known", program.known), *_places("coupled", program.coupled)]
+    lines += [f"const bg_group bg_known = {_entry('known', program.known)};"]
+    lines += [f"const bg_group bg_coupled = {_entry('coupled', program.coupled)};"]
+    rows = [_entry(f"group_{at}", group) for at, group in enumerate(program.groups)]
+    nothing = _entry("known", program.known)
+    return [*lines, *array("const bg_group bg_groups[]", rows, nothing)]
+
+
+def _places(name: str, group: Group) -> list[str]:
+    return [
+        *integers(f"{name}_inputs", group.inputs, local=True),
+        *integers(f"{name}_readings", group.readings, local=True),
+    ]
+
+
+def _entry(name: str, group: Group) -> str:
+    count, loop = len(group.inputs), int(group.loop)
+    return f"{{{count}, {loop}, {name}_inputs, {name}_readings, {name}_values}}"

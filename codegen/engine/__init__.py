@@ -1,0 +1,1 @@
+"""Runs in compiled C: the engine's sizes, its tables, its inputs."""

@@ -1,0 +1,101 @@
+"""A model's friction modes as the tables that the C engine steps by."""
+
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+
+from codegen.arrays import Array
+from codegen.engine.sizes import Engine, view
+from codegen.model.affine import AffineMap
+from codegen.model.closed import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, ClosedModel, Mode
+
+STATES = 0
+"""Where the states stand in an affine map."""
+
+
+def mode_of(number: int, ports: int) -> Mode:
+    """The mode of a number in base 3, the first port its lowest digit.
+
+    >>> mode_of(0, 2), mode_of(1, 2), mode_of(6, 2)
+    ((0, 0), (1, 0), (0, -1))
+    """
+    return tuple((0, 1, -1)[number // 3**i % 3] for i in range(ports))
+
+
+class Tables:
+    """The engine's record of a model; modes are worked out as runs ask for them."""
+
+    def __init__(self, engine: Engine, model: ClosedModel) -> None:
+        self.engine, self.model = engine, model
+        self.record = engine.new("bg_model")
+        self._modes: dict[int, Any] = {}
+        self._magnitudes()
+
+    def supply(self, number: int) -> None:
+        """Work out a mode."""
+        made = self.engine.new("bg_mode")
+        mode = mode_of(number, self.engine.sizes.K)
+        affine = self.model.affine_map(mode, len(self.model.program.external))
+        if affine is not None:
+            self._fill(made, mode, affine)
+        self._modes[number] = made
+        self.record.modes[number] = made
+
+    def _magnitudes(self) -> None:
+        model, numbers, engine = self.model, self.model.constant, self.engine
+        n, m, K = len(model.program.states), len(model.program.inputs), engine.sizes.K
+        rows = model.friction_readings
+        F, D = numbers.F[rows], numbers.D[rows]
+        for name, matrix in (
+            ("F", F), ("D", D), ("FP", F @ numbers.P), ("FQ", F @ numbers.Q),
+            ("P", numbers.P), ("Q", numbers.Q),
+        ):  # fmt: skip
+            field = getattr(self.record, name)
+            columns = view(engine, field, len(field), -1)
+            columns[: matrix.shape[1], : matrix.shape[0]] = np.abs(matrix).T
+        for i, column in enumerate(model.friction_inputs):
+            own = abs(float(F[i] @ numbers.Q[:, column])) + abs(float(D[i, column]))
+            self.record.inertia[i] = own if n and m else 0.0
+            self.record.coupled[i] = model.coupled_directly(i)
+        assert len(rows) == K
+
+    def _fill(self, made: Any, mode: Mode, affine: AffineMap) -> None:
+        model, size = self.model, self.engine.sizes.numbers
+        parts = _parts(model, affine)
+        at, lengths = 0, (size["X"], size["U"], *[size["PORTS"]] * 4, size["N"])
+        shot = view(self.engine, made.shot, size["L"], size["SHOT"])
+        for rows, length in zip(parts, lengths, strict=True):
+            shot[:, at : at + len(rows)] = self._wide(rows).T
+            at += length
+        made.supported = 1
+        made.fastest = affine.fastest
+        own = affine.rows(RATE)[:, : model.size]
+        scale = scipy.linalg.matrix_balance(own, permute=False, separate=True)[1][0]
+        view(self.engine, made.weight)[:] = 1 / scale
+        if 0 in mode:
+            held = model.hold(mode, model.constant)
+            rest = held.slip_x @ affine.rows(STATES) + held.slip_u @ affine.rows(INPUTS)
+            made.held = len(rest)
+            view(self.engine, made.left, size["L"], -1)[:, : len(rest)] = self._wide(rest).T
+            away = view(self.engine, made.take_away, -1, size["N"])
+            away[: len(rest), : len(held.take_away)] = held.take_away.T
+
+    def _wide(self, rows: Array) -> Array:
+        """Rows over (s, w, w', 1), with columns for an input where there is none."""
+        n, w, W = self.model.size, len(self.model.program.external), self.engine.sizes.W
+        wide = np.zeros((len(rows), n + 2 * W + 1))
+        wide[:, : n + w] = rows[:, : n + w]
+        wide[:, n + W : n + W + w] = rows[:, n + w : n + 2 * w]
+        wide[:, -1] = rows[:, -1]
+        return wide
+
+
+def _parts(model: ClosedModel, affine: AffineMap) -> list[Array]:
+    """Rows of states, inputs, slips, friction efforts, caps, how fast slips change, and rates."""
+    numbers, readings = model.constant, model.friction_readings
+    x, u, du = (affine.rows(part) for part in (STATES, INPUTS, RATES_OF_INPUTS))
+    moving = numbers.P @ x + numbers.Q @ u + numbers.R @ du
+    pushes = numbers.F[readings] @ moving + numbers.D[readings] @ du
+    efforts, slips = u[model.friction_inputs], affine.rows(READINGS)[readings]
+    return [x, u, slips, efforts, affine.rows(CAPS), pushes, affine.rows(RATE)]

@@ -1,0 +1,212 @@
+"""Runs of affine models by the C engine; what it cannot do is left to the numpy loop."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from bondgraph import SignalError
+from codegen.arrays import Array
+from codegen.engine.build import FLAGS, check_tools
+from codegen.engine.inputs import Packed, Segments, segments
+from codegen.engine.modes import Tables, mode_of
+from codegen.engine.sizes import MOST_PORTS, Engine, aligned, engine, sizes
+from codegen.inputs.signals import Signal
+from codegen.model.affine import is_affine
+from codegen.model.closed import ClosedModel
+from codegen.program import Block, Program
+from codegen.runs.events import Event
+from codegen.runs.legs import Track
+
+KINDS = ("stick", "slip", "cross")
+
+CAPACITY = 256
+"""Events there is room for at first."""
+
+
+class Status(IntEnum):
+    """How a run of the engine ended; see ``bg_engine.h``."""
+
+    OK = 0
+    MISSING = 1
+    UNSUPPORTED = 2
+    NEGATIVE = 3
+    UNDECIDED = 4
+    STALLS = 5
+    STIFF = 6
+    FULL = 7
+    WORK = 8
+    UNUSABLE = 9
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the engine said of a run; ``track`` is None unless it is whole."""
+
+    status: Status
+    time: float
+    track: Track | None
+
+
+@dataclass
+class Prepared:
+    """One run ready to be started: the engine's records, and the arrays they point to.
+
+    The engine only points to what this keeps: it must be alive while its ``arguments`` are used.
+    ``rows``: a sample in each, the integrated vector in front. ``grid`` [s]: the distance of samples.
+    """
+
+    engine: Engine
+    tables: Tables
+    context: tuple[Array, Any]
+    inputs: Packed
+    times: Array
+    start: Array
+    rows: Array
+    modes: Array
+    grid: float
+    capacity: int = CAPACITY
+    events: Any = field(init=False)
+    task: Any = field(init=False)
+
+    def __post_init__(self) -> None:
+        ffi = self.engine.ffi
+        self.task = self.engine.new("bg_task")
+        width = self.engine.sizes.numbers["ROW"]
+        self.task.times = ffi.cast("double *", self.times.ctypes.data)
+        self.task.start = ffi.cast("double *", self.start.ctypes.data)
+        self.task.rows = ffi.cast(f"double(*)[{width}]", self.rows.ctypes.data)
+        self.task.modes = ffi.cast("int *", self.modes.ctypes.data)
+        self.task.samples, self.task.grid = len(self.times), self.grid
+        self._room()
+
+    def call(self) -> Status:
+        """Run, as often as it takes to supply modes and room for events."""
+        library, arguments = self.engine.library, self.arguments
+        while True:
+            status = Status(library.bg_run(*arguments))
+            if status == Status.MISSING:
+                self.tables.supply(self.task.where)
+            elif status == Status.FULL and self.capacity < 1 << 20:
+                self.capacity *= 8
+                self._room()
+            else:
+                return status
+
+    @property
+    def arguments(self) -> tuple[Any, ...]:
+        """What the engine's functions take."""
+        return self.context[1], self.tables.record, self.inputs.record, self.task
+
+    def track(self, model: ClosedModel) -> Track:
+        """The record of the run."""
+        names = [port.name for port in model.program.friction]
+        known = {n: mode_of(n, len(names)) for n in np.unique(self.modes).tolist()}
+        events = [
+            Event(event.time, names[event.port], KINDS[event.kind])
+            for event in self.events[0 : self.task.count]
+        ]
+        vectors = self.rows[:, : model.size].copy()
+        largest = np.abs(vectors).max(axis=0)
+        modes = [known[number] for number in self.modes.tolist()]
+        return Track(vectors, modes, largest, events, len(vectors))
+
+    def _room(self) -> None:
+        self.events = self.engine.ffi.new("bg_event[]", self.capacity)
+        self.task.events, self.task.capacity = self.events, self.capacity
+
+
+class CRuns:
+    """The engine for one model: compiled for each size of its inputs' generators, tables kept."""
+
+    def __init__(self, model: ClosedModel, flags: Sequence[str] = FLAGS) -> None:
+        check_affine(model.program)
+        check_tools()
+        self.model, self._flags = model, tuple(flags)
+        self._ready: dict[int, tuple[Tables, tuple[Array, Any]]] = {}
+
+    def run(self, times: Array, start: Array, signals: Sequence[Signal]) -> Outcome:
+        """Run and record; the status tells why there is no track, if there is none."""
+        prepared = self.prepare(times, start, signals)
+        status = prepared.call()
+        track = prepared.track(self.model) if status == Status.OK else None
+        return Outcome(status, prepared.task.time, track)
+
+    def prepare(self, times: Array, start: Array, signals: Sequence[Signal]) -> Prepared:
+        """Everything that a run needs."""
+        made = segments(signals, float(times[0]), float(times[-1]))
+        tables, context = self._tables(made)
+        return Prepared(
+            tables.engine,
+            tables,
+            context,
+            Packed(tables.engine, made),
+            np.ascontiguousarray(times, dtype=np.float64),
+            np.ascontiguousarray(start, dtype=np.float64),
+            aligned(len(times), tables.engine.sizes.numbers["ROW"]),
+            np.empty(len(times), dtype=np.intc),
+            grid_of(times),
+        )
+
+    def _tables(self, made: Segments) -> tuple[Tables, tuple[Array, Any]]:
+        wanted = sizes(self.model, made.slots)
+        if wanted.G not in self._ready:
+            compiled = engine(wanted, self._flags)
+            self._ready[wanted.G] = Tables(compiled, self.model), compiled.context()
+        return self._ready[wanted.G]
+
+
+def check_affine(program: Program) -> None:
+    """Refuse models that are not affine in each friction mode, naming the law; `SignalError`."""
+    reason = not_affine(program)
+    if reason is not None:
+        raise SignalError(
+            f"backend 'c' runs models that are affine in each friction mode: {reason}; "
+            "use backend='numpy'"
+        )
+
+
+def not_affine(program: Program) -> str | None:
+    """Why a model is not affine in each friction mode; None if it is."""
+    if program.guards.results:
+        return "this one has guards"
+    if len(program.friction) > MOST_PORTS:
+        return f"{len(program.friction)} friction ports are more than {MOST_PORTS}"
+    if program.affine:
+        return None
+    if program.varying:
+        return "values of this one change in time"
+    if program.joint:
+        return f"the friction at {program.friction[0].name!r} acts back at once on laws or itself"
+    groups = [program.known, program.coupled, *program.groups]
+    looped = next((group for group in groups if group.loop and group.ports), None)
+    if looped is not None:
+        return f"the laws at {', '.join(map(repr, looped.ports))} have to be solved for"
+    ports = [port for group in groups for port in group.ports]
+    laws = [law for group in groups for law in _expressions(group.values)]
+    ports += [port.name for port in program.friction for _ in range(4)]
+    laws += _expressions(program.friction_values)
+    parameters = {name.name for name in program.parameters}
+    for port, law in zip(ports, laws, strict=True):
+        if not is_affine([law], parameters):
+            return f"the law at {port!r} is {law}"
+    return "a law of this one is not"
+
+
+def _expressions(block: Block) -> list[sp.Expr]:
+    """A block's results, written out."""
+    results = list(block.results)
+    for name, value in reversed(block.assignments):
+        results = [result.xreplace({name: value}) for result in results]
+    return results
+
+
+def grid_of(times: Array) -> float:
+    """The distance of samples that are alike but for rounding; 0 where they are not."""
+    step = float(times[-1] - times[0]) / (len(times) - 1)
+    even = times[0] + step * np.arange(len(times))
+    rounding = 8 * np.spacing(np.abs(times).max())
+    return step if np.abs(times - even).max() <= min(rounding, 1e-9 * step) else 0.0

@@ -1,0 +1,139 @@
+"""The sizes that the C engine is compiled for, its library, and its arrays as numpy sees them."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+
+from bondgraph import SimulationError
+from codegen.arrays import Array
+from codegen.engine.build import FLAGS, compiled, loaded
+from codegen.model.closed import ClosedModel
+
+MOST_PORTS = 6
+"""Friction ports; a mode's place in the table is one of three to this power."""
+
+ALIGNMENT = 64
+"""Of arrays that the engine works on, in bytes; a power of two."""
+
+SLOTS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
+"""Sizes of generators that engines are compiled for."""
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """What ``config.h`` says: lengths of s, x and u, external inputs, friction ports, slots."""
+
+    N: int
+    X: int
+    U: int
+    W: int
+    K: int
+    G: int
+
+    @property
+    def config(self) -> str:
+        """The generated header."""
+        named = {**vars(self), "MODES": 3**self.K}
+        lines = ",\n".join(f"    BG_{name} = {value}" for name, value in named.items())
+        return f"/* The sizes of one model. */\nenum {{\n{lines}\n}};\n"
+
+    @property
+    def numbers(self) -> dict[str, int]:
+        """Every size that declarations use."""
+        ports = max(self.K, 1)
+        row = -(-(self.N + self.G + 4 * self.K) // 4) * 4
+        shot = -(-(self.X + self.U + 4 * ports + self.N) // 4) * 4
+        return {
+            **vars(self), "MODES": 3**self.K, "PORTS": ports, "ROW": row, "SHOT": shot,
+            "L": self.N + 2 * self.W + 1,
+        }  # fmt: skip
+
+
+def sizes(model: ClosedModel, slots: int) -> Sizes:
+    """The sizes of an engine for a model whose inputs' generators have so many slots."""
+    program = model.program
+    return Sizes(
+        N=model.size,
+        X=max(len(program.states), 1),
+        U=max(len(program.inputs), 1),
+        W=max(len(program.external), 1),
+        K=len(program.friction),
+        G=next((size for size in SLOTS if size >= slots), slots),
+    )
+
+
+@dataclass(frozen=True)
+class Engine:
+    """A compiled engine: cffi's interface and the library."""
+
+    sizes: Sizes
+    ffi: Any
+    library: Any
+
+    def new(self, what: str) -> Any:
+        """A zeroed record, alive as long as it is referred to."""
+        return self.ffi.new(f"{what} *")
+
+    def context(self) -> tuple[Array, Any]:
+        """Room for runs, one at a time, and where it is."""
+        room = self.ffi.new("unsigned long[5]")
+        self.library.bg_sizes(room)
+        context = aligned(room[0] // 8 + 1)
+        pointer = self.ffi.cast("bg_context *", context.ctypes.data)
+        self.library.bg_forget(pointer)
+        return context, pointer
+
+
+def sources() -> dict[str, str]:
+    """The engine's files, name to text."""
+    folder = files("codegen") / "runtime"
+    found = [entry for entry in folder.iterdir() if entry.name.startswith("bg_")]
+    return {entry.name: entry.read_text(encoding="utf-8") for entry in found}
+
+
+@cache
+def engine(wanted: Sizes, flags: tuple[str, ...] = FLAGS) -> Engine:
+    """The engine of these sizes, compiled if need be."""
+    library = compiled({**sources(), "config.h": wanted.config}, flags)
+    ffi, opened = loaded(library, declarations("bg_engine.h", wanted.numbers))
+    expected = ffi.new("unsigned long[5]")
+    opened.bg_sizes(expected)
+    here = [ffi.sizeof(name) for name in ("bg_model", "bg_mode", "bg_chains")]
+    if [*here, 8 * wanted.numbers["ROW"]] != list(expected)[1:]:
+        raise SimulationError(f"the library {library} was compiled for other sizes; delete it")
+    return Engine(wanted, ffi, opened)
+
+
+def aligned(*shape: int) -> Array:
+    """An array of doubles, not set, that begins where vectors may."""
+    count = int(np.prod(shape))
+    room = np.empty(count + ALIGNMENT // 8)
+    first = -room.ctypes.data % ALIGNMENT // 8
+    return room[first : first + count].reshape(shape)
+
+
+def view(engine: Engine, field: Any, *shape: int) -> Array:
+    """An array of doubles inside a record, without a copy."""
+    array: Array = np.frombuffer(engine.ffi.buffer(field), dtype=np.float64)
+    return array.reshape(shape) if shape else array
+
+
+def declarations(header: str, numbers: Mapping[str, int], prefix: str = "BG") -> str:
+    """A header as cffi reads it: without comments, and with its sizes as numbers."""
+    text = runtime_file(header)
+    text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+    text = "\n".join(line for line in text.splitlines() if not line.startswith("#"))
+    text = re.sub(r"enum \{.*?\};", "", text, count=1, flags=re.DOTALL)
+    for name, value in numbers.items():
+        text = re.sub(rf"\b{prefix}_{name}\b", str(value), text)
+    return text
+
+
+def runtime_file(name: str) -> str:
+    """The text of a hand-written file."""
+    return files("codegen").joinpath("runtime", name).read_text(encoding="utf-8")

@@ -1,0 +1,195 @@
+"""`write_fmu`: a model as a functional mock-up unit, for model exchange and co-simulation."""
+
+import hashlib
+import io
+import math
+import os
+import zipfile
+from collections.abc import Iterable, Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bondgraph import BondGraphError, SignalError, StateEquations
+from bondgraph.expressions import normal
+from codegen.c.export import to_c
+from codegen.fmu.binaries import binaries, chosen_platforms, headers
+from codegen.fmu.model import FmuModel, config_text, model_text
+from codegen.fmu.switches import switching
+from codegen.fmu.variables import Starts, variables
+from codegen.fmu.xml import build_description, description
+from codegen.identifiers import identifiers
+from codegen.inputs.signals import Constant, Signal, as_signal
+from codegen.program import Program
+from codegen.runs.arguments import initial_values
+from codegen.runs.legs import Leg, Settings
+from codegen.simulate import Simulator, simulator
+
+_COMMON = ("common.c", "sources.c", "scales.c", "modes.c", "events.c", "step.c", "derive.c")
+
+GLUE: Mapping[str, tuple[str, ...]] = {
+    "2.0": (
+        "fmu_common.h", *(f"fmu_{name}" for name in _COMMON), "fmu2.h", "fmu2.c", "fmu2_modes.c",
+    ),
+    "3.0": (
+        "fmu_common.h", *(f"fmu_{name}" for name in _COMMON), "fmu3.h", "fmu3.c", "fmu3_modes.c",
+        "fmu3_refused.c",
+    ),
+}  # fmt: skip
+"""C sources that are the same for every unit, by FMI version."""
+
+_DATE = (1980, 1, 1, 0, 0, 0)
+
+
+def write_fmu(
+    path: str | os.PathLike[str],
+    equations: StateEquations,
+    parameters: Mapping[str, object],
+    laws: Mapping[Any, object] | None = None,
+    version: str = "2.0",
+    initial: Mapping[str, float] | None = None,
+    inputs: Mapping[str, object] | None = None,
+    name: str | None = None,
+    platforms: str | Iterable[str] | None = None,
+) -> Path:
+    """The equations, closed by laws, as an FMU of FMI ``version`` "2.0" or "3.0"; its path.
+
+    ``parameters``, ``laws``, ``initial``: as `simulator` and its ``run`` take them. ``inputs``: a signal is a
+    source inside the unit, a number is where an input of the unit starts; all others start at 0.
+    ``name``: of the model, the path's stem if none is given. ``platforms``: names such as
+    "x86_64-windows", "all" for every one, this machine's if none is given; see `PLATFORMS`.
+
+    The same arguments and compilers give the same bytes. Raises what `to_c` raises, `SignalError` for
+    unusable arguments, `MissingExtraError` without the extra ``export``.
+    """
+    if version not in GLUE:
+        raise SignalError(f"FMI version {version!r}: there is {', '.join(GLUE)}")
+    target = Path(path)
+    chosen = chosen_platforms(platforms)
+    official = headers(version)
+    model = _model(name or target.stem, equations, parameters, laws, initial or {}, inputs or {})
+    code = to_c(equations, parameters, laws, name=model.name)
+    sources = code | {file: _glue(file) for file in GLUE[version]}
+    sources |= {"fmu_model.c": model_text(model), **official}
+    units = sorted(file for file in sources if file.endswith(".c"))
+    token = _token(sources, description(model, version, "", units), config_text(model, ""))
+    sources["fmu_config.h"] = config_text(model, token)
+    entries = {f"sources/{file}": text.encode() for file, text in sources.items()}
+    entries["modelDescription.xml"] = description(model, version, token, units).encode()
+    if version == "3.0":
+        built = build_description(model.identifier, units)
+        entries["sources/buildDescription.xml"] = built.encode()
+    entries |= binaries(sources, model.identifier, chosen, version)
+    target.write_bytes(_zipped(entries))
+    return target
+
+
+def _model(
+    name: str,
+    equations: StateEquations,
+    parameters: Mapping[str, object],
+    laws: Mapping[Any, object] | None,
+    initial: Mapping[str, float],
+    inputs: Mapping[str, object],
+) -> FmuModel:
+    """Everything about the unit but its sources."""
+    ready = simulator(equations, parameters, laws)
+    program, exact = ready.closed.program, ready.closed.parameters
+    signals = _signals(ready, inputs)
+    inside = {at: one for at, one in enumerate(signals) if not isinstance(one, float)}
+    every = [Constant(one) if isinstance(one, float) else one for one in signals]
+    ready.check_steps(every, np.array([0.0, math.inf]))
+    start = initial_values(initial, ready.states)
+    shortest = _shortest(ready, start.tolist(), every)
+    switches = switching(program)
+    starts = Starts(
+        [float(exact[symbol.name]) for symbol in program.parameters],
+        start.tolist(),
+        [one if isinstance(one, float) else 0.0 for one in signals],
+        frozenset(inside),
+        _internal_step(shortest),
+    )
+    return FmuModel(
+        name,
+        _identifier(name),
+        program,
+        equations,
+        variables(program, equations, starts, _indicators(program) + len(switches)),
+        starts,
+        tuple(sorted(inside.items())),
+        switches,
+        shortest,
+    )
+
+
+def _indicators(program: Program) -> int:
+    return 2 * len(program.friction)
+
+
+def _signals(ready: Simulator, inputs: Mapping[str, object]) -> list[Signal | float]:
+    """For each input the source inside, or the number where it starts."""
+    if not isinstance(inputs, Mapping):
+        raise SignalError(f"inputs must map names to values, not be {inputs!r}")
+    given = {str(normal(key)): value for key, value in inputs.items()}
+    for key in given:
+        if key not in ready.inputs:
+            known = ", ".join(ready.inputs) or "none"
+            raise SignalError(f"unknown input {key!r}; the model's inputs are {known}")
+    found: list[Signal | float] = []
+    for key in ready.inputs:
+        signal = as_signal(given.get(key, 0.0), key)
+        found.append(signal if isinstance(given.get(key), Signal) else signal(0.0))
+    return found
+
+
+def _shortest(ready: Simulator, start: list[float], signals: list[Signal]) -> float:
+    """The shortest time constant [s] at the start, friction slipping."""
+    pieces = [signal.piece(0.0) for signal in signals]
+    mode = tuple(1 for _ in ready.closed.program.friction)
+    settings = Settings("auto", 1e-10, 1e-11)
+    try:
+        with np.errstate(all="ignore"):
+            given = np.array([signal(0.0) for signal in signals])
+            vector = ready.vector(0.0, np.array(start), given)
+            fastest = Leg(ready.closed, pieces, mode, settings, 1.0).fastest(0.0, vector)
+    except BondGraphError:
+        return 1e-2
+    return 1 / max(fastest, 100.0)
+
+
+def _internal_step(shortest: float) -> float:
+    """A round length, a fifth of the shortest time constant or less, a millisecond at most."""
+    longest = min(1e-3, shortest / 5)
+    power = 10.0 ** math.floor(math.log10(longest))
+    digit = max(one for one in (1, 2, 5) if one * power <= longest * (1 + 1e-9))
+    return float(f"{digit}e{round(math.log10(power))}")
+
+
+def _identifier(name: str) -> str:
+    return identifiers([name], "c")[name]
+
+
+def _glue(name: str) -> str:
+    return files("codegen").joinpath("runtime", name).read_text(encoding="utf-8")
+
+
+def _token(sources: Mapping[str, str], *more: str) -> str:
+    """A hash of everything the unit is made of."""
+    parts = [*more, *(f"{name}\0{sources[name]}" for name in sorted(sources))]
+    text = hashlib.sha256("\0".join(parts).encode()).hexdigest()
+    return f"{{{text[:8]}-{text[8:12]}-{text[12:16]}-{text[16:20]}-{text[20:32]}}}"
+
+
+def _zipped(entries: Mapping[str, bytes]) -> bytes:
+    """An archive in which nothing depends on when or where it is made."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in sorted(entries):
+            about = zipfile.ZipInfo(name, _DATE)
+            about.compress_type = zipfile.ZIP_DEFLATED
+            about.create_system = 3
+            about.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
+            archive.writestr(about, entries[name])
+    return buffer.getvalue()

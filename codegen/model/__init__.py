@@ -1,0 +1,1 @@
+"""A program with numbers: everything at one instant, in each friction mode."""

@@ -1,0 +1,89 @@
+"""One instant under evaluation, and program blocks as functions of it."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from bondgraph import SimulationError
+from bondgraph.expressions import TIME
+from codegen.arrays import Array
+from codegen.model.numbers import Numbers
+from codegen.model.numpy_backend import compiled
+from codegen.program import Block, Program
+
+
+@dataclass
+class Instant:
+    """Every variable at one time; inputs ``u`` and readings ``y`` are completed law by law.
+
+    ``x``, ``z``: states, and states that laws own. ``du``: rates of those inputs that have one. ``w``,
+    ``dw``: external inputs and their rates. ``caps``: breakaway efforts of the friction ports.
+    ``numbers``: the matrices, as they are at this instant.
+    """
+
+    t: float
+    x: Array
+    z: Array
+    u: Array
+    du: Array
+    y: Array
+    w: Array
+    dw: Array
+    caps: Array
+    numbers: Numbers
+
+    def give(self, columns: Sequence[int], values: Array, D: Array) -> None:
+        """Add to inputs, and to the readings that show them at once."""
+        index = list(columns)
+        self.u[index] += values
+        self.y += D[:, index] @ values
+
+
+Evaluation = Callable[[Instant], Array]
+
+
+class Binding:
+    """Blocks of a program with its parameters' numbers filled in."""
+
+    def __init__(self, program: Program, parameters: Mapping[str, sp.Rational]) -> None:
+        self._places = _places(program)
+        self._constants = np.array([float(parameters[name.name]) for name in program.parameters])
+
+    def function(self, code: Block) -> Evaluation:
+        """A block as a function of an instant, giving its results as an array."""
+        if not code.results:
+            return lambda now: np.zeros(0)
+        run = compiled(code)
+        indices = [self._places[name] for name in code.arguments]
+
+        def evaluate(now: Instant) -> Array:
+            pool = np.concatenate(
+                ((now.t,), now.x, now.z, now.y, now.u, now.w, now.dw, self._constants)
+            )
+            try:
+                return _real(run(*pool[indices].tolist()))
+            except (ArithmeticError, TypeError) as error:
+                raise SimulationError(f"at t = {now.t:g} a law has no value: {error}") from None
+
+        return evaluate
+
+
+def _real(values: list[Any]) -> Array:
+    """Results as an array; `TypeError` for a complex one."""
+    return np.array([float(value) for value in values])
+
+
+def _places(program: Program) -> dict[sp.Symbol, int]:
+    """Where each name's value stands in the pool; a parameter before an input that it holds."""
+    listed = [
+        TIME, *program.states, *program.law_states, *program.readings, *program.inputs,
+        *program.external, *program.external_rates, *program.parameters,
+    ]  # fmt: skip
+    first_parameter = len(listed) - len(program.parameters)
+    places = {name: first_parameter + at for at, name in enumerate(program.parameters)}
+    for at, name in enumerate(listed[:first_parameter]):
+        places.setdefault(name, at)
+    return places

@@ -1,0 +1,104 @@
+"""Laws that determine one another at one instant: a bounded search for their common solution."""
+
+from collections.abc import Callable, Hashable, Iterator, Sequence
+
+import numpy as np
+import scipy.optimize
+
+from bondgraph import SimulationError
+from codegen.arrays import Array
+from codegen.model.instant import Instant
+
+RESIDUAL = 1e-9
+"""A solution must satisfy its laws to this fraction of their magnitude."""
+
+ITERATIONS = 60
+
+Residual = Callable[[Array], Array]
+
+
+def solve_loop(
+    now: Instant,
+    columns: Sequence[int],
+    rows: Sequence[int],
+    D: Array,
+    residual: Callable[[Instant], Array],
+    names: Sequence[Hashable],
+) -> None:
+    """Find the inputs at ``columns`` for which ``residual`` vanishes, and complete the instant.
+
+    ``rows``: what the laws' ports receive. Raises `SimulationError`, naming the ports, if no solution
+    is found.
+    """
+    u, y = now.u.copy(), now.y.copy()
+
+    def left(values: Array) -> Array:
+        now.u[:], now.y[:] = u, y
+        now.give(columns, values, D)
+        return np.nan_to_num(residual(now), nan=1e300, posinf=1e300, neginf=-1e300)
+
+    worst = np.inf
+    for values in _attempts(left, D[np.ix_(rows, columns)], y[list(rows)]):
+        worst = float(np.abs(left(values)).max(initial=0.0))
+        if worst <= RESIDUAL * (1e-3 + float(np.abs(values).max(initial=0.0))):
+            return
+    listed = ", ".join(repr(name) for name in names)
+    raise SimulationError(
+        f"at t = {now.t:g} the laws at {listed} depend on one another and no solution was found "
+        f"(residual {worst:.3g}); check the laws, or put a storage between"
+    )
+
+
+def _attempts(left: Residual, D: Array, open_y: Array) -> Iterator[Array]:
+    """Candidate solutions, the surest way first.
+
+    ``open_y`` is what the ports would receive if the laws gave nothing. A law that dissipates has its
+    solution between there and where its port receives nothing: that bounds a single law, and is where
+    Newton's iteration starts for several.
+    """
+    size = len(open_y)
+    nothing_received: Array = np.zeros(size)
+    if np.linalg.matrix_rank(D) == size:
+        nothing_received = np.asarray(np.linalg.solve(D, -open_y), dtype=float)
+    if size == 1:
+        yield from _bracketed(left, nothing_received[0])
+    for start in (nothing_received, np.zeros(size)):
+        yield _newton(left, start)
+        yield scipy.optimize.root(left, start, method="hybr", tol=1e-13).x
+
+
+def _bracketed(left: Residual, end: float) -> Iterator[Array]:
+    """The root of a single law between giving nothing and receiving nothing, if the signs differ."""
+
+    def one(value: float) -> float:
+        return float(left(np.array([value]))[0])
+
+    if one(0.0) * one(end) <= 0 and end:
+        found = scipy.optimize.brentq(one, 0.0, end, xtol=1e-300, rtol=4 * np.finfo(float).eps)
+        yield np.array([found])
+
+
+def _newton(left: Residual, values: Array) -> Array:
+    """Newton's iteration with differences for slopes; a step that does not help is halved."""
+    now = left(values)
+    for _ in range(ITERATIONS):
+        slopes = np.empty((len(values), len(values)))
+        for j in range(len(values)):
+            step = 1e-7 * (abs(values[j]) + 1e-6)
+            moved = values.copy()
+            moved[j] += step
+            slopes[:, j] = (left(moved) - now) / step
+        try:
+            change = np.linalg.solve(slopes, -now)
+        except np.linalg.LinAlgError:
+            return values
+        size = float(np.abs(now).max())
+        for _ in range(ITERATIONS):
+            tried = left(values + change)
+            if np.abs(tried).max() < size:
+                break
+            change = change / 2
+        else:
+            return values
+        values, now = values + change, tried
+    return values

@@ -1,0 +1,190 @@
+"""A program with numbers for its parameters: dense arrays, checked exactly before floats are trusted."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+from bondgraph import ParameterError, StateEquations
+from bondgraph.elements import Kind
+from bondgraph.elimination import ResidueRows
+from bondgraph.exact import Row, rows_of
+from bondgraph.expressions import normal, number
+from bondgraph.residues import residues
+from bondgraph.resistances import resistive_loops
+from codegen.arrays import Array
+from codegen.model.numpy_backend import compiled
+from codegen.program import Program
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """The equations in numbers, solved for the rates; n states, m inputs, p readings.
+
+    x' = P x + Q u + R u'
+     y = F x + D u + G u'
+    """
+
+    #: n x n, n x m, n x m: A^-1 J, A^-1 B, A^-1 E
+    P: Array
+    Q: Array
+    R: Array
+    #: n x n
+    A: Array
+    #: p x n, p x m, p x m
+    F: Array
+    D: Array
+    G: Array
+
+
+def exact_parameters(parameters: Mapping[str, object]) -> dict[str, sp.Rational]:
+    """Every parameter as the rational it stands for; `ParameterError` for what is not a number."""
+    result: dict[str, sp.Rational] = {}
+    for name, value in parameters.items():
+        if not isinstance(name, str):
+            raise ParameterError(f"parameter {name!r}: a parameter's name must be a text")
+        try:
+            result[str(normal(name))] = number(value, f"parameter {name!r}")
+        except ValueError as error:
+            raise ParameterError(str(error)) from None
+    return result
+
+
+def numbers(
+    program: Program, equations: StateEquations, parameters: Mapping[str, sp.Rational]
+) -> Numbers:
+    """Evaluate constant coefficients and solve for the rates once.
+
+    Raises `ParameterError` if a coefficient is not finite or A is singular at these parameters;
+    the latter is decided exactly.
+    """
+    check_values(equations, parameters)
+    return assembled(program, _values(program, equations, parameters))
+
+
+def check_values(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
+    """Refuse parameters that make a value zero, or a loop or A singular, whatever changes in time."""
+    _check_elements(equations, parameters)
+    _check_loops(equations, parameters)
+    _check_regular(equations, parameters)
+
+
+def assembled(program: Program, values: Array) -> Numbers:
+    """The matrices from the nonzero entries that `Program.coefficients` gives, solved for the rates."""
+    matrices: dict[str, Array] = {}
+    start = 0
+    for name, pattern in program.layout.items():
+        matrix = np.zeros(pattern.shape)
+        end = start + len(pattern.rows)
+        matrix[list(pattern.rows), list(pattern.columns)] = values[start:end]
+        matrices[name], start = matrix, end
+    A = matrices["A"]
+    solved = scaled_solve(A, np.hstack([matrices["J"], matrices["B"], matrices["E"]]))
+    n, m = len(program.states), len(program.inputs)
+    P, Q, R = solved[:, :n], solved[:, n : n + m], solved[:, n + m :]
+    F, D, H, K = (matrices[name] for name in "FDHK")
+    return Numbers(P, Q, R, A, F=F + H @ P, D=D + H @ Q, G=K + H @ R)
+
+
+def scaled_solve(A: Array, right: Array) -> Array:
+    """``A^-1 right`` with rows and columns scaled first: storages may differ by many powers of ten."""
+    scale = 1 / np.sqrt(np.abs(np.diag(A)))
+    scale[~np.isfinite(scale)] = 1.0
+    solved = np.linalg.solve(A * np.outer(scale, scale), scale[:, None] * right)
+    return np.asarray(scale[:, None] * solved, dtype=float)
+
+
+def _values(
+    program: Program, equations: StateEquations, parameters: Mapping[str, sp.Rational]
+) -> Array:
+    """The entries of all matrices at these parameters; `ParameterError` where one is not finite."""
+    code = program.coefficients
+    arguments = [float(parameters[name.name]) for name in code.arguments]
+    try:
+        with np.errstate(all="ignore"):
+            values = np.array([float(value) for value in compiled(code)(*arguments)])
+        finite = bool(np.isfinite(values).all())
+    except (ArithmeticError, TypeError):
+        finite = False
+    if not finite:
+        raise ParameterError(_not_finite(equations, parameters))
+    return values
+
+
+def _not_finite(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> str:
+    """Which entry of which matrix has no finite real number at these parameters."""
+    for name in "AJBEFDG":
+        for (i, j), entry in sorted(getattr(equations, name).todok().items()):
+            value = at_parameters(entry, parameters)
+            if value.has(sp.zoo, sp.nan, sp.oo) or value.is_real is False:
+                used = _listed(entry, parameters)
+                return f"{name}[{i}, {j}] = {entry} has no finite real value at {used}"
+    return "a coefficient has no finite real value at these parameters"
+
+
+def at_parameters(expr: sp.Expr, parameters: Mapping[str, sp.Rational]) -> sp.Expr:
+    """An expression with exact numbers for its parameters."""
+    return expr.xreplace(
+        {name: parameters[name.name] for name in expr.free_symbols if name.name in parameters}
+    )
+
+
+def _check_elements(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
+    """Refuse storages and moduli whose value is zero, or no finite number, at these parameters."""
+    value = residues()
+    for name, element in equations.elements.items():
+        if element.value is None or element.kind is Kind.R:
+            continue
+        try:
+            zero = value(at_parameters(element.value, parameters)) == 0
+        except (ZeroDivisionError, TypeError):
+            zero = True
+        if zero:
+            raise ParameterError(
+                f"{element.kind} {name!r}: its value {element.value} is zero or infinite at "
+                f"{_listed(element.value, parameters)}"
+            )
+
+
+def _listed(expr: sp.Expr, parameters: Mapping[str, sp.Rational]) -> str:
+    names = sorted(expr.free_symbols, key=str)
+    return ", ".join(f"{s} = {float(parameters[s.name]):g}" for s in names if s.name in parameters)
+
+
+def _check_loops(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
+    """Refuse parameters at which a loop of bonds or resistances has no solution, by exact rank."""
+    value = residues()
+    reduction = equations.reduction
+    ports = reduction.structure.ports
+    loops: list[tuple[str, Sequence[Row]]] = [("bonds", rows) for rows in reduction.structure.loops]
+    for group, inside in resistive_loops(reduction):
+        names = ", ".join(repr(ports[i].element.name) for i in group)
+        loops.append((f"the resistances {names}", inside))
+    for what, rows in loops:
+        found = [
+            {j: value(at_parameters(entry, parameters)) for j, entry in row.items()} for row in rows
+        ]
+        exact = ResidueRows({j: entry for j, entry in row.items() if entry} for row in found)
+        if not all(exact.pivot(i, jordan=False) for i in range(len(rows))):
+            raise ParameterError(
+                f"at these parameters {what} form a loop without a solution; change one, or put the number "
+                "into the graph, for which another causality may be found"
+            )
+
+
+def _check_regular(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
+    """Refuse parameters at which A has no inverse, by exact rank."""
+    value = residues()
+    rows: list[dict[int, int]] = []
+    exact: list[Row] = rows_of(equations.A)
+    for row in exact:
+        found = {j: value(at_parameters(entry, parameters)) for j, entry in row.items()}
+        rows.append({j: entry for j, entry in found.items() if entry})
+    eliminated = ResidueRows(rows)
+    for i, state in enumerate(equations.states):
+        if not eliminated.pivot(i, jordan=False):
+            raise ParameterError(
+                f"at these parameters the matrix A is singular: {state}' is not determined; "
+                "a storage is zero, or storages cancel each other"
+            )

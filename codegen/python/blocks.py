@@ -1,0 +1,148 @@
+"""The blocks of a program as Python functions of parameters and an instant."""
+
+import ast
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from bondgraph import ExpressionError
+from bondgraph.expressions import TIME
+from codegen.identifiers import identifiers
+from codegen.printing import printed
+from codegen.program import Block, Group, Pattern, Program
+from codegen.python.text import WIDTH, assignment, plain, quoted
+
+TAKEN = ("parameters", "now", "matrix", "l", "O", "I")
+"""Names that the functions use themselves, and letters that look like digits."""
+
+_HUGGED = re.compile(r"(\b[\w.]+) \*\* (-?[\w.]+\b(?![(\[]))")
+"""Powers of plain names and numbers, which are written without spaces."""
+
+
+@dataclass(frozen=True)
+class Names:
+    """For every name of a program its identifier and the expression that gets its value."""
+
+    identifiers: Mapping[str, str]
+    places: Mapping[str, str]
+
+
+def names_of(program: Program) -> Names:
+    """Identifiers, and where each value stands; a parameter before an input that it holds."""
+    places = {name.name: f"parameters[{quoted(name.name)}]" for name in program.parameters}
+    places.setdefault(TIME.name, "now.t")
+    listed = (
+        ("x", program.states), ("z", program.law_states), ("y", program.readings),
+        ("u", program.inputs), ("w", program.external), ("dw", program.external_rates),
+    )  # fmt: skip
+    for part, symbols in listed:
+        for at, name in enumerate(symbols):
+            places.setdefault(name.name, f"now.{part}[{at}]")
+    temporaries = [name.name for code in blocks(program) for name, _ in code.assignments]
+    return Names(identifiers([*temporaries, *places], "python", TAKEN), places)
+
+
+def blocks(program: Program) -> tuple[Block, ...]:
+    """Every block of a program that a target evaluates."""
+    groups = (program.known, *program.groups, program.coupled)
+    return (
+        program.coefficients, *(group.values for group in groups), program.known_rates,
+        program.friction_values,
+    )  # fmt: skip
+
+
+def operations(program: Program) -> int:
+    """Additions, products and functions in all blocks, each assignment once."""
+    expressions = [
+        expr
+        for code in blocks(program)
+        for expr in (*(value for _, value in code.assignments), *code.results)
+    ]
+    return sum(int(sp.count_ops(expr)) for expr in expressions)
+
+
+def law_names(program: Program) -> list[str]:
+    """A function's name for each group of laws: that of its port, numbered if it has several."""
+    wanted = [
+        f"law_{group.ports[0]}" if len(group.ports) == 1 else f"laws_solved_together_{at}"
+        for at, group in enumerate(program.groups, 1)
+    ]
+    unique = [name if wanted.count(name) == 1 else f"{name}_{at}" for at, name in enumerate(wanted)]
+    taken = ("laws_in_turn",)
+    return [identifiers(unique, "python", taken)[name] for name in unique]
+
+
+def text_of(expr: sp.Expr, names: Names) -> str:
+    """An expression as Python with spaces around operators; `ExpressionError` if ``math`` can't do it."""
+    text = printed(expr, "python", names.identifiers)
+    if "Not supported" in text:
+        raise ExpressionError(f"{expr} uses a function that Python's math module does not have")
+    try:
+        return _HUGGED.sub(r"\1**\2", ast.unparse(ast.parse(text, mode="eval")))
+    except RecursionError:
+        return text
+
+
+def function(name: str, doc: str, code: Block, results: Sequence[str], names: Names) -> list[str]:
+    """A block as a function: names in, temporaries, and the lines that return the results."""
+    lines = ["", "", f"def {name}(parameters, now):", f'    """{doc}"""']
+    lines += unpacked([symbol.name for symbol in code.arguments], names)
+    for temporary, value in code.assignments:
+        lines += assignment(names.identifiers[temporary.name], text_of(value, names))
+    return [*lines, *results]
+
+
+def unpacked(used: Sequence[str], names: Names) -> list[str]:
+    """A line for every name that a function uses."""
+    return [f"    {names.identifiers[name]} = {names.places[name]}" for name in used]
+
+
+def values_function(
+    name: str, doc: str, code: Block, comments: Sequence[str], names: Names
+) -> list[str]:
+    """A block as a function that returns its results as a list, each with a comment."""
+    lines = ["    return ["]
+    for comment, result in zip(comments, code.results, strict=True):
+        lines.append(f"        # {comment}")
+        lines += assignment("", text_of(result, names), indent=8, end=",", sign="")
+    lines = [*lines, "    ]"] if code.results else ["    return []"]
+    return function(name, doc, code, lines, names)
+
+
+def group_function(name: str, group: Group, program: Program, names: Names) -> list[str]:
+    """The laws of a group as a function."""
+    ports = ", ".join(plain(str(port)) for port in group.ports)
+    doc = f"What {ports} gives." if group.inputs else "There are none."
+    if len(doc) > WIDTH - 20:
+        doc = f"What {len(group.ports)} ports give."
+    comments = [
+        f"{plain(program.inputs[j].name)} of {plain(str(port))}"
+        for j, port in zip(group.inputs, group.ports, strict=True)
+    ]
+    return values_function(name, doc, group.values, comments, names)
+
+
+def coefficients_function(program: Program, names: Names) -> list[str]:
+    """The coefficients as a function that returns the matrices by their letters."""
+    heads = {"A": "A x' = J x + B u + E u'", "F": "y = F x + D u + H x' + K u'"}
+    lines, start = ["    return {"], 0
+    for letter, pattern in program.layout.items():
+        if letter in heads:
+            lines.append(f"        # {heads[letter]}")
+        end = start + len(pattern.rows)
+        lines += _matrix(letter, pattern, program.coefficients.results[start:end], names)
+        start = end
+    doc = "The matrices of the equations over X and U; the last four have a row for each of Y."
+    return function("coefficients", doc, program.coefficients, [*lines, "    }"], names)
+
+
+def _matrix(letter: str, pattern: Pattern, entries: Sequence[sp.Expr], names: Names) -> list[str]:
+    shape = f"({pattern.shape[0]}, {pattern.shape[1]})"
+    if not entries:
+        return [f'        "{letter}": matrix({shape}, {{}}),']
+    lines = [f'        "{letter}": matrix(', f"            {shape},", "            {"]
+    for i, j, entry in zip(pattern.rows, pattern.columns, entries, strict=True):
+        lines += assignment(f"({i}, {j})", text_of(entry, names), 16, ",", ": ")
+    return [*lines, "            },", "        ),"]

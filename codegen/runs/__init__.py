@@ -1,0 +1,1 @@
+"""Runs of one model: events, integrators, exact steps, and what a run leaves behind."""

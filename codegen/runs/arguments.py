@@ -1,0 +1,85 @@
+"""What a run is given: times, initial values, inputs and settings, checked and as arrays and signals."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bondgraph import SignalError
+from bondgraph.expressions import normal
+from codegen.arrays import Array
+from codegen.inputs.signals import Signal, as_signal
+from codegen.runs.legs import EXACT, METHODS, Settings
+
+
+def numbers_of(values: ArrayLike, what: str) -> Array:
+    """A fresh array of floats; `SignalError` for what makes none."""
+    try:
+        return np.array(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise SignalError(f"{what} must be numbers: {error}") from None
+
+
+def checked_times(time: ArrayLike) -> Array:
+    """The points in time of a run: two or more, finite, increasing."""
+    times = numbers_of(time, "time")
+    if times.ndim != 1 or len(times) < 2:
+        raise SignalError(f"time must be a list of two or more points, not of shape {times.shape}")
+    if not np.isfinite(times).all():
+        raise SignalError("time: a point is not finite")
+    if not (np.diff(times) > 0).all():
+        at = int(np.argmin(np.diff(times)))
+        raise SignalError(f"time must increase; {times[at]:g} is followed by {times[at + 1]:g}")
+    return times
+
+
+def initial_values(initial: Mapping[str, float], states: Sequence[str]) -> Array:
+    """A value for each state, zero where none is given; `SignalError` for other names and no numbers."""
+    given = named_numbers(initial, states)
+    return np.array([given.get(name, 0.0) for name in states], dtype=float)
+
+
+def named_numbers(initial: Mapping[str, float], states: Sequence[str]) -> dict[str, float]:
+    """Initial values by their states' names, checked."""
+    if not isinstance(initial, Mapping):
+        raise SignalError(f"initial must map names to values, not be {initial!r}")
+    result: dict[str, float] = {}
+    for given, value in initial.items():
+        name = str(normal(given))
+        if name not in states:
+            raise SignalError(f"{name!r} is not a state; there are {', '.join(states)}")
+        if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+            raise SignalError(f"initial {name}: {value!r} is not a number")
+        if not np.isfinite(value):
+            raise SignalError(f"initial {name}: {value!r} is not finite")
+        result[name] = float(value)
+    return result
+
+
+def signals_for(inputs: Mapping[str, object], names: Sequence[str]) -> list[Signal]:
+    """A signal for each input in turn; `SignalError` for missing and unknown ones."""
+    if not isinstance(inputs, Mapping):
+        raise SignalError(f"inputs must map names to values, not be {inputs!r}")
+    inputs = {str(normal(name)): value for name, value in inputs.items()}
+    for name in inputs:
+        if name not in names:
+            known = ", ".join(names) or "none"
+            raise SignalError(f"unknown input {name!r}; the model's inputs are {known}")
+    missing = [name for name in names if name not in inputs]
+    if missing:
+        raise SignalError(
+            f"missing input(s) {', '.join(missing)}: give each a signal or a number in inputs, "
+            "a law in laws, or, if it is a parameter, a number in parameters"
+        )
+    return [as_signal(inputs[name], name) for name in names]
+
+
+def settings_of(method: str, rtol: float, atol: float) -> Settings:
+    """How to integrate, checked."""
+    for tolerance, what in ((rtol, "rtol"), (atol, "atol")):
+        if not isinstance(tolerance, int | float | np.number) or not tolerance > 0:
+            raise SignalError(f"{what} must be a positive number, not {tolerance!r}")
+    known = ("auto", EXACT, *METHODS)
+    if method not in known:
+        raise SignalError(f"unknown method {method!r}; there are {', '.join(known)}")
+    return Settings(method, rtol, atol)

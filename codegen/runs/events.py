@@ -1,0 +1,174 @@
+"""Events inside one integration step: where a slip, a margin or a guard falls through zero."""
+
+from collections.abc import Callable, Hashable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from codegen.arrays import Array
+from codegen.inputs.pieces import Piece
+from codegen.model.closed import CAPS, INPUTS, READINGS, ClosedModel, Mode, Snapshot
+from codegen.model.guards import guard_rounding
+from codegen.model.modes import LOOK_AHEAD, Peaks, scales
+
+CHECKS = 6
+"""Points inside each step at which events are looked for."""
+
+Dense = Callable[[float | Array], Array]
+"""The integrated vector anywhere inside a step; for several times its columns."""
+
+
+class Event(NamedTuple):
+    """What happened: at a friction port "stick", "slip" (it was released) or "cross" (through zero).
+
+    At a switch or a controlled junction "on" or "off".
+    """
+
+    time: float
+    port: Hashable
+    kind: str
+
+
+class Watch:
+    """Watches the friction ports, and then the guards, through one leg.
+
+    Each port has a trigger that is positive while the mode holds: the magnitude of its slip, or, where
+    it sticks, the margin to its breakaway effort; a guard is one itself. A trigger that
+    starts at zero is armed once it has risen above rounding; until then only a fall well below zero
+    counts, and only after a moment too short to matter, so that a leg out of complete rest makes progress.
+    """
+
+    def __init__(
+        self,
+        model: ClosedModel,
+        pieces: Sequence[Piece],
+        mode: Mode,
+        t: float,
+        s: Array,
+        peaks: Peaks | None = None,
+    ) -> None:
+        self._model, self._pieces, self._mode = model, pieces, mode
+        self._blind = t + LOOK_AHEAD * (peaks.time if peaks else 0.0)
+        guarded = bool(model.program.guards.results)
+        affine = model.affine_map(mode, len(pieces)) if mode and not guarded else None
+        self._affine = None if affine is None else (
+            affine.rows(INPUTS)[model.friction_inputs],
+            affine.rows(READINGS)[model.friction_readings],
+            affine.rows(CAPS),
+        )  # fmt: skip
+        now = self._snapshot(t, s)
+        self._limits = np.zeros(0)
+        if mode:
+            size = scales(model, now, t, peaks)
+            self._limits = np.where(np.array(mode) == 0, size.effort, size.slip)
+        if guarded:
+            limits = guard_rounding(model, t, s, pieces, mode, peaks)
+            self._limits = np.concatenate([self._limits, limits])
+        self._armed = [False] * len(self._limits)
+        self._before = self._triggers(t, now)
+
+    def first_event(
+        self, t_old: float, t_new: float, dense: Dense
+    ) -> tuple[float, frozenset[int]] | None:
+        """The first time in a step at which the mode ends, and the ports or guards that end it."""
+        if not self._armed:
+            return None
+        grid = np.linspace(t_old, t_new, CHECKS + 2).tolist()
+        values = [self._before, *self._series(grid[1:], dense)]
+        self._before = values[-1]
+        roots: dict[int, float] = {}
+        for i in range(len(self._armed)):
+            root = self._first_fall(i, grid, [value[i] for value in values], dense)
+            if root is not None:
+                roots[i] = root
+        if not roots:
+            return None
+        time = min(roots.values())
+        near = time + 1e-12 * max(abs(time), t_new - t_old)
+        return time, frozenset(i for i, root in roots.items() if root <= near)
+
+    def _first_fall(
+        self, i: int, grid: Sequence[float], values: Sequence[float], dense: Dense
+    ) -> float | None:
+        """The first time in a step at which trigger i falls through zero, seen or hidden in a dip."""
+        for k in range(len(grid) - 1):
+            root = self._fall(i, grid[k], grid[k + 1], values[k], values[k + 1], dense)
+            if root is not None:
+                return root
+            if k > 0 and self._armed[i]:
+                root = self._dip(i, grid[k - 1 : k + 2], values[k - 1 : k + 2], dense)
+                if root is not None:
+                    return root
+        return None
+
+    def _series(self, times: Sequence[float], dense: Dense) -> list[Array]:
+        """The triggers at several times; in one product where everything is affine."""
+        if self._affine is None:
+            return [self._triggers(t, self._snapshot(t, dense(t))) for t in times]
+        given = np.array([np.concatenate(self._model.given(t, self._pieces)) for t in times])
+        vectors = np.hstack([dense(np.array(times)).T, given, np.ones((len(times), 1))])
+        efforts, slips, caps = (vectors @ rows.T for rows in self._affine)
+        if caps.min() < 0:
+            # One by one, so that a friction level below zero is refused with its time.
+            return [self._triggers(t, self._snapshot(t, dense(t))) for t in times]
+        signs = np.array(self._mode)
+        margins = caps - np.abs(efforts)
+        return list(np.where(signs == 0, margins, signs * slips))
+
+    def _snapshot(self, t: float, s: Array) -> Snapshot:
+        return self._model.at(t, s, self._pieces, self._mode)
+
+    def _triggers(self, t: float, now: Snapshot) -> Array:
+        efforts, slips = now.u[self._model.friction_inputs], now.y[self._model.friction_readings]
+        ports = [
+            sign * slips[i] if sign else now.caps[i] - abs(efforts[i])
+            for i, sign in enumerate(self._mode)
+        ]
+        return np.concatenate([ports, self._model.guards(t, now)])
+
+    def _fall(
+        self, i: int, t_a: float, t_b: float, a: float, b: float, dense: Dense
+    ) -> float | None:
+        """Where trigger i falls through zero between two points, if it does."""
+        limit = self._limits[i]
+        if not self._armed[i] and max(a, b) > limit:
+            self._armed[i] = True
+            if a <= limit:
+                return None
+        if self._armed[i]:
+            return self._crossing(i, t_a, t_b, 0.0, dense) if b <= 0 else None
+        if b >= -2 * limit or t_b <= self._blind:
+            return None
+        return max(self._crossing(i, t_a, t_b, -2 * limit, dense), self._blind)
+
+    def _crossing(self, i: int, t_a: float, t_b: float, level: float, dense: Dense) -> float:
+        def above(t: float) -> float:
+            return float(self._triggers(t, self._snapshot(t, dense(t)))[i] - level)
+
+        if above(t_a) <= 0:
+            return t_a
+        if above(t_b) >= 0:
+            return t_b
+        return float(brentq(above, t_a, t_b, xtol=1e-15, rtol=4 * np.finfo(float).eps))
+
+    def _dip(
+        self, i: int, grid: Sequence[float], values: Sequence[float], dense: Dense
+    ) -> float | None:
+        """The first of two roots between points, where a trigger dips below zero and comes back.
+
+        The parabola through three points tells whether there is a dip worth a closer look.
+        """
+        a, b, c = values
+        curve, slope = a - 2 * b + c, (c - a) / 2
+        if min(values) <= 0 or curve <= 0 or abs(slope) > 1.25 * curve:
+            return None
+        if b - slope**2 / (2 * curve) > 0.5 * min(values):
+            return None
+        lowest = minimize_scalar(
+            lambda t: float(self._triggers(t, self._snapshot(t, dense(t)))[i]),
+            bounds=(grid[0], grid[2]), method="bounded", options={"xatol": 1e-9 * (grid[2] - grid[0])},
+        )  # fmt: skip
+        if lowest.fun > 0:
+            return None
+        return self._crossing(i, grid[0], float(lowest.x), 0.0, dense)

@@ -1,0 +1,200 @@
+"""The event-driven loop: smooth legs between breakpoints, sticking, release and zero crossings."""
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bondgraph import SimulationError
+from codegen.arrays import Array
+from codegen.inputs.pieces import Piece
+from codegen.inputs.signals import Signal
+from codegen.model.closed import ClosedModel, Mode
+from codegen.model.guards import fallen_guards
+from codegen.model.modes import LOOK_AHEAD, Peaks, decide, scales
+from codegen.runs.events import Event
+from codegen.runs.exact import ExactLeg
+from codegen.runs.legs import EXACT, Leg, Settings, Track
+
+STALLED = 60
+"""So many events in a row are a run that goes nowhere, if they are hardly apart."""
+
+APART = 1e-9
+"""Hardly apart: closer than this fraction of the run, or than what decides ties."""
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """How far a run came: the end of its time, or the first instant at which guards fell.
+
+    ``ahead`` [s]: a time too short to matter, in which ties are decided.
+    """
+
+    track: Track
+    t: float
+    s: Array
+    mode: Mode
+    fallen: frozenset[int]
+    ahead: float
+
+
+def run_hybrid(
+    model: ClosedModel,
+    times: Array,
+    start: Array,
+    signals: Sequence[Signal],
+    settings: Settings,
+    begin: float,
+    span: float,
+) -> Stretch:
+    """Integrate from ``begin`` to the last of ``times`` [s], recording the vector at each of them.
+
+    At a breakpoint or an event a sample shows the instant just after. ``span`` [s]: the length of the
+    whole run, of which this may be the rest. Ends where a guard falls below zero.
+    """
+    course = _Course(model, times, start, signals, settings, begin, span)
+    fallen = frozenset[int]()
+    while course.unfinished and not fallen:
+        fallen = course.settle()
+        if not fallen and course.t < course.end:
+            fallen = course.advance()
+    if not fallen:
+        course.track.record(course.s, course.mode)
+    return Stretch(course.track, course.t, course.s, course.mode, fallen, course.ahead)
+
+
+class _Course:
+    """Where a run is: time, integrated vector, friction mode; and the ports whose event it has come to."""
+
+    def __init__(
+        self, model: ClosedModel, times: Array, start: Array, signals: Sequence[Signal],
+        settings: Settings, begin: float, span: float,
+    ) -> None:  # fmt: skip
+        self.t, self.s, self.end, self.ahead = begin, start, float(times[-1]), 0.0
+        self.mode: Mode = tuple(1 for _ in model.friction_inputs)
+        self.track = Track(np.zeros((len(times), model.size)), [], np.abs(start))
+        self._model, self._times, self._signals = model, times, signals
+        self._settings, self._span = settings, span
+        points = {b for signal in signals for b in signal.breakpoints if begin < b <= self.end}
+        self._breaks = sorted(points)
+        self._touched = frozenset[int]()
+        self._settled: float | None = None
+        self._peaks, self._rounds = Peaks.none(model), deque[float](maxlen=STALLED)
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether there is anything left to decide or to integrate."""
+        undecided = self.t in self._breaks and self.t != self._settled
+        return self._settled is None or self.t < self.end or bool(self._touched) or undecided
+
+    @property
+    def _pieces(self) -> list[Piece]:
+        return [signal.piece(self.t) for signal in self._signals]
+
+    def settle(self) -> frozenset[int]:
+        """Decide the mode just after t and bring sticking ports to rest; the guards that have fallen."""
+        model, t, pieces, peaks = self._model, self.t, self._pieces, self._peaks
+        peaks.see(model, t, self.s, pieces, self.mode)
+        if self.mode or model.program.guards.results:
+            fastest = self._leg(pieces).fastest(t, self.s)
+            peaks.time = 1 / max(fastest, 100.0 / self._span)
+        self.ahead = LOOK_AHEAD * peaks.time
+        # A breakpoint may set the slips anew, so sticking ports are decided again with the others.
+        loose = self._touched | {i for i, sign in enumerate(self.mode) if sign == 0}
+        at_zero = _still(model, t, self.s, pieces, self.mode, loose, peaks)
+        new = decide(model, t, self.s, pieces, self.mode, at_zero, self.ahead, peaks, self._touched)
+        if self._settled is not None:
+            _note(model, self.track.events, t, self.mode, new)
+            if self._touched:
+                least = max(APART * self._span, 2 * STALLED * self.ahead)
+                _check_progress(self._rounds, t, least, self.track.events)
+        self.mode, self._touched = new, frozenset()
+        self.s = _at_rest(model, t, self.s, pieces, new)
+        # Where a run or a phase begins, whoever began it has looked at the guards.
+        first, self._settled = self._settled is None, t
+        return frozenset() if first else fallen_guards(model, t, self.s, pieces, new, peaks)
+
+    def advance(self) -> frozenset[int]:
+        """Integrate to the next breakpoint or event; the guards that fell."""
+        pieces, ports = self._pieces, len(self.mode)
+        stop = next((b for b in self._breaks if b > self.t), self.end)
+        exact = self._exact(pieces, stop)
+        if exact is not None:
+            self.t, self.s, ended = exact.run(stop, self._times, self.track)
+        else:
+            leg = self._leg(pieces)
+            self.t, self.s, ended = leg.run(self.t, self.s, stop, self._times, self.track)
+        self._touched = frozenset(i for i in ended if i < ports)
+        return frozenset(i - ports for i in ended if i >= ports)
+
+    def _leg(self, pieces: Sequence[Piece]) -> Leg:
+        return Leg(self._model, pieces, self.mode, self._settings, self._span, self._peaks)
+
+    def _exact(self, pieces: Sequence[Piece], stop: float) -> ExactLeg | None:
+        """The stretch ahead as an exact one, where the mode is affine and exact steps are asked for."""
+        model, method = self._model, self._settings.method
+        if method not in ("auto", EXACT):
+            return None
+        reason = "the model has switches"
+        if not model.program.guards.results:
+            reason = "the model is not affine, or ports that stick share a load"
+            affine = model.affine_map(self.mode, len(pieces))
+            if affine is not None:
+                leg = ExactLeg(model, affine, pieces, self.mode, self.t, self.s, self._peaks)
+                if leg.steppable(stop):
+                    return leg
+                reason = "rates of the model or of its inputs are too fast"
+        if method == EXACT:
+            raise SimulationError(
+                f"at t = {self.t:.9g} {reason} for exact steps; let method be auto"
+            )
+        return None
+
+
+def _still(
+    model: ClosedModel,
+    t: float,
+    s: Array,
+    pieces: Sequence[Piece],
+    mode: Mode,
+    ports: frozenset[int],
+    peaks: Peaks,
+) -> frozenset[int]:
+    """Those of the ports that are at rest, or close enough for it to be the event's own rounding."""
+    if not ports:
+        return frozenset()
+    now = model.at(t, s, pieces, tuple(sign or 1 for sign in mode))
+    slips = np.abs(now.y[model.friction_readings])
+    limits = 1e3 * scales(model, now, t, peaks).slip
+    return frozenset(i for i in ports if slips[i] <= limits[i] or model.coupled_directly(i))
+
+
+def _at_rest(model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode) -> Array:
+    """Remove what slip is left at sticking ports, along ``A^-1 F^T``: no energy but the slip's own."""
+    if all(mode):
+        return s
+    now = model.at(t, s, pieces, mode)
+    held = model.hold(mode, now.numbers)
+    n = len(model.program.states)
+    s = s.copy()
+    s[:n] += held.take_away @ (held.slip_x @ now.x + held.slip_u @ now.u)
+    return s
+
+
+def _note(model: ClosedModel, events: list[Event], t: float, old: Mode, new: Mode) -> None:
+    for port, before, after in zip(model.program.friction, old, new, strict=True):
+        if before != after:
+            kind = "stick" if after == 0 else ("slip" if before == 0 else "cross")
+            events.append(Event(t, port.name, kind))
+
+
+def _check_progress(rounds: deque[float], t: float, least: float, events: list[Event]) -> None:
+    """Refuse to go on when too many of the latest legs end in an event within ``least`` [s]."""
+    rounds.append(t)
+    if len(rounds) == STALLED and t - rounds[0] < least:
+        latest = ", ".join(f"{e.kind} {e.port!r} at {e.time:.12g}" for e in events[-4:])
+        raise SimulationError(
+            f"{STALLED} events within {least:.3g} s of t = {t:.12g}: the run makes no progress "
+            f"(latest: {latest or 'none that changed a mode'})"
+        )

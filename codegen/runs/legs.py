@@ -1,0 +1,180 @@
+"""One smooth stretch of a run in one friction mode, up to a breakpoint or the first event."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.integrate import DOP853, Radau
+
+from bondgraph import SimulationError
+from codegen.arrays import Array
+from codegen.inputs.pieces import Piece
+from codegen.model.closed import ClosedModel, Mode
+from codegen.model.modes import Peaks
+from codegen.runs.events import Dense, Event, Watch
+
+METHODS = {"DOP853": DOP853, "Radau": Radau}
+
+EXACT = "exact"
+"""The method of models that are affine in each friction mode: no integrator, matrix exponentials."""
+
+STIFF = 2e5
+"""Time span over shortest time constant from which the implicit method is chosen."""
+
+STEP_BOUND = 1.0
+"""An explicit step's length in shortest time constants: beyond, its interpolant is unreliable."""
+
+FOLLOWED = 0.1
+"""An implicit step's length in shortest time constants of the inputs."""
+
+LEAST_STEPS = 200
+"""Steps are never longer than the span of the run divided by this."""
+
+
+TINY_STEP, MANY_STEPS = 1e-9, 500
+"""So many steps in a row below this fraction of the run are a run that goes nowhere."""
+
+REFRESH = 50
+"""Steps after which a nonlinear model's time constants are looked at again."""
+
+
+Ended = tuple[float, Array, frozenset[int]]
+"""How a stretch ended: time, integrated vector, and the ports and guards whose event it was."""
+
+
+@dataclass
+class Track:
+    """What a run has recorded: the integrated vector and the mode at each sample, and the events.
+
+    ``largest``: the magnitudes that the vector's components have reached, between samples, too.
+    """
+
+    vectors: Array
+    modes: list[Mode]
+    largest: Array
+    events: list[Event] = field(default_factory=list)
+    recorded: int = 0
+
+    def see(self, vectors: Array) -> None:
+        """Take the magnitudes of some vectors, the rows, into account."""
+        if len(vectors):
+            self.largest = np.maximum(self.largest, np.abs(vectors).max(axis=0))
+
+    def record(self, vector: Array, mode: Mode) -> None:
+        """The next sample."""
+        self.vectors[self.recorded] = vector
+        self.modes.append(mode)
+        self.recorded += 1
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to integrate: method, relative and absolute tolerance."""
+
+    method: str
+    rtol: float
+    atol: float
+
+
+class Leg:
+    """A smooth stretch in one mode; ``span`` [s] is the length of the whole run."""
+
+    def __init__(
+        self,
+        model: ClosedModel,
+        pieces: Sequence[Piece],
+        mode: Mode,
+        settings: Settings,
+        span: float,
+        peaks: Peaks | None = None,
+    ) -> None:
+        self._model, self._pieces, self._mode = model, pieces, mode
+        self._settings, self._span, self._peaks = settings, span, peaks
+        self._rates = model.rates(pieces, mode)
+
+    def fastest(self, t: float, s: Array) -> float:
+        """The largest rate [1/s] of the mode's linearisation and of the inputs."""
+        affine = self._model.affine_map(self._mode, len(self._pieces))
+        inner = self._fastest(t, s) if affine is None else affine.fastest
+        return max(inner, *(piece.fastest for piece in self._pieces), 0.0)
+
+    def _fastest(self, t: float, s: Array) -> float:
+        base = self._rate(t, s)
+        jacobian = np.empty((len(s), len(s)))
+        for j in range(len(s)):
+            jacobian[:, j] = self._slope(t, s, j, base)
+        return float(np.abs(np.linalg.eigvals(jacobian)).max(initial=0.0))
+
+    def _slope(self, t: float, s: Array, j: int, base: Array) -> Array:
+        """How the rates change with one component, by a difference that stays where laws have values."""
+        step = 1e-6 * abs(s[j]) + 1e-9 * abs(base[j]) * self._span + 1e-9
+        for _ in range(12):
+            moved = s.copy()
+            moved[j] += step
+            slope = (self._rates(t, moved) - base) / step
+            if np.isfinite(slope).all():
+                return np.asarray(slope, dtype=float)
+            step *= 1e-2
+        raise SimulationError(
+            f"at t = {t:g} the rates are not finite beside the state {s.tolist()}"
+        )
+
+    def run(self, t: float, s: Array, stop: float, times: Array, track: Track) -> Ended:
+        """Integrate to ``stop`` or the first event; the ports whose event it was come third.
+
+        Samples strictly before the end are recorded: at the end the next leg shows the instant after.
+        """
+        if stop - t <= 8 * np.spacing(max(abs(t), abs(stop))):
+            while track.recorded < len(times) and times[track.recorded] < stop:
+                track.record(s, self._mode)
+            return stop, s, frozenset()
+        fastest = self.fastest(t, s)
+        name = self._settings.method
+        if name == "auto":
+            name = "Radau" if fastest * self._span > STIFF else "DOP853"
+        solver = METHODS[name](
+            self._rate, t, s, stop, rtol=self._settings.rtol, atol=self._settings.atol,
+            max_step=self._bound(name, fastest),
+        )  # fmt: skip
+        watch = Watch(self._model, self._pieces, self._mode, t, s, self._peaks)
+        steps, short = 0, 0
+        while solver.status == "running":
+            message = solver.step()
+            if solver.status == "failed":
+                raise SimulationError(f"at t = {solver.t:.9g} the integrator failed: {message}")
+            dense = solver.dense_output()
+            found = watch.first_event(solver.t_old, solver.t, dense)
+            until = solver.t if found is None else found[0]
+            track.see(solver.y[None])
+            self._sample(times, track, until, dense)
+            if found is not None:
+                return until, dense(until), found[1]
+            steps += 1
+            short = short + 1 if solver.t - solver.t_old < TINY_STEP * self._span else 0
+            if short > MANY_STEPS:
+                raise SimulationError(
+                    f"at t = {solver.t:.9g} the integrator no longer advances: the rates jump there; "
+                    "friction that changes sign is a DryFriction, a switch a step of an input"
+                )
+            if steps % REFRESH == 0 and not self._model.program.affine:
+                solver.max_step = self._bound(name, self.fastest(solver.t, solver.y))
+        return stop, solver.y, frozenset()
+
+    def _bound(self, name: str, fastest: float) -> float:
+        """The longest step: events and inputs must not fall between, nor the interpolant be strained."""
+        bound = self._span / LEAST_STEPS
+        driven = max((piece.fastest for piece in self._pieces), default=0.0)
+        if name == "Radau":
+            # Its error estimate is blind to what follows an input at once.
+            return min(bound, FOLLOWED / driven) if driven > 0 else bound
+        return min(bound, STEP_BOUND / fastest) if fastest > 0 else bound
+
+    def _sample(self, times: Array, track: Track, until: float, dense: Dense) -> None:
+        while track.recorded < len(times) and times[track.recorded] < until:
+            track.record(dense(float(times[track.recorded])), self._mode)
+
+    def _rate(self, t: float, s: Array) -> Array:
+        rate = self._rates(t, s)
+        if not np.isfinite(rate).all():
+            raise SimulationError(f"at t = {t:.9g} the rates are not finite; state {s.tolist()}")
+        return rate

@@ -1,0 +1,133 @@
+"""Signals of a run that were not recorded, worked out from those that were."""
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+from bondgraph import ParameterError, SignalError, StateEquations, StructureError
+from bondgraph.elements import SOURCES, STORAGES, Element, Kind
+from bondgraph.expressions import TIME
+from bondgraph.laws import ExpressionLaw
+from bondgraph.modulation import Reading
+from codegen.arrays import Array
+from codegen.model.closed import ClosedModel
+from codegen.model.numbers import at_parameters
+
+
+@dataclass(frozen=True)
+class Observer:
+    """The states, inputs and both's rates of every sample, and the equations that rule the rest.
+
+    ``x`` and ``dx`` (samples x states), ``u`` and ``du`` (samples x inputs), as the equations number them.
+    """
+
+    time: Array
+    model: ClosedModel
+    columns: Mapping[str, Array]
+    x: Array
+    dx: Array
+    u: Array
+    du: Array
+
+    @property
+    def _equations(self) -> StateEquations:
+        return self.model.equations
+
+    def signal(self, name: str) -> Array:
+        """A named effort or flow; `KeyError` naming what there is."""
+        row = self._equations.signals.get(sp.Symbol(name))
+        if row is None:
+            known = dict.fromkeys([*self.columns, *map(str, self._equations.signals)])
+            raise KeyError(f"no signal {name!r}; there are {', '.join(known)}")
+        return self._values(self._equations.reduction.reading(row))
+
+    def bond(self, tail: Hashable, head: Hashable) -> tuple[Array, Array]:
+        """Effort and flow of a bond; `StructureError` if there is none."""
+        effort, flow = self._equations.bond(tail, head)
+        return self._values(effort), self._values(flow)
+
+    def power(self, node: Hashable) -> Array:
+        """Effort times flow of a one-port, or of all ports of a field: absorbed, or supplied by a source."""
+        structure = self._equations.reduction.structure
+        powers = []
+        for at, port in enumerate(structure.ports):
+            if node in (port.element.name, port.element.owner):
+                given = self._values(self._equations.reduction.reading({at: sp.Integer(1)}))
+                received = self._values(self._equations.reduction.reading(structure.rows[at]))
+                supplies = port.element.kind in SOURCES and port.inward == 1
+                powers.append(-given * received if supplies else given * received)
+        if not powers:
+            raise StructureError(
+                f"{node!r} is not a one-port of the graph; only those have a power"
+            )
+        return np.asarray(sum(powers), dtype=float)
+
+    def energy(self, node: Hashable) -> Array:
+        """The energy in an I or C or a field of them: of its co-energy variables, or its energy function."""
+        elements = self._settled(node)
+        if not elements or elements[0].kind not in STORAGES:
+            raise StructureError(f"{node!r} is not an I or a C; only storages have an energy")
+        first = elements[0]
+        if first.row and first.name == node:
+            raise StructureError(
+                f"{node!r} is one port of {first.owner!r}; the whole field has an energy"
+            )
+        if isinstance(first.law, ExpressionLaw):
+            return self._stored(first, first.law)
+        ruling = {
+            e.name: self.signal(str(e.flow if e.kind is Kind.I else e.effort)) for e in elements
+        }
+        energy = np.zeros(len(self.time))
+        for element in elements:
+            for other, entry in element.row or ((element.name, element.constant),):
+                energy += 0.5 * self._number(entry) * ruling[element.name] * ruling[other]
+        return energy
+
+    def _settled(self, node: Hashable) -> list[Element]:
+        """The element, or a field's, values over states, integrals, inputs and time."""
+        ports = self._equations.reduction.structure.ports
+        return [p.element for p in ports if node in (p.element.name, p.element.owner)]
+
+    def _stored(self, element: Element, law: ExpressionLaw) -> Array:
+        """The energy function, or the integral of a law over its own state from 0."""
+        if element.energy is not None:
+            return np.zeros(len(self.time)) + self._number(element.energy)
+        state = law.state
+        if state is None or law.free_symbols & {*self._equations.signals, TIME}:
+            raise SignalError(
+                f"{element.name!r}: its law reads other signals, so it has no energy of its own; "
+                "integrate its power"
+            )
+        exact = at_parameters(law.expression, self.model.parameters)
+        real = sp.Dummy("q", real=True)
+        shape = exact.xreplace({state: real}).rewrite(sp.Piecewise)
+        integral = sp.integrate(shape, (real, 0, real))
+        if integral.has(sp.Integral):
+            raise SignalError(
+                f"{element.name!r}: no closed form of the energy; integrate its power"
+            )
+        energy = sp.lambdify(real, integral, modules="numpy")
+        return np.array([float(energy(value)) for value in self.columns[state.name]])
+
+    def _values(self, reading: Reading) -> Array:
+        """A reading at every sample."""
+        result = np.zeros(len(self.time))
+        tables = (self.x, self.u, self.dx, self.du)
+        for row, table in zip(reading.parts, tables, strict=True):
+            for column, entry in row.items():
+                result += self._number(entry) * table[:, column]
+        return result
+
+    def _number(self, entry: sp.Expr) -> float | Array:
+        """A coefficient: a number, or a value for every sample where it changes in time."""
+        exact = at_parameters(entry, self.model.parameters)
+        names = sorted(exact.free_symbols, key=str)
+        if names:
+            given = [self.time if name == TIME else self.columns[name.name] for name in names]
+            return np.asarray(sp.lambdify(names, exact, modules="numpy")(*given), dtype=float)
+        value = sp.N(exact)
+        if not value.is_real:
+            raise ParameterError(f"{entry} has no real value at these parameters")
+        return float(value)

@@ -1,0 +1,1 @@
+"""Models of tens of thousands of states, in numbers."""

@@ -1,0 +1,196 @@
+"""What a sweep does for every run, as one object that can be sent to other processes."""
+
+import hashlib
+import pickle
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from threading import Lock
+from typing import Any, NamedTuple, Protocol
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from bondgraph import BondGraphError, SignalError
+from codegen.arrays import Array
+from codegen.runs.legs import EXACT
+from codegen.runs.result import Result
+from codegen.sweeps.batch import Asked, Batch, batch
+from codegen.sweeps.family import Family
+from codegen.sweeps.measures import Measure
+from codegen.sweeps.packing import packed
+
+Given = Mapping[str, Any] | Callable[[Mapping[str, float]], Mapping[str, Any]] | None
+"""Initial states or inputs, or a function of a run's numbers that gives them."""
+
+
+class Runner(Protocol):
+    """A model with all its numbers, such as `codegen.Simulator`."""
+
+    def run(
+        self,
+        time: Array,
+        initial: Mapping[str, float] | None = None,
+        inputs: Mapping[str, object] | None = None,
+        method: str = "auto",
+        rtol: float = 1e-10,
+        atol: float = 1e-11,
+    ) -> Result:
+        """The record of a run."""
+
+
+class Model(Protocol):
+    """What a sweep can run: `codegen.Family`, or anything alike that can be pickled."""
+
+    @property
+    def parameters(self) -> Mapping[str, object]:
+        """Default numbers by name."""
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """What a run's initial values may name."""
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """What a run must be given."""
+
+    def simulator(self, /, **changes: object) -> Runner:
+        """The model with other numbers for some parameters."""
+
+    def fingerprint(self) -> str:
+        """A text that is another for another model."""
+
+
+class Chunk(NamedTuple):
+    """Runs that are done together: their indices and their numbers."""
+
+    indices: tuple[int, ...]
+    rows: tuple[tuple[float, ...], ...]
+
+
+class Outcome(NamedTuple):
+    """What a chunk gave: for each run its measures, or the text of why there are none.
+
+    ``seconds``: how long it took.
+    """
+
+    indices: tuple[int, ...]
+    results: tuple[tuple[Array, ...] | str, ...]
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """A model and all that its runs share; ``names`` are what each run has numbers for."""
+
+    model: Model
+    names: tuple[str, ...]
+    time: Array
+    measures: Mapping[str, Callable[[Result], Any]]
+    initial: Given = None
+    inputs: Given = None
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+    def run(self, row: Sequence[float]) -> tuple[Array, ...] | str:
+        """The measures of one run, or why there are none."""
+        values = dict(zip(self.names, row, strict=True))
+        try:
+            result = self._result(values)
+        except BondGraphError as error:
+            return str(error)
+        except Exception as error:  # noqa: BLE001 - one run of many: told with its numbers
+            return f"{type(error).__name__}: {error}"
+        found = []
+        for name, measure in self.measures.items():
+            try:
+                found.append(np.array(measure(result), dtype=float))
+            except Exception as error:  # noqa: BLE001 - the caller's code
+                return f"measure {name!r}: {type(error).__name__}: {error}"
+        return tuple(found)
+
+    def _result(self, values: Mapping[str, float]) -> Result:
+        model = self.model
+        changes = {name: v for name, v in values.items() if name in model.parameters}
+        initial, inputs = _given(self.initial, values), _given(self.inputs, values)
+        initial |= {name: v for name, v in values.items() if name in model.states}
+        inputs |= {name: v for name, v in values.items() if name in model.inputs}
+        runner = model.simulator(**changes)
+        return runner.run(self.time, initial, inputs, **self.settings)
+
+    def about(self) -> dict[str, object]:
+        """What identifies the job, part by part: everything that the results depend on but the rows."""
+        return {
+            "model": self.model.fingerprint(),
+            "time": hashlib.sha256(self.time.tobytes()).hexdigest(),
+            "initial": _described(self.initial),
+            "inputs": _described(self.inputs),
+            "settings": {name: _described(value) for name, value in self.settings.items()},
+            "names": list(self.names),
+            "measures": [[name, _described(measure)] for name, measure in self.measures.items()],
+        }
+
+
+def measured(job: Job, chunk: Chunk) -> Outcome:
+    """The outcome of a chunk, run after run."""
+    start = time.perf_counter()
+    loop = batch_of(job)
+    found = [None] * len(chunk.rows) if loop is None else loop(chunk.rows)
+    results = tuple(
+        job.run(row) if one is None else one for one, row in zip(found, chunk.rows, strict=True)
+    )
+    return Outcome(chunk.indices, results, time.perf_counter() - start)
+
+
+def batch_of(job: Job) -> Batch | None:
+    """The loop in C for the runs of a job, made once; None where there is none."""
+    with _making:
+        if job not in _batches:
+            family, exact = job.model, job.settings.get("method", "auto") in ("auto", EXACT)
+            able = isinstance(family, Family) and family.backend == "c" and exact
+            asked = (job.names, job.time, job.measures, job.initial, job.inputs)
+            _batches[job] = batch(Asked(family, *asked)) if able else None  # type: ignore[arg-type]
+        return _batches[job]
+
+
+_batches: WeakKeyDictionary[Job, Batch | None] = WeakKeyDictionary()
+_making = Lock()
+
+
+def sent(job: Job) -> bytes:
+    """The job for other processes; `SignalError` where a part of it cannot be sent."""
+    try:
+        return packed(job)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise SignalError(
+            f"the sweep cannot be sent to other processes: {error}; define measures at the top of a "
+            "module, or let the runs be done in this process with workers=0"
+        ) from None
+
+
+@lru_cache(maxsize=4)
+def received(job: bytes) -> Job:
+    """The job that was sent; kept, so that a process makes it once."""
+    found = pickle.loads(job)
+    assert isinstance(found, Job)
+    return found
+
+
+def measured_remotely(job: bytes, chunk: bytes) -> Outcome:
+    """The outcome of a chunk in another process."""
+    return measured(received(job), pickle.loads(chunk))
+
+
+def _given(given: Given, values: Mapping[str, float]) -> dict[str, Any]:
+    found = given(values) if callable(given) else given
+    return dict(found or {})
+
+
+def _described(value: object) -> str:
+    """Text that stands for an argument in every process: a function is told by its name."""
+    if isinstance(value, Mapping):
+        return repr(sorted((str(name), _described(part)) for name, part in value.items()))
+    if callable(value) and not isinstance(value, Measure):
+        names = (getattr(value, name, "") for name in ("__module__", "__qualname__"))
+        return ".".join(map(str, names))
+    return repr(value)

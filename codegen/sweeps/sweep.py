@@ -1,0 +1,191 @@
+"""`sweep`: many runs of one model over its parameters, initial values and constant inputs."""
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bondgraph import SignalError
+from bondgraph.expressions import normal
+from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
+from codegen.runs.result import Result
+from codegen.sweeps.cluster import Cluster
+from codegen.sweeps.crews import Crew, Here, Processes, Threads
+from codegen.sweeps.design import Table, design
+from codegen.sweeps.drive import Pace, Work, drive
+from codegen.sweeps.job import Given, Job, Model, Outcome, batch_of, sent
+from codegen.sweeps.measures import Measure
+from codegen.sweeps.result import Collected, Sweep, SweepInterrupted
+from codegen.sweeps.store import Store
+
+RESERVED = ("run", "time")
+"""Names of axes."""
+
+
+def sweep(
+    model: Model,
+    parameters: Table | Mapping[str, ArrayLike] | Sequence[Mapping[str, float]],
+    time: ArrayLike,
+    measures: Mapping[str, Callable[[Result], Any]],
+    initial: Given = None,
+    inputs: Given = None,
+    *,
+    method: str = "auto",
+    rtol: float = 1e-10,
+    atol: float = 1e-11,
+    workers: int | None = None,
+    client: Any = None,
+    store: str | PathLike[str] | None = None,
+    progress: bool = True,
+    chunk: int | None = None,
+) -> Sweep:
+    """Run a model once for each set of numbers and keep the measures of each run.
+
+    ``model``: a `Family`. ``parameters``: a `Grid` (or a mapping of names to numbers), a `Table` (or a
+    list of rows) or `Samples`. A name is a parameter, a state (its value at the start) or an input (held
+    constant). ``measures``: name to a function of the `Result` that gives a number or an array.
+    ``time``, ``initial``, ``inputs``, ``method``, ``rtol``, ``atol``: as of `Simulator.run`; ``initial``
+    and ``inputs`` may be functions of a run's numbers by name, which then may have names of their own.
+
+    ``workers``: processes to run in, by default one for each core; 0: in this process. A family with
+    backend "c" and measures of this package is run by threads instead, many runs in one call of C.
+    What is sent to processes must be picklable, and a script needs the line
+    ``if __name__ == "__main__":``. ``client``: a `distributed.Client` to run on instead. ``chunk``: how
+    many runs are done together, by default some half a second to ten. None of these changes a number.
+
+    ``store``: a folder to keep finished runs in; the same call continues there. ``progress``: a bar, where
+    tqdm is installed.
+
+    A run that is refused, or whose process ends, is told in ``failed``; the others go on. Interrupted, it
+    raises `SweepInterrupted`, a `KeyboardInterrupt` whose ``sweep`` has what is done.
+
+    Raises `SignalError` for arguments that no run can use, `StoreError` for the folder of another sweep.
+
+    >>> import bondgraph as bg, networkx as nx
+    >>> from codegen import Family, final, peak
+    >>> g = nx.DiGraph()
+    >>> g.add_nodes_from([bg.One("mass"), bg.I("m", "m", flow="v"), bg.C("spring", "1/k", effort="F")])
+    >>> g.add_edges_from([("mass", "m"), ("mass", "spring")])
+    >>> family = Family(bg.derive(g), {"m": 1, "k": 1})
+    >>> found = sweep(family, {"k": [1, 4, 9], "v": [1, 2]}, np.linspace(0, 6.4, 641),
+    ...               {"force": peak("F"), "end": final("v")}, workers=0, progress=False)
+    >>> found["force"].round(3)
+    array([1., 2., 2., 4., 3., 6.])
+    >>> found.table()["k"]
+    array([1., 1., 4., 4., 9., 9.])
+    """
+    runs = design(parameters)
+    settings = {"method": method, "rtol": rtol, "atol": atol}
+    job = Job(model, runs.names, checked_times(time), dict(measures), initial, inputs, settings)
+    _check(job)
+    _check_count(workers, "workers", 0)
+    _check_count(chunk, "chunk", 1)
+    collected = Collected(len(runs), tuple(measures))
+    about = {**job.about(), "parameters": runs.fingerprint(), "runs": len(runs)}
+    kept = None if store is None else Store(store, about)
+    for outcome in () if kept is None else kept.finished():
+        collected.add(outcome)
+    over_time = frozenset(n for n, m in measures.items() if isinstance(m, Measure) and m.over_time)
+    todo = np.flatnonzero(~collected.done)
+    try:
+        with _bar(progress, len(runs), len(runs) - len(todo)) as advance:
+
+            def keep(outcome: Outcome) -> None:
+                new = collected.add(outcome)
+                if kept is not None and new:
+                    kept.keep(outcome)
+                advance(new)
+
+            if len(todo):
+                _run(_crew(job, client, workers, len(todo)), Work(runs, todo, Pace(chunk)), keep)
+    except KeyboardInterrupt:
+        raise SweepInterrupted(collected.sweep(runs, job.time, over_time)) from None
+    return collected.sweep(runs, job.time, over_time)
+
+
+def _run(crew: Crew, work: Work, keep: Callable[[Outcome], None]) -> None:
+    finished = False
+    try:
+        drive(crew, work, keep)
+        finished = True
+    finally:
+        crew.close(now=not finished)
+
+
+def _crew(job: Job, client: Any, workers: int | None, runs: int) -> Crew:
+    if client is not None:
+        return Cluster(sent(job), client)
+    if workers is None:
+        known = hasattr(os, "sched_getaffinity")
+        workers = len(os.sched_getaffinity(0)) if known else os.cpu_count() or 1
+    if workers == 0:
+        return Here(job)
+    if batch_of(job) is not None:
+        return Threads(job, min(workers, runs))
+    return Processes(sent(job), min(workers, runs))
+
+
+@contextmanager
+def _bar(wanted: bool, runs: int, done: int) -> Iterator[Callable[[int], object]]:
+    """What tells how many runs are through: a bar, or nothing."""
+    try:
+        from tqdm import tqdm
+    except ImportError:
+        wanted = False
+    if not wanted:
+        yield lambda new: None
+        return
+    with tqdm(total=runs, initial=done, unit="run") as bar:
+        yield bar.update
+
+
+def _check(job: Job) -> None:
+    """Refuse what no run could use, before the first."""
+    model = job.model
+    if not all(hasattr(model, name) for name in ("simulator", "parameters", "states", "inputs")):
+        raise SignalError(
+            f"a sweep needs a model whose numbers are free, such as codegen.Family, not {model!r}"
+        )
+    _check_measures(job)
+    free = callable(job.initial) or callable(job.inputs)
+    known = (*model.parameters, *model.states, *model.inputs)
+    for name in job.names:
+        if name not in known and not free:
+            raise SignalError(
+                f"{name!r} is no parameter, state or input; there are {', '.join(known)}"
+            )
+    for given, what in ((job.initial, "initial"), (job.inputs, "inputs")):
+        twice = [] if callable(given) else [n for n in given or {} if normal(n) in job.names]
+        if twice:
+            raise SignalError(f"{what}: {twice[0]!r} is swept, too; leave it out here")
+    if not callable(job.initial):
+        named_numbers({} if job.initial is None else job.initial, model.states)
+    if not callable(job.inputs):
+        swept = {name: 0.0 for name in job.names if name in model.inputs}
+        signals_for({**(job.inputs or {}), **swept}, model.inputs)
+    settings_of(**job.settings)
+
+
+def _check_measures(job: Job) -> None:
+    if not job.measures:
+        raise SignalError("measures: name at least one function of a run")
+    for name, measure in job.measures.items():
+        if not callable(measure):
+            raise SignalError(f"measure {name!r}: {measure!r} is not a function of a run")
+    for name in RESERVED:
+        if name in job.names or name in job.measures:
+            raise SignalError(f"{name!r} names an axis; call the column something else")
+    for name in job.names:
+        if name in job.measures:
+            raise SignalError(f"{name!r} is swept, so no measure can have that name")
+
+
+def _check_count(count: object, what: str, least: int) -> None:
+    if count is not None and (isinstance(count, bool) or not isinstance(count, int)):
+        raise SignalError(f"{what} must be a whole number, not {count!r}")
+    if count is not None and count < least:
+        raise SignalError(f"{what} must be {least} or more, not {count}")

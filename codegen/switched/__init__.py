@@ -1,0 +1,1 @@
+"""Runs of models whose switches change their equations."""

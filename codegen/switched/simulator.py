@@ -1,0 +1,242 @@
+"""`switched_simulator`: graphs with switches, one phase after another, momenta handed over between."""
+
+from collections import deque
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bondgraph import SimulationError, StructureError, validate
+from bondgraph.switching import checked_modes
+from codegen.arrays import Array
+from codegen.inputs.signals import Signal
+from codegen.model.closed import Snapshot
+from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
+from codegen.runs.events import Event
+from codegen.runs.hybrid import APART, STALLED, run_hybrid
+from codegen.runs.legs import Settings
+from codegen.runs.result import Result
+from codegen.switched.phases import Held, Keeping, Moment, On, Phase, Phases
+from codegen.switched.spliced import Spliced
+
+
+@dataclass(frozen=True)
+class SwitchedSimulator:
+    """A graph with switches and numbers for its parameters.
+
+    ``states``: the co-energy variables of all storages, then states that laws own. ``inputs``: what the
+    model must be given. ``switches``: the names of switches and controlled junctions.
+    """
+
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    switches: tuple[Hashable, ...]
+    phases: Phases
+
+    def run(
+        self,
+        time: ArrayLike,
+        initial: Mapping[str, float] | None = None,
+        inputs: Mapping[str, object] | None = None,
+        initially_on: Iterable[Hashable] = (),
+        method: str = "auto",
+        rtol: float = 1e-10,
+        atol: float = 1e-11,
+    ) -> Result:
+        """Integrate over the given times [s], as `Simulator.run` does, from phase to phase.
+
+        ``initially_on``: the switches that are on at first, as far as their conditions let them.
+        ``initial``: states by name; the others start at 0, or follow those on which they depend at first.
+        What is named but cannot stay as it is shares its momentum or charge at once.
+
+        The result's ``events`` tell which switch went on or off when; each switch also is a column, 1 or 0.
+
+        Raises `SimulationError` where no mode of the switches is consistent, or they change over without end.
+        """
+        times = checked_times(time)
+        given = signals_for({} if inputs is None else inputs, self.inputs)
+        signals = dict(zip(self.inputs, given, strict=True))
+        values = named_numbers({} if initial is None else initial, self.states)
+        settings = settings_of(method, rtol, atol)
+        first = checked_modes(self.switches, initially_on)
+        with np.errstate(all="ignore"):
+            return _Journey(self, times, signals, settings).run(first, values)
+
+
+class _Journey:
+    """One run: the phases that it passes through, its results so far, and its events."""
+
+    def __init__(
+        self,
+        simulator: SwitchedSimulator,
+        times: Array,
+        signals: Mapping[str, Signal],
+        settings: Settings,
+    ) -> None:
+        self._simulator, self._times = simulator, times
+        self._signals, self._settings = signals, settings
+        self._parts: list[Result] = []
+        self._modes: list[On] = []
+        self._events: list[Event] = []
+        self._span = float(times[-1] - times[0])
+        self._peaks: dict[Hashable, float] = {}
+
+    def run(self, on: On, initial: Mapping[str, float]) -> Result:
+        """From phase to phase to the end."""
+        phases, t = self._simulator.phases, float(self._times[0])
+        held: Keeping = partial(self._started, t, initial)
+        changed, rounds = On(), deque[float](maxlen=STALLED)
+        while True:
+            pieces = {name: signal.piece(t) for name, signal in self._signals.items()}
+            moment = Moment(t, pieces, self._settings, self._span)
+            phase, vector = phases.begin(moment, held, on, changed)
+            if rounds:
+                self._note(t, on, phase.on)
+            on = phase.on
+            t, kept, changed, ahead = self._pass(phase, t, vector)
+            held = partial(_same, kept)
+            if not changed:
+                return self._result()
+            rounds.append(t)
+            if len(rounds) == STALLED and t - rounds[0] < max(
+                APART * self._span, 2 * STALLED * ahead
+            ):
+                raise SimulationError(
+                    f"{STALLED} switchings within a moment of t = {t:.12g}: the run makes no progress; "
+                    f"the last were {', '.join(map(repr, changed))}"
+                )
+
+    def _started(self, t: float, initial: Mapping[str, float], phase: Phase) -> Held:
+        """What storages hold at the start: as given by name, the others as the phase makes them follow."""
+        simulator, signals = phase.simulator, self._given(phase)
+        state = np.array([initial.get(name, 0.0) for name in simulator.states])
+        given = np.array([signal(t) for signal in signals])
+        s = simulator.vector(t, state, given)
+        pieces = [signal.piece(t) for signal in signals]
+        slipping = tuple(1 for _ in simulator.closed.program.friction)
+        return _held(phase, t, simulator.closed.at(t, s, pieces, slipping), initial, self._peaks)
+
+    def _given(self, phase: Phase) -> list[Signal]:
+        return [self._signals[name] for name in phase.simulator.inputs]
+
+    def _pass(self, phase: Phase, t: float, vector: Array) -> tuple[float, Held, On, float]:
+        """One phase: to the end of the run or the first switching, whose switches come third.
+
+        Fourth comes a time too short to matter.
+        """
+        model, signals = phase.simulator.closed, self._given(phase)
+        done = sum(len(part.time) for part in self._parts)
+        rest = self._times[done:]
+        phase.simulator.check_steps(signals, rest)
+        stretch = run_hybrid(model, rest, vector, signals, self._settings, t, self._span)
+        track = stretch.track
+        self._events += track.events
+        if track.recorded:
+            own = slice(0, track.recorded)
+            track.vectors = track.vectors[own]
+            columns, observer = phase.simulator.columns(rest[own], signals, track)
+            simulator = phase.simulator
+            self._parts.append(
+                Result(rest[own], simulator.states, simulator.inputs, simulator.outputs, (),
+                       MappingProxyType(columns), observer)
+            )  # fmt: skip
+            self._modes += [phase.on] * track.recorded
+        pieces = [signal.piece(stretch.t) for signal in signals]
+        now = model.at(stretch.t, stretch.s, pieces, stretch.mode)
+        names = self._simulator.switches
+        largest = track.largest[: len(model.program.states)]
+        sizes = phase.handover.sizes(stretch.t, now, largest).tolist()
+        for name, size in zip(phase.handover.storages, sizes, strict=True):
+            self._peaks[name] = max(size, self._peaks.get(name, 0.0))
+        held = _held(phase, stretch.t, now, {}, self._peaks)
+        return stretch.t, held, On(names[k] for k in stretch.fallen), stretch.ahead
+
+    def _note(self, t: float, old: On, new: On) -> None:
+        for name in self._simulator.switches:
+            if (name in old) != (name in new):
+                self._events.append(Event(t, name, "on" if name in new else "off"))
+
+    def _result(self) -> Result:
+        """All phases as one result."""
+        spliced, simulator = Spliced(self._parts), self._simulator
+        common = set(self._parts[0].columns).intersection(*(part.columns for part in self._parts))
+        names = dict.fromkeys([*simulator.states, *self._parts[0].columns])
+        columns = {
+            name: spliced.signal(name)
+            for name in names
+            if name in common or name in simulator.states
+        }
+        for name in simulator.switches:
+            columns[str(name)] = np.array([float(name in mode) for mode in self._modes])
+        return Result(
+            self._times, simulator.states, simulator.inputs, self._parts[0].outputs,
+            tuple(self._events), MappingProxyType(columns), spliced,
+        )  # fmt: skip
+
+
+def _same(held: Held, phase: Phase) -> Held:
+    return held
+
+
+def _held(
+    phase: Phase, t: float, now: Snapshot, given: Mapping[str, float],
+    peaks: Mapping[Hashable, float],
+) -> Held:  # fmt: skip
+    """What is kept at an instant: the momenta of storages, and the states of laws."""
+    found = phase.handover.momenta(t, now, given).tolist()
+    momenta = dict(zip(phase.handover.storages, found, strict=True))
+    own = (name.name for name in phase.simulator.closed.program.law_states)
+    return Held(momenta, dict(zip(own, now.z.tolist(), strict=True)), dict(peaks))
+
+
+def switched_simulator(
+    graph: Any,
+    parameters: Mapping[str, object],
+    laws: Mapping[Any, object] | None = None,
+    outputs: Iterable[Hashable] | None = None,
+) -> SwitchedSimulator:
+    """A simulator of a graph with switches and controlled junctions, in all of their modes.
+
+    Each mode has a causality and equations of its own, derived when a run first needs them. What a
+    mode makes dependent is handed over with conserved momenta and displacements. ``parameters`` and
+    ``laws`` as for `simulator`, ``outputs`` as for `derive`.
+
+    >>> import bondgraph as bg, networkx as nx
+    >>> g = nx.DiGraph()
+    >>> g.add_nodes_from([bg.One("first"), bg.I("m_1", 1, flow="v_1"), bg.Zero("gap"),
+    ...                   bg.Sw("slack", on="1 - t"), bg.One("second"), bg.I("m_2", 3, flow="v_2")])
+    >>> g.add_edges_from([("first", "m_1"), ("first", "gap"), ("gap", "slack"), ("gap", "second"),
+    ...                   ("second", "m_2")])
+    >>> run = switched_simulator(g, {}).run([0.0, 2.0], initial={"v_1": 4.0})
+    >>> run["v_1"].round(9).tolist(), run["v_2"].round(9).tolist(), run.events
+    ([4.0, 1.0], [0.0, 1.0], (Event(time=1.0, port='slack', kind='off'),))
+    """
+    checked = validate(graph)
+    phases = Phases(checked, parameters, laws, None if outputs is None else list(outputs))
+    names = phases.names
+    if not names:
+        raise StructureError("the graph has no switches; derive it and make a simulator of that")
+    first = phases.any()
+    _check_names(names, first)
+    handover, model = first.handover, first.simulator.closed
+    own = tuple(name.name for name in model.program.law_states)
+    return SwitchedSimulator(
+        (*handover.variables, *own), first.simulator.inputs, names, phases
+    )  # fmt: skip
+
+
+def _check_names(switches: Sequence[Hashable], phase: Phase) -> None:
+    """Refuse switches whose columns would hide a signal's."""
+    model = phase.simulator.closed
+    taken = {*map(str, model.equations.signals), *phase.simulator.inputs, *phase.simulator.states}
+    taken |= {name.name for name in model.program.law_states}
+    for at, name in enumerate(switches):
+        if str(name) in taken or str(name) in map(str, switches[:at]):
+            raise StructureError(
+                f"switch {name!r} is called like a signal or another switch, and each is a column of a "
+                "result; rename it"
+            )
