@@ -11,7 +11,9 @@ from numpy.typing import ArrayLike
 
 from bondgraph import ParameterError, SignalError, SimulationError, StateEquations
 from codegen.arrays import Array
-from codegen.engine.runs import CRuns
+from codegen.engine.located import METHODS as LOCATED_METHODS
+from codegen.engine.located import LocatedRuns, Recorded
+from codegen.engine.runs import CRuns, not_affine
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signals import Constant, Signal, first_step
 from codegen.model.closed import ClosedModel
@@ -28,10 +30,10 @@ from codegen.runs.hybrid import run_hybrid
 from codegen.runs.legs import EXACT, Settings, Track
 from codegen.runs.observer import Observer
 from codegen.runs.result import Result
-from codegen.runs.snapshots import snapshots
+from codegen.runs.snapshots import Snapshots, snapshots
 
 BACKENDS = ("numpy", "c")
-"""What runs models; "c" those that are affine in each friction mode."""
+"""What runs models."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +41,8 @@ class Simulator:
     """A model with numbers for its parameters; every call returns fresh arrays.
 
     ``states``: names in the order of ``x``, states that laws own last. ``inputs``: names in the order
-    of ``u``, what the model must be given. ``signals``: every name a `Result` holds. ``engine``: what
-    runs it, if not numpy.
+    of ``u``, what the model must be given. ``signals``: every name a `Result` holds. ``engine`` and
+    ``located``: the C that runs it, exactly where it is affine, and with step control.
     """
 
     states: tuple[str, ...]
@@ -48,6 +50,7 @@ class Simulator:
     outputs: tuple[str, ...]
     closed: ClosedModel
     engine: CRuns | None = field(default=None, repr=False, compare=False)
+    located: LocatedRuns | None = field(default=None, repr=False, compare=False)
 
     def rhs(self, t: float, x: ArrayLike, u: ArrayLike = ()) -> Array:
         """The rate of the states at one instant, inputs held; friction sticks where it can.
@@ -97,38 +100,40 @@ class Simulator:
         settings = settings_of(method, rtol, atol)
         self.check_steps(signals, times)
         at_start = np.array([signal(times[0]) for signal in signals])
-        start = self.vector(
-            float(times[0]),
-            initial_values({} if initial is None else initial, self.states),
-            at_start,
-        )
+        states = initial_values({} if initial is None else initial, self.states)
+        start = self.vector(float(times[0]), states, at_start)
         with np.errstate(all="ignore"):
-            track = self._track(times, start, signals, settings)
-            columns, observer = self.columns(times, signals, track)
+            found = self._in_c(times, states, start, signals, settings)
+            if found is None:
+                begin, span = float(times[0]), float(times[-1] - times[0])
+                run = run_hybrid(self.closed, times, start, signals, settings, begin, span)
+                found = self._recorded(times, signals, run.track)
+            columns, observer = self.columns(times, found.shots)
         return Result(
             times,
             self.states,
             self.inputs,
             self.outputs,
-            tuple(track.events),
+            found.events,
             MappingProxyType(columns),
             observer,
         )
 
-    def _track(
-        self, times: Array, start: Array, signals: Sequence[Signal], settings: Settings
-    ) -> Track:
-        """The run by the C engine, or where that cannot go on by the loop that tells why, or can."""
-        if self.engine is not None:
-            if settings.method not in ("auto", EXACT):
-                raise SignalError(
-                    f"backend 'c' steps exactly; method {settings.method!r} needs backend='numpy'"
-                )
+    def _in_c(
+        self, times: Array, states: Array, start: Array, signals: Sequence[Signal],
+        settings: Settings,
+    ) -> Recorded | None:  # fmt: skip
+        """The run in C; None where it cannot go on, and the loop in Python can or tells why."""
+        if self.engine is not None and settings.method in ("auto", EXACT):
             track = self.engine.run(times, start, signals).track
             if track is not None:
-                return track
-        begin, span = float(times[0]), float(times[-1] - times[0])
-        return run_hybrid(self.closed, times, start, signals, settings, begin, span).track
+                return self._recorded(times, signals, track)
+        if self.located is None or settings.method not in LOCATED_METHODS:
+            return None
+        return self.located.run(times, states, signals, settings)
+
+    def _recorded(self, times: Array, signals: Sequence[Signal], track: Track) -> Recorded:
+        return Recorded(tuple(track.events), snapshots(self.closed, times, signals, track))
 
     def steady(
         self, inputs: Mapping[str, float], initial: Mapping[str, float]
@@ -189,12 +194,9 @@ class Simulator:
             shown[i, list(driven.columns)] = 1.0
         return shown
 
-    def columns(
-        self, times: Array, signals: Sequence[Signal], track: Track
-    ) -> tuple[dict[str, Array], Observer]:
+    def columns(self, times: Array, found: Snapshots) -> tuple[dict[str, Array], Observer]:
         """The recorded samples as columns by name, and what works out all other signals."""
         program = self.closed.program
-        found = snapshots(self.closed, times, signals, track)
         groups = (
             (program.states, found.x),
             (program.law_states, found.z),
@@ -222,8 +224,8 @@ def simulator(
 
     ``parameters``: name to number. ``laws``: node (or the input it gives) to an expression or
     `DryFriction`, over the laws declared in the graph. A name in a law that parameters don't have is
-    an input. ``backend``: "numpy", or "c" for models that are affine in each friction mode, which a C
-    compiler and the extra ``c`` run much faster.
+    an input. ``backend``: "numpy", or "c", whose runs are generated C and much faster; it needs a C
+    compiler and the extra ``c``.
 
     Raises `ParameterError`, `StructureError` or `DependentSourceError` for what cannot be used,
     `SignalError` for what the backend cannot run, `MissingExtraError` for what it needs.
@@ -235,7 +237,11 @@ def simulator(
 
 def with_engine(ready: Simulator, backend: str) -> Simulator:
     """The simulator with what runs it."""
-    return replace(ready, engine=CRuns(ready.closed)) if backend == "c" else ready
+    if backend != "c":
+        return ready
+    affine = not_affine(ready.closed.program) is None
+    engine = CRuns(ready.closed) if affine else None
+    return replace(ready, engine=engine, located=LocatedRuns(ready.closed))
 
 
 def guarded_simulator(

@@ -25,13 +25,13 @@ ORDER = {
         "renaming", "composition", "declarations", "restored", "nodelink", "safexml", "graphml", "files",
     ],
     "codegen": [
-        "arrays", *_room("inputs", "pieces generators polynomials signals"),
+        "arrays", *_room("inputs", "pieces generators polynomials signals tables"),
         "model.affine", "closing", "program", "identifiers", "printing",
         *_room("model", "numpy_backend numbers friction instant loops closed sizes modes guards"),
         *_room("runs", "events legs exact hybrid arguments observer result snapshots"),
-        *_room("engine", "build sizes modes inputs runs"),
-        "simulate", "trim",
         *_room("c", "text structure constants rhs blocks rates tables export"),
+        *_room("engine", "build sizes modes inputs runs located"),
+        "simulate", "trim",
         *_room("sweeps", "packing family measures design batch_inputs batch_engine batch job crews "
                "cluster drive result store sweep"),
         *_room("python", "sticking text blocks tables export"),

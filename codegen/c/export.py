@@ -1,6 +1,6 @@
 """`to_c`: a model as C99 that allocates nothing, ready for a real-time target."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from importlib.resources import files
 from typing import Any
@@ -15,11 +15,20 @@ from codegen.c.text import comment
 from codegen.model.closed import ClosedModel
 from codegen.program import Block, Program, lower
 
-RUNTIME = (
+STEPPED = (
     "model_runtime.h", "model_internal.h", "model_linear.c", "model_numbers.c", "model_hold.c",
-    "model_share.c", "model_loops.c", "model_evaluate.c", "model_instance.c", "model_step.c",
+    "model_share.c", "model_roots.c", "model_loops.c", "model_evaluate.c", "model_instance.c",
+    "model_step.c",
 )  # fmt: skip
 """What is the same for every model."""
+
+LOCATED = (
+    "model_request.h", "model_located.h", "model_located_internal.h", "model_located.c",
+    "model_signals.c", "model_rounding.c", "model_decide.c", "bg_choose.h", "bg_choose.c",
+    "model_watch.c", "model_solver.c", "model_explicit_table.h", "model_explicit.c",
+    "model_implicit.c",
+)  # fmt: skip
+"""What event-located runs need beside that."""
 
 _HEAD = """\
 /* {name}
@@ -73,27 +82,39 @@ def to_c(
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
     program = lower(equations, laws, parameters)
     closed = ClosedModel(program, equations, parameters)
-    exact, ports = closed.parameters, range(len(program.friction))
-    fast = straight(program)
-    defaults = [float(exact[symbol.name]) for symbol in program.parameters]
+    defaults = [float(closed.parameters[symbol.name]) for symbol in program.parameters]
+    files = texts(closed, name, defaults)
+    return {**files, "main.c": runtime_file("main.c")} if main else files
+
+
+def texts(
+    closed: ClosedModel, name: str, defaults: Sequence[float], located: bool = True
+) -> dict[str, str]:
+    """The files of a model, with or without event-located runs, and without a main program.
+
+    Its parameters are in ``defaults`` alone, and in which sticking ports are redundant.
+    """
+    program, equations = closed.program, closed.equations
+    ports, fast = range(len(program.friction)), straight(program)
     lines = [
         *_head(program, name),
         *name_tables(program, equations, name),
         "",
         *program_tables(program, defaults, [closed.coupled_directly(i) for i in ports]),
         "",
-        *structure_table(structures(program, equations, exact)),
+        *structure_table(structures(program, equations, closed.parameters)),
         *_functions(program),
         "",
         *group_tables(program),
         *(straight_rates(program, fast) if fast else plain_rates()),
     ]
-    names = (*RUNTIME, *(["main.c"] if main else []))
-    runtime = {file: _runtime(file) for file in names}
+    names = STEPPED + LOCATED if located else STEPPED
+    runtime = {file: runtime_file(file) for file in names}
     return {"config.h": config(program, fast, name), "model.c": "\n".join(lines) + "\n", **runtime}
 
 
-def _runtime(name: str) -> str:
+def runtime_file(name: str) -> str:
+    """The text of a hand-written file."""
     return files("codegen").joinpath("runtime", name).read_text(encoding="utf-8")
 
 

@@ -1,4 +1,4 @@
-"""Runs of affine models by the C engine; what it cannot do is left to the numpy loop."""
+"""Runs of affine models by the C engine; what it cannot do is left to event-located runs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from bondgraph import SignalError
 from codegen.arrays import Array
 from codegen.engine.build import FLAGS, check_tools
 from codegen.engine.inputs import Packed, Segments, segments
@@ -123,7 +122,6 @@ class CRuns:
     """The engine for one model: compiled for each size of its inputs' generators, tables kept."""
 
     def __init__(self, model: ClosedModel, flags: Sequence[str] = FLAGS) -> None:
-        check_affine(model.program)
         check_tools()
         self.model, self._flags = model, tuple(flags)
         self._ready: dict[int, tuple[Tables, tuple[Array, Any]]] = {}
@@ -157,16 +155,6 @@ class CRuns:
             compiled = engine(wanted, self._flags)
             self._ready[wanted.G] = Tables(compiled, self.model), compiled.context()
         return self._ready[wanted.G]
-
-
-def check_affine(program: Program) -> None:
-    """Refuse models that are not affine in each friction mode, naming the law; `SignalError`."""
-    reason = not_affine(program)
-    if reason is not None:
-        raise SignalError(
-            f"backend 'c' runs models that are affine in each friction mode: {reason}; "
-            "use backend='numpy'"
-        )
 
 
 def not_affine(program: Program) -> str | None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from bondgraph import SimulationError
 from codegen.arrays import Array
+from codegen.c.export import runtime_file
 from codegen.engine.build import FLAGS, compiled, loaded
 from codegen.model.closed import ClosedModel
 
@@ -132,8 +133,3 @@ def declarations(header: str, numbers: Mapping[str, int], prefix: str = "BG") ->
     for name, value in numbers.items():
         text = re.sub(rf"\b{prefix}_{name}\b", str(value), text)
     return text
-
-
-def runtime_file(name: str) -> str:
-    """The text of a hand-written file."""
-    return files("codegen").joinpath("runtime", name).read_text(encoding="utf-8")

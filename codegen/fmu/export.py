@@ -6,7 +6,6 @@ import math
 import os
 import zipfile
 from collections.abc import Iterable, Mapping
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ import numpy as np
 
 from bondgraph import BondGraphError, SignalError, StateEquations
 from bondgraph.expressions import normal
-from codegen.c.export import to_c
+from codegen.c.export import LOCATED, runtime_file, to_c
 from codegen.fmu.binaries import binaries, chosen_platforms, headers
 from codegen.fmu.model import FmuModel, config_text, model_text
 from codegen.fmu.switches import switching
@@ -71,7 +70,8 @@ def write_fmu(
     official = headers(version)
     model = _model(name or target.stem, equations, parameters, laws, initial or {}, inputs or {})
     code = to_c(equations, parameters, laws, name=model.name)
-    sources = code | {file: _glue(file) for file in GLUE[version]}
+    stepped = {file: text for file, text in code.items() if file not in LOCATED}
+    sources = stepped | {file: runtime_file(file) for file in GLUE[version]}
     sources |= {"fmu_model.c": model_text(model), **official}
     units = sorted(file for file in sources if file.endswith(".c"))
     token = _token(sources, description(model, version, "", units), config_text(model, ""))
@@ -169,10 +169,6 @@ def _internal_step(shortest: float) -> float:
 
 def _identifier(name: str) -> str:
     return identifiers([name], "c")[name]
-
-
-def _glue(name: str) -> str:
-    return files("codegen").joinpath("runtime", name).read_text(encoding="utf-8")
 
 
 def _token(sources: Mapping[str, str], *more: str) -> str:

@@ -22,7 +22,7 @@ class Generator:
 def generator(pieces: Sequence[Piece], t: float) -> Generator:
     """The generator of these pieces from t on: components ``tau^k/k! exp(rate tau)``, shared by rate.
 
-    >>> from codegen.pieces import constant_piece
+    >>> from codegen.inputs.pieces import constant_piece
     >>> ramp = Piece(0.0, ((0, (1.0, 2.0)),))
     >>> made = generator([constant_piece(0.0, 5.0), ramp], 3.0)
     >>> made.G, made.C @ made.start

@@ -242,3 +242,16 @@ void bg_correct(const bg_hold *held, double *rate, const double *du)
     bg_multiply_add(held->kept, M, held->fixed, du, drift);
     bg_multiply_add(N, held->kept, held->take_away, drift, rate);
 }
+
+int bg_remove_slips(bg_model *m, const int *mode, const bg_snapshot *shot, double *s)
+{
+    double slips[PORTS] = {0};
+    bg_hold *held = NULL;
+    const int status = bg_hold_of(m, mode, &held);
+    if (status != BG_OK)
+        return status;
+    bg_multiply_add(held->kept, N, held->slip_x, shot->x, slips);
+    bg_multiply_add(held->kept, M, held->slip_u, shot->u, slips);
+    bg_multiply_add(N, held->kept, held->take_away, slips, s);
+    return BG_OK;
+}

@@ -143,6 +143,10 @@ const char *bg_model_message(int status)
         "holding a port would need the slope in time of an input that a law gives",
         "this model, or this mode of it, is not one affine map",
         "a friction mode must be -1, 0 or 1",
+        "no way of sticking and slipping is consistent",
+        "events follow one another and time makes no progress",
+        "the integrator no longer advances: the rates jump there",
+        "more events than there is room for",
     };
     const int count = (int)(sizeof messages / sizeof *messages);
     return status >= 0 && status < count ? messages[status] : "unknown status";

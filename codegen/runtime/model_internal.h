@@ -76,8 +76,14 @@ int bg_hold_of(bg_model *m, const int *mode, bg_hold **found);
 int bg_holding_efforts(bg_model *m, const bg_hold *held, double *efforts);
 void bg_correct(const bg_hold *held, double *rate, const double *du);
 
+/* Takes what slips are left at sticking ports from s, along A^-1 F^T; `shot` is of that mode. */
+int bg_remove_slips(bg_model *m, const int *mode, const bg_snapshot *shot, double *s);
+
 /* model_share.c */
 void bg_fair_share(const bg_hold *held, const double *caps, double *efforts);
+
+/* model_roots.c: a root of f between a and b, unless its signs there are the same: then 0. */
+int bg_root(double (*f)(void *self, double at), void *self, double a, double b, double *found);
 
 /* model_loops.c: inputs at `columns` for which the residual vanishes; `rows` are what they act
  * on. */

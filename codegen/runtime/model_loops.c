@@ -1,13 +1,12 @@
 /* Laws that determine one another at one instant: a bounded search for their common solution. A law
  * that dissipates has it between what its port receives if nothing is given and receiving nothing:
  * that bounds a single law, and is where Newton's iteration starts for several. */
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "model_internal.h"
 
-enum { ITERATIONS = 60, BISECTIONS = 200 };
+enum { ITERATIONS = 60 };
 static const double RESIDUAL = 1e-9;
 #define SQUARE BG_TABLE(BG_LOOP, BG_LOOP)
 #define SIZE BG_ROOM(BG_LOOP)
@@ -52,67 +51,11 @@ static int solves(search *s, const double *values)
         <= RESIDUAL * (1e-3 + largest(s->loop->count, values));
 }
 
-static double one(search *s, double value)
+static double one(void *self, double value)
 {
     double left[SIZE];
-    left_over(s, &value, left);
+    left_over(self, &value, left);
     return left[0];
-}
-
-/* A point between by the secant or inverse quadratic interpolation; 0 if halving is better. */
-static double interpolated(double a, double b, double c, double fa, double fb, double fc,
-                           double before)
-{
-    const double middle = 0.5 * (c - b), s = fb / fa;
-    double p, q, r;
-    if (a == c) {
-        p = 2 * middle * s;
-        q = 1 - s;
-    } else {
-        q = fa / fc;
-        r = fb / fc;
-        p = s * (2 * middle * q * (q - r) - (b - a) * (r - 1));
-        q = (q - 1) * (r - 1) * (s - 1);
-    }
-    if (p > 0)
-        q = -q;
-    p = fabs(p);
-    if (2 * p < 3 * middle * q - fabs(DBL_EPSILON * b * q) && 2 * p < fabs(before * q))
-        return p / q;
-    return 0.0;
-}
-
-/* Brent's method: the root of a single law between 0 and end, if the signs differ. */
-static int bracketed(search *s, double end, double *found)
-{
-    double a = 0.0, b = end, fa = one(s, a), fb = one(s, b);
-    double c = a, fc = fa, step = b - a, before = step;
-    if (end == 0 || (fa > 0 && fb > 0) || (fa < 0 && fb < 0))
-        return 0;
-    for (int k = 0; k < BISECTIONS && fb != 0; k++) {
-        double middle, next, tolerance;
-        if (fabs(fc) < fabs(fb)) {
-            a = b, b = c, c = a;
-            fa = fb, fb = fc, fc = fa;
-        }
-        tolerance = 2 * DBL_EPSILON * fabs(b) + DBL_MIN;
-        middle = 0.5 * (c - b);
-        if (fabs(middle) <= tolerance)
-            break;
-        next = fabs(before) >= tolerance && fabs(fa) > fabs(fb)
-            ? interpolated(a, b, c, fa, fb, fc, before) : 0.0;
-        before = next != 0 ? step : middle;
-        step = next != 0 ? next : middle;
-        a = b, fa = fb;
-        b += fabs(step) > tolerance ? step : copysign(tolerance, middle);
-        fb = one(s, b);
-        if ((fb > 0) == (fc > 0)) {
-            c = a, fc = fa;
-            step = before = b - a;
-        }
-    }
-    *found = b;
-    return 1;
 }
 
 /* Slopes by differences; the change to make, or 0 if there is none. */
@@ -187,7 +130,9 @@ int bg_solve_loop(bg_model *m, const bg_loop *loop)
     nothing_received(m, loop, start);
     memcpy(m->work.u, m->now.u, sizeof m->work.u);
     memcpy(m->work.y, m->now.y, sizeof m->work.y);
-    if (loop->count == 1 && bracketed(&s, start[0], values) && solves(&s, values))
+    /* The root of a single law between nothing given and nothing received. */
+    if (loop->count == 1 && start[0] != 0 && bg_root(one, &s, 0.0, start[0], values)
+        && solves(&s, values))
         return s.status;
     memcpy(values, start, sizeof start);
     newton(&s, values);

@@ -31,7 +31,11 @@ enum bg_status {
     BG_STRUCTURE,    /* parameters change which ports are redundant */
     BG_NEEDS_SLOPE,  /* holding would need the slope in time of an input that a law gives */
     BG_NOT_AFFINE,   /* the model, or this mode of it, is no affine map */
-    BG_BAD_MODE      /* a mode is none of -1, 0, 1 */
+    BG_BAD_MODE,     /* a mode is none of -1, 0, 1 */
+    BG_UNDECIDED,    /* no way of sticking and slipping is consistent */
+    BG_STALLS,       /* events follow one another and time makes no progress */
+    BG_STEPS,        /* the integrator no longer advances: the rates jump there */
+    BG_EVENTS        /* more events than there is room for */
 };
 
 /* One instant: time, states, law states, readings, inputs, external inputs and their rates. */

@@ -138,22 +138,6 @@ static int decide(bg_model *m, double t, double h, const double *s, const double
     return status;
 }
 
-/* Takes what slip is left inside the band from the states, along A^-1 F^T. */
-static int remove_slips(bg_model *m, double t, double *s, const double *w, const double *dw)
-{
-    double slips[PORTS] = {0};
-    bg_hold *held = NULL;
-    int status = bg_evaluate(m, t, s, w, dw, m->mode, 1, &m->shot);
-    if (status == BG_OK)
-        status = bg_hold_of(m, m->mode, &held);
-    if (status != BG_OK)
-        return status;
-    bg_multiply_add(held->kept, N, held->slip_x, m->shot.x, slips);
-    bg_multiply_add(held->kept, M, held->slip_u, m->shot.u, slips);
-    bg_multiply_add(N, held->kept, held->take_away, slips, s);
-    return BG_OK;
-}
-
 int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w)
 {
     int status;
@@ -162,9 +146,10 @@ int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w)
     if (BG_RATED)
         external_rates(h, w, m->work.rates);
     status = decide(m, t, h, s, w, m->work.rates[0]);
-    if (status == BG_OK && sticks(m->mode))
-        status = remove_slips(m, t, s, w, m->work.rates[0]);
-    return status;
+    if (status != BG_OK || !sticks(m->mode))
+        return status;
+    status = bg_evaluate(m, t, s, w, m->work.rates[0], m->mode, 1, &m->shot);
+    return status == BG_OK ? bg_remove_slips(m, m->mode, &m->shot, s) : status;
 }
 
 int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w)

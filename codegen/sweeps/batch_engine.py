@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bondgraph import SimulationError
+from codegen.c.export import runtime_file
 from codegen.engine.build import FLAGS, compiled, loaded
-from codegen.engine.sizes import Engine, Sizes, aligned, declarations, runtime_file, sources
+from codegen.engine.sizes import Engine, Sizes, aligned, declarations, sources
 from codegen.program import Program
 
 FILES = (

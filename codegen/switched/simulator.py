@@ -20,6 +20,7 @@ from codegen.runs.events import Event
 from codegen.runs.hybrid import APART, STALLED, run_hybrid
 from codegen.runs.legs import Settings
 from codegen.runs.result import Result
+from codegen.runs.snapshots import snapshots
 from codegen.switched.phases import Held, Keeping, Moment, On, Phase, Phases
 from codegen.switched.spliced import Spliced
 
@@ -138,8 +139,9 @@ class _Journey:
         if track.recorded:
             own = slice(0, track.recorded)
             track.vectors = track.vectors[own]
-            columns, observer = phase.simulator.columns(rest[own], signals, track)
             simulator = phase.simulator
+            shots = snapshots(model, rest[own], signals, track)
+            columns, observer = simulator.columns(rest[own], shots)
             self._parts.append(
                 Result(rest[own], simulator.states, simulator.inputs, simulator.outputs, (),
                        MappingProxyType(columns), observer)

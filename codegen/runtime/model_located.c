@@ -1,0 +1,244 @@
+/* The event-driven loop: stretches between breakpoints, sticking, release and zero crossings. */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "model_located_internal.h"
+
+enum { K = BG_FRICTION, FINEST = 200, REFRESH = 50, MANY = 500 };
+static const double STIFF = 2e5;     /* run over time constant: from here on implicit steps */
+static const double FOLLOWED = 0.1;  /* an implicit step in time constants of the inputs */
+static const double TINY = 1e-9;     /* so many steps below this part of a run go nowhere */
+
+int bg_located_look(bg_located *c, double t, const double *s, const signed char *mode)
+{
+    double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
+    int signs[BG_ROOM(K)];
+    for (int i = 0; i < K; i++)
+        signs[i] = mode[i];
+    bg_signals_at(c->signals, c->segment, t, w, dw);
+    return bg_evaluate(c->model, t, s, w, dw, signs, 1, &c->shot);
+}
+
+/* In the present mode; straight-line code where all ports slip and there is any. */
+int bg_located_rate(bg_located *c, double t, const double *s, double *rate)
+{
+    double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)], signs[BG_ROOM(K)];
+    int sticking = 0;
+    for (int i = 0; i < K; i++) {
+        signs[i] = c->mode[i];
+        sticking |= c->mode[i] == 0;
+    }
+    if (!BG_STRAIGHT || sticking) {
+        const int status = bg_located_look(c, t, s, c->mode);
+        memcpy(rate, c->shot.rate, sizeof c->shot.rate);
+        return status;
+    }
+    bg_signals_at(c->signals, c->segment, t, w, dw);
+    const int status = bg_model_rhs(c->model, t, s, w, signs, rate);
+    return status == BG_OK && !bg_finite(BG_SIZE, rate) ? BG_NOT_FINITE : status;
+}
+
+/* Notes what has become of the ports. */
+static int note(bg_located *c, const signed char *before)
+{
+    bg_request *const asked = c->asked;
+    for (int i = 0; i < K; i++) {
+        if (c->mode[i] == before[i])
+            continue;
+        if (asked->count >= asked->capacity)
+            return BG_EVENTS;
+        const int kind = c->mode[i] == 0 ? BG_STICK : before[i] == 0 ? BG_SLIP : BG_CROSS;
+        asked->events[asked->count++] = (bg_located_event){c->t, i, kind};
+    }
+    return BG_OK;
+}
+
+/* Refuses to go on when too many of the latest stretches end in an event within `least`. */
+static int check_progress(bg_located *c, double least)
+{
+    const double oldest = c->rounds[c->round % BG_STALLED];
+    const int full = c->round >= BG_STALLED;
+    c->rounds[c->round % BG_STALLED] = c->t;
+    c->round = c->round + 1 < 2 * BG_STALLED ? c->round + 1 : BG_STALLED;
+    return full && c->t - oldest < least ? BG_STALLS : BG_OK;
+}
+
+static int touched(const bg_located *c)
+{
+    int any = 0;
+    for (int i = 0; i < K; i++)
+        any |= c->touched[i];
+    return any;
+}
+
+/* Takes the present instant into account, decides the mode there and removes slips that stick. */
+static int settle(bg_located *c, int started)
+{
+    signed char before[BG_ROOM(K)];
+    double fastest;
+    int status = K > 0 ? bg_located_see(c) : BG_OK;
+    if (status != BG_OK || K == 0)
+        return status;
+    status = bg_located_fastest(c, c->t, c->s, &fastest);
+    if (status != BG_OK)
+        return status;
+    memcpy(before, c->mode, sizeof before);
+    c->moment = 1.0 / fmax(fastest, 100.0 / c->span);
+    status = bg_located_decide(c);
+    if (status != BG_OK || !started)
+        return status;
+    status = note(c, before);
+    if (status == BG_OK && touched(c)) {
+        const double ahead = BG_LOOK_AHEAD * c->moment;
+        status = check_progress(c, fmax(1e-9 * c->span, 2 * BG_STALLED * ahead));
+    }
+    return status;
+}
+
+/* Hands the next sample over, which is at s. */
+static int record(bg_located *c, const double *s)
+{
+    const bg_request *const asked = c->asked;
+    const double t = asked->times[c->next];
+    double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
+    int mode[BG_ROOM(K)];
+    const int status = bg_located_look(c, t, s, c->mode);
+    if (status != BG_OK)
+        return status;
+    for (int i = 0; i < K; i++)
+        mode[i] = c->mode[i];
+    bg_signals_at(c->signals, c->segment, t, w, dw);
+    asked->record(asked->to, c->next++, w, mode, &c->shot);
+    return BG_OK;
+}
+
+/* The samples before `until`, from the latest step. */
+static int sample(bg_located *c, double until)
+{
+    const bg_request *const asked = c->asked;
+    double s[BG_SIZE];
+    int status = BG_OK;
+    while (status == BG_OK && c->next < asked->samples && asked->times[c->next] < until) {
+        status = bg_solver_dense(c, asked->times[c->next], s);
+        if (status == BG_OK)
+            status = record(c, s);
+    }
+    return status;
+}
+
+/* The longest step: events and inputs must not fall between, nor the interpolant be strained. */
+static double longest(const bg_located *c, int method, double fastest)
+{
+    const double bound = c->span / FINEST, driven = c->signals->fastest[c->segment];
+    if (method == BG_RADAU)
+        return driven > 0 ? fmin(bound, FOLLOWED / driven) : bound;
+    return fastest > 0 ? fmin(bound, 1.0 / fastest) : bound;
+}
+
+/* A step: its end, or the event in it; samples before that are recorded. */
+static int step(bg_located *c, double stop, int *ended)
+{
+    double until = INFINITY, s[BG_SIZE];
+    int status = bg_solver_step(c, stop);
+    if (status == BG_OK)
+        status = bg_watch_step(c, ended, &until, c->touched);
+    if (status == BG_OK)
+        status = sample(c, *ended ? until : c->solver.t);
+    if (status == BG_OK && *ended)
+        status = bg_solver_dense(c, until, s);
+    if (status != BG_OK)
+        return status;
+    c->t = *ended ? until : c->solver.t;
+    memcpy(c->s, *ended ? s : c->solver.y, sizeof c->s);
+    return BG_OK;
+}
+
+/* From the present instant to `stop` or the first event. */
+static int advance(bg_located *c, double stop)
+{
+    double fastest;
+    int status = bg_located_fastest(c, c->t, c->s, &fastest), ended = 0, short_steps = 0;
+    int method = c->asked->method;
+    if (method == BG_AUTO)
+        method = fastest * c->span > STIFF ? BG_RADAU : BG_DOP853;
+    if (status == BG_OK)
+        status = bg_solver_begin(c, method, longest(c, method, fastest));
+    if (status == BG_OK)
+        status = bg_watch_begin(c);
+    for (long count = 1; status == BG_OK && c->t < stop && !ended; count++) {
+        const double before = c->t;
+        status = step(c, stop, &ended);
+        short_steps = c->t - before < TINY * c->span ? short_steps + 1 : 0;
+        if (status == BG_OK && short_steps > MANY)
+            return BG_STEPS;
+        if (status == BG_OK && !BG_AFFINE && count % REFRESH == 0) {
+            status = bg_located_fastest(c, c->t, c->s, &fastest);
+            c->solver.longest = longest(c, method, fastest);
+        }
+    }
+    return status;
+}
+
+/* The segment that holds at t and just after. */
+static int segment_at(const bg_signals *signals, double t)
+{
+    int at = 0;
+    while (at + 1 < signals->segments && signals->breaks[at] <= t)
+        at++;
+    return at;
+}
+
+static int begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
+{
+    double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
+    c->model = m;
+    c->signals = signals;
+    c->asked = asked;
+    c->t = asked->times[0];
+    c->span = asked->times[asked->samples - 1] - c->t;
+    c->next = c->round = asked->count = 0;
+    c->moment = 0.0;
+    memset(c->touched, 0, sizeof c->touched);
+    memset(c->mode, 1, sizeof c->mode);
+    memset(c->peak_x, 0, sizeof c->peak_x);
+    memset(c->peak_u, 0, sizeof c->peak_u);
+    c->segment = segment_at(signals, c->t);
+    bg_signals_at(signals, c->segment, c->t, w, dw);
+    return bg_model_vector(m, c->t, asked->states, w, c->s);
+}
+
+static int run(bg_located *c)
+{
+    const double end = c->asked->times[c->asked->samples - 1];
+    int status = BG_OK, started = 0;
+    for (;;) {
+        const bg_signals *const signals = c->signals;
+        c->segment = segment_at(signals, c->t);
+        const int broken = c->segment > 0 && signals->breaks[c->segment - 1] == c->t;
+        if (started && !(c->t < end) && !touched(c) && !broken)
+            return BG_OK;
+        status = settle(c, started);
+        started = 1;
+        memset(c->touched, 0, sizeof c->touched);
+        if (status != BG_OK || c->t >= end)
+            return status;
+        double stop = end;
+        if (c->segment + 1 < signals->segments)
+            stop = fmin(signals->breaks[c->segment], end);
+        status = advance(c, stop);
+        if (status != BG_OK)
+            return status;
+    }
+}
+
+int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
+{
+    int status = begin(c, m, signals, asked);
+    if (status == BG_OK)
+        status = run(c);
+    if (status == BG_OK)
+        status = record(c, c->s); /* the last sample shows the instant after all events */
+    asked->time = c->t;
+    return status;
+}

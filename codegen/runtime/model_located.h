@@ -1,0 +1,61 @@
+/* Event-located runs of a generated model: integrated with step control between breakpoints of the
+ * inputs, sticking, release and zero crossings, each located by its root. Nothing is allocated and
+ * nothing is global: the caller provides a `bg_located` for each run at a time. */
+#ifndef BG_MODEL_LOCATED_H
+#define BG_MODEL_LOCATED_H
+
+#include "model_request.h"
+
+enum {
+    BG_STALLED = 60,    /* so many events within a moment are a run that goes nowhere */
+    BG_EXPLICIT_STAGES = 16
+};
+
+/* One step of an integrator, and what its interpolation needs. */
+typedef struct {
+    int method, begun, dense, stale, factored;
+    double t_old, t, h, next, longest, error, h_factored;
+    double y_old[BG_SIZE], y[BG_SIZE], f_old[BG_SIZE], f[BG_SIZE];
+    double stage[BG_EXPLICIT_STAGES][BG_SIZE], tried[BG_SIZE], scale[BG_SIZE];
+    double interpolation[7][BG_SIZE], collocation[3][BG_SIZE];
+    double jacobian[BG_SIZE * BG_SIZE], real[BG_SIZE * BG_SIZE];
+    double complex[4 * BG_SIZE * BG_SIZE];
+    int real_pivots[BG_SIZE], complex_pivots[2 * BG_SIZE];
+} bg_solver;
+
+/* The triggers of a stretch, one for each port, positive while its mode holds: the slip, or the
+ * margin to the breakaway effort. Armed when they have risen above rounding. */
+typedef struct {
+    double blind, limit[BG_ROOM(BG_FRICTION)], before[BG_ROOM(BG_FRICTION)];
+    int armed[BG_ROOM(BG_FRICTION)];
+} bg_watch;
+
+/* Below these slips, margins and accelerations of slips count as zero. */
+typedef struct {
+    double slip[BG_ROOM(BG_FRICTION)], effort[BG_ROOM(BG_FRICTION)];
+    double push[BG_ROOM(BG_FRICTION)];
+} bg_rounding;
+
+/* A run. `peak_x`, `peak_u`: the largest magnitudes seen, of the terms that make inputs up;
+ * `moment` [s]: the shortest time constant. */
+typedef struct {
+    bg_model *model;
+    const bg_signals *signals;
+    bg_request *asked;
+    double t, span, s[BG_SIZE], moment;
+    int segment, next, round;
+    signed char mode[BG_ROOM(BG_FRICTION)], touched[BG_ROOM(BG_FRICTION)];
+    double peak_x[BG_ROOM(BG_STATES)], peak_u[BG_ROOM(BG_INPUTS)];
+    double rounds[BG_STALLED], squares[2][BG_SIZE * BG_SIZE];
+    bg_watch watch;
+    bg_solver solver;
+    bg_snapshot shot;
+} bg_located;
+
+/* Inputs and their rates at t in a segment. */
+void bg_signals_at(const bg_signals *signals, int segment, double t, double *w, double *dw);
+
+/* Runs; a status. */
+int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked);
+
+#endif

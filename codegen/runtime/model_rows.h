@@ -1,0 +1,23 @@
+/* Event-located runs whose samples become the rows of a table. */
+#ifndef BG_MODEL_ROWS_H
+#define BG_MODEL_ROWS_H
+
+#include "model_located.h"
+
+/* A row: x, z, u, u', y, the rate of s, external inputs. */
+enum { BG_ROW_WIDTH = BG_STATES + BG_LAW_STATES + 2 * BG_INPUTS + BG_READINGS + BG_SIZE + BG_EXTERNAL };
+
+/* The caller's: `samples` rows of the table, and of modes, BG_FRICTION in each. */
+typedef struct {
+    double *table;
+    int *modes;
+} bg_rows;
+
+/* The sizes of an instance, a run and a row, in bytes. */
+void bg_rows_sizes(unsigned long *sizes);
+
+/* Makes an instance and runs it; `asked` says all but where samples go. A status. */
+int bg_rows_run(bg_located *c, bg_model *m, const double *parameters, const bg_signals *signals,
+                bg_request *asked, bg_rows *rows);
+
+#endif

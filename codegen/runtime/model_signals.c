@@ -1,0 +1,37 @@
+/* External inputs over time. */
+#include <math.h>
+#include <string.h>
+
+#include "model_located.h"
+
+/* Adds the real part of p(tau) exp(r tau), and its slope. */
+static void add_term(const bg_signals *signals, const bg_term *term, double t, double *value,
+                     double *slope)
+{
+    const double(*const c)[2] = signals->coefficients + term->first;
+    const double *const r = term->rate;
+    const double tau = t - term->start, size = r[0] != 0.0 ? exp(r[0] * tau) : 1.0;
+    const double cosine = r[1] != 0.0 ? cos(r[1] * tau) : 1.0;
+    const double sine = r[1] != 0.0 ? sin(r[1] * tau) : 0.0;
+    double p[2] = {0.0, 0.0}, d[2] = {0.0, 0.0};
+    for (int k = term->count - 1; k >= 0; k--) {
+        d[0] = d[0] * tau + p[0];
+        d[1] = d[1] * tau + p[1];
+        p[0] = p[0] * tau + c[k][0];
+        p[1] = p[1] * tau + c[k][1];
+    }
+    d[0] += r[0] * p[0] - r[1] * p[1];
+    d[1] += r[0] * p[1] + r[1] * p[0];
+    *value += size * (p[0] * cosine - p[1] * sine);
+    *slope += size * (d[0] * cosine - d[1] * sine);
+}
+
+void bg_signals_at(const bg_signals *signals, int segment, double t, double *w, double *dw)
+{
+    for (int i = 0; i < BG_EXTERNAL; i++)
+        w[i] = dw[i] = 0.0;
+    for (int k = signals->begins[segment]; k < signals->begins[segment + 1]; k++) {
+        const bg_term *const term = signals->terms + k;
+        add_term(signals, term, t, w + term->input, dw + term->input);
+    }
+}
