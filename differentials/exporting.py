@@ -20,7 +20,7 @@ def export(
     """Write a differential's full model, as it is in a scenario, into a folder; the files written.
 
     ``target``: "python", a module and a script that runs the scenario with it; "c", a folder of C99 whose
-    parameters are the scenario's; "fmu2" or "fmu3", a unit that has the scenario's inputs inside.
+    parameters and main program are the scenario's; "fmu2" or "fmu3", a unit with its inputs inside.
 
     Raises `BondGraphError` for names and numbers that don't fit, and for what the target needs.
     """
@@ -37,7 +37,9 @@ def export(
         )  # fmt: skip
         return [path]
     if target == "c":
-        texts = codegen.to_c(*arguments, name=name, main=True)
+        texts = codegen.to_c(
+            *arguments, name=name, main=True, initial=ready.initial, inputs=ready.inputs
+        )
         return [_written(out / name / file, text) for file, text in texts.items()]
     script = _script(name, ready, named(scenario))
     module = codegen.to_python(*arguments, name)

@@ -9,11 +9,13 @@ from bondgraph import ParameterError, StateEquations
 from codegen.c.blocks import function, operations, places
 from codegen.c.rates import plain_rates, straight_rates
 from codegen.c.rhs import straight
+from codegen.c.scenario import scenario_text
 from codegen.c.structure import structures
 from codegen.c.tables import config, group_tables, name_tables, program_tables, structure_table
 from codegen.c.text import comment
 from codegen.model.closed import ClosedModel
 from codegen.program import Block, Program, lower
+from codegen.runs.arguments import initial_values, signals_for
 
 STEPPED = (
     "model_runtime.h", "model_internal.h", "model_linear.c", "model_numbers.c", "model_hold.c",
@@ -45,10 +47,11 @@ _HEAD = """\
  *     bg_model_init(&model, NULL);                    NULL: the parameters written here
  *     bg_model_vector(&model, 0, states, w, s);
  *     for (...) bg_model_step(&model, t, h, s, w);    a real-time step; friction sticks and slips
+ * or, with events located and steps that keep a tolerance, `bg_model_run` of model_located.h.
  *
  * Every call gives a status, 0 for success; `bg_model_message` says what it means. Build all files
  * of the folder, for example `cc -std=c99 -O2 *.c -lm`; with main.c that gives a program:
- *     ./a.out END STEP [name=value ...]               prints states and outputs as CSV
+ *     ./a.out END SAMPLE [located] [name=value ...]   prints states and outputs as CSV
  *
  * One evaluation takes {operations} operations beside those of the matrices.
 {names}
@@ -65,12 +68,15 @@ def to_c(
     laws: Mapping[Any, object] | None = None,
     name: str = "model",
     main: bool = False,
+    initial: Mapping[str, float] | None = None,
+    inputs: Mapping[str, object] | None = None,
 ) -> dict[str, str]:
     """The equations, closed by laws, as files of C99: name to text.
 
     ``parameters``: name to number, the defaults of `bg_model_init`. ``laws``: as `simulator` takes them.
-    ``name``: what the model calls itself. ``main``: with a main program that prints a run as CSV. The
-    same arguments give the same text; `model.c` tells how it is used.
+    ``name``: what the model calls itself. ``main``: with a main program that prints a run as CSV, from
+    ``initial`` (states by name, others start at 0) under ``inputs`` (signals or numbers, others are 0)
+    unless it is told otherwise. The same arguments give the same text; `model.c` tells how it is used.
 
     Which sticking ports are redundant is decided exactly, at these parameters; others at which that
     changes are refused when the model is run.
@@ -84,7 +90,13 @@ def to_c(
     closed = ClosedModel(program, equations, parameters)
     defaults = [float(closed.parameters[symbol.name]) for symbol in program.parameters]
     files = texts(closed, name, defaults)
-    return {**files, "main.c": runtime_file("main.c")} if main else files
+    if not main:
+        return files
+    states = [symbol.name for symbol in (*program.states, *program.law_states)]
+    external = [symbol.name for symbol in program.external]
+    signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)
+    scenario = scenario_text(signals, initial_values(initial or {}, states).tolist())
+    return {**files, "main.c": runtime_file("main.c"), "scenario.h": scenario}
 
 
 def texts(

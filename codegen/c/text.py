@@ -76,6 +76,7 @@ def integers(name: str, numbers: Iterable[int], local: bool = False) -> list[str
     return array(f"{'static ' if local else ''}const int {name}[]", map(str, numbers))
 
 
-def doubles(name: str, numbers: Iterable[float]) -> list[str]:
+def doubles(name: str, numbers: Iterable[float], local: bool = False) -> list[str]:
     """A constant array of doubles, in digits that give them back."""
-    return array(f"const double {name}[]", map(repr, numbers), "0.0")
+    head = f"{'static ' if local else ''}const double {name}[]"
+    return array(head, (repr(float(one)) for one in numbers), "0.0")

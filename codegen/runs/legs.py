@@ -31,8 +31,8 @@ LEAST_STEPS = 200
 """Steps are never longer than the span of the run divided by this."""
 
 
-TINY_STEP, MANY_STEPS = 1e-9, 500
-"""So many steps in a row below this fraction of the run are a run that goes nowhere."""
+TINY_STEP, TINY_PART, MANY_STEPS = 1e-9, 1e-3, 500
+"""So many steps in a row below these fractions of run and time constant are a run that goes nowhere."""
 
 REFRESH = 50
 """Steps after which a nonlinear model's time constants are looked at again."""
@@ -138,6 +138,7 @@ class Leg:
         )  # fmt: skip
         watch = Watch(self._model, self._pieces, self._mode, t, s, self._peaks)
         steps, short = 0, 0
+        tiny = min(TINY_STEP * self._span, TINY_PART / max(fastest, 1 / self._span))
         while solver.status == "running":
             message = solver.step()
             if solver.status == "failed":
@@ -150,7 +151,7 @@ class Leg:
             if found is not None:
                 return until, dense(until), found[1]
             steps += 1
-            short = short + 1 if solver.t - solver.t_old < TINY_STEP * self._span else 0
+            short = short + 1 if solver.t - solver.t_old < tiny else 0
             if short > MANY_STEPS:
                 raise SimulationError(
                     f"at t = {solver.t:.9g} the integrator no longer advances: the rates jump there; "

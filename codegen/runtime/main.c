@@ -1,11 +1,27 @@
-/* Runs the model with constant inputs and prints its states and outputs as CSV:
- *     ./model END STEP [name=value ...]      names of parameters, initial states, inputs
- * and `band=value`, the dead band of every friction port. */
+/* Runs the model and prints its states and outputs as CSV:
+ *     ./model END SAMPLE [name=value ...]    names of parameters, initial states, inputs
+ * A row every SAMPLE seconds, by fixed steps of SAMPLE or, with `step=H`, of a part of it that is
+ * about H; `band=B` is the dead band of every friction port. With the word `located` steps are
+ * adaptive and events located; they are told on the error stream. An input named is constant;
+ * others are as in scenario.h. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "model_runtime.h"
+#include "model_located.h"
+#include "scenario.h"
+
+enum { STATES = BG_STATES + BG_LAW_STATES, EVENTS = 4096 };
+
+/* What the command line asks for. */
+typedef struct {
+    double end, sample, step, band;
+    int located;
+    double parameters[BG_ROOM(BG_PARAMETERS)], states[BG_ROOM(STATES)];
+    bg_term terms[SCENARIO_TERMS];
+    double coefficients[SCENARIO_COEFFICIENTS][2];
+} command;
 
 static int find(int count, const char *const *names, const char *text, size_t length)
 {
@@ -15,26 +31,37 @@ static int find(int count, const char *const *names, const char *text, size_t le
     return -1;
 }
 
+/* Holds an input at a value: the first term of each is a constant, the others get no coefficients. */
+static void hold(command *asked, int input, double value)
+{
+    asked->coefficients[input][0] = value;
+    for (int k = 0; k < SCENARIO_TERMS; k++)
+        if (asked->terms[k].input == input && asked->terms[k].first != input)
+            asked->terms[k].count = 0;
+}
+
 /* One name=value of the command line; 0 if nothing has that name. */
-static int assign(const char *text, double *parameters, double *states, double *inputs,
-                  double *band)
+static int assign(command *asked, const char *text)
 {
     const char *const equals = strchr(text, '=');
     char *end = NULL;
     const size_t length = equals ? (size_t)(equals - text) : 0;
     const double value = equals ? strtod(equals + 1, &end) : 0.0;
     int at;
-    if (!equals || end == equals + 1 || *end != '\0')
+    if (!equals)
+        return asked->located = strcmp(text, "located") == 0;
+    if (end == equals + 1 || *end != '\0')
         return 0;
     if ((at = find(BG_PARAMETERS, bg_parameter_names, text, length)) >= 0)
-        parameters[at] = value;
-    else if ((at = find(BG_STATES + BG_LAW_STATES, bg_state_names, text, length)) >= 0)
-        states[at] = value;
+        asked->parameters[at] = value;
+    else if ((at = find(STATES, bg_state_names, text, length)) >= 0)
+        asked->states[at] = value;
     else if ((at = find(BG_EXTERNAL, bg_input_names, text, length)) >= 0)
-        for (int k = 0; k < 3; k++)
-            inputs[k * BG_EXTERNAL + at] = value;
+        hold(asked, at, value);
     else if (length == 4 && strncmp(text, "band", 4) == 0)
-        *band = value;
+        asked->band = value;
+    else if (length == 4 && strncmp(text, "step", 4) == 0 && value > 0)
+        asked->step = value;
     else
         return 0;
     return 1;
@@ -57,7 +84,7 @@ static void print_row(double t, const bg_snapshot *shot)
 static void print_head(void)
 {
     printf("t");
-    for (int i = 0; i < BG_STATES + BG_LAW_STATES; i++)
+    for (int i = 0; i < STATES; i++)
         printf(",%s", bg_state_names[i]);
     for (int i = 0; i < BG_OUTPUTS; i++)
         printf(",%s", bg_output_names[i]);
@@ -71,47 +98,106 @@ static int failed(int status)
     return status != BG_OK;
 }
 
-/* Rows at t = 0, step, 2 step, ... */
-static int run(bg_model *m, double end, double step, double *s, const double *w)
+/* Inputs at t and just after. */
+static void inputs_at(const bg_signals *signals, double t, double *w, double *dw)
+{
+    bg_signals_at(signals, bg_signals_segment(signals, t), t, w, dw);
+}
+
+/* Rows by fixed steps, `parts` from each to the next. */
+static int run_stepped(bg_model *m, const command *asked, const bg_signals *signals, double *s)
 {
     static bg_snapshot shot;
-    for (long k = 0; k * step <= end * (1 + 1e-12); k++) {
-        const double t = k * step;
-        if (failed(bg_model_settle(m, t, step, s, w)))
+    static double w[3 * BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
+    const long parts = (long)fmax(1.0, floor(asked->sample / asked->step + 0.5));
+    const double h = asked->sample / (double)parts;
+    for (long k = 0; (double)k * h <= asked->end * (1 + 1e-12); k++) {
+        const double t = (double)(k / parts) * asked->sample + (double)(k % parts) * h;
+        for (int i = 2; i >= 0; i--)
+            inputs_at(signals, t + 0.5 * i * h, w + i * BG_EXTERNAL, dw);
+        if (failed(bg_model_settle(m, t, h, s, w)))
             return 1;
-        if (failed(bg_model_evaluate(m, t, s, w, NULL, m->mode, &shot)))
-            return 1;
-        print_row(t, &shot);
-        if (failed(bg_model_advance(m, t, step, s, w)))
+        if (k % parts == 0) {
+            if (failed(bg_model_evaluate(m, t, s, w, dw, m->mode, &shot)))
+                return 1;
+            print_row(t, &shot);
+        }
+        if (failed(bg_model_advance(m, t, h, s, w)))
             return 1;
     }
     return 0;
 }
 
+static void record(void *to, int sample, const double *w, const int *mode, const bg_snapshot *shot)
+{
+    (void)w;
+    (void)mode;
+    print_row(((const double *)to)[sample], shot);
+}
+
+/* Rows by adaptive steps. The samples are the only memory that is asked for. */
+static int run_located(bg_model *m, const command *asked, const bg_signals *signals)
+{
+    static const char *const kinds[] = {"stick", "slip", "cross"};
+    static bg_located run;
+    static bg_located_event events[EVENTS];
+    const int count = (int)floor(asked->end / asked->sample * (1 + 1e-12)) + 1;
+    double *const times = calloc((size_t)count, sizeof *times);
+    bg_request request = {times, asked->states, count, BG_AUTO, 1e-10, 1e-11, times, record, events,
+                          EVENTS, 0, 0.0};
+    if (!times)
+        return 1;
+    for (int k = 0; k < count; k++)
+        times[k] = k * asked->sample;
+    const int status = bg_model_run(&run, m, signals, &request);
+    for (int k = 0; k < request.count; k++)
+        fprintf(stderr, "%.17g,%s,%s\n", events[k].time, bg_friction_names[events[k].port],
+                kinds[events[k].kind]);
+    free(times);
+    return failed(status);
+}
+
+/* The command, read; 0 if it cannot be. */
+static int read_command(int count, char **words, command *asked)
+{
+    asked->end = count > 1 ? strtod(words[1], NULL) : 0.0;
+    asked->sample = count > 2 ? strtod(words[2], NULL) : 0.0;
+    asked->band = 1e-6;
+    bg_model_parameters(asked->parameters);
+    memcpy(asked->states, scenario_states, sizeof asked->states);
+    memcpy(asked->terms, scenario_terms, sizeof asked->terms);
+    memcpy(asked->coefficients, scenario_coefficients, sizeof asked->coefficients);
+    for (int i = 3; i < count; i++)
+        if (!assign(asked, words[i])) {
+            fprintf(stderr, "%s: nothing is called as in %s\n", bg_model_name, words[i]);
+            return 0;
+        }
+    if (!(asked->end > 0) || !(asked->sample > 0))
+        fprintf(stderr, "usage: %s END SAMPLE [located] [name=value ...]\n", bg_model_name);
+    if (!(asked->step > 0))
+        asked->step = asked->sample;
+    return asked->end > 0 && asked->sample > 0;
+}
+
 int main(int count, char **words)
 {
     static bg_model model;
-    static double parameters[BG_ROOM(BG_PARAMETERS)], states[BG_SIZE], s[BG_SIZE];
-    static double inputs[3 * BG_ROOM(BG_EXTERNAL)];
-    double band = 1e-6;
-    const double end = count > 1 ? strtod(words[1], NULL) : 0.0;
-    const double step = count > 2 ? strtod(words[2], NULL) : 0.0;
-    bg_model_parameters(parameters);
-    for (int i = 3; i < count; i++)
-        if (!assign(words[i], parameters, states, inputs, &band)) {
-            fprintf(stderr, "%s: nothing is called as in %s\n", bg_model_name, words[i]);
-            return 1;
-        }
-    if (!(end > 0) || !(step > 0)) {
-        fprintf(stderr, "usage: %s END STEP [name=value ...]\n", bg_model_name);
+    static command asked;
+    static double s[BG_SIZE], w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
+    if (!read_command(count, words, &asked))
         return 1;
-    }
-    if (failed(bg_model_init(&model, parameters)))
+    const bg_signals signals = {
+        SCENARIO_SEGMENTS, scenario_breaks, scenario_begins, asked.terms,
+        (const double(*)[2])asked.coefficients, scenario_fastest,
+    };
+    if (failed(bg_model_init(&model, asked.parameters)))
         return 1;
     for (int i = 0; i < BG_FRICTION; i++)
-        model.band[i] = band;
-    if (failed(bg_model_vector(&model, 0.0, states, inputs, s)))
+        model.band[i] = asked.band;
+    inputs_at(&signals, 0.0, w, dw);
+    if (failed(bg_model_vector(&model, 0.0, asked.states, w, s)))
         return 1;
     print_head();
-    return run(&model, end, step, s, inputs);
+    return asked.located ? run_located(&model, &asked, &signals)
+                         : run_stepped(&model, &asked, &signals, s);
 }

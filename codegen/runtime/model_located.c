@@ -8,7 +8,8 @@
 enum { K = BG_FRICTION, FINEST = 200, REFRESH = 50, MANY = 500 };
 static const double STIFF = 2e5;     /* run over time constant: from here on implicit steps */
 static const double FOLLOWED = 0.1;  /* an implicit step in time constants of the inputs */
-static const double TINY = 1e-9;     /* so many steps below this part of a run go nowhere */
+static const double TINY = 1e-9;     /* so many steps below this part of a run go nowhere, .. */
+static const double PART = 1e-3;     /* .. if they are less than this of a time constant, too */
 
 int bg_located_look(bg_located *c, double t, const double *s, const signed char *mode)
 {
@@ -169,7 +170,8 @@ static int advance(bg_located *c, double stop)
     for (long count = 1; status == BG_OK && c->t < stop && !ended; count++) {
         const double before = c->t;
         status = step(c, stop, &ended);
-        short_steps = c->t - before < TINY * c->span ? short_steps + 1 : 0;
+        const double tiny = fmin(TINY * c->span, PART / fmax(fastest, 1.0 / c->span));
+        short_steps = c->t - before < tiny ? short_steps + 1 : 0;
         if (status == BG_OK && short_steps > MANY)
             return BG_STEPS;
         if (status == BG_OK && !BG_AFFINE && count % REFRESH == 0) {
@@ -178,15 +180,6 @@ static int advance(bg_located *c, double stop)
         }
     }
     return status;
-}
-
-/* The segment that holds at t and just after. */
-static int segment_at(const bg_signals *signals, double t)
-{
-    int at = 0;
-    while (at + 1 < signals->segments && signals->breaks[at] <= t)
-        at++;
-    return at;
 }
 
 static int begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
@@ -203,7 +196,7 @@ static int begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_reque
     memset(c->mode, 1, sizeof c->mode);
     memset(c->peak_x, 0, sizeof c->peak_x);
     memset(c->peak_u, 0, sizeof c->peak_u);
-    c->segment = segment_at(signals, c->t);
+    c->segment = bg_signals_segment(signals, c->t);
     bg_signals_at(signals, c->segment, c->t, w, dw);
     return bg_model_vector(m, c->t, asked->states, w, c->s);
 }
@@ -214,7 +207,7 @@ static int run(bg_located *c)
     int status = BG_OK, started = 0;
     for (;;) {
         const bg_signals *const signals = c->signals;
-        c->segment = segment_at(signals, c->t);
+        c->segment = bg_signals_segment(signals, c->t);
         const int broken = c->segment > 0 && signals->breaks[c->segment - 1] == c->t;
         if (started && !(c->t < end) && !touched(c) && !broken)
             return BG_OK;

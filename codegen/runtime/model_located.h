@@ -52,7 +52,8 @@ typedef struct {
     bg_snapshot shot;
 } bg_located;
 
-/* Inputs and their rates at t in a segment. */
+/* The segment that holds at t and just after; inputs and their rates at t in a segment. */
+int bg_signals_segment(const bg_signals *signals, double t);
 void bg_signals_at(const bg_signals *signals, int segment, double t, double *w, double *dw);
 
 /* Runs; a status. */

@@ -1,6 +1,6 @@
 /* External inputs over time. */
+#include <float.h>
 #include <math.h>
-#include <string.h>
 
 #include "model_located.h"
 
@@ -34,4 +34,19 @@ void bg_signals_at(const bg_signals *signals, int segment, double t, double *w, 
         const bg_term *const term = signals->terms + k;
         add_term(signals, term, t, w + term->input, dw + term->input);
     }
+}
+
+/* A breakpoint counts as reached a rounding before it: times are sums of steps. */
+int bg_signals_segment(const bg_signals *signals, double t)
+{
+    const double near = t + 8 * DBL_EPSILON * fabs(t);
+    int low = 0, high = signals->segments - 1;
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        if (signals->breaks[middle] <= near)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
 }

@@ -14,7 +14,7 @@ import bondgraph as bg
 import differentials
 from codegen import Constant, Lag, Ramp, Result, Sampled, Simulator, Sine, Step, simulator
 from codegen.engine.build import FLAGS
-from codegen.engine.runs import CRuns, Outcome, Status
+from codegen.engine.runs import CRuns, Outcome, Status, not_affine
 from codegen.engine.sizes import Sizes, engine
 from codegen.runs.arguments import initial_values, signals_for
 from differentials.scenarios import scenarios
@@ -144,7 +144,7 @@ def test_a_level_below_zero_has_its_status_and_its_time() -> None:
         simulator(BLOCK, {"m": 1.0}, backend="c").run(times, {"v": 9.0}, inputs)
 
 
-def test_redundant_ports_are_left_to_the_numpy_loop() -> None:
+def test_redundant_ports_are_left_to_located_runs() -> None:
     nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"),
              *(bg.R(f"r{i}", law=bg.DryFriction(f"{i}*L"), effort=f"f_{i}") for i in (1, 2))]  # fmt: skip
     equations = bg.derive(bond_graph(nodes, "push>n>m n>r1 n>r2"))
@@ -166,20 +166,15 @@ def test_room_for_events_grows() -> None:
     assert len(outcome.track.events) > 500
 
 
-def test_laws_that_are_not_affine_are_named() -> None:
-    with pytest.raises(
-        bg.SignalError, match=r"the law at 'ground' is slip\*\*3; use backend='numpy'"
-    ):
-        simulator(bg.derive(oscillator()), {"m": 1, "k": 1}, {"ground": "slip**3"}, backend="c")
-    with pytest.raises(bg.SignalError, match="values of this one change in time"):
-        simulator(
-            bg.derive(oscillator(bg.R("d", "3 + t"))), {"m": 1, "k": 1, "F_c": 1}, backend="c"
-        )
-
-
-def test_step_control_is_not_the_engines() -> None:
-    with pytest.raises(bg.SignalError, match="method 'Radau' needs backend='numpy'"):
-        simulator(BLOCK, {"m": 1.0, "L": 1.0}, backend="c").run([0, 1], None, {"P": 0.0}, "Radau")
+def test_the_engine_is_for_affine_models_alone() -> None:
+    cubic = simulator(bg.derive(oscillator()), {"m": 1, "k": 1}, {"ground": "slip**3"}, backend="c")
+    assert cubic.engine is None
+    assert not_affine(cubic.closed.program) == "the law at 'ground' is slip**3"
+    moving = bg.derive(oscillator(bg.R("d", "3 + t")))
+    ready = simulator(moving, {"m": 1, "k": 1, "F_c": 1}, backend="c")
+    assert not_affine(ready.closed.program) == "values of this one change in time"
+    with pytest.raises(bg.SimulationError, match="exact"):
+        cubic.run([0, 1], method="exact")
 
 
 STRICT = ("-O2", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion",
