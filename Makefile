@@ -4,13 +4,14 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: demo test lint types unit bench bench-peers bench-speed clean help
+.PHONY: demo test lint types unit bench bench-agreement bench-peers bench-speed clean help
 
 help:
 	@echo "make demo   derive and simulate differentials; tables and pictures in out/"
 	@echo "make test   format, lint, types, tests and doctests"
 	@echo "make bench  how time and memory to derive grow with the size of a graph"
 	@echo "make bench-speed  how fast runs are: generated C, numpy and scipy beside C written by hand"
+	@echo "make bench-agreement  how far simulators, exported Python and C, and FMUs agree"
 	@echo "make bench-peers  the same graphs with other packages, each in an environment of its own"
 	@echo "make clean  remove the environment and what was generated"
 
@@ -44,6 +45,9 @@ bench: $(READY)
 bench-speed: $(READY)
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/speed.py
 	$(BIN)/python benchmarks/rhs.py
+
+bench-agreement: $(READY)
+	$(BIN)/python benchmarks/agreement.py
 
 bench-peers: $(READY)
 	$(BIN)/python benchmarks/peers.py

@@ -22,6 +22,13 @@ static void add_term(const fmu_term *term, double tau, double *value, double *sl
     *slope += size * (d[0] * cosine - d[1] * sine);
 }
 
+/* Time since a piece began. One is entered a rounding before its start and never continued back from
+ * there: a torque that rises from zero would be below zero. The first has no start. */
+static double since(const fmu_piece *piece, int segment, double t)
+{
+    return segment > 0 ? fmax(t - piece->start, 0.0) : t - piece->start;
+}
+
 /* Values and rates at t; what the importer gives goes on from the instance's time with its slope. */
 void fmu_externals(const fmu_instance *f, double t, double *w, double *dw)
 {
@@ -32,10 +39,11 @@ void fmu_externals(const fmu_instance *f, double t, double *w, double *dw)
     for (int k = 0; k < FMU_SOURCES; k++) {
         const fmu_source *source = &fmu_sources[k];
         const fmu_piece *piece = &fmu_pieces[source->first_piece + f->at.segment[k]];
+        const double tau = since(piece, f->at.segment[k], t);
         const int i = source->external;
         w[i] = dw[i] = 0.0;
         for (int j = 0; j < piece->count; j++)
-            add_term(&fmu_terms[piece->first + j], t - piece->start, &w[i], &dw[i]);
+            add_term(&fmu_terms[piece->first + j], tau, &w[i], &dw[i]);
     }
 }
 

@@ -120,3 +120,15 @@ def test_a_source_ends_its_pieces_at_breakpoints(tmp_path: Path) -> None:
     expected = 3.0 * 0.6 * np.exp(-(0.1 - 0.0123) / 0.7)
     assert unit.get(other, "v_2") == pytest.approx([expected], rel=1e-9)
     unit.free(made, other)
+
+
+def test_what_rises_from_zero_is_not_below_it_a_rounding_before(tmp_path: Path) -> None:
+    """A friction level below zero is refused; a master's times are sums that may fall short."""
+    rising = codegen.Lag(codegen.Step(0.4, 300.0), 0.04)
+    unit = Unit(divider(), "3.0", tmp_path, inputs={"V": rising}, initial={})
+    made = unit.started("ModelExchange")
+    made.setTime(float(np.nextafter(0.4, 0.0)))
+    made.enterEventMode()
+    made.updateDiscreteStates()
+    assert unit.get(made, "V").tolist() == [0.0]
+    unit.free(made)

@@ -104,6 +104,23 @@ class CModel:
         )
         return status, np.array(room)
 
+    def march(
+        self, h: float, count: int, every: int, s, w: np.ndarray
+    ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+        """Steps from time 0; w: inputs at every half of one. The modes at their starts, and samples."""
+        names = [*self.program.states, *self.program.law_states]
+        names += [*self.program.inputs, *self.program.readings]
+        ports, kept = len(self.program.friction), count // every + 1
+        rows = np.zeros((kept, len(names)))
+        modes = np.zeros((count + 1, max(ports, 1)), dtype=np.intc)
+        status = self.library.harness_march(
+            self.instance, ctypes.c_double(h), count, every, _numbers(s), _numbers(w),
+            rows.ctypes.data_as(ctypes.c_void_p), modes.ctypes.data_as(ctypes.c_void_p),
+        )  # fmt: skip
+        assert status == 0, self.message(status)
+        samples = {name.name: rows[:, at] for at, name in enumerate(names)}
+        return np.reshape(modes.ravel()[: (count + 1) * ports], (count + 1, ports)), samples
+
     def band(self, width: float) -> None:
         self.library.harness_band(self.instance, ctypes.c_double(width))
 
@@ -119,11 +136,11 @@ class CModel:
 class Pair:
     """A model in C and in Python, from the same equations."""
 
-    def __init__(self, folder: Path, equations, values, laws=None) -> None:
+    def __init__(self, folder: Path, equations, values, laws=None, level: str = "-O0") -> None:
         self.equations, self.laws = equations, laws
         sources = written(folder, to_c(equations, values, laws))
         library = compiled(
-            folder, [*sources, str(HARNESS)], "-O0", "-shared", "-fPIC", to="model.so"
+            folder, [*sources, str(HARNESS)], level, "-shared", "-fPIC", to="model.so"
         )
         self.library = ctypes.CDLL(str(library))
         self.at(values)

@@ -28,10 +28,10 @@ class Case:
         given = {"initial": self.initial, "inputs": self.inputs} | more
         return codegen.write_fmu(path, self.equations, self.parameters, self.laws, version, **given)
 
-    def run(self, samples: int = 1001) -> codegen.Result:
+    def run(self, samples: int = 1001, method: str = "auto") -> codegen.Result:
         times = np.linspace(0.0, self.end, samples)
         ready = codegen.simulator(self.equations, self.parameters, self.laws)
-        return ready.run(times, self.initial, self.inputs)
+        return ready.run(times, self.initial, self.inputs, method)
 
 
 def figure_11() -> Case:
@@ -92,16 +92,25 @@ def divider() -> Case:
 
 def ran(path: Path, kind: str, case: Case, names, samples: int = 1001, **more):
     """A run of a unit by fmpy, sampled where the toolkit's is, and the times of changes of mode."""
-    found = simulate_fmu(
+    found = simulated(path, kind, case, [*names, *more.pop("modes", [])], samples, **more)
+    modes = [name for name in found.dtype.names if name.startswith("mode(")]
+    changes = [t for name in modes for t in found["time"][1:][np.diff(found[name]) != 0]]
+    return sampled(found, case, samples), sorted(changes)
+
+
+def simulated(
+    path: Path, kind: str, case: Case, output, samples: int, tolerance: float = 1e-9, **more
+):
+    """The table that fmpy makes of a run, with rows at events beside those at the samples."""
+    return simulate_fmu(
         str(path), fmi_type=kind, start_time=0.0, stop_time=case.end, solver="CVode",
-        output_interval=case.end / (samples - 1), relative_tolerance=1e-9,
-        output=[*names, *(more.pop("modes", []))], **more,
+        output_interval=case.end / (samples - 1), relative_tolerance=tolerance, output=list(output),
+        **more,
     )  # fmt: skip
-    times = found["time"]
-    columns = {name: found[name] for name in found.dtype.names}
-    modes = [name for name in columns if name.startswith("mode(")]
-    changes = [t for name in modes for t in times[1:][np.diff(columns[name]) != 0]]
+
+
+def sampled(found, case: Case, samples: int) -> dict[str, np.ndarray]:
+    """Columns at equal steps of time; at an event the later of two rows counts."""
     grid = np.linspace(0.0, case.end, samples)
-    # At an event the later of two samples counts.
-    places = [np.searchsorted(times, t + 1e-9 * case.end, side="right") - 1 for t in grid]
-    return {name: values[places] for name, values in columns.items()}, sorted(changes)
+    places = np.searchsorted(found["time"], grid + 1e-9 * case.end, side="right") - 1
+    return {name: found[name][places] for name in found.dtype.names}

@@ -1,0 +1,123 @@
+"""Whatever is generated says the same: simulators, exported Python and C, functional mock-up units.
+
+Every differential in its own scenario; every scenario of the paper's figures for the simulator's backends,
+and for all the rest, too, with BONDGRAPH_ALL_AGREEMENTS set. `make bench-agreement` prints the figures.
+"""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from oracles.apart import Apart, apart, order
+from oracles.methods import EVERY, LOCATED, OWN, STEPPED, Made, Outcome, changes
+
+from codegen.fmu import binaries
+from codegen.runs.events import Event
+from differentials.scenarios import SAMPLE
+
+CHOSEN = EVERY if os.environ.get("BONDGRAPH_ALL_AGREEMENTS") else tuple(OWN.items())
+
+SAME, ALIKE = 1e-9, 1e-6
+"""Of a signal's range, and s for events: where the method is the same, and where it is another one."""
+
+IN_PROCESS = [name for name in LOCATED if "FMI" not in name and name != "numpy exact"]
+
+FEW = 3
+"""Fixed steps for each sample, a third of a millisecond: one that is no binary or decimal fraction."""
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _compiled_quickly() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(binaries, "FLAGS", (*binaries.FLAGS, "-O1"))
+        yield
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("made")
+
+
+@pytest.fixture(scope="module")
+def pairs() -> dict:
+    return {}
+
+
+def _check(found: Apart, limit: float) -> None:
+    assert found.signals < limit, found
+    assert found.events < limit, found
+
+
+def _cases() -> list[tuple[str, str, str]]:
+    """All backends everywhere, other methods where chosen."""
+    return [
+        (name, scenario, method)
+        for name, scenario in EVERY
+        for method in IN_PROCESS
+        if method == "C backend" or (name, scenario) in CHOSEN
+    ]
+
+
+@pytest.mark.parametrize(("name", "scenario", "method"), _cases())
+def test_methods_that_locate_events_agree(
+    name: str, scenario: str, method: str, folder: Path, pairs: dict
+) -> None:
+    made = Made(name, scenario, folder, pairs)
+    found = apart(LOCATED[method](made), LOCATED["numpy exact"](made))
+    _check(found, SAME if method == "C backend" else ALIKE)
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+@pytest.mark.parametrize(("name", "scenario"), CHOSEN)
+def test_units_agree(name: str, scenario: str, version: str, folder: Path, pairs: dict) -> None:
+    """With the simulator where CVODE locates events, with exported C where steps are fixed."""
+    made = Made(name, scenario, folder, pairs)
+    exchanged = LOCATED[f"FMI {version} exchange"](made)
+    _check(apart(exchanged, LOCATED["numpy exact"](made)), ALIKE)
+    stepped = STEPPED[f"FMI {version} co-simulation"](made, FEW)
+    _check(apart(stepped, STEPPED["exported C"](made, FEW)), SAME)
+
+
+@pytest.mark.parametrize(("name", "scenario"), CHOSEN)
+def test_exported_python_and_c_make_the_same_steps(
+    name: str, scenario: str, folder: Path, pairs: dict
+) -> None:
+    made = Made(name, scenario, folder, pairs)
+    _check(apart(STEPPED["exported Python"](made, FEW), STEPPED["exported C"](made, FEW)), SAME)
+
+
+@pytest.mark.parametrize(("name", "scenario"), CHOSEN)
+def test_fixed_steps_converge_to_located_events(
+    name: str, scenario: str, folder: Path, pairs: dict
+) -> None:
+    """Of fourth order; of first where something sticks or slips, seen at the end of its step."""
+    made = Made(name, scenario, folder, pairs)
+    expected, counts = LOCATED["numpy exact"](made), (10, 30)
+    steps = [SAMPLE / count for count in counts]
+    found = [
+        apart(STEPPED["exported C"](made, count), expected, made.exact.states) for count in counts
+    ]
+    for step, one in zip(steps, found, strict=True):
+        assert one.events <= step * (1 + 1e-9), one
+    assert found[-1].signals < 1e-3
+    if not expected.events:
+        assert order(steps, [one.signals for one in found]) > 3.8
+
+
+def test_what_differs_is_found() -> None:
+    """A signal by a part of its range, an event by its time, and a port that did another thing."""
+    expected = Outcome({"v": np.array([0.0, 2.0]), "w": np.zeros(2)}, (Event(0.1, "a", "stick"),))
+    moved = Outcome({"v": np.array([0.0, 2.5]), "w": np.full(2, 0.1)}, (Event(0.3, "a", "stick"),))
+    assert apart(moved, expected) == Apart(0.25, "v", pytest.approx(0.2))
+    other = Outcome({"v": np.array([0.0, np.nan])}, (Event(0.1, "a", "cross"),))
+    assert apart(other, expected) == Apart(np.inf, "v", np.inf)
+
+
+def test_changes_of_mode_are_events_of_their_ports() -> None:
+    modes = np.array([[1, 0], [0, 0], [0, -1], [-1, 1]])
+    assert changes([0.0, 0.1, 0.2, 0.3], modes, ("a", "b")) == (
+        Event(0.1, "a", "stick"), Event(0.2, "b", "slip"), Event(0.3, "a", "slip"),
+        Event(0.3, "b", "cross"),
+    )  # fmt: skip
