@@ -31,7 +31,7 @@ ORDER = {
         *_room("runs", "events legs exact hybrid arguments observer result snapshots"),
         *_room("engine", "build sizes modes inputs runs"),
         "simulate", "trim",
-        *_room("c", "text structure constants rhs blocks rates tables export"),
+        *_room("c", "text structure constants rhs blocks rates tables prefix export"),
         *_room("sweeps", "packing family measures design batch_inputs batch_engine batch job crews "
                "cluster drive result store sweep"),
         *_room("python", "sticking text blocks tables export"),

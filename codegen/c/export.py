@@ -7,6 +7,7 @@ from typing import Any
 
 from bondgraph import ParameterError, StateEquations
 from codegen.c.blocks import function, operations, places
+from codegen.c.prefix import external_symbols, renamed
 from codegen.c.rates import plain_rates, straight_rates
 from codegen.c.rhs import straight
 from codegen.c.structure import structures
@@ -41,6 +42,8 @@ _HEAD = """\
  * of the folder, for example `cc -std=c99 -O2 *.c -lm`; with main.c that gives a program:
  *     ./a.out END STEP [name=value ...]               prints states and outputs as CSV
  *
+ * {together}
+ *
  * One evaluation takes {operations} operations beside those of the matrices.
 {names}
  */
@@ -49,6 +52,16 @@ _HEAD = """\
 #include "model_internal.h"
 """
 
+_ALONE = """\
+A program with two models takes each from a folder of its own, written with `prefix`, which every
+ * external symbol then carries. Where a model is used, a file of its own includes its header; sizes
+ * and types are those of that file, and `bg_model_init` and the others its model's functions."""
+
+_BESIDE = """\
+External symbols begin with `{prefix}`, by macros in config.h: `bg_model_init` is
+ * `{prefix}bg_model_init`. So other models link into the same program: each in a folder of its own,
+ * each used by a file of its own, which includes its header and sees its sizes and types alone."""
+
 
 def to_c(
     equations: StateEquations,
@@ -56,28 +69,33 @@ def to_c(
     laws: Mapping[Any, object] | None = None,
     name: str = "model",
     main: bool = False,
+    prefix: str = "",
 ) -> dict[str, str]:
     """The equations, closed by laws, as files of C99: name to text.
 
     ``parameters``: name to number, the defaults of `bg_model_init`. ``laws``: as `simulator` takes them.
-    ``name``: what the model calls itself. ``main``: with a main program that prints a run as CSV. The
-    same arguments give the same text; `model.c` tells how it is used.
+    ``name``: what the model calls itself. ``main``: with a main program that prints a run as CSV.
+    ``prefix``: what every external symbol begins with, such as "front_"; models with different ones link
+    into one program. The same arguments give the same text; `model.c` tells how it is used.
 
     Which sticking ports are redundant is decided exactly, at these parameters; others at which that
     changes are refused when the model is run.
 
     Raises what `simulator` raises; `StructureError` for more than six friction ports; `ExpressionError` for
-    functions C lacks.
+    functions C lacks; `ParameterError` for a prefix that no name in C can begin with.
     """
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
+    runtime = {file: _runtime(file) for file in (*RUNTIME, *(["main.c"] if main else []))}
+    headers = [text for file, text in runtime.items() if file.endswith(".h")]
+    macros = renamed(prefix, external_symbols(headers))
     program = lower(equations, laws, parameters)
     closed = ClosedModel(program, equations, parameters)
     exact, ports = closed.parameters, range(len(program.friction))
     fast = straight(program)
     defaults = [float(exact[symbol.name]) for symbol in program.parameters]
     lines = [
-        *_head(program, name),
+        *_head(program, name, prefix),
         *name_tables(program, equations, name),
         "",
         *program_tables(program, defaults, [closed.coupled_directly(i) for i in ports]),
@@ -88,16 +106,15 @@ def to_c(
         *group_tables(program),
         *(straight_rates(program, fast) if fast else plain_rates()),
     ]
-    names = (*RUNTIME, *(["main.c"] if main else []))
-    runtime = {file: _runtime(file) for file in names}
-    return {"config.h": config(program, fast, name), "model.c": "\n".join(lines) + "\n", **runtime}
+    sizes = config(program, fast, name, macros)
+    return {"config.h": sizes, "model.c": "\n".join(lines) + "\n", **runtime}
 
 
 def _runtime(name: str) -> str:
     return files("codegen").joinpath("runtime", name).read_text(encoding="utf-8")
 
 
-def _head(program: Program, name: str) -> list[str]:
+def _head(program: Program, name: str, prefix: str) -> list[str]:
     parts = (
         ("states", (*program.states, *program.law_states)), ("inputs", program.external),
         ("outputs", program.outputs), ("parameters", program.parameters),
@@ -111,7 +128,11 @@ def _head(program: Program, name: str) -> list[str]:
     title = comment(name)[0].removeprefix("/* ").removesuffix(" */")
     count = sum(operations(code) for code in _blocks(program))
     text = _HEAD.format(
-        name=title, version=version("bondgraph-toolkit"), operations=count, names=names
+        name=title,
+        version=version("bondgraph-toolkit"),
+        operations=count,
+        names=names,
+        together=_BESIDE.format(prefix=prefix) if prefix else _ALONE,
     )
     return text.splitlines() + [""]
 

@@ -17,6 +17,10 @@
  * of the folder, for example `cc -std=c99 -O2 *.c -lm`; with main.c that gives a program:
  *     ./a.out END STEP [name=value ...]               prints states and outputs as CSV
  *
+ * A program with two models takes each from a folder of its own, written with `prefix`, which every
+ * external symbol then carries. Where a model is used, a file of its own includes its header; sizes
+ * and types are those of that file, and `bg_model_init` and the others its model's functions.
+ *
  * One evaluation takes 30 operations beside those of the matrices.
  * states: omega_1, omega_2, tau_k1, tau_k2, omega_t1, omega_t2
  * inputs: tau_e, tau_h
