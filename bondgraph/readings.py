@@ -1,11 +1,11 @@
-"""What laws may close: no port whose effort or flow would have to be differentiated in time."""
+"""What laws may close: no port whose effort would have to be differentiated, or is read by itself."""
 
 from collections.abc import Hashable, Mapping, Sequence
 
 import sympy as sp
 
 from bondgraph.elements import STORAGES
-from bondgraph.errors import DependentSourceError
+from bondgraph.errors import DependentSourceError, StructureError
 from bondgraph.exact import Row
 from bondgraph.junction import Port
 from bondgraph.laws import DryFriction, Law
@@ -19,7 +19,9 @@ def check_laws(
     E: Sequence[Row],
     readings: Mapping[sp.Symbol, Reading],
 ) -> None:
-    """Refuse a law whose slope in time would be needed: a port that drives a dependent storage.
+    """Refuse dry friction that reads its own effort, and a law whose slope in time would be needed.
+
+    The slope is needed where a port drives a dependent storage.
 
     A law of time, parameters and inputs alone may drive one: it is a known source. ``known``: every
     signal of the graph, open inputs included.
@@ -30,6 +32,7 @@ def check_laws(
         law = laws.get(port.element.name)
         if law is None or not depends_on_signals(law, signals):
             continue
+        _check_friction(law, port)
         column = inputs.index(port.given)
         reading = readings[port.received]
         if reading.H or reading.K or any(column in row for row in E):
@@ -40,6 +43,20 @@ def check_laws(
             raise DependentSourceError(
                 f"the law at {port.element.name!r} drives a dependent storage, so its slope in time "
                 f"would be needed; {way}, or put a storage that can be independent beside it"
+            )
+
+
+def _check_friction(law: Law, port: Port) -> None:
+    """Refuse friction whose level, curve or breakaway is told by the effort that it gives itself."""
+    if not isinstance(law, DryFriction):
+        return
+    parts = (("level", law.level), ("curve", law.curve), ("breakaway", law.breakaway))
+    for what, part in parts:
+        if port.given in part.free_symbols:
+            raise StructureError(
+                f"law at {port.element.name!r}: the {what} of dry friction uses {port.given}, the effort "
+                "that this port gives itself; give the effort another name (effort=...), or what the "
+                f"{what} uses"
             )
 
 
