@@ -27,7 +27,7 @@ ORDER = {
     "codegen": [
         "arrays", *_room("inputs", "pieces generators polynomials signals"),
         "model.affine", "closing", "program", "identifiers", "printing",
-        *_room("model", "numpy_backend numbers friction instant loops closed sizes modes guards"),
+        *_room("model", "numpy_backend numbers sharing friction instant loops closed sizes modes guards"),
         *_room("runs", "events legs exact hybrid arguments observer result snapshots"),
         *_room("engine", "build sizes modes inputs runs"),
         "simulate", "trim",

@@ -13,10 +13,11 @@ from bondgraph import SimulationError, StateEquations
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.affine import AffineMap
-from codegen.model.friction import Hold, exact_rows, fair_share, hold
+from codegen.model.friction import Hold, exact_rows, hold
 from codegen.model.instant import Binding, Evaluation, Instant
 from codegen.model.loops import solve_loop
 from codegen.model.numbers import Numbers, assembled, check_values, exact_parameters, numbers
+from codegen.model.sharing import fair_share
 from codegen.program import Group, Program
 
 Mode = tuple[int, ...]
