@@ -9,8 +9,11 @@ it. Once its ports are settled the others share along what directions are left.
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from codegen.arrays import Array
+
+Places = NDArray[np.intp]
 
 NOTHING = 1e-11
 """Entries below this fraction of the largest are rounding."""
@@ -40,7 +43,7 @@ def fair_share(efforts: Array, share: Array, caps: Array) -> Array:
     return efforts
 
 
-def _settled(efforts: Array, share: Array, caps: Array) -> tuple[Array, Array]:
+def _settled(efforts: Array, share: Array, caps: Array) -> tuple[Places, Array]:
     """The ports of the circuit with the highest fraction, and that fraction with each port's sign."""
     free, count = share.shape
     chosen = np.array(list(combinations(range(count), free + 1)), dtype=int)
@@ -55,7 +58,8 @@ def _settled(efforts: Array, share: Array, caps: Array) -> tuple[Array, Array]:
     fractions[sizes[:, -1] <= NOTHING * sizes[:, 0]] = -1.0
     worst = int(np.argmax(fractions))
     ports = np.flatnonzero(weights[worst])
-    return ports, fractions[worst] * np.sign(loads[worst]) * np.sign(weights[worst, ports])
+    signed: Array = fractions[worst] * np.sign(loads[worst]) * np.sign(weights[worst, ports])
+    return ports, signed
 
 
 def _unmoved(columns: Array) -> Array:

@@ -236,23 +236,6 @@ def test_the_same_model_gives_the_same_bytes() -> None:
     assert len(texts) == 1
 
 
-def test_a_model_with_two_hundred_states() -> None:
-    nodes, bonds = [bg.Se("p", "P"), bg.R("rub", law=bg.DryFriction("L"))], ["p>j0 j99>rub"]
-    for k in range(100):
-        nodes += [bg.One(f"j{k}"), bg.I(f"m{k}", f"m_{k}", flow=f"v_{k}"), bg.R(f"r{k}", "b"),
-                  bg.Zero(f"z{k}"), bg.C(f"c{k}", "1/k", effort=f"F_{k}")]  # fmt: skip
-        bonds.append(f"j{k}>m{k} j{k}>r{k} j{k}>z{k}>c{k}")
-        bonds += [f"z{k - 1}>j{k}"] if k else []
-    equations = bg.derive(bond_graph(nodes, " ".join(bonds)))
-    numbers = {f"m_{k}": 1 + k / 100 for k in range(100)} | {"b": 0.1, "k": 100.0, "L": 1.0}
-    module, times = loaded(to_python(equations, numbers)), np.linspace(0, 0.2, 3)
-    run = module.simulate(times, {}, {"P": 5.0}, step=2e-3)
-    expected = simulator(equations, numbers).run(times, {}, {"P": 5.0})
-    assert len(module.STATES) == 200
-    for state in module.STATES:
-        assert run[state] == pytest.approx(expected[state], abs=1e-7)
-
-
 def test_other_numbers_at_run_time_and_what_is_refused() -> None:
     equations, numbers, laws = CASES["oscillator"]
     module = loaded(to_python(equations, numbers, laws))
