@@ -26,8 +26,9 @@ ORDER = {
     ],
     "codegen": [
         "arrays", *_room("inputs", "pieces generators polynomials signals"),
-        "model.affine", "closing", "program", "identifiers", "printing",
-        *_room("model", "numpy_backend numbers sharing friction instant loops closed sizes modes guards"),
+        "model.affine", "closing", "records", "sections", "program", "identifiers", "printing",
+        *_room("model", "numpy_backend numbers snapshot sharing friction instant loops rubbing closed "
+               "sizes modes guards"),
         *_room("runs", "events legs exact hybrid arguments observer result snapshots"),
         *_room("engine", "build sizes modes inputs runs"),
         "simulate", "trim",

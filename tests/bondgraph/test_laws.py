@@ -105,6 +105,14 @@ def test_friction_told_by_its_own_effort_is_refused(part: str) -> None:
             simulator(plain, {"m": 1.0, "L": 2.0}, {key: OWN[part]})
 
 
+def test_the_effort_may_not_come_under_another_name_either() -> None:
+    """At a 0-junction on one bond the effort of the junction is that of the brake."""
+    nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"), bg.Zero("b"),
+             bg.R("brake", law=bg.DryFriction("e_b"), effort="tau_b")]  # fmt: skip
+    with pytest.raises(bg.StructureError, match="'brake': the level of dry friction uses e_b"):
+        bg.derive(bond_graph(nodes, "push>n>m n>b>brake"))
+
+
 def test_friction_may_be_told_by_what_it_receives_and_by_other_efforts() -> None:
     equations = _braked(bg.DryFriction("L + P/2", "1 + exp(-slip)", "2 + v**2"))
     assert simulator(equations, {"m": 1.0, "L": 2.0}).inputs == ("P",)
