@@ -30,7 +30,7 @@ def merged_laws(
             raise StructureError(f"law at {name!r}: dry friction closes an R that gives an effort")
         merged[name] = closed
     matrix_rows = rows_of(equations.E)
-    check_laws(merged, set(equations.signals), equations.ports, matrix_rows, equations.readings)
+    check_laws(merged, equations.signals, equations.ports, matrix_rows, equations.readings)
     return merged
 
 

@@ -162,7 +162,7 @@ def state_equations(
     imposed = tuple(ports[port] for port in reduction.imposed)
     E = [row.K for row in balances]
     laws = {port.element.name: port.element.law for port in imposed if port.element.law is not None}
-    check_laws(laws, set(signals), imposed, E, readings)
+    check_laws(laws, signals, imposed, E, readings)
     n, m = len(states), len(reduction.inputs)
     parts = [
         (A, n), ([row.F for row in balances], n), ([row.D for row in balances], m), (E, m),

@@ -26,10 +26,11 @@ ORDER = {
     ],
     "codegen": [
         "arrays", *_room("inputs", "pieces generators polynomials signals tables"),
-        "model.affine", "closing", "program", "identifiers", "printing",
-        *_room("model", "numpy_backend numbers friction instant loops closed sizes modes guards"),
+        "model.affine", "closing", "records", "sections", "program", "identifiers", "printing",
+        *_room("model", "numpy_backend numbers snapshot sharing friction instant loops rubbing closed "
+               "sizes modes guards"),
         *_room("runs", "events legs exact hybrid arguments observer result snapshots"),
-        *_room("c", "text structure constants rhs blocks rates tables scenario export"),
+        *_room("c", "text structure constants rhs blocks rates tables prefix scenario export"),
         *_room("engine", "build sizes modes inputs runs located"),
         "simulate", "trim",
         *_room("sweeps", "packing family measures design batch_inputs batch_engine batch job crews "

@@ -7,6 +7,7 @@ from typing import Any
 
 from bondgraph import ParameterError, StateEquations
 from codegen.c.blocks import function, operations, places
+from codegen.c.prefix import external_symbols, renamed
 from codegen.c.rates import plain_rates, straight_rates
 from codegen.c.rhs import straight
 from codegen.c.scenario import scenario_text
@@ -53,6 +54,8 @@ _HEAD = """\
  * of the folder, for example `cc -std=c99 -O2 *.c -lm`; with main.c that gives a program:
  *     ./a.out END SAMPLE [located] [name=value ...]   prints states and outputs as CSV
  *
+ * {together}
+ *
  * One evaluation takes {operations} operations beside those of the matrices.
 {names}
  */
@@ -60,6 +63,16 @@ _HEAD = """\
 
 #include "model_internal.h"
 """
+
+_ALONE = """\
+A program with two models takes each from a folder of its own, written with `prefix`, which every
+ * external symbol then carries. Where a model is used, a file of its own includes its header; sizes
+ * and types are those of that file, and `bg_model_init` and the others its model's functions."""
+
+_BESIDE = """\
+External symbols begin with `{prefix}`, by macros in config.h: `bg_model_init` is
+ * `{prefix}bg_model_init`. So other models link into the same program: each in a folder of its own,
+ * each used by a file of its own, which includes its header and sees its sizes and types alone."""
 
 
 def to_c(
@@ -70,26 +83,29 @@ def to_c(
     main: bool = False,
     initial: Mapping[str, float] | None = None,
     inputs: Mapping[str, object] | None = None,
+    prefix: str = "",
 ) -> dict[str, str]:
     """The equations, closed by laws, as files of C99: name to text.
 
     ``parameters``: name to number, the defaults of `bg_model_init`. ``laws``: as `simulator` takes them.
     ``name``: what the model calls itself. ``main``: with a main program that prints a run as CSV, from
     ``initial`` (states by name, others start at 0) under ``inputs`` (signals or numbers, others are 0)
-    unless it is told otherwise. The same arguments give the same text; `model.c` tells how it is used.
+    unless it is told otherwise. ``prefix``: what every external symbol begins with, such as "front_";
+    models with different ones link into one program. The same arguments give the same text; `model.c`
+    tells how it is used.
 
     Which sticking ports are redundant is decided exactly, at these parameters; others at which that
     changes are refused when the model is run.
 
     Raises what `simulator` raises; `StructureError` for more than six friction ports; `ExpressionError` for
-    functions C lacks.
+    functions C lacks; `ParameterError` for a prefix that no name in C can begin with.
     """
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
     program = lower(equations, laws, parameters)
     closed = ClosedModel(program, equations, parameters)
     defaults = [float(closed.parameters[symbol.name]) for symbol in program.parameters]
-    files = texts(closed, name, defaults)
+    files = texts(closed, name, defaults, prefix)
     if not main:
         return files
     states = [symbol.name for symbol in (*program.states, *program.law_states)]
@@ -100,16 +116,19 @@ def to_c(
 
 
 def texts(
-    closed: ClosedModel, name: str, defaults: Sequence[float], located: bool = True
+    closed: ClosedModel, name: str, defaults: Sequence[float], prefix: str = ""
 ) -> dict[str, str]:
-    """The files of a model, with or without event-located runs, and without a main program.
+    """The files of a model without a main program.
 
     Its parameters are in ``defaults`` alone, and in which sticking ports are redundant.
     """
+    runtime = {file: runtime_file(file) for file in STEPPED + LOCATED}
+    headers = [text for file, text in runtime.items() if file.endswith(".h")]
+    macros = renamed(prefix, external_symbols(headers))
     program, equations = closed.program, closed.equations
     ports, fast = range(len(program.friction)), straight(program)
     lines = [
-        *_head(program, name),
+        *_head(program, name, prefix),
         *name_tables(program, equations, name),
         "",
         *program_tables(program, defaults, [closed.coupled_directly(i) for i in ports]),
@@ -120,9 +139,8 @@ def texts(
         *group_tables(program),
         *(straight_rates(program, fast) if fast else plain_rates()),
     ]
-    names = STEPPED + LOCATED if located else STEPPED
-    runtime = {file: runtime_file(file) for file in names}
-    return {"config.h": config(program, fast, name), "model.c": "\n".join(lines) + "\n", **runtime}
+    sizes = config(program, fast, name, macros)
+    return {"config.h": sizes, "model.c": "\n".join(lines) + "\n", **runtime}
 
 
 def runtime_file(name: str) -> str:
@@ -130,7 +148,7 @@ def runtime_file(name: str) -> str:
     return files("codegen").joinpath("runtime", name).read_text(encoding="utf-8")
 
 
-def _head(program: Program, name: str) -> list[str]:
+def _head(program: Program, name: str, prefix: str) -> list[str]:
     parts = (
         ("states", (*program.states, *program.law_states)), ("inputs", program.external),
         ("outputs", program.outputs), ("parameters", program.parameters),
@@ -144,7 +162,11 @@ def _head(program: Program, name: str) -> list[str]:
     title = comment(name)[0].removeprefix("/* ").removesuffix(" */")
     count = sum(operations(code) for code in _blocks(program))
     text = _HEAD.format(
-        name=title, version=version("bondgraph-toolkit"), operations=count, names=names
+        name=title,
+        version=version("bondgraph-toolkit"),
+        operations=count,
+        names=names,
+        together=_BESIDE.format(prefix=prefix) if prefix else _ALONE,
     )
     return text.splitlines() + [""]
 

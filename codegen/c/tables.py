@@ -14,11 +14,12 @@ MOST_HOLDS = 4
 """Holding equations of all sets of so many friction ports are kept once they are found."""
 
 
-def config(program: Program, fast: Straight | None, name: str) -> str:
-    """config.h: the sizes of everything."""
+def config(program: Program, fast: Straight | None, name: str, macros: Sequence[str] = ()) -> str:
+    """config.h: the sizes of everything, and macros that rename external symbols."""
     lines = [*comment(f"Sizes of {name}; written by bondgraph-toolkit."), "#ifndef BG_CONFIG_H"]
     lines += ["#define BG_CONFIG_H", ""]
     lines += [f"#define BG_{key} {value}" for key, value in _sizes(program, fast).items()]
+    lines += ["", *macros] if macros else []
     return "\n".join([*lines, "", "#endif", ""])
 
 

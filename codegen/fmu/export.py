@@ -26,7 +26,16 @@ from codegen.runs.arguments import initial_values
 from codegen.runs.legs import Leg, Settings
 from codegen.simulate import Simulator, simulator
 
-_COMMON = ("common.c", "sources.c", "scales.c", "modes.c", "events.c", "step.c", "derive.c")
+_COMMON = (
+    "common.c",
+    "calls.c",
+    "sources.c",
+    "scales.c",
+    "modes.c",
+    "events.c",
+    "step.c",
+    "derive.c",
+)
 
 GLUE: Mapping[str, tuple[str, ...]] = {
     "2.0": (

@@ -1,6 +1,6 @@
 """Models whose laws are affine: in each friction mode everything is one matrix times one vector."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -8,6 +8,9 @@ import sympy as sp
 
 from bondgraph.expressions import TIME
 from codegen.arrays import Array
+
+FAR = 2.0**30
+"""How far out affine models are probed; a power of two, so that dividing by it is exact."""
 
 
 def is_affine(expressions: Iterable[sp.Expr], parameters: set[str]) -> bool:
@@ -51,3 +54,12 @@ class AffineMap:
     def rows(self, part: int) -> Array:
         """The rows of one part."""
         return self.matrix[self.parts[part]]
+
+
+def probed(point: Callable[[Array], list[Array]], length: int, rate: int) -> AffineMap:
+    """The map of a function of so many numbers that is known to be affine."""
+    parts = point(np.zeros(length))
+    origin = np.concatenate(parts)
+    # Far out the constant part of a law no longer swallows digits of its slope.
+    columns = [(np.concatenate(point(FAR * e)) - origin) / FAR for e in np.eye(length)]
+    return AffineMap([len(part) for part in parts], np.column_stack([*columns, origin]), rate)

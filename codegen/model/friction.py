@@ -8,15 +8,14 @@ What neither determines is how redundant ports share a load.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations_with_replacement
 
 import numpy as np
-import scipy.optimize
 import sympy as sp
 
 from bondgraph import SimulationError, StateEquations
 from codegen.arrays import Array
 from codegen.model.numbers import Numbers, at_parameters, scaled_solve
+from codegen.model.sharing import fair_share
 from codegen.program import Program
 
 
@@ -121,48 +120,3 @@ def _inverse(matrix: Array) -> Array:
 
 def _array(matrix: sp.Matrix) -> Array:
     return np.array(matrix.evalf(30).tolist(), dtype=float).reshape(matrix.shape)
-
-
-def fair_share(efforts: Array, share: Array, caps: Array) -> Array:
-    """Efforts moved along ``share`` so that the largest fraction of a port's cap is the least possible.
-
-    So redundant ports hold whenever any way of sharing the load would hold. A port with no cap carries
-    nothing, if the others can carry its part.
-
-    >>> fair_share(np.array([30.0, 0.0]), np.array([[1.0, -1.0]]), np.array([100.0, 200.0]))
-    array([10., 20.])
-    """
-    if len(share) == 1:
-        return np.asarray(efforts + _one_way(efforts, share[0], caps) * share[0], dtype=float)
-    free = len(share)
-    bound = np.hstack([share.T, -caps[:, None]])
-    other = np.hstack([-share.T, -caps[:, None]])
-    found = scipy.optimize.linprog(
-        c=np.append(np.zeros(free), 1.0),
-        A_ub=np.vstack([bound, other]),
-        b_ub=np.concatenate([-efforts, efforts]),
-        bounds=[(None, None)] * free + [(0, None)],
-    )
-    if found.x is None:
-        return efforts
-    return np.asarray(efforts + share.T @ found.x[:free], dtype=float)
-
-
-def _one_way(efforts: Array, direction: Array, caps: Array) -> float:
-    """How far to go in a single direction: the optimum lies where two ports carry equal fractions."""
-    least = 1e-12 * float(np.abs(efforts).max(initial=0.0)) + 1e-300
-    best, best_fraction = 0.0, np.inf
-    for i, j in combinations_with_replacement(range(len(caps)), 2):
-        for sign in (1.0, -1.0):
-            slope = direction[i] * caps[j] - sign * direction[j] * caps[i]
-            if i == j:
-                slope = direction[i]
-            if slope == 0:
-                continue
-            way = (sign * efforts[j] * caps[i] - efforts[i] * caps[j]) / slope
-            if i == j:
-                way = -efforts[i] / slope
-            fraction = float((np.abs(efforts + way * direction) / np.maximum(caps, least)).max())
-            if fraction < best_fraction:
-                best, best_fraction = float(way), fraction
-    return best

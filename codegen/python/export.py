@@ -38,6 +38,7 @@ Written by bondgraph-toolkit {version}; change the graph rather than this file. 
 {names}
 """
 
+import itertools
 import math
 from types import SimpleNamespace
 
@@ -74,24 +75,26 @@ def to_python(
     held = sticking_ranks(program, equations, exact) if program.friction else {}
     names = names_of(program)
     used = {symbol.name: float(exact[symbol.name]) for symbol in program.parameters}
-    body = _functions(program, names)
+    body, fixed = _functions(program, names), chosen(_template(), flags(program, held))
     lines = [
-        *_head(program, equations, name, body),
+        *_head(program, equations, name, body, fixed),
         *("", *table("PARAMETERS", used)),
         *("", *public(program)),
         *("", *places(program)),
         *friction_tables(program, equations, held),
         *body,
     ]
-    return "\n".join(lines) + "\n\n\n" + chosen(_template(), flags(program))
+    return "\n".join(lines) + "\n\n\n" + fixed
 
 
 def _template() -> str:
     return files("codegen").joinpath(TEMPLATE).read_text(encoding="utf-8")
 
 
-def _head(program: Program, equations: StateEquations, name: str, body: Sequence[str]) -> list[str]:
-    """The docstring and the imports."""
+def _head(
+    program: Program, equations: StateEquations, name: str, body: Sequence[str], fixed: str
+) -> list[str]:
+    """The docstring, and the imports that body and fixed part need."""
     known = units(equations)
     groups = (
         ("states", (*program.states, *program.law_states)),
@@ -110,8 +113,9 @@ def _head(program: Program, equations: StateEquations, name: str, body: Sequence
         names="\n".join(rows),
     )
     code = [line for line in body if not line.lstrip().startswith(("#", '"'))]
-    uses_math = any("math." in line for line in code)
-    return (text if uses_math else text.replace("import math\n", "")).splitlines()
+    used = {"math": any("math." in line for line in code), "itertools": "itertools." in fixed}
+    unused = {f"import {module}" for module, needed in used.items() if not needed}
+    return [line for line in text.splitlines() if line not in unused]
 
 
 def _functions(program: Program, names: Names) -> list[str]:

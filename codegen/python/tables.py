@@ -8,11 +8,15 @@ from codegen.program import Program
 from codegen.python.sticking import beside_resistance
 from codegen.python.text import listing, names_tuple
 
+Held = Mapping[tuple[int, ...], tuple[int, int]]
+"""Ranks of sets of sticking ports, as `sticking_ranks` gives them."""
 
-def flags(program: Program) -> dict[str, bool]:
-    """Which sections of the fixed part the model needs."""
+
+def flags(program: Program, held: Held) -> dict[str, bool]:
+    """Which sections of the fixed part the model needs; ``shared``: ports that are redundant."""
     return {
         "friction": bool(program.friction),
+        "shared": any(sum(ranks) < len(ports) for ports, ranks in held.items()),
         "joint": program.joint,
         "loops": program.joint or any(group.loop for group in program.groups),
         "varying": program.varying,
@@ -64,11 +68,7 @@ def _places(name: str, numbers: Sequence[int]) -> list[str]:
     return listing(f"{name} = {opening}", [str(number) for number in numbers], closing)
 
 
-def friction_tables(
-    program: Program,
-    equations: StateEquations,
-    held: Mapping[tuple[int, ...], tuple[int, int]],
-) -> list[str]:
+def friction_tables(program: Program, equations: StateEquations, held: Held) -> list[str]:
     """The friction ports, how sets of them are held, and the settings of loops."""
     lines = [""]
     if program.friction:
@@ -89,11 +89,16 @@ def friction_tables(
             "# A slip below this fraction of the terms that make it up counts as zero.",
             "ROUNDING = 1e-9",
         ]
+    if flags(program, held)["shared"]:
+        lines += [
+            "# Entries below this fraction of the largest are rounding where ports share a load.",
+            "NOTHING = 1e-11",
+        ]
     if program.joint:
         lines += ["# Laws that depend on friction, and what their ports receive."]
         lines += _places("COUPLED", program.coupled.inputs)
         lines += _places("COUPLED_READINGS", program.coupled.readings)
-    if flags(program)["loops"]:
+    if flags(program, held)["loops"]:
         lines += [
             "",
             "# Loops of laws: what counts as solved, and the most steps of each kind of search.",

@@ -3,6 +3,8 @@
 #ifndef BG_CHOOSE_H
 #define BG_CHOOSE_H
 
+#include "config.h"
+
 enum { BG_MOST_PORTS = 6, BG_NO_MODE = -1 };
 
 /* One port at one instant in one mode. `push`: how fast the slip changes; `near_..`: below these

@@ -70,106 +70,54 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean limited, fmi2Real to
     fmu2 *const f = c;
     (void)limited, (void)tolerance, (void)ends, (void)stop;
     if (f->core.at.phase != FMU_MADE)
-        return fmu2_tell(f, "fmi2SetupExperiment: not before initialization");
+        return fmu2_tell(f, "an experiment is set up after instantiation");
     fmu_set_time(&f->core, start);
     return fmi2OK;
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c)
 {
-    fmu2 *const f = c;
-    if (f->core.at.phase != FMU_MADE)
-        return fmu2_tell(f, "fmi2EnterInitializationMode: not after instantiation");
-    f->core.at.phase = FMU_INITIALIZING;
-    fmu_pass(&f->core, f->core.at.time);
-    return fmi2OK;
+    return fmu2_tell(c, fmu_begin(CORE(c), CORE(c)->at.time));
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c)
 {
-    fmu2 *const f = c;
-    if (f->core.at.phase != FMU_INITIALIZING)
-        return fmu2_tell(f, "fmi2ExitInitializationMode: not in initialization mode");
-    return fmu2_tell(f, fmu_initialize(&f->core));
+    return fmu2_tell(c, fmu_finish(CORE(c)));
 }
 
 fmi2Status fmi2Terminate(fmi2Component c)
 {
-    ((fmu2 *)c)->core.at.phase = FMU_ENDED;
+    fmu_end(CORE(c));
     return fmi2OK;
 }
 
 fmi2Status fmi2Reset(fmi2Component c)
 {
-    fmu2 *const f = c;
-    fmu_reset(&f->core, f->core.at.exchange);
+    fmu_reset(CORE(c), CORE(c)->at.exchange);
     return fmi2OK;
 }
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[])
 {
-    fmu2 *const f = c;
-    fmu_error failed = NULL;
-    for (size_t i = 0; i < nvr && !failed; i++)
-        failed = fmu_get(&f->core, vr[i], &value[i]);
-    return fmu2_tell(f, failed);
+    return fmu2_tell(c, fmu_get_all(CORE(c), vr, nvr, value));
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                        const fmi2Real value[])
 {
-    fmu2 *const f = c;
-    fmu_error failed = NULL;
-    for (size_t i = 0; i < nvr && !failed; i++)
-        failed = fmu_set(&f->core, vr[i], value[i]);
-    return fmu2_tell(f, failed);
+    return fmu2_tell(c, fmu_set_all(CORE(c), vr, nvr, value));
 }
 
 /* The only integers are friction modes. */
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                           fmi2Integer value[])
 {
-    fmu2 *const f = c;
-    fmu_error failed = NULL;
-    for (size_t i = 0; i < nvr && !failed; i++) {
-        double found = 0.0;
-        failed = vr[i] < FMU_VARIABLES && fmu_variables[vr[i]].kind == FMU_MODE
-            ? fmu_get(&f->core, vr[i], &found) : "this variable is no integer";
-        value[i] = (fmi2Integer)found;
-    }
-    return fmu2_tell(f, failed);
+    return fmu2_tell(c, fmu_get_modes(CORE(c), vr, nvr, value));
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[],
                                         size_t rows, const fmi2ValueReference knowns[],
                                         size_t columns, const fmi2Real seed[], fmi2Real result[])
 {
-    fmu2 *const f = c;
-    return fmu2_tell(f, fmu_derive(&f->core, unknowns, rows, knowns, columns, seed, result));
-}
-
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state)
-{
-    fmu2 *const f = c;
-    if (!*state)
-        *state = f->call.allocateMemory(1, sizeof f->core.at);
-    if (!*state)
-        return fmu2_tell(f, "fmi2GetFMUstate: no memory");
-    memcpy(*state, &f->core.at, sizeof f->core.at);
-    return fmi2OK;
-}
-
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state)
-{
-    fmu_restore(&((fmu2 *)c)->core, state);
-    return fmi2OK;
-}
-
-fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state)
-{
-    if (state && *state) {
-        ((fmu2 *)c)->call.freeMemory(*state);
-        *state = NULL;
-    }
-    return fmi2OK;
+    return fmu2_tell(c, fmu_derive(CORE(c), unknowns, rows, knowns, columns, seed, result));
 }

@@ -12,6 +12,10 @@ typedef struct {
     char *name;
 } fmu2;
 
+/* What all versions share of the instance that a call is for. */
+#define CORE(c) (&((fmu2 *)(c))->core)
+
+/* The status of a call; why it failed goes to the log. */
 fmi2Status fmu2_tell(fmu2 *f, fmu_error failed);
 
 #endif

@@ -1,4 +1,5 @@
-/* FMI 2.0: what belongs to model exchange or to co-simulation alone, and what is not supported. */
+/* FMI 2.0: what belongs to model exchange or to co-simulation alone, the saved states, and what is
+ * not supported. */
 #include <string.h>
 
 #include "fmi2Functions.h"
@@ -6,25 +7,22 @@
 
 fmi2Status fmi2EnterEventMode(fmi2Component c)
 {
-    ((fmu2 *)c)->core.at.phase = FMU_EVENT;
-    return fmi2OK;
+    return fmu2_tell(c, fmu_enter(CORE(c), FMU_EVENT));
 }
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info)
 {
-    fmu2 *const f = c;
     int moved = 0;
-    const fmu_error failed = fmu_event(&f->core, &moved);
+    const fmu_error failed = fmu_update(CORE(c), &moved);
     memset(info, 0, sizeof *info);
     info->valuesOfContinuousStatesChanged = moved;
-    info->nextEventTimeDefined = fmu_next_break(&f->core, &info->nextEventTime);
-    return fmu2_tell(f, failed);
+    info->nextEventTimeDefined = fmu_next_break(CORE(c), &info->nextEventTime);
+    return fmu2_tell(c, failed);
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)
 {
-    ((fmu2 *)c)->core.at.phase = FMU_CONTINUOUS;
-    return fmi2OK;
+    return fmu2_tell(c, fmu_enter(CORE(c), FMU_CONTINUOUS));
 }
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean kept, fmi2Boolean *event,
@@ -37,46 +35,34 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean kept, fmi2Bo
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time)
 {
-    fmu_set_time(&((fmu2 *)c)->core, time);
+    fmu_set_time(CORE(c), time);
     return fmi2OK;
 }
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t nx)
 {
-    fmu2 *const f = c;
-    return fmu2_tell(f, nx == FMU_STATES ? fmu_set_states(&f->core, x) : "wrong number of states");
+    return fmu2_tell(c, fmu_set_states(CORE(c), x, nx));
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t nx)
 {
-    fmu2 *const f = c;
-    const fmu_error failed = nx == FMU_STATES ? fmu_refresh(&f->core) : "wrong number of states";
-    if (!failed)
-        memcpy(derivatives, f->core.shot.rate, sizeof(double) * nx);
-    return fmu2_tell(f, failed);
+    return fmu2_tell(c, fmu_get_rates(CORE(c), derivatives, nx));
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real indicators[], size_t ni)
 {
-    fmu2 *const f = c;
-    return fmu2_tell(f, ni == FMU_INDICATORS ? fmu_indicators(&f->core, indicators)
-                                             : "wrong number of event indicators");
+    return fmu2_tell(c, fmu_get_indicators(CORE(c), indicators, ni));
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t nx)
 {
-    fmu2 *const f = c;
-    const fmu_error failed = nx == FMU_STATES ? fmu_refresh(&f->core) : "wrong number of states";
-    if (!failed)
-        memcpy(x, f->core.at.s, sizeof(double) * nx);
-    return fmu2_tell(f, failed);
+    return fmu2_tell(c, fmu_get_states(CORE(c), x, nx));
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real nominals[], size_t nx)
 {
     (void)c;
-    for (size_t i = 0; i < nx; i++)
-        nominals[i] = 1.0;
+    fmu_get_nominals(nominals, nx);
     return fmi2OK;
 }
 
@@ -95,11 +81,35 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean kept)
 {
-    fmu2 *const f = c;
     (void)kept;
-    if (f->core.at.phase != FMU_STEPPING)
-        return fmu2_tell(f, "fmi2DoStep: not initialized for co-simulation");
-    return fmu2_tell(f, fmu_advance(&f->core, time, step));
+    return fmu2_tell(c, fmu_step(CORE(c), time, step));
+}
+
+static fmi2Status save(fmu2 *f, const void *from, size_t size, fmi2FMUstate *state)
+{
+    if (!*state && size == sizeof(fmu_memory))
+        *state = f->call.allocateMemory(1, size);
+    return fmu2_tell(f, fmu_copy(*state, from, size));
+}
+
+fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state)
+{
+    return save(c, &CORE(c)->at, sizeof(fmu_memory), state);
+}
+
+fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state)
+{
+    fmu_restore(CORE(c), state);
+    return fmi2OK;
+}
+
+fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state)
+{
+    if (state && *state) {
+        ((fmu2 *)c)->call.freeMemory(*state);
+        *state = NULL;
+    }
+    return fmi2OK;
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size)
@@ -111,24 +121,13 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size)
 {
-    if (size != sizeof(fmu_memory))
-        return fmu2_tell(c, "fmi2SerializeFMUstate: wrong size");
-    memcpy(bytes, state, size);
-    return fmi2OK;
+    return fmu2_tell(c, fmu_copy(bytes, state, size));
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size,
                                    fmi2FMUstate *state)
 {
-    fmu2 *const f = c;
-    if (size != sizeof(fmu_memory))
-        return fmu2_tell(f, "fmi2DeSerializeFMUstate: wrong size");
-    if (!*state)
-        *state = f->call.allocateMemory(1, size);
-    if (!*state)
-        return fmu2_tell(f, "fmi2DeSerializeFMUstate: no memory");
-    memcpy(*state, bytes, size);
-    return fmi2OK;
+    return save(c, bytes, size, state);
 }
 
 #define REFUSED(name, rest, count)                                          \
@@ -155,7 +154,7 @@ fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Rea
 {
     if (kind != fmi2LastSuccessfulTime)
         return fmu2_tell(c, "fmi2GetRealStatus: only the last successful time is known");
-    *value = ((fmu2 *)c)->core.at.time;
+    *value = CORE(c)->at.time;
     return fmi2OK;
 }
 
@@ -163,6 +162,6 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
 {
     if (kind != fmi2Terminated)
         return fmu2_tell(c, "fmi2GetBooleanStatus: only whether it terminated is known");
-    *value = ((fmu2 *)c)->core.at.phase == FMU_ENDED;
+    *value = CORE(c)->at.phase == FMU_ENDED;
     return fmi2OK;
 }

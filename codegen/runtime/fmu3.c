@@ -5,6 +5,8 @@
 #include "fmi3Functions.h"
 #include "fmu3.h"
 
+static const fmu_error SCALARS = "all variables are scalars";
+
 fmi3Status fmu3_tell(fmu3 *f, fmu_error failed)
 {
     if (!failed)
@@ -85,70 +87,50 @@ void fmi3FreeInstance(fmi3Instance c)
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean limited, fmi3Float64 tolerance,
                                        fmi3Float64 start, fmi3Boolean ends, fmi3Float64 stop)
 {
-    fmu3 *const f = c;
     (void)limited, (void)tolerance, (void)ends, (void)stop;
-    if (f->core.at.phase != FMU_MADE)
-        return fmu3_tell(f, "fmi3EnterInitializationMode: not after instantiation");
-    f->core.at.phase = FMU_INITIALIZING;
-    fmu_set_time(&f->core, start);
-    fmu_pass(&f->core, start);
-    return fmi3OK;
+    return fmu3_tell(c, fmu_begin(CORE(c), start));
 }
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c)
 {
-    fmu3 *const f = c;
-    if (f->core.at.phase != FMU_INITIALIZING)
-        return fmu3_tell(f, "fmi3ExitInitializationMode: not in initialization mode");
-    return fmu3_tell(f, fmu_initialize(&f->core));
+    return fmu3_tell(c, fmu_finish(CORE(c)));
 }
 
 fmi3Status fmi3Terminate(fmi3Instance c)
 {
-    ((fmu3 *)c)->core.at.phase = FMU_ENDED;
+    fmu_end(CORE(c));
     return fmi3OK;
 }
 
 fmi3Status fmi3Reset(fmi3Instance c)
 {
-    fmu3 *const f = c;
-    fmu_reset(&f->core, f->core.at.exchange);
+    fmu_reset(CORE(c), CORE(c)->at.exchange);
     return fmi3OK;
 }
 
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr,
                           fmi3Float64 values[], size_t count)
 {
-    fmu3 *const f = c;
-    fmu_error failed = count == nvr ? NULL : "all variables are scalars";
-    for (size_t i = 0; i < nvr && !failed; i++)
-        failed = fmu_get(&f->core, vr[i], &values[i]);
-    return fmu3_tell(f, failed);
+    if (count != nvr)
+        return fmu3_tell(c, SCALARS);
+    return fmu3_tell(c, fmu_get_all(CORE(c), vr, nvr, values));
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr,
                           const fmi3Float64 values[], size_t count)
 {
-    fmu3 *const f = c;
-    fmu_error failed = count == nvr ? NULL : "all variables are scalars";
-    for (size_t i = 0; i < nvr && !failed; i++)
-        failed = fmu_set(&f->core, vr[i], values[i]);
-    return fmu3_tell(f, failed);
+    if (count != nvr)
+        return fmu3_tell(c, SCALARS);
+    return fmu3_tell(c, fmu_set_all(CORE(c), vr, nvr, values));
 }
 
 /* The only integers are friction modes. */
 fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr,
                         fmi3Int32 values[], size_t count)
 {
-    fmu3 *const f = c;
-    fmu_error failed = count == nvr ? NULL : "all variables are scalars";
-    for (size_t i = 0; i < nvr && !failed; i++) {
-        double found = 0.0;
-        failed = vr[i] < FMU_VARIABLES && fmu_variables[vr[i]].kind == FMU_MODE
-            ? fmu_get(&f->core, vr[i], &found) : "this variable is no integer";
-        values[i] = (fmi3Int32)found;
-    }
-    return fmu3_tell(f, failed);
+    if (count != nvr)
+        return fmu3_tell(c, SCALARS);
+    return fmu3_tell(c, fmu_get_modes(CORE(c), vr, nvr, values));
 }
 
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference unknowns[],
@@ -156,8 +138,7 @@ fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference
                                         size_t columns, const fmi3Float64 seed[], size_t seeds,
                                         fmi3Float64 result[], size_t results)
 {
-    fmu3 *const f = c;
     if (seeds != columns || results != rows)
-        return fmu3_tell(f, "all variables are scalars");
-    return fmu3_tell(f, fmu_derive(&f->core, unknowns, rows, knowns, columns, seed, result));
+        return fmu3_tell(c, SCALARS);
+    return fmu3_tell(c, fmu_derive(CORE(c), unknowns, rows, knowns, columns, seed, result));
 }

@@ -12,6 +12,10 @@ typedef struct {
     fmi3LogMessageCallback log;
 } fmu3;
 
+/* What all versions share of the instance that a call is for. */
+#define CORE(c) (&((fmu3 *)(c))->core)
+
+/* The status of a call; why it failed goes to the log. */
 fmi3Status fmu3_tell(fmu3 *f, fmu_error failed);
 
 #endif

@@ -1,42 +1,34 @@
 /* FMI 3.0: what belongs to model exchange or to co-simulation alone, and the saved states. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "fmi3Functions.h"
 #include "fmu3.h"
 
 fmi3Status fmi3EnterEventMode(fmi3Instance c)
 {
-    fmu3 *const f = c;
-    if (!f->core.at.exchange)
-        return fmu3_tell(f, "fmi3EnterEventMode: co-simulation has no event mode");
-    f->core.at.phase = FMU_EVENT;
-    return fmi3OK;
+    return fmu3_tell(c, fmu_enter(CORE(c), FMU_EVENT));
 }
 
 fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance c)
 {
-    fmu3 *const f = c;
-    return fmu3_tell(f, fmu_refresh(&f->core));
+    return fmu3_tell(c, fmu_refresh(CORE(c)));
 }
 
 fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *again, fmi3Boolean *end,
                                     fmi3Boolean *nominals, fmi3Boolean *values,
                                     fmi3Boolean *planned, fmi3Float64 *time)
 {
-    fmu3 *const f = c;
     int moved = 0;
-    const fmu_error failed = fmu_event(&f->core, &moved);
+    const fmu_error failed = fmu_update(CORE(c), &moved);
     *again = *end = *nominals = fmi3False;
     *values = moved != 0;
-    *planned = fmu_next_break(&f->core, time) != 0;
-    return fmu3_tell(f, failed);
+    *planned = fmu_next_break(CORE(c), time) != 0;
+    return fmu3_tell(c, failed);
 }
 
 fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c)
 {
-    ((fmu3 *)c)->core.at.phase = FMU_CONTINUOUS;
-    return fmi3OK;
+    return fmu3_tell(c, fmu_enter(CORE(c), FMU_CONTINUOUS));
 }
 
 fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean kept, fmi3Boolean *event,
@@ -49,46 +41,34 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean kept, fmi3Boo
 
 fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 time)
 {
-    fmu_set_time(&((fmu3 *)c)->core, time);
+    fmu_set_time(CORE(c), time);
     return fmi3OK;
 }
 
 fmi3Status fmi3SetContinuousStates(fmi3Instance c, const fmi3Float64 x[], size_t nx)
 {
-    fmu3 *const f = c;
-    return fmu3_tell(f, nx == FMU_STATES ? fmu_set_states(&f->core, x) : "wrong number of states");
+    return fmu3_tell(c, fmu_set_states(CORE(c), x, nx));
 }
 
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64 derivatives[], size_t nx)
 {
-    fmu3 *const f = c;
-    const fmu_error failed = nx == FMU_STATES ? fmu_refresh(&f->core) : "wrong number of states";
-    if (!failed)
-        memcpy(derivatives, f->core.shot.rate, sizeof(double) * nx);
-    return fmu3_tell(f, failed);
+    return fmu3_tell(c, fmu_get_rates(CORE(c), derivatives, nx));
 }
 
 fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64 indicators[], size_t ni)
 {
-    fmu3 *const f = c;
-    return fmu3_tell(f, ni == FMU_INDICATORS ? fmu_indicators(&f->core, indicators)
-                                             : "wrong number of event indicators");
+    return fmu3_tell(c, fmu_get_indicators(CORE(c), indicators, ni));
 }
 
 fmi3Status fmi3GetContinuousStates(fmi3Instance c, fmi3Float64 x[], size_t nx)
 {
-    fmu3 *const f = c;
-    const fmu_error failed = nx == FMU_STATES ? fmu_refresh(&f->core) : "wrong number of states";
-    if (!failed)
-        memcpy(x, f->core.at.s, sizeof(double) * nx);
-    return fmu3_tell(f, failed);
+    return fmu3_tell(c, fmu_get_states(CORE(c), x, nx));
 }
 
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance c, fmi3Float64 nominals[], size_t nx)
 {
     (void)c;
-    for (size_t i = 0; i < nx; i++)
-        nominals[i] = 1.0;
+    fmu_get_nominals(nominals, nx);
     return fmi3OK;
 }
 
@@ -109,34 +89,28 @@ fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t *count)
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Boolean kept,
                       fmi3Boolean *event, fmi3Boolean *end, fmi3Boolean *early, fmi3Float64 *last)
 {
-    fmu3 *const f = c;
-    fmu_error failed;
+    const fmu_error failed = fmu_step(CORE(c), time, step);
     (void)kept;
     *event = *end = *early = fmi3False;
-    failed = f->core.at.phase == FMU_STEPPING ? fmu_advance(&f->core, time, step)
-                                              : "fmi3DoStep: not initialized for co-simulation";
-    *last = f->core.at.time;
-    return fmu3_tell(f, failed);
+    *last = CORE(c)->at.time;
+    return fmu3_tell(c, failed);
 }
 
-static fmi3Status save(fmu3 *f, const void *from, fmi3FMUState *state)
+static fmi3Status save(fmu3 *f, const void *from, size_t size, fmi3FMUState *state)
 {
-    if (!*state)
-        *state = malloc(sizeof(fmu_memory));
-    if (!*state)
-        return fmu3_tell(f, "no memory for the state");
-    memcpy(*state, from, sizeof(fmu_memory));
-    return fmi3OK;
+    if (!*state && size == sizeof(fmu_memory))
+        *state = malloc(size);
+    return fmu3_tell(f, fmu_copy(*state, from, size));
 }
 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state)
 {
-    return save(c, &((fmu3 *)c)->core.at, state);
+    return save(c, &CORE(c)->at, sizeof(fmu_memory), state);
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state)
 {
-    fmu_restore(&((fmu3 *)c)->core, state);
+    fmu_restore(CORE(c), state);
     return fmi3OK;
 }
 
@@ -159,16 +133,11 @@ fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t
 
 fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size)
 {
-    if (size != sizeof(fmu_memory))
-        return fmu3_tell(c, "fmi3SerializeFMUState: wrong size");
-    memcpy(bytes, state, size);
-    return fmi3OK;
+    return fmu3_tell(c, fmu_copy(bytes, state, size));
 }
 
 fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size,
                                    fmi3FMUState *state)
 {
-    if (size != sizeof(fmu_memory))
-        return fmu3_tell(c, "fmi3DeserializeFMUState: wrong size");
-    return save(c, bytes, state);
+    return save(c, bytes, size, state);
 }

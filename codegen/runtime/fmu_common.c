@@ -139,8 +139,10 @@ fmu_error fmu_set(fmu_instance *f, unsigned reference, double value)
     }
 }
 
-fmu_error fmu_set_states(fmu_instance *f, const double *states)
+fmu_error fmu_set_states(fmu_instance *f, const double *states, size_t count)
 {
+    if (count != FMU_STATES)
+        return "wrong number of states";
     for (int i = 0; i < FMU_STATES; i++)
         if (!isfinite(states[i]))
             return "a state is not finite";

@@ -78,9 +78,27 @@ fmu_error fmu_apply(fmu_instance *f);
 fmu_error fmu_refresh(fmu_instance *f);
 fmu_error fmu_get(fmu_instance *f, unsigned reference, double *value);
 fmu_error fmu_set(fmu_instance *f, unsigned reference, double value);
-fmu_error fmu_set_states(fmu_instance *f, const double *states);
+fmu_error fmu_set_states(fmu_instance *f, const double *states, size_t count);
 void fmu_set_time(fmu_instance *f, double time);
 void fmu_restore(fmu_instance *f, const fmu_memory *from);
+
+/* fmu_calls.c: one mode after the other; values of several variables; a saved state. What is not
+ * allowed in the instance's phase gives a text. `fmu_enter`: FMU_EVENT or FMU_CONTINUOUS. */
+fmu_error fmu_begin(fmu_instance *f, double start);
+fmu_error fmu_finish(fmu_instance *f);
+fmu_error fmu_enter(fmu_instance *f, int phase);
+fmu_error fmu_update(fmu_instance *f, int *states_changed);
+fmu_error fmu_step(fmu_instance *f, double time, double step);
+void fmu_end(fmu_instance *f);
+fmu_error fmu_get_all(fmu_instance *f, const unsigned *references, size_t count, double *values);
+fmu_error fmu_set_all(fmu_instance *f, const unsigned *references, size_t count,
+                      const double *values);
+fmu_error fmu_get_modes(fmu_instance *f, const unsigned *references, size_t count, int *values);
+fmu_error fmu_get_states(fmu_instance *f, double *states, size_t count);
+fmu_error fmu_get_rates(fmu_instance *f, double *rates, size_t count);
+fmu_error fmu_get_indicators(fmu_instance *f, double *indicators, size_t count);
+void fmu_get_nominals(double *nominals, size_t count);
+fmu_error fmu_copy(void *to, const void *from, size_t size);
 
 /* fmu_sources.c: external inputs at a time; breakpoints that are passed; the next one. */
 void fmu_externals(const fmu_instance *f, double t, double *w, double *dw);

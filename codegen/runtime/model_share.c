@@ -1,91 +1,102 @@
 /* Redundant ports share a load so that the largest fraction of a port's breakaway effort is the
- * least possible. One direction to choose along: where two ports carry equal fractions. More: the
- * least of the corners of the linear program, of which six ports have at most 924. */
+ * least possible, then the next largest of the ports that remain.
+ *
+ * Efforts may change along the rows of `share`. A weighted sum of efforts that no row changes is a
+ * load that its ports carry, whatever they share: at the least the fraction |load| / sum of
+ * |weight| cap. The ports for which that is highest reach it; the others share along what
+ * directions are left. */
 #include <math.h>
 #include <string.h>
 
 #include "model_internal.h"
 
 #define PORTS BG_ROOM(BG_FRICTION)
-#define BIG 1e300
 
-static double largest_fraction(int count, const double *efforts, double way,
-                               const double *direction, const double *caps, double least)
+static const double NOTHING = 1e-11; /* entries below this fraction of the largest are rounding */
+
+/* Directions over all ports, by rows, and what each port can hold. */
+typedef struct {
+    int free, count;
+    double rows[PORTS * PORTS], caps[PORTS];
+} directions;
+
+static double largest(int count, const double *values)
 {
-    double worst = 0.0;
+    double found = 0.0;
     for (int i = 0; i < count; i++)
-        worst = fmax(worst, fabs(efforts[i] + way * direction[i]) / fmax(caps[i], least));
-    return worst;
+        found = fmax(found, fabs(values[i]));
+    return found;
 }
 
-static double least_cap(int count, const double *efforts)
+static void swap(int count, double *a, double *b)
 {
-    double largest = 0.0;
-    for (int i = 0; i < count; i++)
-        largest = fmax(largest, fabs(efforts[i]));
-    return 1e-12 * largest + 1e-300;
-}
-
-static void share_one_way(int count, const double *direction, const double *caps, double *efforts)
-{
-    const double least = least_cap(count, efforts);
-    double best = 0.0, best_fraction = INFINITY;
-    for (int i = 0; i < count; i++)
-        for (int j = i; j < count; j++)
-            for (int sign = 1; sign >= -1; sign -= 2) {
-                const double slope = i == j ? direction[i]
-                    : direction[i] * caps[j] - sign * direction[j] * caps[i];
-                double way, fraction;
-                if (slope == 0)
-                    continue;
-                way = i == j ? -efforts[i] / slope
-                    : (sign * efforts[j] * caps[i] - efforts[i] * caps[j]) / slope;
-                fraction = largest_fraction(count, efforts, way, direction, caps, least);
-                if (fraction < best_fraction) {
-                    best = way;
-                    best_fraction = fraction;
-                }
-            }
-    for (int i = 0; i < count; i++)
-        efforts[i] += best * direction[i];
-}
-
-/* The corner where `free + 1` of the bounds sign (e + S^T a) = cap * fraction are met; 0: none. */
-static int corner(const bg_hold *held, const double *caps, const double *efforts, const int *chosen,
-                  double *found)
-{
-    double system[(PORTS + 1) * (PORTS + 1)];
-    int pivots[PORTS + 1];
-    const int count = held->count, size = held->share_count + 1;
-    for (int r = 0; r < size; r++) {
-        const int port = chosen[r] % count;
-        const double sign = chosen[r] < count ? 1.0 : -1.0;
-        for (int k = 0; k + 1 < size; k++)
-            system[r * size + k] = sign * held->share[k * count + port];
-        system[r * size + size - 1] = -caps[port];
-        found[r] = -sign * efforts[port];
-    }
-    if (!bg_factor(size, system, pivots))
-        return 0;
-    bg_solve(size, system, pivots, 1, found);
-    return bg_finite(size, found);
-}
-
-/* Efforts moved along all directions at once, and whether every port's bound is kept. */
-static int moved(const bg_hold *held, const double *caps, const double *efforts,
-                 const double *found, double *result)
-{
-    const int count = held->count, free = held->share_count;
-    const double tolerance = 1e3 * least_cap(count, efforts);
-    if (found[free] < 0)
-        return 0;
     for (int i = 0; i < count; i++) {
-        result[i] = efforts[i];
-        for (int k = 0; k < free; k++)
-            result[i] += held->share[k * count + i] * found[k];
-        if (fabs(result[i]) > caps[i] * found[free] + tolerance)
-            return 0;
+        const double kept = a[i];
+        a[i] = b[i];
+        b[i] = kept;
     }
+}
+
+/* Makes the column of `port` a unit vector with its one in row k. */
+static void eliminate(directions *d, int k, int port)
+{
+    double *pivot = d->rows + k * d->count;
+    const double by = pivot[port];
+    for (int i = 0; i < d->count; i++)
+        pivot[i] /= by;
+    for (int r = 0; r < d->free; r++) {
+        double *row = d->rows + r * d->count;
+        const double factor = r == k ? 0.0 : row[port];
+        for (int i = 0; i < d->count; i++)
+            row[i] -= factor * pivot[i];
+    }
+}
+
+/* Gauss-Jordan elimination on the columns of `size` ports; pivots[k]: the port that row k has to
+ * itself among them. The rank. */
+static int reduce(directions *d, int size, const int *ports, int *pivots)
+{
+    const double least = NOTHING * largest(d->free * d->count, d->rows);
+    int rank = 0;
+    while (rank < d->free) {
+        int row = rank, port = ports[0];
+        for (int r = rank; r < d->free; r++)
+            for (int i = 0; i < size; i++)
+                if (fabs(d->rows[r * d->count + ports[i]])
+                    > fabs(d->rows[row * d->count + port])) {
+                    row = r;
+                    port = ports[i];
+                }
+        if (!(fabs(d->rows[row * d->count + port]) > least))
+            break;
+        swap(d->count, d->rows + rank * d->count, d->rows + row * d->count);
+        eliminate(d, rank, port);
+        pivots[rank++] = port;
+    }
+    return rank;
+}
+
+/* The weights of the load that these `free + 1` ports carry; 0 if there are several. */
+static int weigh(const directions *d, const int *ports, double *weights)
+{
+    directions own = *d;
+    int pivots[PORTS], last = -1;
+    if (reduce(&own, d->free + 1, ports, pivots) < d->free)
+        return 0;
+    memset(weights, 0, sizeof(double) * (size_t)d->count);
+    for (int i = 0; i <= d->free; i++) {
+        int taken = 0;
+        for (int k = 0; k < d->free; k++)
+            taken |= pivots[k] == ports[i];
+        if (!taken)
+            last = ports[i];
+    }
+    weights[last] = 1.0;
+    for (int k = 0; k < d->free; k++)
+        weights[pivots[k]] = -own.rows[k * d->count + last];
+    for (int i = 0; i < d->count; i++)
+        if (fabs(weights[i]) <= NOTHING * largest(d->count, weights))
+            weights[i] = 0.0;
     return 1;
 }
 
@@ -103,28 +114,83 @@ static int next_choice(int size, int total, int *chosen)
     return 1;
 }
 
-static void share_along_all(const bg_hold *held, const double *caps, double *efforts)
+/* Of the ports that move, the weights of the load with the highest fraction; that fraction with
+ * the load's sign. */
+static double most_loaded(const directions *d, int moved, const int *ports, const double *efforts,
+                          double *worst)
 {
-    double found[PORTS + 1], tried[PORTS], best[PORTS], least = BIG;
-    int chosen[PORTS + 1];
-    const int size = held->share_count + 1;
-    memcpy(best, efforts, sizeof(double) * (size_t)held->count);
-    for (int i = 0; i < size; i++)
+    double highest = -1.0, result = 0.0;
+    int chosen[PORTS], set[PORTS];
+    for (int i = 0; i <= d->free; i++)
         chosen[i] = i;
     do {
-        if (corner(held, caps, efforts, chosen, found) && found[size - 1] < least
-            && moved(held, caps, efforts, found, tried)) {
-            least = found[size - 1];
-            memcpy(best, tried, sizeof(double) * (size_t)held->count);
+        double weights[PORTS], load = 0.0, most = 0.0;
+        for (int i = 0; i <= d->free; i++)
+            set[i] = ports[chosen[i]];
+        if (!weigh(d, set, weights))
+            continue;
+        for (int i = 0; i < d->count; i++) {
+            load += weights[i] * efforts[i];
+            most += fabs(weights[i]) * d->caps[i];
         }
-    } while (next_choice(size, 2 * held->count, chosen));
-    memcpy(efforts, best, sizeof(double) * (size_t)held->count);
+        if (fabs(load) / most > highest) {
+            highest = fabs(load) / most;
+            result = load / most;
+            memcpy(worst, weights, sizeof weights);
+        }
+    } while (next_choice(d->free + 1, moved, chosen));
+    return result;
+}
+
+/* The ports that any direction moves. */
+static int moving(const directions *d, int *ports)
+{
+    const double least = NOTHING * largest(d->free * d->count, d->rows);
+    int count = 0;
+    for (int i = 0; i < d->count; i++) {
+        double most = 0.0;
+        for (int r = 0; r < d->free; r++)
+            most = fmax(most, fabs(d->rows[r * d->count + i]));
+        if (most > least)
+            ports[count++] = i;
+    }
+    return count;
+}
+
+/* Settles the ports of one load at its fraction, and leaves the directions that move none. */
+static void settle(directions *d, double *efforts)
+{
+    double weights[PORTS] = {0}, fraction = 0.0;
+    int ports[PORTS], pivots[PORTS], size = 0, rank;
+    const int moved = moving(d, ports);
+    if (moved > d->free) {
+        fraction = most_loaded(d, moved, ports, efforts, weights);
+        for (int i = 0; i < moved; i++)
+            if (weights[ports[i]] != 0)
+                ports[size++] = ports[i];
+    } else {
+        size = moved;
+    }
+    rank = reduce(d, size, ports, pivots);
+    for (int k = 0; k < rank; k++) {
+        const int port = pivots[k];
+        const double way = fraction * bg_sign(weights[port]) * d->caps[port] - efforts[port];
+        for (int i = 0; i < d->count; i++)
+            efforts[i] += way * d->rows[k * d->count + i];
+    }
+    d->free = rank > 0 ? d->free - rank : 0;
+    memmove(d->rows, d->rows + rank * d->count, sizeof(double) * (size_t)(d->free * d->count));
 }
 
 void bg_fair_share(const bg_hold *held, const double *caps, double *efforts)
 {
-    if (held->share_count == 1)
-        share_one_way(held->count, held->share, caps, efforts);
-    else
-        share_along_all(held, caps, efforts);
+    directions d;
+    const double least = 1e-15 * largest(held->count, efforts) + 1e-300;
+    d.free = held->share_count;
+    d.count = held->count;
+    memcpy(d.rows, held->share, sizeof d.rows);
+    for (int i = 0; i < d.count; i++)
+        d.caps[i] = fmax(caps[i], least);
+    while (d.free > 0)
+        settle(&d, efforts);
 }

@@ -4,9 +4,11 @@ import dataclasses
 
 import pytest
 import sympy as sp
+from references.build import bond_graph
 
 import bondgraph as bg
 from bondgraph.laws import law
+from codegen import simulator
 
 slip, v_s = sp.symbols("slip v_s")
 
@@ -76,3 +78,41 @@ def test_law_with_a_state_names_it() -> None:
     for ready in (bg.DryFriction("mu"), bg.ExpressionLaw(slip), bg.ExpressionLaw(slip, slip)):
         with pytest.raises(bg.ExpressionError, match=r"node 'k': a storage takes .* q_k"):
             law(ready, "node 'k'", twist)
+
+
+OWN = {
+    "level": bg.DryFriction("tau_b"),
+    "curve": bg.DryFriction(5, "1 + tau_b**2*exp(-slip)"),
+    "breakaway": bg.DryFriction("L", 1, "1 + tau_b/10"),
+}
+
+
+def _braked(law: object) -> bg.StateEquations:
+    nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"),
+             bg.R("brake", law=law, effort="tau_b")]  # fmt: skip
+    return bg.derive(bond_graph(nodes, "push>n>m n>brake"))
+
+
+@pytest.mark.parametrize("part", OWN)
+def test_friction_told_by_its_own_effort_is_refused(part: str) -> None:
+    """Declared, and put over the port later, by its node or by the effort."""
+    message = rf"'brake': the {part} of dry friction uses tau_b, .* itself; .* another name"
+    with pytest.raises(bg.StructureError, match=message):
+        _braked(OWN[part])
+    plain = _braked(bg.DryFriction("L"))
+    for key in ("brake", "tau_b"):
+        with pytest.raises(bg.StructureError, match=message):
+            simulator(plain, {"m": 1.0, "L": 2.0}, {key: OWN[part]})
+
+
+def test_the_effort_may_not_come_under_another_name_either() -> None:
+    """At a 0-junction on one bond the effort of the junction is that of the brake."""
+    nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"), bg.Zero("b"),
+             bg.R("brake", law=bg.DryFriction("e_b"), effort="tau_b")]  # fmt: skip
+    with pytest.raises(bg.StructureError, match="'brake': the level of dry friction uses e_b"):
+        bg.derive(bond_graph(nodes, "push>n>m n>b>brake"))
+
+
+def test_friction_may_be_told_by_what_it_receives_and_by_other_efforts() -> None:
+    equations = _braked(bg.DryFriction("L + P/2", "1 + exp(-slip)", "2 + v**2"))
+    assert simulator(equations, {"m": 1.0, "L": 2.0}).inputs == ("P",)

@@ -1,7 +1,4 @@
-"""Fixed steps of exported C and of exported Python are the same steps, to rounding.
-
-Not where redundant ports share a load: C shares it as the simulator does, Python by least squares.
-"""
+"""Fixed steps of exported C and of exported Python are the same steps, to rounding."""
 
 from pathlib import Path
 
@@ -15,7 +12,8 @@ from codegen.python.export import to_python
 CASES = dict([*catalog_cases(), *small_cases()])
 CHOSEN = (
     "alsd", "stationary_tvd", "superposition_tvd-rigid", "oscillator", "belt", "stacked", "clutches",
-    "slip_damper", "heater", "braked_crank", "divider V", "lever", "duffing", "mixed",
+    "slip_damper", "constrained", "clutches_with_loss", "heater", "braked_crank",
+    "divider V", "lever", "duffing", "mixed",
 )  # fmt: skip
 STEP, BAND, COUNT = 1e-3, 1e-3, 400
 

@@ -176,28 +176,5 @@ def test_no_object_of_an_export_calls_the_allocator(tmp_path: Path) -> None:
     ]
 
 
-def test_two_hundred_states_export_compile_and_run(tmp_path: Path) -> None:
-    nodes = [bg.Se("push", "P"), bg.One("n0"), bg.I("m0", "m", flow="v0")]
-    bonds = ["push>n0>m0"]
-    for k in range(1, 100):
-        nodes += [bg.Zero(f"z{k}"), bg.C(f"c{k}", "c", effort=f"f{k}"), bg.One(f"n{k}"),
-                  bg.I(f"m{k}", "m", flow=f"v{k}")]  # fmt: skip
-        bonds += [f"n{k - 1}>z{k}>n{k}>m{k}", f"z{k}>c{k}"]
-    nodes += [bg.Zero("z"), bg.C("c_end", "c", effort="f_end"), bg.R("loss", "R")]
-    bonds += ["n99>z>c_end", "z>loss"]
-    equations = bg.derive(bond_graph(nodes, " ".join(bonds)), outputs=["loss"])
-    assert len(equations.states) == 200
-    pair = Pair(tmp_path, equations, {"m": 0.1, "c": 1e-3, "R": 3.0})
-    s = np.random.default_rng(1).uniform(-1, 1, 200)
-    now = pair.closed.evaluate(0.0, s, np.array([2.0]), np.zeros(1), ())
-    status, parts = pair.c.evaluate(0.0, s, [2.0], [0.0], ())
-    assert status == 0
-    assert parts[5] == pytest.approx(now.rate, rel=1e-12, abs=1e-9)
-    assert pair.c.rhs(0.0, s, [2.0], []) == pytest.approx(now.rate, rel=1e-12, abs=1e-9)
-    for k in range(20):
-        status, s = pair.c.step(k * 1e-4, 1e-4, s, [[2.0]] * 3)
-        assert status == 0
-
-
 def test_struct_size_is_known_to_callers(alsd: Pair) -> None:
     assert alsd.library.bg_model_size() == ctypes.sizeof(alsd.c.instance)

@@ -1,31 +1,20 @@
 """Units called by hand: saved states, several instances, tuning, refusals, sources."""
 
-from collections.abc import Iterator
+import ctypes
 from pathlib import Path
 
 import numpy as np
 import pytest
 from oracles.called import Unit
-from oracles.units import belt, divider
+from oracles.units import divider
 
 import codegen
-from codegen.fmu import binaries as fmu_binaries
 
 VERSIONS = ["2.0", "3.0"]
+ERROR = 3
 
 
-@pytest.fixture(autouse=True, scope="module")
-def _compiled_quickly() -> Iterator[None]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            fmu_binaries, "FLAGS", ("-O0", *fmu_binaries.FLAGS[:1], *fmu_binaries.FLAGS[2:])
-        )
-        yield
-
-
-@pytest.fixture(scope="module", params=VERSIONS)
-def slider(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Unit:
-    return Unit(belt(), str(request.param), tmp_path_factory.mktemp("belt"), name="belt")
+pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
 
 def _stepped(unit: Unit, made, begin: int, count: int) -> np.ndarray:
@@ -92,6 +81,35 @@ def test_what_a_unit_refuses_is_an_error_with_a_reason(slider: Unit) -> None:
             slider.put(made, **values)
     assert slider.get(made, "k") == pytest.approx([50.0])
     slider.free(made)
+
+
+def test_calls_out_of_turn_are_refused(slider: Unit) -> None:
+    """Initialization ends once; no events in co-simulation; steps and events in their modes alone."""
+    made = slider.started("CoSimulation")
+    for name in ("ExitInitializationMode", "EnterEventMode", "EnterContinuousTimeMode"):
+        assert _status(slider, made, name) == ERROR, name
+    _begin_again_is_refused(slider, made)
+    made.doStep(currentCommunicationPoint=0.0, communicationStepSize=0.01)
+    other = slider.started("ModelExchange")
+    update = other.newDiscreteStates if slider.version == "2.0" else other.updateDiscreteStates
+    with pytest.raises(Exception, match="DiscreteStates"):
+        update()
+    assert _status(slider, other, "EnterEventMode") == 0
+    update()
+    other.terminate()
+    assert _status(slider, other, "EnterEventMode") == ERROR
+    slider.free(made, other)
+
+
+def _begin_again_is_refused(unit: Unit, made) -> None:
+    time = {} if unit.version == "2.0" else {"startTime": 7.0}
+    with pytest.raises(Exception, match="EnterInitializationMode"):
+        made.enterInitializationMode(**time)
+
+
+def _status(unit: Unit, made, name: str) -> int:
+    """What a function without arguments returns, also one that belongs to the other kind of unit."""
+    return int(made.dll[f"fmi{unit.version[0]}{name}"](ctypes.c_void_p(made.component)))
 
 
 @pytest.mark.parametrize("version", VERSIONS)

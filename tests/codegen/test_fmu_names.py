@@ -2,7 +2,6 @@
 
 import xml.etree.ElementTree as ET
 import zipfile
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -12,17 +11,9 @@ from references.build import bond_graph
 
 import bondgraph as bg
 import codegen
-from codegen.fmu import binaries as fmu_binaries
 from codegen.fmu.variables import plain
 
-
-@pytest.fixture(autouse=True, scope="module")
-def _compiled_quickly() -> Iterator[None]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            fmu_binaries, "FLAGS", ("-O0", *fmu_binaries.FLAGS[:1], *fmu_binaries.FLAGS[2:])
-        )
-        yield
+pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
 
 @pytest.mark.parametrize("version", ["2.0", "3.0"])

@@ -1,29 +1,15 @@
 """Directional derivatives of units, and the dependencies that they tell."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from oracles.called import Unit
 from oracles.units import belt, divider, duffing, figure_11
 
-from codegen.fmu import binaries as fmu_binaries
-
 VERSIONS = ["2.0", "3.0"]
 
 
-@pytest.fixture(autouse=True, scope="module")
-def _compiled_quickly() -> Iterator[None]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            fmu_binaries, "FLAGS", ("-O0", *fmu_binaries.FLAGS[:1], *fmu_binaries.FLAGS[2:])
-        )
-        yield
-
-
-@pytest.fixture(scope="module", params=VERSIONS)
-def slider(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Unit:
-    return Unit(belt(), str(request.param), tmp_path_factory.mktemp("belt"), name="belt")
+pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
 
 def test_slopes_of_an_affine_mode_are_exact(slider: Unit, tmp_path: Path) -> None:

@@ -74,15 +74,13 @@ def test_rates_and_outputs_are_the_simulators(name: str) -> None:
         x = rng.uniform(-2, 2, len(ready.states)) * (turn % 4 > 0)
         u, du = rng.uniform(0.1, 2, (2, len(ready.inputs)))
         du, t = du * (turn % 2), rng.uniform()
-        rate, signals, mode = instant(ready, t, x, u, du)
+        rate, signals, _ = instant(ready, t, x, u, du)
         now = exported.instant(t, x, u, du, None)
         terms = np.abs(now.m.P) @ np.abs(now.x) + np.abs(now.m.Q) @ np.abs(now.u) + 1e-3
         size = np.append(terms, np.full(len(x) - len(now.x), 1 + np.abs(now.y).max(initial=0)))
         assert (np.abs(exported.rhs(t, x, u, du) - rate) <= 1e-12 * size).all()
         if not du.any():
             assert (np.abs(exported.rhs(t, x, u) - ready.rhs(t, x, u)) <= 1e-12 * size).all()
-        if name == "constrained" and 0 in mode:
-            continue  # Brakes in different gears share in another way, within what each can hold.
         largest = 1e-3 + max(map(abs, signals.values()))
         assert exported.outputs(t, x, u, du) == pytest.approx(signals, rel=0, abs=1e-12 * largest)
 
@@ -155,13 +153,14 @@ def test_redundant_ports_share_by_what_each_holds_and_let_go_together() -> None:
 
 
 def test_brakes_in_different_gears_hold_whatever_they_can_hold_together() -> None:
-    """One is held at its level, the other takes the rest: they let go at P = L_1 + r L_2 = 5."""
+    """Each carries the same fraction of its level: they let go at P = L_1 + r L_2 = 5."""
     numbers, times = {"m": 2.0, "L_1": 3.0, "L_2": 1.0, "r": 2.0}, np.linspace(0, 2, 41)
     module = loaded(to_python(constrained(), numbers))
     run = module.simulate(times, {}, {"P": lambda t: 4 * t}, step=1e-3)
     assert run["v"] == pytest.approx(np.maximum(times - 1.25, 0) ** 2, abs=1e-4)
     held = times < 1.24
-    assert (run["f_1"] + 2 * run["f_2"])[held] == pytest.approx(4 * times[held], abs=1e-9)
+    assert run["f_1"][held] == pytest.approx(3 / 5 * 4 * times[held], abs=1e-9)
+    assert run["f_2"][held] == pytest.approx(1 / 5 * 4 * times[held], abs=1e-9)
 
 
 WORDS = (
@@ -235,23 +234,6 @@ def test_the_same_model_gives_the_same_bytes() -> None:
     paths = [str(folder) for folder in (here.parents[1], here, here.parent)]
     texts = {_python("-c", MAKE, *paths, PYTHONHASHSEED=seed) for seed in ("1", "2")}
     assert len(texts) == 1
-
-
-def test_a_model_with_two_hundred_states() -> None:
-    nodes, bonds = [bg.Se("p", "P"), bg.R("rub", law=bg.DryFriction("L"))], ["p>j0 j99>rub"]
-    for k in range(100):
-        nodes += [bg.One(f"j{k}"), bg.I(f"m{k}", f"m_{k}", flow=f"v_{k}"), bg.R(f"r{k}", "b"),
-                  bg.Zero(f"z{k}"), bg.C(f"c{k}", "1/k", effort=f"F_{k}")]  # fmt: skip
-        bonds.append(f"j{k}>m{k} j{k}>r{k} j{k}>z{k}>c{k}")
-        bonds += [f"z{k - 1}>j{k}"] if k else []
-    equations = bg.derive(bond_graph(nodes, " ".join(bonds)))
-    numbers = {f"m_{k}": 1 + k / 100 for k in range(100)} | {"b": 0.1, "k": 100.0, "L": 1.0}
-    module, times = loaded(to_python(equations, numbers)), np.linspace(0, 0.2, 3)
-    run = module.simulate(times, {}, {"P": 5.0}, step=2e-3)
-    expected = simulator(equations, numbers).run(times, {}, {"P": 5.0})
-    assert len(module.STATES) == 200
-    for state in module.STATES:
-        assert run[state] == pytest.approx(expected[state], abs=1e-7)
 
 
 def test_other_numbers_at_run_time_and_what_is_refused() -> None:

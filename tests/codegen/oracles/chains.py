@@ -89,6 +89,21 @@ class Chain:
         return bond_graph(nodes, " ".join(bonds))
 
 
+def long_chain(masses: int) -> tuple[bg.StateEquations, dict[str, float]]:
+    """Masses on the ground by dampers and in line by springs, the first pushed, the last rubbing."""
+    nodes, bonds = (
+        [bg.Se("p", "P"), bg.R("rub", law=bg.DryFriction("L"))],
+        [f"p>j0 j{masses - 1}>rub"],
+    )
+    for k in range(masses):
+        nodes += [bg.One(f"j{k}"), bg.I(f"m{k}", f"m_{k}", flow=f"v_{k}"), bg.R(f"r{k}", "b"),
+                  bg.Zero(f"z{k}"), bg.C(f"c{k}", "1/k", effort=f"F_{k}")]  # fmt: skip
+        bonds.append(f"j{k}>m{k} j{k}>r{k} j{k}>z{k}>c{k}")
+        bonds += [f"z{k - 1}>j{k}"] if k else []
+    numbers = {f"m_{k}": 1 + k / masses for k in range(masses)} | {"b": 0.1, "k": 100.0, "L": 1.0}
+    return bg.derive(bond_graph(nodes, " ".join(bonds))), numbers
+
+
 def random_chain(rng: np.random.Generator, breakaway: bool = False) -> Chain:
     """Two to four masses, one to three friction ports anywhere, pushes and levels of several shapes."""
     n = int(rng.integers(2, 5))

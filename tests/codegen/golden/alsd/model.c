@@ -12,10 +12,15 @@
  *     bg_model_init(&model, NULL);                    NULL: the parameters written here
  *     bg_model_vector(&model, 0, states, w, s);
  *     for (...) bg_model_step(&model, t, h, s, w);    a real-time step; friction sticks and slips
+ * or, with events located and steps that keep a tolerance, `bg_model_run` of model_located.h.
  *
  * Every call gives a status, 0 for success; `bg_model_message` says what it means. Build all files
  * of the folder, for example `cc -std=c99 -O2 *.c -lm`; with main.c that gives a program:
- *     ./a.out END STEP [name=value ...]               prints states and outputs as CSV
+ *     ./a.out END SAMPLE [located] [name=value ...]   prints states and outputs as CSV
+ *
+ * A program with two models takes each from a folder of its own, written with `prefix`, which every
+ * external symbol then carries. Where a model is used, a file of its own includes its header; sizes
+ * and types are those of that file, and `bg_model_init` and the others its model's functions.
  *
  * One evaluation takes 30 operations beside those of the matrices.
  * states: omega_1, omega_2, tau_k1, tau_k2, omega_t1, omega_t2

@@ -1,0 +1,31 @@
+"""Everything about a closed model at one instant."""
+
+from dataclasses import dataclass
+
+from codegen.arrays import Array
+from codegen.model.numbers import Numbers
+
+Mode = tuple[int, ...]
+"""For each friction port: 0 sticking, +1 or -1 the sign of its slip."""
+
+INPUTS, RATES_OF_INPUTS, READINGS, RATE, CAPS = 2, 3, 4, 5, 6
+"""Where the parts of a `Snapshot` stand in an affine map."""
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Everything at one instant: states x and z, inputs, their rates, readings, the rate of s.
+
+    ``caps``: the breakaway effort of each friction port. ``external``: the external inputs.
+    ``numbers``: the matrices, as they are at this instant.
+    """
+
+    x: Array
+    z: Array
+    u: Array
+    du: Array
+    y: Array
+    rate: Array
+    caps: Array
+    external: Array
+    numbers: Numbers

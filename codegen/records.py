@@ -1,0 +1,107 @@
+"""What a program is made of: straight-line code, patterns of matrices, groups of laws."""
+
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+TEMPORARY = "c"
+"""Temporaries are c0, c1, ...; names that are taken are passed over."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """Straight-line code: results from arguments, by way of named temporaries."""
+
+    arguments: tuple[sp.Symbol, ...]
+    assignments: tuple[tuple[sp.Symbol, sp.Expr], ...]
+    results: tuple[sp.Expr, ...]
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Where the nonzero entries of a matrix stand, in the order of the results that hold them."""
+
+    shape: tuple[int, int]
+    rows: tuple[int, ...]
+    columns: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Group:
+    """Laws evaluated together: the inputs they give; ``loop`` if they depend on one another."""
+
+    inputs: tuple[int, ...]
+    ports: tuple[Hashable, ...]
+    #: For each law the reading that its port receives.
+    readings: tuple[int, ...]
+    loop: bool
+    values: Block
+
+
+@dataclass(frozen=True)
+class FrictionPort:
+    """A port with dry friction: its node, the input it gives and the reading it receives."""
+
+    name: Hashable
+    input: int
+    reading: int
+
+
+@dataclass(frozen=True)
+class Program:
+    """Everything a simulator needs, as assignments; numbered as in the tuples of names.
+
+    ``coefficients``: parameters to the nonzero entries of the matrices in ``layout``: A, J, B, E over
+    states and inputs, and F, D, H, K with a row for each reading, ``F x + D u + H x' + K u'``.
+    ``known``: laws of time, parameters and external inputs; ``known_rates`` their rates. ``groups``:
+    the other laws in an order in which each can be evaluated. ``friction_values``: level, breakaway
+    level, curve and curve at rest of each friction port in turn. ``coupled``: laws to be
+    solved with the friction.
+    """
+
+    parameters: tuple[sp.Symbol, ...]
+    states: tuple[sp.Symbol, ...]
+    law_states: tuple[sp.Symbol, ...]
+    #: For each law state the reading that is its rate.
+    law_rates: tuple[int, ...]
+    inputs: tuple[sp.Symbol, ...]
+    #: Inputs that a run must be given, those of laws included.
+    external: tuple[sp.Symbol, ...]
+    #: The rates of external inputs, for known laws.
+    external_rates: tuple[sp.Symbol, ...]
+    readings: tuple[sp.Symbol, ...]
+    outputs: tuple[sp.Symbol, ...]
+    coefficients: Block
+    layout: Mapping[str, Pattern]
+    known: Group
+    #: For each known law the external inputs that it uses.
+    known_uses: tuple[tuple[int, ...], ...]
+    known_rates: Block
+    groups: tuple[Group, ...]
+    friction: tuple[FrictionPort, ...]
+    friction_values: Block
+    coupled: Group
+    #: Whether the friction efforts have to be solved for together, with the coupled laws.
+    joint: bool
+    #: Readings that a step must not turn into an impulse: outputs, and what laws read.
+    read: tuple[int, ...]
+    #: Conditions that end a run where one falls below zero.
+    guards: Block
+    #: Whether coefficients change in time, with states, external inputs or the time itself.
+    varying: bool
+    #: Whether each friction mode is an affine system with constant coefficients.
+    affine: bool
+
+
+def block(expressions: Sequence[sp.Expr], taken: Iterable[sp.Symbol] = ()) -> Block:
+    """Straight-line code for expressions, each common subexpression computed once."""
+    expressions = [sp.sympify(expr) for expr in expressions]
+    used: set[sp.Symbol] = set()
+    for expr in expressions:
+        used |= expr.free_symbols
+    avoided = {name.name for name in used} | {name.name for name in taken}
+    temporaries = (name for name in sp.numbered_symbols(TEMPORARY) if name.name not in avoided)
+    assignments, results = sp.cse(expressions, symbols=temporaries, order="none")
+    arguments = tuple(sorted(used, key=str))
+    return Block(arguments, tuple(assignments), tuple(results))
