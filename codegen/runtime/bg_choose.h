@@ -13,9 +13,9 @@ typedef struct {
     double slip, effort, cap, push, near_slip, near_effort, near_push;
 } bg_port;
 
-/* `touched`: whether the instant is an event of the port; `coupled`: whether its slip depends at once
- * on friction. `look` tells of every port in a mode; with `later` a moment later, where ties are
- * decided and only the first four are asked for. It gives a status, 0 for success. */
+/* `touched`: whether the instant is an event of the port; `coupled`: whether its slip depends at
+ * once on friction. `look` tells of every port in a mode; with `later` a moment later, where ties
+ * are decided and only the first four are asked for. It gives a status, 0 for success. */
 typedef struct {
     int ports;
     const signed char *touched;

@@ -31,7 +31,7 @@ static int find(int count, const char *const *names, const char *text, size_t le
     return -1;
 }
 
-/* Holds an input at a value: the first term of each is a constant, the others get no coefficients. */
+/* Holds an input at a value: the first term of each is a constant, the others lose theirs. */
 static void hold(command *asked, int input, double value)
 {
     asked->coefficients[input][0] = value;

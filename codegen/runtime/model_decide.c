@@ -39,7 +39,7 @@ static int look(void *self, const signed char *mode, int moved, bg_port *ports)
 int bg_located_decide(bg_located *c)
 {
     const bg_chooser chooser = {K, c->touched, bg_beside, c, look};
-    int mode[BG_ROOM(K)], sticking = 0;
+    int mode[BG_ROOM(K)] = {0}, sticking = 0;
     int status = bg_choose(&chooser, c->mode);
     if (status)
         return status == BG_NO_MODE ? BG_UNDECIDED : status;

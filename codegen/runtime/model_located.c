@@ -14,7 +14,7 @@ static const double PART = 1e-3;     /* .. if they are less than this of a time 
 int bg_located_look(bg_located *c, double t, const double *s, const signed char *mode)
 {
     double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
-    int signs[BG_ROOM(K)];
+    int signs[BG_ROOM(K)] = {0};
     for (int i = 0; i < K; i++)
         signs[i] = mode[i];
     bg_signals_at(c->signals, c->segment, t, w, dw);
@@ -24,7 +24,7 @@ int bg_located_look(bg_located *c, double t, const double *s, const signed char 
 /* In the present mode; straight-line code where all ports slip and there is any. */
 int bg_located_rate(bg_located *c, double t, const double *s, double *rate)
 {
-    double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)], signs[BG_ROOM(K)];
+    double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)], signs[BG_ROOM(K)] = {0};
     int sticking = 0;
     for (int i = 0; i < K; i++) {
         signs[i] = c->mode[i];
@@ -103,7 +103,7 @@ static int record(bg_located *c, const double *s)
     const bg_request *const asked = c->asked;
     const double t = asked->times[c->next];
     double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
-    int mode[BG_ROOM(K)];
+    int mode[BG_ROOM(K)] = {0};
     const int status = bg_located_look(c, t, s, c->mode);
     if (status != BG_OK)
         return status;

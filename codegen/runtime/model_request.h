@@ -34,9 +34,9 @@ typedef struct {
     int port, kind;
 } bg_located_event;
 
-/* What a run is asked. `times`: samples, increasing, the first where the run begins; `states` there,
- * law states last. `record` is called for each sample in turn, with the instant just after it if it
- * is an event's. The run tells `count` events and `time`, where it ended. */
+/* What a run is asked. `times`: samples, increasing, the first where the run begins; `states` are
+ * those there, law states last. `record` is called for each sample in turn, with the instant just
+ * after it if it is an event's. The run tells `count` events and `time`, where it ended. */
 typedef struct {
     const double *times, *states;
     int samples, method;

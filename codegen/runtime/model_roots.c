@@ -1,4 +1,4 @@
-/* Brent's method (R. P. Brent, Algorithms for Minimization without Derivatives, 1973, chapter 4). */
+/* Brent's method: R. P. Brent, Algorithms for Minimization without Derivatives, 1973, chapter 4. */
 #include <float.h>
 #include <math.h>
 

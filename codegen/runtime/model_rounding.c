@@ -75,8 +75,8 @@ void bg_located_rounding(bg_located *c, double t, bg_rounding *size)
     reached(c, x, u, most);
     for (int k = 0; k < K; k++) {
         const int row = bg_friction_readings[k], own = bg_friction_inputs[k];
-        const double moved = moved_by(c->model, k, a->P, N, most) + moved_by(c->model, k, a->Q, M, u);
-        double slip = 0.0, inertia = 0.0;
+        double slip = 0.0, inertia = 0.0, moved = moved_by(c->model, k, a->P, N, most);
+        moved += moved_by(c->model, k, a->Q, M, u);
         for (int i = 0; i < N; i++) {
             slip += fabs(a->F[row * N + i]) * x[i];
             inertia += a->F[row * N + i] * a->Q[i * M + own];
@@ -96,7 +96,7 @@ void bg_located_rounding(bg_located *c, double t, bg_rounding *size)
  * of the magnitudes of its terms in states. A term is the effect of a small relative change. */
 int bg_located_see(bg_located *c)
 {
-    signed char slipping[BG_ROOM(K)];
+    signed char slipping[BG_ROOM(K)] = {0};
     double u[BG_ROOM(M)], terms[BG_ROOM(M)], moved[BG_SIZE];
     for (int i = 0; i < K; i++)
         slipping[i] = c->mode[i] ? c->mode[i] : 1;

@@ -5,7 +5,9 @@
 #include "model_located.h"
 
 /* A row: x, z, u, u', y, the rate of s, external inputs. */
-enum { BG_ROW_WIDTH = BG_STATES + BG_LAW_STATES + 2 * BG_INPUTS + BG_READINGS + BG_SIZE + BG_EXTERNAL };
+enum {
+    BG_ROW_WIDTH = BG_STATES + BG_LAW_STATES + 2 * BG_INPUTS + BG_READINGS + BG_SIZE + BG_EXTERNAL
+};
 
 /* The caller's: `samples` rows of the table, and of modes, BG_FRICTION in each. */
 typedef struct {

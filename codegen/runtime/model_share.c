@@ -185,6 +185,8 @@ static void settle(directions *d, double *efforts)
 void bg_fair_share(const bg_hold *held, const double *caps, double *efforts)
 {
     directions d;
+    if (BG_FRICTION < 2)
+        return;
     const double least = 1e-15 * largest(held->count, efforts) + 1e-300;
     d.free = held->share_count;
     d.count = held->count;

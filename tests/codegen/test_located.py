@@ -257,6 +257,24 @@ def test_the_main_program_runs_a_scenario_with_events_located(tmp_path: Path) ->
     assert table[:, 1] == pytest.approx(80.0, abs=1e-2)
 
 
+STRICT = ("-O2", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+
+
+@pytest.mark.parametrize("name", ["duffing", "diode", "stacked", "crank", "clutches_with_loss"])
+def test_located_runs_compile_without_warnings(name: str) -> None:
+    """Models without friction ports, without states, with several ports, with moving ratios."""
+    equations, numbers, laws = SMALL[name]
+    ready = simulator(equations, numbers, laws)
+    runs = LocatedRuns(ready.closed, STRICT)
+    states, signals = (
+        np.zeros(len(ready.states)),
+        signals_for(dict.fromkeys(ready.inputs, 1.0), ready.inputs),
+    )
+    assert (
+        runs.run(np.array([0.0, 0.1]), states, signals, Settings("auto", 1e-10, 1e-11)) is not None
+    )
+
+
 SANITIZED = """
 import sys
 sys.path[:0] = {paths!r}
