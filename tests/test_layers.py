@@ -28,7 +28,7 @@ ORDER = {
         "arrays", *_room("inputs", "pieces generators polynomials signals"),
         "model.affine", "closing", "program", "identifiers", "printing",
         *_room("model", "numpy_backend numbers friction instant loops closed sizes modes guards"),
-        *_room("runs", "events legs exact hybrid arguments observer result snapshots"),
+        *_room("runs", "events sundials legs exact hybrid arguments observer result snapshots"),
         *_room("engine", "build sizes modes inputs runs"),
         "simulate", "trim",
         *_room("c", "text structure constants rhs blocks rates tables export"),
