@@ -57,7 +57,7 @@ def reference(figure: str) -> Outcome:
 
 
 def errors(found: Outcome, expected: Outcome) -> tuple[float, float | None]:
-    """The largest error of a state over its range, and the largest error of an event [s]."""
+    """The largest error of a state over its range, and the largest of an event [s]; None without events."""
     worst = max(
         float(np.abs(found.states[name] - column).max() / np.ptp(column))
         for name, column in expected.states.items()
@@ -65,4 +65,4 @@ def errors(found: Outcome, expected: Outcome) -> tuple[float, float | None]:
     if found.events is None or expected.events is None:
         return worst, None
     late = [abs(a - b) for a, b in zip(found.events, expected.events, strict=True)]
-    return worst, max(late, default=0.0)
+    return worst, max(late, default=None)

@@ -2,6 +2,7 @@
 
 import ctypes
 import sys
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,10 +34,16 @@ WIDTH = 0.01
 LOOSE = 1e-8
 """Tolerances that such an integrator is given."""
 
+PATIENCE = 20.0
+"""How long [s] one may take; where a tanh makes clutches stiff explicit ones take minutes."""
+
 
 @dataclass(frozen=True)
 class Contender:
-    """``call`` makes so many ``runs``; from what it returns ``outcome`` reads what they found."""
+    """``call`` makes so many ``runs``; from what it returns ``outcome`` reads what they found.
+
+    It raises `TimeoutError` where patience ends.
+    """
 
     call: Callable[[], Any]
     outcome: Callable[[Any], Outcome]
@@ -143,18 +150,24 @@ def by_tanh(case: Case) -> dict[str, Contender]:
     start = np.array([case.initial.get(name, 0.0) for name in names])
     times = case.times
 
+    began = [0.0]
+
     def rate(t: float, x: np.ndarray) -> list[float]:
+        if time.perf_counter() - began[0] > PATIENCE:
+            raise TimeoutError
         return list(function(*x.tolist(), *(signal(t) for signal in signals)))
 
     def fill(t: float, x: np.ndarray, out: np.ndarray) -> None:
         out[:] = rate(t, x)
 
     def scipy_run(method: str) -> np.ndarray:
+        began[0] = time.perf_counter()
         span = (times[0], times[-1])
         found = solve_ivp(rate, span, start, method=method, t_eval=times, rtol=LOOSE, atol=LOOSE)
         return found.y
 
     def cvode_run() -> np.ndarray:
+        began[0] = time.perf_counter()
         solver = CVODE(fill, rtol=LOOSE, atol=LOOSE, max_num_steps=100_000)
         return solver.solve(times, start).y.T
 

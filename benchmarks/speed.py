@@ -22,7 +22,7 @@ sys.path[:0] = [str(ROOT), str(Path(__file__).parent / "floor")]
 
 import floor  # noqa: E402
 from accuracy import FIGURES, Outcome, errors, reference  # noqa: E402
-from contenders import Contender, contenders  # noqa: E402
+from contenders import PATIENCE, Contender, contenders  # noqa: E402
 
 import codegen  # noqa: E402
 from codegen.sweeps.job import Job, batch_of  # noqa: E402
@@ -56,12 +56,16 @@ def print_figure(figure: str, ways: dict[str, Contender]) -> None:
     expected = reference(figure)
     medians, outcomes = measured(ways)
     title = f"{figure}, {FIGURES[figure]}"
-    print(f"\n{title:<36}{'ms per run':>12}{'ratio':>10}{'error':>10}{'event [s]':>11}")
-    for name, seconds in medians.items():
+    print(f"\n{title:<40}{'ms per run':>12}{'ratio':>10}{'error':>10}{'event [s]':>11}")
+    for name in ways:
+        if name not in medians:
+            print(f"{name:<40}{f'over {1e3 * PATIENCE:g}':>12}")
+            continue
+        seconds = medians[name]
         worst, late = errors(outcomes[name], expected)
         when = "none" if late is None else f"{late:.1e}"
         ratio = seconds / medians[BASE]
-        print(f"{name:<36}{1e3 * seconds:>12.5g}{ratio:>10.3g}{worst:>10.1e}{when:>11}", flush=True)
+        print(f"{name:<40}{1e3 * seconds:>12.5g}{ratio:>10.3g}{worst:>10.1e}{when:>11}", flush=True)
 
 
 def measured(ways: dict[str, Contender]) -> tuple[dict[str, float], dict[str, Outcome]]:
@@ -70,13 +74,16 @@ def measured(ways: dict[str, Contender]) -> tuple[dict[str, float], dict[str, Ou
     lasted, outcomes = dict[str, float](), dict[str, Outcome]()
     for name, way in ways.items():
         start = time.perf_counter()
-        found = way.call()
+        try:
+            found = way.call()
+        except TimeoutError:
+            continue
         lasted[name] = time.perf_counter() - start
         times[name] = [lasted[name] / way.runs] if lasted[name] > SLOW else []
         outcomes[name] = way.outcome(found)
     for turn in range(ROUNDS):
-        for name, way in ways.items():
-            seconds = lasted[name]
+        for name, seconds in lasted.items():
+            way = ways[name]
             if seconds > CRAWLS or (seconds > SLOW and turn >= FEW - 1):
                 continue
             repeats = max(1, round(SHORT / seconds))
