@@ -10,7 +10,7 @@ help:
 	@echo "make demo   derive and simulate differentials; tables and pictures in out/"
 	@echo "make test   format, lint, types, tests and doctests"
 	@echo "make bench  how time and memory to derive grow with the size of a graph"
-	@echo "make bench-speed  how fast runs are: generated C, numpy and scipy beside C written by hand"
+	@echo "make bench-speed  how fast and how exact runs are: generated C, numpy, scipy and SUNDIALS beside C by hand"
 	@echo "make bench-agreement  how far simulators, exported Python and C, and FMUs agree"
 	@echo "make bench-peers  the same graphs with other packages, each in an environment of its own"
 	@echo "make clean  remove the environment and what was generated"
@@ -18,7 +18,7 @@ help:
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -c "import sys; sys.exit('Python 3.11 or newer is needed: make PYTHON=...' if sys.version_info < (3, 11) else 0)"
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[pictures,control,c,sweep,cluster,export,test]"
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[pictures,control,c,sweep,cluster,sundae,export,test]"
 	@touch $(READY)
 
 demo: $(READY)

@@ -91,9 +91,11 @@ class Simulator:
 
         ``initial``: states by name, the rest start at 0. ``inputs``: a signal or a number for each
         of ``inputs``. ``method``: "exact" (matrix exponentials, for models that are affine in each friction
-        mode), "DOP853", "Radau" (stiff models), or "auto".
+        mode), "DOP853", "Radau" (stiff models), "auto" of these, or "CVODE" (SUNDIALS; the extra
+        ``sundae``): backward differences, Adams's formulas where a mode is affine and not stiff.
 
-        Raises `SignalError` for unusable arguments, `SimulationError` if the run can't go on.
+        Raises `SignalError` for unusable arguments, `SimulationError` if the run can't go on,
+        `MissingExtraError` for what the method needs.
         """
         times = checked_times(time)
         signals = signals_for({} if inputs is None else inputs, self.inputs)

@@ -29,7 +29,7 @@ ORDER = {
         "model.affine", "closing", "records", "sections", "program", "identifiers", "printing",
         *_room("model", "numpy_backend numbers snapshot sharing friction instant loops rubbing closed "
                "sizes modes guards"),
-        *_room("runs", "events legs exact hybrid arguments observer result snapshots"),
+        *_room("runs", "events sundials legs exact hybrid arguments observer result snapshots"),
         *_room("c", "text structure constants rhs blocks rates tables prefix scenario export"),
         *_room("engine", "build sizes modes inputs runs located"),
         "simulate", "trim",

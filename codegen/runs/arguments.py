@@ -79,7 +79,7 @@ def settings_of(method: str, rtol: float, atol: float) -> Settings:
     for tolerance, what in ((rtol, "rtol"), (atol, "atol")):
         if not isinstance(tolerance, int | float | np.number) or not tolerance > 0:
             raise SignalError(f"{what} must be a positive number, not {tolerance!r}")
-    known = ("auto", EXACT, *METHODS)
+    known = (EXACT, *METHODS)
     if method not in known:
         raise SignalError(f"unknown method {method!r}; there are {', '.join(known)}")
     return Settings(method, rtol, atol)

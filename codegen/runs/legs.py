@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
 
 import numpy as np
 from scipy.integrate import DOP853, Radau
@@ -12,14 +14,21 @@ from codegen.inputs.pieces import Piece
 from codegen.model.closed import ClosedModel, Mode
 from codegen.model.modes import Peaks
 from codegen.runs.events import Dense, Event, Watch
+from codegen.runs.sundials import Cvode
 
-METHODS = {"DOP853": DOP853, "Radau": Radau}
+METHODS: dict[str, tuple[Any, Any]] = {
+    "auto": (DOP853, Radau),
+    "DOP853": (DOP853, DOP853),
+    "Radau": (Radau, Radau),
+    "CVODE": (partial(Cvode, "Adams"), partial(Cvode, "BDF")),
+}
+"""The integrator of each method: where the model is not stiff, and where it is."""
 
 EXACT = "exact"
 """The method of models that are affine in each friction mode: no integrator, matrix exponentials."""
 
 STIFF = 2e5
-"""Time span over shortest time constant from which the implicit method is chosen."""
+"""Time span over shortest time constant from which a model is stiff."""
 
 STEP_BOUND = 1.0
 """An explicit step's length in shortest time constants: beyond, its interpolant is unreliable."""
@@ -129,12 +138,11 @@ class Leg:
                 track.record(s, self._mode)
             return stop, s, frozenset()
         fastest = self.fastest(t, s)
-        name = self._settings.method
-        if name == "auto":
-            name = "Radau" if fastest * self._span > STIFF else "DOP853"
-        solver = METHODS[name](
+        integrator = self._integrator(fastest)
+        explicit = integrator is DOP853
+        solver = integrator(
             self._rate, t, s, stop, rtol=self._settings.rtol, atol=self._settings.atol,
-            max_step=self._bound(name, fastest),
+            max_step=self._bound(explicit, fastest),
         )  # fmt: skip
         watch = Watch(self._model, self._pieces, self._mode, t, s, self._peaks)
         steps, short = 0, 0
@@ -157,18 +165,26 @@ class Leg:
                     f"at t = {solver.t:.9g} the integrator no longer advances: the rates jump there; "
                     "friction that changes sign is a DryFriction, a switch a step of an input"
                 )
-            if steps % REFRESH == 0 and not self._model.program.affine:
-                solver.max_step = self._bound(name, self.fastest(solver.t, solver.y))
+            if explicit and steps % REFRESH == 0 and not self._model.program.affine:
+                solver.max_step = self._bound(explicit, self.fastest(solver.t, solver.y))
         return stop, solver.y, frozenset()
 
-    def _bound(self, name: str, fastest: float) -> float:
+    def _integrator(self, fastest: float) -> Any:
+        method = self._settings.method
+        stiff = fastest * self._span > STIFF
+        if method == "CVODE" and not self._model.program.affine:
+            # Laws may grow stiff on the way; backward differences do not mind where they don't.
+            stiff = True
+        return METHODS[method][stiff]
+
+    def _bound(self, explicit: bool, fastest: float) -> float:
         """The longest step: events and inputs must not fall between, nor the interpolant be strained."""
         bound = self._span / LEAST_STEPS
         driven = max((piece.fastest for piece in self._pieces), default=0.0)
-        if name == "Radau":
-            # Its error estimate is blind to what follows an input at once.
-            return min(bound, FOLLOWED / driven) if driven > 0 else bound
-        return min(bound, STEP_BOUND / fastest) if fastest > 0 else bound
+        if explicit:
+            return min(bound, STEP_BOUND / fastest) if fastest > 0 else bound
+        # Implicit error estimates are blind to what follows an input at once.
+        return min(bound, FOLLOWED / driven) if driven > 0 else bound
 
     def _sample(self, times: Array, track: Track, until: float, dense: Dense) -> None:
         while track.recorded < len(times) and times[track.recorded] < until:

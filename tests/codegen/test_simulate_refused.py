@@ -87,7 +87,7 @@ def test_initial_values_must_be_numbers_of_states(initial, message: str) -> None
 @pytest.mark.parametrize("method", ["RK45", "auto ", "", None, 3])
 def test_methods_are_a_closed_list(method) -> None:
     with pytest.raises(
-        bg.SignalError, match=r"unknown method .*; there are auto, exact, DOP853, Radau"
+        bg.SignalError, match=r"unknown method .*; there are exact, auto, DOP853, Radau, CVODE"
     ):
         RUN.run(TIMES, inputs={"V": 1.0}, method=method)
 
