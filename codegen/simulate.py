@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from bondgraph import ParameterError, SignalError, SimulationError, StateEquations
 from codegen.arrays import Array
 from codegen.engine.located import METHODS as LOCATED_METHODS
-from codegen.engine.located import LocatedRuns, Recorded
+from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
 from codegen.engine.runs import CRuns, not_affine
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signals import Constant, Signal, first_step
@@ -237,13 +237,16 @@ def simulator(
     return with_engine(guarded_simulator(equations, parameters, laws, ()), backend)
 
 
-def with_engine(ready: Simulator, backend: str) -> Simulator:
-    """The simulator with what runs it."""
+def with_engine(ready: Simulator, backend: str, library: LocatedLibrary | None = None) -> Simulator:
+    """The simulator with what runs it; ``library``: of one with the same program, if there is one."""
     if backend != "c":
         return ready
-    affine = not_affine(ready.closed.program) is None
-    engine = CRuns(ready.closed) if affine else None
-    return replace(ready, engine=engine, located=LocatedRuns(ready.closed))
+    located = LocatedRuns(ready.closed, library)
+    if not_affine(ready.closed.program) is None:
+        return replace(ready, engine=CRuns(ready.closed), located=located)
+    # Written now, so that what C cannot have is refused before there is a run.
+    _ = located.library.sources
+    return replace(ready, located=located)
 
 
 def guarded_simulator(

@@ -1,6 +1,6 @@
 """Event-located runs by the generated C of a model: adaptive steps, for models of every kind."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -38,40 +38,78 @@ class Recorded:
     shots: Snapshots
 
 
-class LocatedRuns:
-    """The generated C of one model; compiled when the first run asks for it.
+class LocatedLibrary:
+    """The generated C of a program, written and compiled when it is first asked for.
 
-    Raises what `codegen.to_c` raises for models that C cannot have, `MissingExtraError` without a compiler.
+    Numbers are given to each instance, so models that differ in them alone share one library.
     """
 
     def __init__(self, model: ClosedModel, flags: Sequence[str] = FLAGS) -> None:
         check_tools()
-        program = model.program
-        self.model, self._flags = model, tuple(flags)
+        self._model, self._flags = model, tuple(flags)
+
+    @cached_property
+    def sources(self) -> Mapping[str, str]:
+        """Its files; raises what `codegen.to_c` raises for models that C cannot have."""
+        zeros = [0.0] * len(self._model.program.parameters)
+        files = {name: runtime_file(name) for name in ("model_rows.h", "model_rows.c")}
+        return {**texts(self._model, "model", zeros), **files}
+
+    @cached_property
+    def opened(self) -> tuple[Any, Any]:
+        """cffi's interface and the library."""
+        return loaded(compiled(self.sources, self._flags), _declared())
+
+    @cached_property
+    def sizes(self) -> tuple[int, int]:
+        """How many doubles an instance and a run take."""
+        ffi, library = self.opened
+        sizes = ffi.new("unsigned long[3]")
+        library.bg_rows_sizes(sizes)
+        if sizes[2] != 8 * sum(_widths(self._model)):
+            raise SimulationError(
+                "the library of this model was compiled for other sizes; empty the cache"
+            )
+        return sizes[0] // 8 + 1, sizes[1] // 8 + 1
+
+
+class LocatedRuns:
+    """Runs of one model by generated C; ``library``: of a model with the same program, if there is one.
+
+    Raises `MissingExtraError` without a compiler.
+    """
+
+    def __init__(self, model: ClosedModel, library: LocatedLibrary | None = None) -> None:
+        self.model, self.library = model, library or LocatedLibrary(model)
         self._parameters = np.array(
-            [float(model.parameters[symbol.name]) for symbol in program.parameters] or [0.0]
+            [float(model.parameters[symbol.name]) for symbol in model.program.parameters] or [0.0]
         )
-        # Numbers are given to each instance, so models that differ in them share one library.
-        self._texts = texts(model, "model", [0.0] * len(program.parameters))
 
     def run(
         self, times: Array, states: Array, signals: Sequence[Signal], settings: Settings
     ) -> Recorded | None:
         """Run and record; None where it could not go on."""
-        ffi, library = self._library
-        kept: list[Any] = []
-        table = signal_table(signals, float(times[0]), float(times[-1]))
-        inputs = packed_signals(ffi, table, kept)
-        instance, run = self._rooms
-        width, ports = self._width, max(len(self.model.program.friction), 1)
-        rows = np.empty((len(times), width))
-        modes = np.zeros((len(times), ports), dtype=np.intc)
+        ffi, _ = self.library.opened
+        rows = np.empty((len(times), sum(_widths(self.model))))
+        modes = np.zeros((len(times), max(len(self.model.program.friction), 1)), dtype=np.intc)
         start = np.append(states, 0.0)
         asked, target = ffi.new("bg_request *"), ffi.new("bg_rows *")
         target.table, target.modes = _pointer(ffi, rows), _pointer(ffi, modes, "int *")
         asked.times, asked.states = _pointer(ffi, times), _pointer(ffi, start)
         asked.samples, asked.method = len(times), METHODS.index(settings.method)
         asked.rtol, asked.atol = settings.rtol, settings.atol
+        events = self._called(
+            asked, target, signal_table(signals, float(times[0]), float(times[-1]))
+        )
+        if events is None or not np.isfinite(rows).all():
+            return None
+        return Recorded(events, self._shots(rows))
+
+    def _called(self, asked: Any, target: Any, table: SignalTable) -> tuple[Event, ...] | None:
+        """Call C, with more room for events if it asks for it; its events if the run is whole."""
+        ffi, library = self.library.opened
+        inputs, kept = packed_signals(ffi, table)
+        instance, run = self._rooms
         status, room = EVENTS_STATUS, FEW
         while status == EVENTS_STATUS and room <= MANY:
             events = ffi.new("bg_located_event[]", room)
@@ -82,55 +120,36 @@ class LocatedRuns:
                 _pointer(ffi, self._parameters), inputs, asked, target,
             )  # fmt: skip
             room *= 16
-        if status != 0 or not np.isfinite(rows).all():
+        del kept
+        if status != 0:
             return None
         names = [port.name for port in self.model.program.friction]
-        found = tuple(
-            Event(event.time, names[event.port], KINDS[event.kind])
-            for event in events[0 : asked.count]
-        )
-        return Recorded(found, self._shots(rows))
-
-    @cached_property
-    def _library(self) -> tuple[Any, Any]:
-        files = {name: runtime_file(name) for name in ("model_rows.h", "model_rows.c")}
-        library = compiled({**self._texts, **files}, self._flags)
-        ffi, opened = loaded(library, _declared())
-        sizes = ffi.new("unsigned long[3]")
-        opened.bg_rows_sizes(sizes)
-        if sizes[2] != 8 * self._width:
-            raise SimulationError(f"the library {library} was compiled for other sizes; delete it")
-        return ffi, opened
+        return tuple(Event(e.time, names[e.port], KINDS[e.kind]) for e in events[0 : asked.count])
 
     @cached_property
     def _rooms(self) -> tuple[Array, Array]:
         """Room for an instance and for a run."""
-        ffi, library = self._library
-        sizes = ffi.new("unsigned long[3]")
-        library.bg_rows_sizes(sizes)
-        return aligned(sizes[0] // 8 + 1), aligned(sizes[1] // 8 + 1)
-
-    @property
-    def _widths(self) -> tuple[int, ...]:
-        """How many columns x, z, u, u', y, the rate of s and external inputs have."""
-        program = self.model.program
-        inputs = len(program.inputs)
-        return (
-            len(program.states), len(program.law_states), inputs, inputs, len(program.readings),
-            self.model.size, len(program.external),
-        )  # fmt: skip
-
-    @property
-    def _width(self) -> int:
-        return sum(self._widths)
+        instance, run = self.library.sizes
+        return aligned(instance), aligned(run)
 
     def _shots(self, rows: Array) -> Snapshots:
-        x, z, u, du, y, rate, external = np.split(rows, np.cumsum(self._widths)[:-1], axis=1)
+        ends = np.cumsum(_widths(self.model))[:-1]
+        x, z, u, du, y, rate, external = np.split(rows, ends, axis=1)
         return Snapshots(x, z, u, du, y, rate, external)
 
 
-def packed_signals(ffi: Any, table: SignalTable, kept: list[Any]) -> Any:
-    """A table as the runtime's record; ``kept`` gets what the record points to."""
+def _widths(model: ClosedModel) -> tuple[int, ...]:
+    """How many columns x, z, u, u', y, the rate of s and external inputs have."""
+    program = model.program
+    inputs = len(program.inputs)
+    return (
+        len(program.states), len(program.law_states), inputs, inputs, len(program.readings),
+        model.size, len(program.external),
+    )  # fmt: skip
+
+
+def packed_signals(ffi: Any, table: SignalTable) -> tuple[Any, list[Any]]:
+    """A table as the runtime's record, and what has to be kept while that is used."""
     record = ffi.new("bg_signals *")
     rows = [
         {
@@ -146,12 +165,11 @@ def packed_signals(ffi: Any, table: SignalTable, kept: list[Any]) -> Any:
     breaks, fastest = np.array([*table.breaks, 0.0]), np.array(table.fastest)
     begins = np.array(table.begins, dtype=np.intc)
     coefficients = np.array([(c.real, c.imag) for c in table.coefficients] or [(0.0, 0.0)])
-    kept += [record, terms, breaks, fastest, begins, coefficients]
     record.segments, record.terms = len(table.fastest), terms
     record.breaks, record.fastest = _pointer(ffi, breaks), _pointer(ffi, fastest)
     record.begins = _pointer(ffi, begins, "int *")
     record.coefficients = _pointer(ffi, coefficients, "double(*)[2]")
-    return record
+    return record, [terms, breaks, fastest, begins, coefficients]
 
 
 def _pointer(ffi: Any, array: Any, kind: str = "double *") -> Any:

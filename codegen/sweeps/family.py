@@ -13,6 +13,7 @@ import sympy as sp
 from bondgraph import ParameterError, SignalError, StateEquations
 from bondgraph.closures import merged_laws
 from bondgraph.expressions import normal
+from codegen.engine.located import LocatedLibrary
 from codegen.model.numbers import exact_parameters
 from codegen.program import Program, lower
 from codegen.simulate import BACKENDS, Simulator, bound, with_engine
@@ -81,7 +82,14 @@ class Family:
                 known = ", ".join(self.parameters) or "none"
                 raise ParameterError(f"{name!r} is not a parameter; there are {known}")
         values = {**self.parameters, **changes}
-        return with_engine(bound(self.program, self.equations, values), self.backend)
+        return with_engine(bound(self.program, self.equations, values), self.backend, self._library)
+
+    @cached_property
+    def _library(self) -> LocatedLibrary | None:
+        """The generated C that all its simulators share."""
+        if self.backend != "c":
+            return None
+        return LocatedLibrary(bound(self.program, self.equations, self.parameters).closed)
 
     def fingerprint(self) -> str:
         """A digest of the model and its numbers, the same in every process.

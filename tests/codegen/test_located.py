@@ -16,8 +16,20 @@ from references.build import bond_graph
 
 import bondgraph as bg
 import differentials
-from codegen import Lag, Ramp, Result, Sampled, Signal, Simulator, Sine, Step, simulator, to_c
-from codegen.engine.located import LocatedRuns, Recorded
+from codegen import (
+    Family,
+    Lag,
+    Ramp,
+    Result,
+    Sampled,
+    Signal,
+    Simulator,
+    Sine,
+    Step,
+    simulator,
+    to_c,
+)
+from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
 from codegen.inputs.tables import signal_table
 from codegen.runs.arguments import initial_values, signals_for
 from codegen.runs.legs import Settings
@@ -204,10 +216,21 @@ def test_models_that_differ_in_numbers_share_one_library() -> None:
     )
     assert one.located is not None
     assert two.located is not None
-    assert one.located._texts == two.located._texts
+    assert one.located.library.sources == two.located.library.sources
     times = np.linspace(0, 1, 11)
     runs = [one_.run(times, {"v": 2.0}, method="DOP853")["v"] for one_ in (one, two)]
     assert np.abs(runs[0] - runs[1]).max() > 0.1
+
+
+def test_the_simulators_of_a_family_share_one_library() -> None:
+    cubic = {"ground": "c*slip**3"}
+    family = Family(bg.derive(oscillator()), {"m": 1.0, "k": 20.0, "c": 0.3}, cubic, backend="c")
+    one, two = family.simulator(), family.simulator(c=0.6)
+    assert one.located.library is two.located.library
+    times = np.linspace(0, 1, 11)
+    slow = Family(family.equations, family.parameters, cubic).simulator(c=0.6)
+    expected = slow.run(times, {"v": 2.0})["v"]
+    assert two.run(times, {"v": 2.0})["v"] == pytest.approx(expected, abs=1e-8)
 
 
 def test_tables_give_the_signals_values_back() -> None:
@@ -265,7 +288,7 @@ def test_located_runs_compile_without_warnings(name: str) -> None:
     """Models without friction ports, without states, with several ports, with moving ratios."""
     equations, numbers, laws = SMALL[name]
     ready = simulator(equations, numbers, laws)
-    runs = LocatedRuns(ready.closed, STRICT)
+    runs = LocatedRuns(ready.closed, LocatedLibrary(ready.closed, STRICT))
     states, signals = (
         np.zeros(len(ready.states)),
         signals_for(dict.fromkeys(ready.inputs, 1.0), ready.inputs),
@@ -279,8 +302,8 @@ SANITIZED = """
 import sys
 sys.path[:0] = {paths!r}
 import test_located as cases
-from codegen.engine.located import LocatedRuns
-LocatedRuns.__init__.__defaults__ = (("-O1", "-g", "-std=c99", "-fsanitize=address,undefined",
+from codegen.engine.located import LocatedLibrary
+LocatedLibrary.__init__.__defaults__ = (("-O1", "-g", "-std=c99", "-fsanitize=address,undefined",
                                       "-fno-sanitize-recover=all"),)
 for name in ("functions", "mixed", "clutches_with_loss", "braked_crank", "lever"):
     cases.test_two_methods_agree_on_models_of_every_kind(name)
