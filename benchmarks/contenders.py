@@ -118,6 +118,7 @@ def by_simulator(case: Case) -> dict[str, Contender]:
     """`Simulator.run` with all of Python around it: both backends, and the event loop's integrators."""
     return {
         "Simulator.run, C backend": by_method(case, "c", "auto"),
+        "Simulator.run, C with located events": by_method(case, "c", "DOP853"),
         "Simulator.run, numpy backend": by_method(case, "numpy", "exact"),
         "Simulator.run, scipy's DOP853": by_method(case, "numpy", "DOP853"),
         "Simulator.run, SUNDIALS' CVODE": by_method(case, "numpy", "CVODE"),

@@ -21,13 +21,13 @@ from codegen.runs.arguments import initial_values, signals_for
 STEPPED = (
     "model_runtime.h", "model_internal.h", "model_linear.c", "model_numbers.c", "model_hold.c",
     "model_share.c", "model_roots.c", "model_loops.c", "model_evaluate.c", "model_instance.c",
-    "model_step.c",
+    "model_step.c", "model_signals.h", "model_signals.c",
 )  # fmt: skip
 """What is the same for every model."""
 
 LOCATED = (
     "model_request.h", "model_located.h", "model_located_internal.h", "model_located.c",
-    "model_signals.c", "model_rounding.c", "model_decide.c", "bg_choose.h", "bg_choose.c",
+    "model_rounding.c", "model_decide.c", "bg_choose.h", "bg_choose.c",
     "model_watch.c", "model_solver.c", "model_explicit_table.h", "model_explicit.c",
     "model_implicit.c",
 )  # fmt: skip

@@ -179,4 +179,6 @@ def _pointer(ffi: Any, array: Any, kind: str = "double *") -> Any:
 def _declared() -> str:
     """What is called; records that only C looks into have names alone."""
     own = "".join(f"typedef struct {n} {n};\n" for n in ("bg_model", "bg_located", "bg_snapshot"))
-    return own + "".join(declarations(f"model_{name}.h", {}) for name in ("request", "rows"))
+    return own + "".join(
+        declarations(f"model_{name}.h", {}) for name in ("signals", "request", "rows")
+    )

@@ -1,16 +1,17 @@
 """What the C glue of a functional mock-up unit is told of its model: sizes, variables, sources."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from bondgraph import StateEquations
 from codegen.c.blocks import function, places
-from codegen.c.text import array, comment, doubles, quoted
+from codegen.c.scenario import signal_lines
+from codegen.c.text import array, comment, doubles, integers, quoted
 from codegen.fmu.variables import Starts, Variable
-from codegen.inputs.pieces import Piece
 from codegen.inputs.signals import Signal
+from codegen.inputs.tables import signal_table
 from codegen.program import Program, block
 
 
@@ -44,7 +45,6 @@ def config_text(model: FmuModel, token: str) -> str:
     sizes = {
         "VARIABLES": str(len(model.variables)),
         "SWITCHES": str(len(model.switches)),
-        "SOURCES": str(len(model.sources)),
         "SHORTEST": repr(model.shortest),
         "STEP": repr(model.starts.step),
         "TOKEN": quoted(token),
@@ -70,38 +70,22 @@ def model_text(model: FmuModel) -> str:
         ),
         *doubles("fmu_starts", model.starts.states),
         *doubles("fmu_inputs", model.starts.inputs),
-        *_sources(model.sources),
+        *_sources(model.sources, len(program.external)),
         *function("fmu_switch_values", "Where laws switch", code, places(program), local=False),
     ]
     return "\n".join(lines) + "\n"
 
 
-def _sources(sources: Sequence[tuple[int, Signal]]) -> list[str]:
-    coefficients: list[complex] = []
-    terms: list[str] = []
-    pieces: list[str] = []
-    breaks: list[float] = []
-    rows: list[str] = []
-    for external, signal in sources:
-        points = signal.breakpoints
-        rows.append(f"{{{external}, {len(breaks)}, {len(points)}, {len(pieces)}}}")
-        breaks += points
-        for piece in signal.pieces:
-            pieces.append(f"{{{float(piece.start)!r}, {len(terms)}, {len(piece.terms)}}}")
-            _add_terms(piece, terms, coefficients)
-    pairs = [f"{{{c.real!r}, {c.imag!r}}}" for c in coefficients]
+def _sources(sources: Sequence[tuple[int, Signal]], external: int) -> list[str]:
+    ends = [b for _, signal in sources for b in signal.breakpoints]
+    begin = min([0.0, *ends]) - 1.0
+    table = signal_table([signal for _, signal in sources], begin, max([begin, *ends]))
+    places = [at for at, _ in sources]
+    terms = [(places[at], *rest) for at, *rest in table.terms]
     return [
-        *array("const fmu_source fmu_sources[]", rows, "{0, 0, 0, 0}"),
-        *array("const fmu_piece fmu_pieces[]", pieces, "{0.0, 0, 0}"),
-        *array("const fmu_term fmu_terms[]", terms, "{{0.0, 0.0}, 0, 0}"),
-        *array("const double fmu_coefficients[][2]", pairs, "{0.0, 0.0}"),
-        *doubles("fmu_breaks", breaks),
+        *signal_lines(replace(table, terms=tuple(terms)), "fmu"),  # type: ignore[arg-type]
+        "const bg_signals fmu_signals = {",
+        f"    {len(table.fastest)}, fmu_breaks, fmu_begins, fmu_terms, fmu_coefficients, fmu_fastest",
+        "};",
+        *integers("fmu_inside", (int(at in places) for at in range(external))),
     ]
-
-
-def _add_terms(piece: Piece, terms: list[str], coefficients: list[complex]) -> None:
-    for rate, polynomial in piece.terms:
-        value = complex(rate)
-        place = f"{len(coefficients)}, {len(polynomial)}"
-        terms.append(f"{{{{{value.real!r}, {value.imag!r}}}, {place}}}")
-        coefficients += [complex(one) for one in polynomial]

@@ -5,6 +5,7 @@
 
 #include "fmu_config.h"
 #include "model_internal.h"
+#include "model_signals.h"
 
 enum {
     FMU_STATES = BG_STATES + BG_LAW_STATES,
@@ -25,22 +26,6 @@ typedef struct {
     int kind, index;
 } fmu_variable;
 
-/* Sources inside the unit: pieces between breakpoints, each the real part of a sum of polynomials
- * times exponentials of the time since the piece's start. */
-typedef struct {
-    double rate[2];
-    int first, count; /* coefficients, lowest power first */
-} fmu_term;
-
-typedef struct {
-    double start;
-    int first, count; /* terms */
-} fmu_piece;
-
-typedef struct {
-    int external, first_break, breaks, first_piece;
-} fmu_source;
-
 /* All that a run depends on: what is saved and restored. Plain numbers. `rest`, `margin`: how far a
  * slip or a holding effort may go beyond its bound before it counts as an event. */
 typedef struct {
@@ -50,7 +35,7 @@ typedef struct {
     double peak_x[BG_ROOM(BG_STATES)], peak_u[BG_ROOM(BG_INPUTS)];
     double rest[BG_ROOM(BG_FRICTION)], margin[BG_ROOM(BG_FRICTION)];
     double switch_peak[BG_ROOM(FMU_SWITCHES)], switch_rest[BG_ROOM(FMU_SWITCHES)];
-    int side[BG_ROOM(FMU_SWITCHES)], mode[BG_ROOM(BG_FRICTION)], segment[BG_ROOM(FMU_SOURCES)];
+    int side[BG_ROOM(FMU_SWITCHES)], mode[BG_ROOM(BG_FRICTION)], segment;
     int phase, decided, exchange, stepped;
 } fmu_memory;
 
@@ -66,10 +51,9 @@ typedef struct fmu_instance {
 
 /* What is generated: the variables by value reference, sources, start values, switching expressions. */
 extern const fmu_variable fmu_variables[];
-extern const fmu_source fmu_sources[];
-extern const fmu_piece fmu_pieces[];
-extern const fmu_term fmu_terms[];
-extern const double fmu_coefficients[][2], fmu_breaks[], fmu_starts[], fmu_inputs[];
+extern const bg_signals fmu_signals; /* sources inside the unit .. */
+extern const int fmu_inside[];       /* .. and whether an external input is one */
+extern const double fmu_starts[], fmu_inputs[];
 void fmu_switch_values(const bg_values *v, double *out);
 
 /* fmu_common.c */

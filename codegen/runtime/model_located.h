@@ -52,10 +52,6 @@ typedef struct {
     bg_snapshot shot;
 } bg_located;
 
-/* The segment that holds at t and just after; inputs and their rates at t in a segment. */
-int bg_signals_segment(const bg_signals *signals, double t);
-void bg_signals_at(const bg_signals *signals, int segment, double t, double *w, double *dw);
-
 /* Runs; a status. */
 int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked);
 

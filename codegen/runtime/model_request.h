@@ -2,31 +2,13 @@
 #ifndef BG_MODEL_REQUEST_H
 #define BG_MODEL_REQUEST_H
 
-#include "model_runtime.h"
+#include "model_signals.h"
 
 /* How to integrate: BG_AUTO takes the implicit method where time constants are much shorter than
  * the run. */
 enum bg_method { BG_AUTO, BG_DOP853, BG_RADAU };
 
 enum bg_happening { BG_STICK, BG_SLIP, BG_CROSS };
-
-/* The real part of a polynomial times an exponential, p(tau) exp(rate tau), tau = t - start; the
- * polynomial's `count` coefficients begin at place `first`, real and imaginary parts. */
-typedef struct {
-    int input, first, count;
-    double start, rate[2];
-} bg_term;
-
-/* External inputs as sums of terms. Segment k lasts to breaks[k], the last one for ever; its terms
- * are those from begins[k] up to begins[k + 1]. `fastest` [1/s]: the largest rate in a segment. */
-typedef struct {
-    int segments;
-    const double *breaks; /* segments - 1 times, increasing */
-    const int *begins;    /* segments + 1 places */
-    const bg_term *terms;
-    const double (*coefficients)[2];
-    const double *fastest;
-} bg_signals;
 
 /* What happened at a friction port. */
 typedef struct {

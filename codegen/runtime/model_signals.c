@@ -2,13 +2,12 @@
 #include <float.h>
 #include <math.h>
 
-#include "model_located.h"
+#include "model_signals.h"
 
-/* Adds the real part of p(tau) exp(r tau), and its slope. */
-static void add_term(const bg_signals *signals, const bg_term *term, double t, double *value,
-                     double *slope)
+void bg_term_add(const bg_term *term, const double (*coefficients)[2], double t, double *value,
+                 double *slope)
 {
-    const double(*const c)[2] = signals->coefficients + term->first;
+    const double(*const c)[2] = coefficients + term->first;
     const double *const r = term->rate;
     const double tau = t - term->start, size = r[0] != 0.0 ? exp(r[0] * tau) : 1.0;
     const double cosine = r[1] != 0.0 ? cos(r[1] * tau) : 1.0;
@@ -30,9 +29,12 @@ void bg_signals_at(const bg_signals *signals, int segment, double t, double *w, 
 {
     for (int i = 0; i < BG_EXTERNAL; i++)
         w[i] = dw[i] = 0.0;
+    /* A segment is not continued back before its begin: a level would fall below zero. */
+    if (segment > 0)
+        t = fmax(t, signals->breaks[segment - 1]);
     for (int k = signals->begins[segment]; k < signals->begins[segment + 1]; k++) {
         const bg_term *const term = signals->terms + k;
-        add_term(signals, term, t, w + term->input, dw + term->input);
+        bg_term_add(term, signals->coefficients, t, w + term->input, dw + term->input);
     }
 }
 

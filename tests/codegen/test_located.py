@@ -276,6 +276,9 @@ def test_the_main_program_runs_a_scenario_with_events_located(tmp_path: Path) ->
         table, _, _ = _rows(program, "0.4", "0.001", f"step={step}")
         errors.append(np.abs(table[:, 1] - run["omega_1"][:401]).max())
     assert errors[1] < 1e-3 * errors[0]
+    # A third of a millisecond: breakpoints are reached a rounding before or after their time.
+    table, _, _ = _rows(program, "0.6", "0.001", "step=3.3e-4")
+    assert len(table) == 601
     table, _, _ = _rows(program, "0.4", "0.1", "tau_e=0", "located")
     assert table[:, 1] == pytest.approx(80.0, abs=1e-2)
 
