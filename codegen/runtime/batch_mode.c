@@ -175,32 +175,19 @@ static void fill(bg_mode *made, const double *map, const batch_numbers *a, const
             made->take_away[k][i] = held->take_away[i * held->kept + k];
 }
 
-static void fill_readers(const batch_job *job, const double *map, batch_reader *readers)
+static void fill_readers(const batch_job *job, const double *map, double (*readers)[BG_L])
 {
-    for (int s = 0; s < job->signals; s++) {
-        batch_reader *const reader = readers + s;
-        const int row = job->signal[s];
-        int others = 0;
-        reader->column = -1;
-        reader->driven = 0;
+    for (int s = 0; s < job->signals; s++)
         for (int j = 0; j < BG_L; j++) {
-            const int column = column_of(j);
-            double value = row < 0 && j == N - 1 - row ? 1.0 : 0.0;
-            if (row >= 0 && column >= 0)
-                value = map[row * BATCH_COLUMNS + column];
-            reader->row[j] = value;
-            if (value == 1.0 && j < N && reader->column < 0)
-                reader->column = j;
+            const int row = job->signal[s], column = column_of(j);
+            if (row < 0)
+                readers[s][j] = j == N - 1 - row;
             else
-                others |= value != 0.0;
-            reader->driven |= value != 0.0 && j >= N && j < BG_L - 1;
+                readers[s][j] = column < 0 ? 0.0 : map[row * BATCH_COLUMNS + column];
         }
-        if (others)
-            reader->column = -1;
-    }
 }
 
-int batch_supply(batch_room *room, const batch_job *job, const batch_numbers *numbers, int number)
+int batch_supply(batch_room *room, const batch_numbers *numbers, int number)
 {
     static const int signs[3] = {0, 1, -1};
     double map[BATCH_ROWS * BATCH_COLUMNS];
@@ -214,7 +201,7 @@ int batch_supply(batch_room *room, const batch_job *job, const batch_numbers *nu
         return BG_UNSUPPORTED;
     const int at = room->made++;
     fill(room->mode + at, map, numbers, &held);
-    fill_readers(job, map, room->readers + at * job->signals);
+    fill_readers(room->job, map, room->readers + at * room->job->signals);
     room->record.modes[number] = room->mode + at;
     room->place[number] = at;
     room->number[at] = number;

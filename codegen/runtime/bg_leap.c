@@ -32,7 +32,7 @@ void bg_fill(const bg_stretch *stretch, double *row)
 }
 
 /* How far triggers may be from the cubics during the next steps. A cap that is zero is none below. */
-static void uncertainty(const bg_stretch *stretch, const double *row, double *slack)
+void bg_uncertainty(const bg_stretch *stretch, const double *row, double *slack)
 {
     const bg_entry *e = stretch->entry;
     double rate[BG_Z];
@@ -108,7 +108,7 @@ int bg_leap(const bg_stretch *stretch, int count, double (*rows)[BG_ROW])
         double(*at)[BG_ROW] = rows + done;
         int sure = ahead;
         if (done % BG_RENEWAL == 0 && BG_K)
-            uncertainty(stretch, at[0], slack);
+            bg_uncertainty(stretch, at[0], slack);
         for (int r = 0; r < ahead; r++)
             leap((const double(*)[BG_ROW])e->leap[r], stretch->constant[r], stretch->origin, z,
                  at[r + 1], beyond);
