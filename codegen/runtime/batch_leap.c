@@ -3,29 +3,38 @@
 #include "batch_internal.h"
 
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
 enum { STRIDE = BATCH_STRIDE };
 
-/* Triggers and thirds of their changes at the present state and the steps from there. */
-typedef double trail[STRIDE + 1];
+/* What is followed now, and in 1, 2, .. steps: triggers, then thirds of their changes in a step. */
+typedef struct {
+    double now[BATCH_OWN > 0 ? BATCH_OWN : 1];
+    batch_lanes then[BATCH_OWN > 0 ? BATCH_OWN : 1];
+} trail;
 
-/* to += P z, by columns */
-static inline void add_product(double (*P)[BG_Z], const double *z, double *to)
+/* to = add + P z, by columns */
+static inline void affine(const double (*restrict P)[BG_Z], const double *restrict add,
+                          const double *restrict z, double *restrict to)
 {
-    for (int j = 0; j < BG_Z; j++)
-        for (int i = 0; i < BG_Z; i++)
-            to[i] += P[j][i] * z[j];
+#pragma GCC unroll 1
+    for (int i = 0; i < BG_Z; i++) {
+        double sum = add[i];
+#pragma GCC unroll 32
+        for (int j = 0; j < BG_Z; j++)
+            sum += P[j][i] * z[j];
+        to[i] = sum;
+    }
 }
 
 /* `count` steps of the state, fewer than twice the stride. */
-static void walk(batch_leaps *l, int count)
+static inline void walk(batch_leaps *l, int count)
 {
-    for (int i = 0; i < BATCH_POWERS; i++)
+    for (int i = BATCH_POWERS - 1; i >= 0; i--)
         if (count >> i & 1) {
             double next[BG_Z];
-            memcpy(next, l->step[i], sizeof next);
-            add_product(l->table.power[i], l->beyond, next);
+            affine((const double(*)[BG_Z])l->table.power[i], l->step[i], l->beyond, next);
             memcpy(l->beyond, next, sizeof next);
         }
 }
@@ -57,12 +66,12 @@ static void fill_constants(const batch_leaps *l, double (*add)[STRIDE])
 void batch_begin_leaps(batch_leaps *l, const double *z, int total)
 {
     const bg_entry *const e = l->stretch->entry;
-    double rate[BG_Z], add[BG_Z][STRIDE], sum[BG_Z] = {0};
+    const double none[BG_Z] = {0};
+    double rate[BG_Z], add[BG_Z][STRIDE], sum[BG_Z];
     memcpy(l->origin, z, sizeof rate);
     bg_fill(l->stretch, l->origin);
-    memcpy(rate, l->stretch->b, sizeof rate);
-    add_product((double(*)[BG_Z])e->M, z, rate);
-    add_product((double(*)[BG_Z])e->gather, rate, sum);
+    affine((const double(*)[BG_Z])e->M, l->stretch->b, z, rate);
+    affine((const double(*)[BG_Z])e->gather, none, rate, sum);
     for (int r = 0; r < STRIDE; r++) {
         double next[BG_Z];
         for (int i = 0; i < BATCH_POWERS; i++)
@@ -70,8 +79,7 @@ void batch_begin_leaps(batch_leaps *l, const double *z, int total)
                 memcpy(l->step[i], sum, sizeof sum);
         for (int j = 0; j < BG_Z; j++)
             add[j][r] = sum[j];
-        memcpy(next, l->step[0], sizeof next);
-        add_product(l->table.power[0], sum, next);
+        affine((const double(*)[BG_Z])l->table.power[0], l->step[0], sum, next);
         memcpy(sum, next, sizeof sum);
     }
     fill_constants(l, add);
@@ -94,38 +102,48 @@ static inline void reach(const batch_lanes *restrict lane, const double *restric
     }
 }
 
-/* Lessens `least` to the least Bernstein coefficient of each step, less the slack. */
-static inline void lessen(const double *restrict at, const double *restrict third, double slack,
-                          double *restrict least)
+/* Whether a step is certain: all Bernstein coefficients of its triggers are above the slack. */
+static int is_certain(const trail *at, unsigned caps, const double *slack, int r)
 {
-    for (int r = 0; r < STRIDE; r++) {
-        const double ends = bg_lesser(at[r], at[r + 1]);
-        const double inner = bg_lesser(at[r] + third[r], at[r + 1] - third[r + 1]);
-        least[r] = bg_lesser(least[r], bg_lesser(ends, inner) - slack);
+    for (int i = 0; i < BG_T; i++) {
+        const int cap = caps >> i & 1u, third = BG_T + i;
+        const double begin = r ? at->then[i][r - 1] : at->now[i], end = at->then[i][r];
+        const double leaves = r ? at->then[third][r - 1] : at->now[third];
+        const double inner = cap ? end : bg_lesser(begin + leaves, end - at->then[third][r]);
+        if (!(bg_lesser(bg_lesser(begin, end), inner) > slack[i]))
+            return 0;
     }
+    return 1;
 }
 
-/* How many steps from here are certain. */
+/* How many steps from here are certain. All are where every trigger is farther from its slack than
+ * a third of its change; only otherwise steps are looked at one by one. */
 static inline int certain(batch_leaps *l, trail *at, const double *slack)
 {
-    static const trail level = {0};
     const unsigned caps = l->stretch->entry->caps;
-    double least[STRIDE], folded[STRIDE];
+    double least[STRIDE], first = DBL_MAX;
+    int sure = 0;
     for (int r = 0; r < STRIDE; r++)
         least[r] = DBL_MAX;
     for (int i = 0; i < BG_T; i++) {
         const int cap = caps >> i & 1u, third = BG_T + i;
-        reach(l->table.lane[i], l->room->constants[i], l->beyond, at[i] + 1);
+        reach(l->table.lane[i], l->room->constants[i], l->beyond, at->then[i]);
         if (!cap)
-            reach(l->table.lane[third], l->room->constants[third], l->beyond, at[third] + 1);
-        lessen(at[i], cap ? level : at[third], slack[i], least);
+            reach(l->table.lane[third], l->room->constants[third], l->beyond, at->then[third]);
+        first = bg_lesser(first, at->now[i] - fabs(at->now[third]) - slack[i]);
+#pragma GCC unroll 1
+        for (int r = 0; r < STRIDE; r++) {
+            const double sized = at->then[i][r] - fabs(at->then[third][r]) - slack[i];
+            least[r] = bg_lesser(least[r], sized);
+        }
     }
-    memcpy(folded, least, sizeof folded);
-    for (int n = STRIDE / 2; n > 0; n /= 2)
-        for (int r = 0; r < n; r++)
-            folded[r] = bg_lesser(folded[r], folded[r + n]);
-    int sure = folded[0] > 0 ? STRIDE : 0;
-    while (sure < STRIDE && least[sure] > 0)
+    for (int r = 0; r < STRIDE / 2; r++)
+        least[r] = bg_lesser(least[r], least[r + STRIDE / 2]);
+    for (int r = 0; r < STRIDE / 2; r++)
+        first = bg_lesser(first, least[r]);
+    if (first > 0)
+        return STRIDE;
+    while (sure < STRIDE && is_certain(at, caps, slack, sure))
         sure++;
     return sure;
 }
@@ -162,25 +180,26 @@ static void renew(const batch_leaps *l, double *slack)
 
 void batch_leap(batch_leaps *l, int at)
 {
-    trail trails[BATCH_OWN > 0 ? BATCH_OWN : 1];
+    trail found;
     double slack[BG_TRIGGERS] = {0};
+    memset(&found, 0, sizeof found);
     for (int i = 0; i < BATCH_OWN; i++) {
-        trails[i][0] = l->origin[BG_Z + i];
+        found.now[i] = l->origin[BG_Z + i];
         for (int j = 0; j < BG_Z; j++)
-            trails[i][0] += l->table.row[i][j] * l->beyond[j];
+            found.now[i] += l->table.row[i][j] * l->beyond[j];
     }
     for (int walked = 0; l->done < l->total; walked += STRIDE) {
         const int left = l->total - l->done, ahead = left < STRIDE ? left : STRIDE;
         if (walked % BG_RENEWAL == 0 && BG_K)
             renew(l, slack);
-        const int found = BG_K ? certain(l, trails, slack) : STRIDE;
-        const int sure = found < ahead ? found : ahead;
+        const int certainly = BG_K ? certain(l, &found, slack) : STRIDE;
+        const int sure = certainly < ahead ? certainly : ahead;
         write_signals(l, at);
         walk(l, sure);
         l->done += sure;
-        if (found < ahead)
+        if (certainly < ahead)
             return;
         for (int i = 0; i < BATCH_OWN; i++)
-            trails[i][0] = trails[i][STRIDE];
+            found.now[i] = found.then[i][STRIDE - 1];
     }
 }

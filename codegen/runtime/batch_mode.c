@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { N = BG_N, STATES = BATCH_STATES, M = BATCH_INPUTS, ROUNDS = 10 };
+enum { N = BG_N, STATES = BATCH_STATES, M = BATCH_INPUTS, ROUNDS = 8 };
 
 /* What an affine map over fewer inputs has in a column of the engine's maps; -1 for none. */
 static int column_of(int j)
@@ -39,11 +39,15 @@ static double spectral_radius(double (*matrix)[N])
         for (int i = 0; i < N; i++)
             for (int j = 0; j < N; j++)
                 power[i][j] *= shrink;
-        memset(square, 0, sizeof square);
         for (int i = 0; i < N; i++)
-            for (int l = 0; l < N; l++)
-                for (int j = 0; j < N; j++)
-                    square[i][j] += power[i][l] * power[l][j];
+#pragma GCC unroll 1
+            for (int j = 0; j < N; j++) {
+                double sum = 0.0;
+#pragma GCC unroll 32
+                for (int l = 0; l < N; l++)
+                    sum += power[i][l] * power[l][j];
+                square[i][j] = sum;
+            }
         memcpy(power, square, sizeof power);
         size = largest(power);
     }
@@ -122,10 +126,15 @@ static double product(const double *map, int first, int count, const double *fac
 /* How fast the slip of a port changes: F x' + D u', where x' has that of driven storages, too. */
 static double push(const double *map, const batch_numbers *a, int reading, int column)
 {
-    double sum = product(map, BATCH_AT_U + M, M, a->D + reading * M, column);
+    double sum = 0.0;
+    for (int j = 0; j < M; j++)
+        if (a->D[reading * M + j] != 0.0)
+            sum += a->D[reading * M + j] * map[(BATCH_AT_U + M + j) * BATCH_COLUMNS + column];
     for (int l = 0; l < STATES; l++) {
         const double factor = a->F[reading * STATES + l];
-        if (factor != 0.0)
+        if (factor != 0.0 && !a->driven)
+            sum += factor * map[(BATCH_AT_RATE + l) * BATCH_COLUMNS + column];
+        else if (factor != 0.0)
             sum += factor * (product(map, 0, STATES, a->P + l * STATES, column)
                              + product(map, BATCH_AT_U, M, a->Q + l * M, column)
                              + product(map, BATCH_AT_U + M, M, a->R + l * M, column));
@@ -150,9 +159,32 @@ static void fill_column(const double *map, const batch_numbers *a, int column, d
         shot[BG_AT_RATE + i] = map[(BATCH_AT_RATE + i) * BATCH_COLUMNS + column];
 }
 
+/* How fast the states are by themselves, and what balances them: as of a mode that has the same
+ * rates, such as one that slips the other way, or from the rates. */
+static void find_fastest(batch_room *room, int at)
+{
+    bg_mode *const made = room->mode + at;
+    double own[N][N];
+    for (int k = 0; k < at; k++) {
+        int same = 1;
+        for (int j = 0; j < N && same; j++)
+            same = memcmp(made->shot[j] + BG_AT_RATE, room->mode[k].shot[j] + BG_AT_RATE,
+                          sizeof own[j]) == 0;
+        if (same) {
+            made->fastest = room->mode[k].fastest;
+            memcpy(made->weight, room->mode[k].weight, sizeof made->weight);
+            return;
+        }
+    }
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++)
+            own[i][j] = made->shot[j][BG_AT_RATE + i];
+    made->fastest = spectral_radius(own);
+    balance(own, made->weight);
+}
+
 static void fill(bg_mode *made, const double *map, const batch_numbers *a, const batch_hold *held)
 {
-    double own[N][N];
     memset(made, 0, sizeof *made);
     for (int j = 0; j < BG_L; j++) {
         const int column = column_of(j);
@@ -163,12 +195,7 @@ static void fill(bg_mode *made, const double *map, const batch_numbers *a, const
             made->left[j][k] = product(map, 0, STATES, held->slip_x + k * STATES, column)
                                + product(map, BATCH_AT_U, M, held->slip_u + k * M, column);
     }
-    for (int i = 0; i < N; i++)
-        for (int j = 0; j < N; j++)
-            own[i][j] = made->shot[j][BG_AT_RATE + i];
     made->supported = 1;
-    made->fastest = spectral_radius(own);
-    balance(own, made->weight);
     made->held = held->kept;
     for (int k = 0; k < held->kept; k++)
         for (int i = 0; i < STATES; i++)
@@ -201,6 +228,7 @@ int batch_supply(batch_room *room, const batch_numbers *numbers, int number)
         return BG_UNSUPPORTED;
     const int at = room->made++;
     fill(room->mode + at, map, numbers, &held);
+    find_fastest(room, at);
     fill_readers(room->job, map, room->readers + at * room->job->signals);
     room->record.modes[number] = room->mode + at;
     room->place[number] = at;

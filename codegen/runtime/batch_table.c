@@ -42,7 +42,7 @@ static void own_rows(const bg_entry *e, double (*row)[BG_Z])
             for (int l = 0; l < BG_Z; l++)
                 change += e->trigger[l][i] * e->M[j][l];
             row[i][j] = e->trigger[j][i];
-            row[BG_T + i][j] = e->step / 3.0 * change;
+            row[BG_T + i][j] = e->caps >> i & 1u ? 0.0 : e->step / 3.0 * change;
         }
 }
 
