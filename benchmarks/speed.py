@@ -1,9 +1,8 @@
 """How fast Fig. 11 runs: the hand-written floor, the C engine, the numpy loop, side by side.
 
 ``python benchmarks/speed.py``: each line the median of many runs, taken in turns so that a busy machine
-slows all of them alike, and its ratio to the floor's with exponentials built anew. Then runs per second of
-sweeps: the floor's, whose runs differ in stiffness and clutch torque, the loop in C by itself and `sweep`
-with all of Python around it, whose runs differ in stiffness, or in torque, too, by a function for each run.
+slows all of them alike, and its ratio to the floor's with exponentials built anew. ``sweeps.py`` beside
+this file measures many runs at once.
 """
 
 import statistics
@@ -11,7 +10,6 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -27,11 +25,9 @@ import bondgraph as bg  # noqa: E402
 import codegen  # noqa: E402
 from codegen.engine.runs import Prepared, Status  # noqa: E402
 from codegen.runs.arguments import initial_values, signals_for  # noqa: E402
-from codegen.sweeps.job import Job, batch_of  # noqa: E402
 from differentials.scenarios import prepared  # noqa: E402
 
 ROUNDS, FEW = 41, 3
-RUNS, SWEEPS = 10_000, 3
 TIMES = np.linspace(0.0, 1.0, 1001)
 
 WIDTH = 0.01
@@ -45,14 +41,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         calls = {**floor_calls(Path(folder)), **engine_calls(), **scipy_calls()}
         medians = measured(calls)
-        rates = sweep_rates(Path(folder))
     base = medians["floor, anew"]
     print(f"{'Fig. 11, 1001 samples':<44}{'ms per run':>12}{'ratio':>10}")
     for name, seconds in medians.items():
         print(f"{name:<44}{1e3 * seconds:>12.5f}{seconds / base:>10.2f}")
-    print(f"\n{f'sweep of {RUNS} runs':<44}{'runs per s':>12}{'ratio':>10}")
-    for name, rate in rates.items():
-        print(f"{name:<44}{rate:>12,.0f}{rates[f'floor, threads: {name[-1]}'] / rate:>10.2f}")
 
 
 def measured(calls: dict[str, tuple[Call, int]]) -> dict[str, float]:
@@ -68,49 +60,6 @@ def measured(calls: dict[str, tuple[Call, int]]) -> dict[str, float]:
                 call()
             times[name].append((time.perf_counter() - start) / (repeats * runs))
     return {name: statistics.median(found) for name, found in times.items()}
-
-
-def sweep_rates(folder: Path) -> dict[str, float]:
-    """Runs per second of each sweep, the median of a few."""
-    calls: dict[str, Call] = {}
-    for threads in (1, 2):
-        for name, call in sweep_calls(floor.build(folder), threads).items():
-            calls[f"{name}, threads: {threads}"] = call
-    times: dict[str, list[float]] = {name: [] for name in calls}
-    for turn in range(SWEEPS + 1):
-        for name, call in calls.items():
-            start = time.perf_counter()
-            call()
-            if turn:
-                times[name].append(time.perf_counter() - start)
-    return {name: RUNS / statistics.median(found) for name, found in times.items()}
-
-
-def sweep_calls(library: floor.ctypes.CDLL, threads: int) -> dict[str, Call]:
-    """The same sweep by the floor, by the loop in C, and by `sweep`."""
-    case = prepared("alsd", "fig11")
-    family = codegen.Family(case.equations, case.parameters, case.laws, backend="c")
-    measures = {"peak": codegen.peak("tau_k1"), "lock": codegen.first_event("clutch", "stick")}
-    stiffness, torque = floor.grid(RUNS)
-    both = codegen.Table(k=stiffness, torque=torque)
-    given = (TIMES, measures, case.initial)
-    quiet = {"workers": threads, "progress": False}
-    loop = batch_of(Job(family, ("k",), *given, case.inputs))
-    if loop is None:
-        raise RuntimeError("there is no loop in C for the sweep")
-    parts = [[(k,) for k in part.tolist()] for part in np.array_split(stiffness, threads)]
-    pool = ThreadPoolExecutor(threads)
-
-    def demand(values: Mapping[str, float]) -> dict[str, codegen.Signal]:
-        return {**case.inputs, "tau_h": codegen.Lag(codegen.Step(0.5, values["torque"]), 0.04)}
-
-    one = codegen.Table(k=stiffness)
-    return {
-        "floor": lambda: floor.sweep(library, stiffness, torque, threads),
-        "loop in C": lambda: list(pool.map(loop, parts)),
-        "sweep": lambda: codegen.sweep(family, one, *given, case.inputs, **quiet),
-        "sweep, inputs by run": lambda: codegen.sweep(family, both, *given, demand, **quiet),
-    }
 
 
 def floor_calls(folder: Path) -> dict[str, tuple[Call, int]]:

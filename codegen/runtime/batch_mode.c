@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { N = BG_N, STATES = BATCH_STATES, M = BATCH_INPUTS, ROUNDS = 8 };
+enum { N = BG_N, STATES = BATCH_STATES, M = BATCH_INPUTS, ROUNDS = 6 };
 
 /* What an affine map over fewer inputs has in a column of the engine's maps; -1 for none. */
 static int column_of(int j)
@@ -27,7 +27,7 @@ static double largest(double (*matrix)[N])
     return size;
 }
 
-/* The largest magnitude of an eigenvalue, nearly: from a high power of the matrix. */
+/* The largest magnitude of an eigenvalue, nearly: from a high power of a balanced matrix. */
 static double spectral_radius(double (*matrix)[N])
 {
     double power[N][N], square[N][N], size = largest(matrix), logarithm = 0.0, share = 1.0;
@@ -179,8 +179,11 @@ static void find_fastest(batch_room *room, int at)
     for (int i = 0; i < N; i++)
         for (int j = 0; j < N; j++)
             own[i][j] = made->shot[j][BG_AT_RATE + i];
-    made->fastest = spectral_radius(own);
     balance(own, made->weight);
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++)
+            own[i][j] *= made->weight[i] / made->weight[j];
+    made->fastest = spectral_radius(own);
 }
 
 static void fill(bg_mode *made, const double *map, const batch_numbers *a, const batch_hold *held)

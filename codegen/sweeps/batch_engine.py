@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from bondgraph import SimulationError
@@ -78,8 +77,9 @@ class Room:
         context, self.record.context = self.engine.context()
         self.kept.append(context)
         self.record.capacity, self.record.pitch = CAPACITY, self.samples + STRIDE
-        self.record.events = ffi.new("bg_event[]", CAPACITY)
-        self.kept.append(self.record.events)
+        events = ffi.new("bg_event[]", CAPACITY)
+        self.kept.append(events)
+        self.record.events = events
         for name, kind, array in (
             ("model", "void *", aligned(model // 8 + 1)),
             ("readers", f"double(*)[{numbers['L']}]", aligned(MOST_MODES * signals, numbers["L"])),
