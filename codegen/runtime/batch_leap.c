@@ -92,7 +92,7 @@ void batch_begin_leaps(batch_leaps *l, const double *z, int total)
 }
 
 /* A row in 1, 2, .. steps. */
-static inline void reach(const batch_lanes *restrict lane, const double *restrict constant,
+static inline void reach(batch_lanes *restrict lane, const double *restrict constant,
                          const double *restrict z, double *restrict to)
 {
 #pragma GCC unroll 1
@@ -158,7 +158,7 @@ static inline void write_signals(const batch_leaps *l, int at)
     const int parts = l->stretch->entry->parts;
     for (int s = 0; s < room->job->signals; s++) {
         double *const to = room->values + s * room->pitch + at;
-        const batch_lanes *const lane = l->table.lane[BATCH_OWN + s];
+        batch_lanes *const lane = l->table.lane[BATCH_OWN + s];
         const double *const constant = room->constants[BATCH_OWN + s];
         double found[STRIDE];
         if (parts == 1) {

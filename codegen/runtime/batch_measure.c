@@ -46,7 +46,7 @@ static double of_events(const bg_task *task, const batch_measure *measure)
             return task->events[i].time;
         count++;
     }
-    return measure->what == BATCH_FIRST ? NAN : count;
+    return measure->what == BATCH_FIRST ? (double)NAN : (double)count;
 }
 
 static void keep(const batch_job *job, const double *values, const batch_measure *measure,

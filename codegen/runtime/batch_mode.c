@@ -221,7 +221,7 @@ int batch_supply(batch_room *room, const batch_numbers *numbers, int number)
 {
     static const int signs[3] = {0, 1, -1};
     double map[BATCH_ROWS * BATCH_COLUMNS];
-    int mode[BG_PORTS], digits = number;
+    int mode[BG_PORTS] = {0}, digits = number;
     batch_hold held;
     if (room->made >= BATCH_MODES)
         return BG_UNSUPPORTED;

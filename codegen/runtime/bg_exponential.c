@@ -6,8 +6,7 @@
 #define BG_RADIUS 0.75 /* of the Taylor polynomial of degree 16: 0.75^17/17! = 2e-17 */
 
 /* Sums stay in registers: gcc vectorises the loop over rows, and unrolls the one inside. */
-void bg_multiply(double (*restrict left)[BG_Z], double (*restrict right)[BG_Z],
-                 double (*restrict product)[BG_Z])
+void bg_multiply(double (*left)[BG_Z], double (*right)[BG_Z], double (*restrict product)[BG_Z])
 {
     for (int j = 0; j < BG_Z; j++)
 #pragma GCC unroll 1

@@ -125,8 +125,7 @@ void bg_bound(bg_context *c, bg_entry *e, double (*E)[BG_Z]);
 /* bg_exponential.c: exp(M h) and its integral. */
 void bg_exponential(bg_context *c, double (*M)[BG_Z], double norm, double h, double (*E)[BG_Z],
                     double (*gather)[BG_Z]);
-void bg_multiply(double (*restrict left)[BG_Z], double (*restrict right)[BG_Z],
-                 double (*restrict product)[BG_Z]);
+void bg_multiply(double (*left)[BG_Z], double (*right)[BG_Z], double (*restrict product)[BG_Z]);
 
 /* bg_roots.c: where sum p[k] tau^k falls to zero in (begin, 1]: 1 if it does, 0 if not, -1 if the
  * search has no end. */

@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 from oracles.models import belt, stacked_blocks
+from oracles.sweeping import spring_mass
 
 import bondgraph as bg
 from codegen import (
@@ -23,7 +24,10 @@ from codegen import (
     peak,
     samples,
 )  # fmt: skip
+from codegen.c.export import to_c
+from codegen.engine.sizes import sizes
 from codegen.runs.result import Result
+from codegen.sweeps.batch_engine import batch_engine
 from codegen.sweeps.job import Job, batch_of
 from differentials.scenarios import prepared
 
@@ -128,6 +132,17 @@ def test_runs_whose_parameters_do_not_change() -> None:
     for row, v in zip(found, (-1.0, 2.0, 2.0, 0.0), strict=True):
         expected = family.simulator().run(times, {"v_1": v, "v_2": 0.5}, inputs)["v_1"]
         assert np.abs(row - expected).max() <= 1e-9
+
+
+STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+
+
+@pytest.mark.parametrize("flags", [("-O2", "-Wconversion", "-Wno-sign-conversion"), ("-O3",)])
+def test_the_loop_compiles_without_warnings(flags: tuple[str, ...]) -> None:
+    for family in (_stacked(), spring_mass()):
+        model = to_c(family.equations, family.parameters, family.laws)
+        wanted = sizes(family.simulator().closed, 2)
+        batch_engine(model, family.program, wanted, (*flags, *STRICT))
 
 
 SANITIZED = """
