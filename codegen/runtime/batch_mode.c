@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { N = BG_N, STATES = BATCH_STATES, M = BATCH_INPUTS, ROUNDS = 6 };
+enum { N = BG_N, STATES = BATCH_STATES, M = BATCH_INPUTS, ROUNDS = 3 };
 
 /* What an affine map over fewer inputs has in a column of the engine's maps; -1 for none. */
 static int column_of(int j)
@@ -17,38 +17,44 @@ static int column_of(int j)
     return input < BATCH_EXTERNAL ? N + rate * BATCH_EXTERNAL + input : -1;
 }
 
-/* The largest magnitude; of no elements 0. */
+/* The largest magnitude. */
 static double largest(double (*matrix)[N])
 {
-    double size = 0.0;
+    double most[N] = {0}, size = 0.0;
     for (int i = 0; i < N; i++)
+#pragma GCC unroll 1
         for (int j = 0; j < N; j++)
-            size = bg_greater(fabs(matrix[i][j]), size);
+            most[j] = bg_greater(fabs(matrix[i][j]), most[j]);
+    for (int j = 0; j < N; j++)
+        size = bg_greater(most[j], size);
     return size;
 }
 
-/* The largest magnitude of an eigenvalue, nearly: from a high power of a balanced matrix. */
+static void square(double (*restrict matrix)[N], double factor, double (*restrict to)[N])
+{
+    for (int i = 0; i < N; i++)
+#pragma GCC unroll 1
+        for (int j = 0; j < N; j++) {
+            double sum = 0.0;
+#pragma GCC unroll 32
+            for (int l = 0; l < N; l++)
+                sum += matrix[i][l] * matrix[l][j];
+            to[i][j] = factor * sum;
+        }
+}
+
+/* The largest magnitude of an eigenvalue, nearly: from a high power of a balanced matrix. It is
+ * scaled at every second square only. */
 static double spectral_radius(double (*matrix)[N])
 {
-    double power[N][N], square[N][N], size = largest(matrix), logarithm = 0.0, share = 1.0;
+    double power[N][N], other[N][N], size = largest(matrix), logarithm = 0.0, share = 1.0;
     memcpy(power, matrix, sizeof power);
     for (int k = 0; k < ROUNDS && size > 0.0; k++) {
         const double shrink = 1.0 / size;
         logarithm += share * log(size);
-        share /= 2;
-        for (int i = 0; i < N; i++)
-            for (int j = 0; j < N; j++)
-                power[i][j] *= shrink;
-        for (int i = 0; i < N; i++)
-#pragma GCC unroll 1
-            for (int j = 0; j < N; j++) {
-                double sum = 0.0;
-#pragma GCC unroll 32
-                for (int l = 0; l < N; l++)
-                    sum += power[i][l] * power[l][j];
-                square[i][j] = sum;
-            }
-        memcpy(power, square, sizeof power);
+        share /= 4;
+        square(power, shrink * shrink, other);
+        square(other, 1.0, power);
         size = largest(power);
     }
     return size > 0.0 ? exp(logarithm + share * log(size)) : 0.0;
@@ -57,16 +63,19 @@ static double spectral_radius(double (*matrix)[N])
 /* One over the scales, powers of 2, that make rows and columns alike. */
 static void balance(double (*matrix)[N], double *weight)
 {
+    double scale[N];
     for (int i = 0; i < N; i++)
-        weight[i] = 1.0;
+        weight[i] = scale[i] = 1.0;
     for (int changed = 1, turn = 0; changed && turn < 50; turn++) {
         changed = 0;
         for (int i = 0; i < N; i++) {
             double row = 0.0, column = 0.0, factor = 1.0;
             for (int j = 0; j < N; j++) {
-                row += j == i ? 0.0 : fabs(matrix[i][j]) * weight[i] / weight[j];
-                column += j == i ? 0.0 : fabs(matrix[j][i]) * weight[j] / weight[i];
+                row += j == i ? 0.0 : fabs(matrix[i][j]) * scale[j];
+                column += j == i ? 0.0 : fabs(matrix[j][i]) * weight[j];
             }
+            row *= weight[i];
+            column *= scale[i];
             if (!(row > 0.0 && column > 0.0) || !isfinite(row + column))
                 continue;
             const double before = row + column;
@@ -76,6 +85,7 @@ static void balance(double (*matrix)[N], double *weight)
                 factor /= 2;
             if (row + column < 0.95 * before) {
                 weight[i] /= factor;
+                scale[i] *= factor;
                 changed = 1;
             }
         }

@@ -40,8 +40,12 @@ int batch_model_begin(void *model, const double *parameters, batch_numbers *foun
     instance *const own = model;
     bg_model *const m = &own->m;
     const bg_numbers *const a = &m->numbers;
-    const int status = bg_model_init(m, parameters);
+    int status = BG_OK;
+    memset(m, 0, sizeof *m); /* as bg_model_init does, which also prepares what is not used here */
     own->based = 0;
+    m->where = -1;
+    memcpy(m->now.p, parameters, sizeof(double) * BG_PARAMETERS);
+    status = bg_finite(BG_PARAMETERS, m->now.p) ? bg_assemble(m) : BG_PARAMETER;
     if (status != BG_OK)
         return status;
     for (int i = 0; i < BG_STATES; i++)

@@ -3,18 +3,21 @@
 
 #include <math.h>
 
-/* next = factor (M term + constant) */
+/* next = factor (M term + constant), in two sums that don't wait for each other */
 static inline void differentiate(const bg_entry *e, const double *restrict term,
                                  const double *restrict constant, double factor,
                                  double *restrict next)
 {
 #pragma GCC unroll 1
     for (int i = 0; i < BG_Z; i++) {
-        double sum = constant[i];
+        double sum = constant[i], other = 0.0;
 #pragma GCC unroll 32
-        for (int j = 0; j < BG_Z; j++)
+        for (int j = 0; j < BG_Z / 2; j++)
             sum += e->M[j][i] * term[j];
-        next[i] = sum * factor;
+#pragma GCC unroll 32
+        for (int j = BG_Z / 2; j < BG_Z; j++)
+            other += e->M[j][i] * term[j];
+        next[i] = (sum + other) * factor;
     }
 }
 
