@@ -1,7 +1,7 @@
 """State equations as text for a terminal: matrices, else row by row, else by their structure."""
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Literal, Protocol
 
 import sympy as sp
 
@@ -66,15 +66,24 @@ class Matrices(Protocol):
         """Outputs by inputs."""
 
 
+Form = Literal["matrices", "rows", "structure"]
+"""The forms of a text: whole matrices, one row after the other, sizes and places of entries."""
+
+
 def equations_text(equations: Matrices) -> str:
     """Aligned matrices where they fit a line, else row by row; of large systems sizes and places."""
+    return equations_shown(equations)[1]
+
+
+def equations_shown(equations: Matrices) -> tuple[Form, str]:
+    """The text and the form that it has."""
     if len(equations.states) > MOST_STATES or len(equations.outputs) > 2 * MOST_STATES:
-        return summary(equations)
+        return "structure", summary(equations)
     blocks = _blocks(equations)
     if max((len(line) for block in blocks for line in block), default=0) <= WIDTH:
-        return "\n\n".join("\n".join(block) for block in blocks)
+        return "matrices", "\n\n".join("\n".join(block) for block in blocks)
     text = "\n".join(line for row in rows_of_terms(equations) for line in written(*row))
-    return text if len(text) <= MOST_SIGNS else summary(equations)
+    return ("rows", text) if len(text) <= MOST_SIGNS else ("structure", summary(equations))
 
 
 def right_sides(

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from typing import TypeVar
 
-from bondgraph.display import counted, listed, structure as formula
+from bondgraph.display import counted, listed
+from bondgraph.display import structure as formula
 from bondgraph.equations import StateEquations
 
 MOST_LINES = 40
@@ -44,9 +45,10 @@ def heading(equations: StateEquations) -> tuple[str, ...]:
     """What is derived, and the names that the derivation is about."""
     structure = equations.reduction.structure
     dependent = [structure.ports[port].element.name for port in equations.reduction.dependent]
+    goal = formula(equations) or "no equations: there is neither a state nor an output"
     lines = [
         f"From a bond graph of {counted(len(structure.elements), 'node')} and "
-        f"{counted(len(structure.bonds), 'bond')} to {formula(equations)}"
+        f"{counted(len(structure.bonds), 'bond')} to {goal}"
     ]
     for count, what, names in (
         (len(equations.states), "state", equations.states),

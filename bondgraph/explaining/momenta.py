@@ -1,4 +1,4 @@
-"""Storages whose momentum or displacement is more than a constant times a variable, under names of their own."""
+"""Momenta and displacements; those that are more than a constant times a variable get names."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
