@@ -1,6 +1,6 @@
 """The equations that a bond graph states node by node: storages, laws, junctions and two-ports."""
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 
 import sympy as sp
 
@@ -13,7 +13,7 @@ from bondgraph.explaining.records import Equation, Step, equation
 from bondgraph.laws import DryFriction, ExpressionLaw
 from bondgraph.sorting import Reduction, detects
 from bondgraph.strokes import Strokes
-from bondgraph.sums import Term, rate, split
+from bondgraph.sums import rate, split
 
 
 def storages_step(reduction: Reduction, momenta: Momenta) -> Step:

@@ -51,7 +51,7 @@ def _decision(strokes: Strokes, symbols: Symbols, bond: int, reason: Reason) -> 
     gives: Literal["effort", "flow"] = "flow" if strokes.end[bond] == node else "effort"
     symbol = symbols[strokes.declared[bond], gives]
     other = strokes.names[strokes.other(bond, node)]
-    return f"{_called(strokes, node)} {reason.text}: it gives the {gives} {symbol} to {other}"
+    return f"{_called(strokes, node)} {reason.text}; it gives the {gives} {symbol} to {other}"
 
 
 def _common(strokes: Strokes, symbols: Symbols, bond: int, node: int) -> str:
@@ -95,4 +95,4 @@ def _listed(strokes: Strokes, nodes: Sequence[int]) -> str:
     if len(names) > MOST_NODES:
         left = len(names) - MOST_NODES + 1
         names = [*names[: MOST_NODES // 2], f"{left} more", *names[-(MOST_NODES // 2 - 1) :]]
-    return ", ".join(names) or "nothing but itself"
+    return ", ".join(names) or "the structure alone"

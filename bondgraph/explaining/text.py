@@ -3,11 +3,14 @@
 from collections.abc import Iterator, Sequence
 
 from bondgraph.blocks import Block, beside, matrix_block
-from bondgraph.display import WIDTH, equations_shown, wrapped
+from bondgraph.display import WIDTH, counted, equations_shown, wrapped
 from bondgraph.equations import StateEquations
 from bondgraph.explaining.layout import first_few, fits, heading, shortened
-from bondgraph.explaining.records import Equation, Formula, Step
+from bondgraph.explaining.records import Equation, Factor, Formula, Step
 from bondgraph.sums import Sum, text_pieces
+
+WIDEST_MATRIX = 120
+"""Wider matrices are told by their size."""
 
 LONGEST_NODE = 18
 LONGEST_LEFT = 32
@@ -27,7 +30,7 @@ def text_of(steps: Sequence[Step], result: StateEquations, limit: int | None) ->
 def _ending(result: StateEquations) -> Iterator[str]:
     """The equations in matrices, or their structure; rows have been shown."""
     form, text = equations_shown(result)
-    if form != "rows":
+    if text and form != "rows":
         yield from ("", "In matrices", "")
         yield from (f"  {line}".rstrip() for line in text.splitlines())
 
@@ -81,7 +84,8 @@ def _broken(label: str, width: int, one: Equation, limit: int | None) -> Iterato
 
 
 def _pieces(side: Sum, limit: int | None) -> list[str]:
-    pieces, more = shortened(text_pieces(side), limit)
+    terms, more = shortened(side, limit, "<{} operations>")
+    pieces = text_pieces(terms)
     return [*pieces, f"... ({more} more terms)"] if more else pieces
 
 
@@ -96,26 +100,28 @@ def _width(cells: Sequence[str], most: int) -> int:
 def _formula(formula: Formula, matrices: bool) -> Iterator[str]:
     products = [" ".join(factor.text for factor in product) for product in formula.products]
     yield f"  ({formula.number})  {formula.left.text} = {' + '.join(products)}"
-    if not matrices:
-        sizes = dict.fromkeys(
-            f"{one.text} {one.matrix.rows} x {one.matrix.cols} with {len(one.matrix.todok())} entries"
-            for product in formula.products
-            for one in product
-        )
-        yield f"       {', '.join(sizes)}"
-        return
-    parts: list[Block | str] = ["  = "]
-    for at, product in enumerate(formula.products):
-        parts += [" + "] if at else []
-        for place, factor in enumerate(product):
-            parts += [" "] if place else []
-            parts.append(matrix_block(factor.matrix))
-    block = beside(*parts)
-    if max(map(len, block)) <= WIDTH:
+    if matrices:
+        parts: list[Block | str] = ["  = "]
+        for at, product in enumerate(formula.products):
+            parts += [" + "] if at else []
+            for place, factor in enumerate(product):
+                parts += [" "] if place else []
+                parts.append(matrix_block(factor.matrix))
+        block = beside(*parts)
         yield ""
-        yield from (f"     {line}" for line in block)
-        return
+        if max(map(len, block)) <= WIDTH:
+            yield from (f"     {line}" for line in block)
+            return
     for factor in {one.text: one for product in formula.products for one in product}.values():
+        yield from _matrix(factor, matrices)
+
+
+def _matrix(factor: Factor, matrices: bool) -> Iterator[str]:
+    """One matrix under its name, or its size."""
+    block = beside(f"{factor.text} = ", matrix_block(factor.matrix)) if matrices else ()
+    if matrices and max(map(len, block)) <= WIDEST_MATRIX:
+        yield from (f"     {line}" for line in block)
         yield ""
-        named = beside(f"{factor.text} = ", matrix_block(factor.matrix))
-        yield from (f"     {line}" for line in named)
+        return
+    entries = counted(len(factor.matrix.todok()), "entry", "entries")
+    yield f"       {factor.text}: {factor.matrix.rows} x {factor.matrix.cols}, {entries}"

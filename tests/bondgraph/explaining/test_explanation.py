@@ -1,10 +1,13 @@
 """Derivations put into themselves: what they state first gives what they state last, and that is derived."""
 
+import random
+
 import networkx as nx
 import pytest
 import sympy as sp
 from references.build import bond_graph
 from references.derivations import Reader, result_rows, solved_rates, vanishes
+from references.random_graphs import random_graph
 
 import bondgraph as bg
 import differentials
@@ -86,16 +89,36 @@ def _moving_inertia() -> nx.DiGraph:
     return bond_graph(nodes, "drive>shaft>J shaft>angle")
 
 
+def _relativistic() -> nx.DiGraph:
+    """A mass whose momentum is no multiple of its speed, ruled through a lever."""
+    law, inverse = "p_fast/sqrt(m**2 + p_fast**2/c**2)", "m*f_fast/sqrt(1 - f_fast**2/c**2)"
+    nodes = [bg.Se("T", "T"), bg.One("a"), bg.I("J", "J", flow="w", priority=1), bg.TF("lever", "n"),
+             bg.One("b"), bg.I("fast", law=law, inverse=inverse)]  # fmt: skip
+    return bond_graph(nodes, "T>a>J a>lever>b>fast")
+
+
+def _two_inputs_of_one_name() -> nx.DiGraph:
+    nodes = [bg.Se("left", "F"), bg.One("a"), bg.I("m", "m", flow="v"), bg.C("k", "1/k"), bg.One("b"),
+             bg.I("M", "M", flow="V"), bg.Se("right", "F"), bg.Zero("between")]  # fmt: skip
+    return bond_graph(nodes, "left>a>m a>between>b between>k b>M right>b")
+
+
 GRAPHS = {
     "ladder": _ladder, "tanks": _tanks, "crank": _crank, "ring": _ring, "motor": _motor, "tail": _tail,
     "driven": _driven, "divider": _divider, "coupled": _coupled, "moving inertia": _moving_inertia,
+    "relativistic": _relativistic, "one input twice": _two_inputs_of_one_name,
 }  # fmt: skip
+SEEDS = (18, 28, 31, 32, 34, 38)
 GRAPHS |= {
     f"{name}{', full' if full else ''}": lambda name=name, full=full: differentials.graph(
         name, full
     )
     for name, model in differentials.catalog.items()
     for full in ((False, True) if model.full else (False,))
+}
+GRAPHS |= {
+    f"random {seed}": lambda seed=seed: random_graph(random.Random(seed), 9, mesh=0.5)
+    for seed in SEEDS
 }
 GRAPHS["alsd, not lumped"] = lambda: differentials.graph("alsd", lumped=False)
 
@@ -225,7 +248,7 @@ def test_the_passive_differential_goes_as_in_the_paper() -> None:
 def test_the_story_names_who_rules_the_dependent_storage() -> None:
     explanation = bg.explain(differentials.graph("passive"))
     story = explanation.steps[0].sentences
-    assert story[0] == "engine (Se) imposes its effort: it gives the effort tau_e to input"
+    assert story[0] == "engine (Se) imposes its effort; it gives the effort tau_e to input"
     assert story[-1].startswith(
         "I_i (I) is dependent: its flow omega_e is imposed by I_w1, I_w2 by way of"
     )
