@@ -1,0 +1,129 @@
+r"""Sums of factors times signals, written as a person would: as text for a terminal, and as LaTeX."""
+
+from collections.abc import Callable, Collection, Iterable, Sequence
+from typing import Any
+
+import sympy as sp
+
+Term = tuple[sp.Expr, sp.Expr]
+"""A factor and the signal it stands at; the signal is 1 where there is none."""
+
+Sum = tuple[Term, ...]
+
+
+def rate(name: sp.Symbol) -> sp.Symbol:
+    """The symbol of a signal's rate: ``omega'``, which no signal can be called.
+
+    >>> rate(sp.Symbol("omega"))
+    omega'
+    """
+    return sp.Symbol(f"{name.name}'")
+
+
+def total(terms: Sum) -> sp.Expr:
+    """The sum as one expression."""
+    return sp.Add(*(factor * signal for factor, signal in terms))
+
+
+def split(expr: sp.Expr, signals: Collection[sp.Symbol]) -> Sum:
+    """An expression as factors times signals, as far as it is a sum of such; positive terms first.
+
+    >>> R, i, u = sp.symbols("R i u")
+    >>> split(u - R*i, {i, u})
+    ((1, u), (-R, i))
+    """
+    terms: list[Term] = []
+    for term in sp.Add(expr).as_ordered_terms():
+        used = sorted(term.free_symbols & set(signals), key=str)
+        terms.append(term.as_independent(*used, as_Add=False) if used else (term, sp.Integer(1)))
+    return tuple(sorted(terms, key=lambda term: _sign_and_size(term[0])[0]))
+
+
+def plain(expr: sp.Expr) -> str:
+    """An expression as text, powers with ``^``.
+
+    >>> plain(sp.Symbol("i")**2/4)
+    'i^2/4'
+    """
+    return str(sp.sstr(expr)).replace("**", "^")
+
+
+def typeset(expr: Any) -> str:
+    r"""An expression or a matrix as LaTeX; names that are Greek letters become these, rates have a dot.
+
+    >>> print(typeset(rate(sp.Symbol("omega_1"))), typeset(sp.Symbol("e_left_J")))
+    \dot{\omega}_{1} e_{left,J}
+    """
+    names = {name: _typeset_name(name.name) for name in expr.free_symbols}
+    return str(sp.latex(expr, symbol_names=names))
+
+
+def _typeset_name(name: str) -> str:
+    base, line, index = sp.latex(sp.Symbol(name.rstrip("'"))).partition("_")
+    head = rf"\dot{{{base}}}" if name.endswith("'") else base
+    return f"{head}{line}{index.replace(' ', ',')}"
+
+
+def text_pieces(terms: Iterable[Term]) -> list[str]:
+    """Each term with its sign, to be joined by spaces.
+
+    >>> i, a, b = sp.symbols("i a b")
+    >>> text_pieces([(i/2, a), (-1/i, b), (1 - i, a)])
+    ['i/2*a', '- b/i', '+ (1 - i)*a']
+    """
+    return _signed(terms, _text_product)
+
+
+def latex_pieces(terms: Iterable[Term]) -> list[str]:
+    r"""Each term with its sign, in LaTeX.
+
+    >>> i, a = sp.symbols("i tau_1")
+    >>> print(*latex_pieces([(i/2, a), (-i, a)]))
+    \frac{i}{2} \tau_{1} - i \tau_{1}
+    """
+    return _signed(terms, _latex_product)
+
+
+def _signed(terms: Iterable[Term], product: Callable[[sp.Expr, sp.Expr], str]) -> list[str]:
+    pieces: list[str] = []
+    for factor, signal in terms:
+        negative, size = _sign_and_size(factor)
+        lead = ("-" if negative else "") if not pieces else ("- " if negative else "+ ")
+        pieces.append(lead + product(size, signal))
+    return pieces or ["0"]
+
+
+def _sign_and_size(factor: sp.Expr) -> tuple[bool, sp.Expr]:
+    """Whether a minus sign can stand before the whole factor, and what then stands behind it."""
+    if factor.is_Mul:
+        parts = [_sign_and_size(part) for part in factor.args]
+        return sum(negative for negative, _ in parts) % 2 == 1, sp.Mul(*(size for _, size in parts))
+    negative = all(part.could_extract_minus_sign() for part in sp.Add.make_args(factor))
+    return negative, -factor if negative else factor
+
+
+def _text_product(factor: sp.Expr, signal: sp.Expr) -> str:
+    if signal == 1:
+        return _bracketed(factor, plain(factor), "()")
+    own = _bracketed(signal, plain(signal), "()")
+    over, under = sp.fraction(factor)
+    if over != 1:
+        return f"{_bracketed(factor, plain(factor), '()')}*{own}"
+    if under == 1:
+        return own
+    return f"{own}/{f'({plain(under)})' if under.is_Add or under.is_Mul else plain(under)}"
+
+
+def _latex_product(factor: sp.Expr, signal: sp.Expr) -> str:
+    brackets = (r"\left(", r"\right)")
+    if signal == 1:
+        return _bracketed(factor, typeset(factor), brackets)
+    own = _bracketed(signal, typeset(signal), brackets)
+    over, under = sp.fraction(factor)
+    if over != 1:
+        return f"{_bracketed(factor, typeset(factor), brackets)} {own}"
+    return own if under == 1 else rf"\frac{{{typeset(signal)}}}{{{typeset(under)}}}"
+
+
+def _bracketed(expr: sp.Expr, text: str, brackets: Sequence[str]) -> str:
+    return f"{brackets[0]}{text}{brackets[1]}" if expr.is_Add else text
