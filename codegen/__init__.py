@@ -3,6 +3,7 @@
 from codegen.c.export import to_c
 from codegen.fmu.export import write_fmu
 from codegen.inputs.signals import Constant, Lag, Ramp, Sampled, Signal, Sine, Step
+from codegen.pictures.panels import panels
 from codegen.program import Block, Program, lower
 from codegen.python.export import to_python
 from codegen.runs.events import Event
@@ -56,6 +57,7 @@ __all__ = [
     "integral",
     "largest",
     "lower",
+    "panels",
     "peak",
     "run_sparse",
     "samples",
