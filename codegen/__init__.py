@@ -1,5 +1,7 @@
 """From state equations to simulators: signals, programs, the event-driven hybrid loop, and sweeps."""
 
+from codegen.analysis.comparison import Comparison, compare
+from codegen.analysis.spectrum import Spectrum, spectrum
 from codegen.c.export import to_c
 from codegen.fmu.export import write_fmu
 from codegen.inputs.signals import Constant, Lag, Ramp, Sampled, Signal, Sine, Step
@@ -31,6 +33,7 @@ from codegen.trim import trim
 
 __all__ = [
     "Block",
+    "Comparison",
     "Constant",
     "Event",
     "Failure",
@@ -46,11 +49,13 @@ __all__ = [
     "Simulator",
     "Sine",
     "SparseModel",
+    "Spectrum",
     "Step",
     "Sweep",
     "SweepInterrupted",
     "SwitchedSimulator",
     "Table",
+    "compare",
     "event_count",
     "final",
     "first_event",
@@ -64,6 +69,7 @@ __all__ = [
     "simulator",
     "smallest",
     "sparse_model",
+    "spectrum",
     "sweep",
     "switched_simulator",
     "to_c",

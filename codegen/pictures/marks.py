@@ -1,11 +1,11 @@
 """Marks at events: hairlines with labels above them, and shaded spans in which a port sticks."""
 
 from collections.abc import Hashable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from codegen.pictures.labels import plain
-from codegen.pictures.style import FAINT, QUIET, SHADE, SMALL
+from codegen.pictures.style import FAINT, QUIET, SHADE, SMALL, curve
 from codegen.runs.events import Event
 
 MOST = 40
@@ -14,7 +14,7 @@ MOST = 40
 APART = 1 / 60
 """How far, as a part of what is shown."""
 
-ROWS = 3
+ROWS = 4
 """Of labels; those that fit in none are left out."""
 
 WIDE, LETTER = 0.8, 0.6
@@ -25,12 +25,16 @@ WIDE, LETTER = 0.8, 0.6
 class Marks:
     """What is marked along the time: events, and spans in which something sticks.
 
-    ``owners``: for several runs, each event's run by its number, whose colour its mark has.
+    ``owners``: where there are several runs, the number of each event's run, whose colour and line it has.
     """
 
     events: tuple[Event, ...] = ()
     spans: tuple[tuple[float, float], ...] = ()
-    owners: tuple[dict[str, object], ...] = field(default=(), repr=False)
+    owners: tuple[int, ...] = ()
+
+    def look(self, at: int) -> dict[str, object]:
+        """Colour and line of an event's mark."""
+        return curve(self.owners[at]) if self.owners else {"color": FAINT, "linestyle": "-"}
 
 
 def stuck_spans(events: Iterable[Event], end: float) -> list[tuple[float, float]]:
@@ -65,21 +69,23 @@ def draw(axes: Sequence[Any], marks: Marks, begin: float, end: float) -> str:
     inside.sort(key=lambda at: marks.events[at].time)
     kept = [inside[k] for k in apart([marks.events[at].time for at in inside], end - begin)]
     for at in kept:
-        look = marks.owners[at] if marks.owners else {"color": FAINT, "linestyle": "-"}
         for axis in axes:
-            axis.axvline(marks.events[at].time, linewidth=0.6, zorder=1, gid="event", **look)
-    _label(axes[0], [marks.events[at] for at in kept], begin, end)
+            axis.axvline(
+                marks.events[at].time, linewidth=0.6, zorder=1, gid="event", **marks.look(at)
+            )
+    _label(axes[0], marks, kept, begin, end)
     said = ["grey: sticking"] if marks.spans else []
     if len(kept) < len(inside):
         said.append(f"{len(kept)} of {len(inside)} events marked")
     return "; ".join(said)
 
 
-def _label(axis: Any, events: Sequence[Event], begin: float, end: float) -> None:
+def _label(axis: Any, marks: Marks, kept: Sequence[int], begin: float, end: float) -> None:
     """Labels over an axis, in rows, so that none is over another or over another's line."""
     points = axis.figure.get_figwidth() * 72 * WIDE
     starts = [float("inf")] * ROWS
-    for event in reversed(events):
+    for at in reversed(kept):
+        event, color = marks.events[at], marks.look(at)["color"]
         text = f"{event.port}: {event.kind}"
         place = (event.time - begin) / (end - begin) * points
         stop = place + LETTER * SMALL * len(text)
@@ -91,9 +97,9 @@ def _label(axis: Any, events: Sequence[Event], begin: float, end: float) -> None
         axis.annotate(
             plain(text), (event.time, 1.0), xycoords=axis.get_xaxis_transform(),
             xytext=(0, 3 + 1.3 * SMALL * row), textcoords="offset points", ha="left", va="bottom",
-            fontsize=SMALL, color=QUIET, annotation_clip=False, gid="event",
+            fontsize=SMALL, color=color if marks.owners else QUIET, annotation_clip=False, gid="event",
             arrowprops={
-                "arrowstyle": "-", "linewidth": 0.6, "color": FAINT, "shrinkA": 0, "shrinkB": 0,
+                "arrowstyle": "-", "linewidth": 0.6, "color": color, "shrinkA": 0, "shrinkB": 0,
                 "relpos": (0, 0),
             },
         )  # fmt: skip

@@ -50,7 +50,7 @@ def fill(axis: Any, panel: Panel) -> None:
         axis.set_title(panel.heading, fontsize=TEXT, loc="left")
     axis.grid(True, linewidth=0.3)
     axis.margins(x=0)
-    if len(panel.lines) > 1 or panel.lines[0].label != panel.label:
+    if len(panel.lines) > 1 or panel.lines[0].label not in panel.label:
         axis.legend(
             loc="center left", bbox_to_anchor=(1.005, 0.5), frameon=False, fontsize=TEXT,
             handlelength=2.6,

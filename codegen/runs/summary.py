@@ -18,7 +18,7 @@ def summary(
         + ("s" if len(events) != 1 else "")
     ]
     if signals:
-        rows = [("", "first", "last", "least", "most")]
+        rows: list[tuple[str, ...]] = [("", "first", "last", "least", "most")]
         for name, values in list(signals.items())[:MOST]:
             told = f"{name} [{units[name]}]" if name in units else name
             shown = (values[0], values[-1], values.min(), values.max())
