@@ -5,7 +5,10 @@ from codegen.analysis.spectrum import Spectrum, spectrum
 from codegen.c.export import to_c
 from codegen.fmu.export import write_fmu
 from codegen.inputs.signals import Constant, Lag, Ramp, Sampled, Signal, Sine, Step
+from codegen.pictures.bode import bode
 from codegen.pictures.panels import panels
+from codegen.pictures.poles import pole_map
+from codegen.pictures.shapes import mode_shapes
 from codegen.program import Block, Program, lower
 from codegen.python.export import to_python
 from codegen.runs.events import Event
@@ -55,6 +58,7 @@ __all__ = [
     "SweepInterrupted",
     "SwitchedSimulator",
     "Table",
+    "bode",
     "compare",
     "event_count",
     "final",
@@ -62,8 +66,10 @@ __all__ = [
     "integral",
     "largest",
     "lower",
+    "mode_shapes",
     "panels",
     "peak",
+    "pole_map",
     "run_sparse",
     "samples",
     "simulator",

@@ -32,7 +32,7 @@ ORDER = {
         *_room("runs", "events legs exact hybrid arguments observer tables summary"),
         *_room("pictures", "style canvas labels marks stacked"),
         *_room("runs", "result snapshots"),
-        *_room("pictures", "panels"), *_room("analysis", "spectrum comparison"),
+        *_room("pictures", "panels poles bode shapes"), *_room("analysis", "spectrum comparison"),
         *_room("c", "text structure constants rhs blocks rates tables prefix scenario export"),
         *_room("engine", "build sizes modes inputs runs located"),
         "simulate", "trim",

@@ -16,6 +16,9 @@ from codegen.runs.result import Result, values_of
 FEWEST = 8
 """Samples; fewer have no spectrum worth the name."""
 
+FINER = 4
+"""How much closer frequencies lie than the samples alone tell them apart, so that peaks are seen."""
+
 
 class Peak(NamedTuple):
     """An oscillation: its frequency [Hz], and its amplitude in the signal's unit."""
@@ -41,6 +44,7 @@ class Spectrum:
     def peaks(self, least: float = 0.05) -> tuple[Peak, ...]:
         """The peaks that stand out by ``least`` of the highest, highest first.
 
+        Below ``least = 0.03`` the window's own side lobes come up.
         What has less than two periods in the stretch is left out: it can't be told from a drift.
         Each lies where the parabola through the logarithms of three amplitudes has its top, which is
         a fraction of the resolution ``1 / (end - begin)``.
@@ -112,13 +116,12 @@ def spectrum(
             "a spectrum needs evenly spaced samples; run with np.linspace, or choose another stretch"
         )
     frequency, power = periodogram(
-        detrend(values[inside]), fs=1 / step, window="hann", detrend=False, scaling="spectrum"
-    )
+        detrend(values[inside]), fs=1 / step, window="hann", nfft=FINER * len(time), detrend=False,
+        scaling="spectrum",
+    )  # fmt: skip
     # The power of a sine is half the square of its amplitude; at the ends of the axis there is no half.
     halves = np.full(len(power), 2.0)
-    halves[0] = 1.0
-    if len(time) % 2 == 0:
-        halves[-1] = 1.0
+    halves[[0, -1]] = 1.0
     return Spectrum(
         name, result.units.get(name, ""), float(time[0]), float(time[-1]),
         frequency, np.sqrt(halves * power),
