@@ -12,6 +12,7 @@ from codegen.arrays import Array
 from codegen.pictures.canvas import stack
 from codegen.pictures.flags import Flag, raise_flags
 from codegen.pictures.labels import pretty
+from codegen.pictures.poles import oscillations
 from codegen.pictures.style import FAINT, TEXT, curve
 
 POINTS = 600
@@ -45,7 +46,7 @@ def bode(
     figure, (upper, lower) = stack(2, 2.2)
     for number, name in enumerate(shown):
         gain, phase = _gain_and_phase(values[:, number])
-        silent = "" if np.isfinite(gain).any() else " (none)"
+        silent = "" if np.isfinite(gain).any() else " (no response)"
         look = {"linewidth": 1.2, "label": pretty(name) + silent, **curve(number)}
         upper.semilogx(hertz, gain, **look)
         lower.semilogx(hertz, phase, **look)
@@ -119,7 +120,7 @@ def _gain_and_phase(values: ComplexArray) -> tuple[Array, Array]:
 
 def _mark(axes: tuple[Any, Any], model: StateSpace, hertz: Array) -> None:
     """Hairlines at oscillations, with their frequencies above."""
-    found = sorted({m.damped_frequency for m in model.modes() if m.damping < RINGING})
+    found = sorted({m.damped_frequency for m in oscillations(model) if m.damping < RINGING})
     shown = [frequency for frequency in found if hertz[0] <= frequency <= hertz[-1]]
     for frequency in shown:
         for axis in axes:
