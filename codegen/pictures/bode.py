@@ -16,7 +16,10 @@ from codegen.pictures.poles import oscillations
 from codegen.pictures.style import FAINT, TEXT, curve
 
 POINTS = 600
-"""Frequencies from end to end; half as many again around each corner."""
+"""Frequencies from end to end; two thirds as many again around each corner."""
+
+NEAR = 1e-7
+"""How close to a corner, as a part of it: resonances of that damping ratio are still seen in full."""
 
 RINGING = 0.7
 """Modes of a lower damping ratio are marked as oscillations."""
@@ -91,7 +94,7 @@ def _swept(model: StateSpace) -> Array:
     if not len(corners):
         return np.geomspace(0.01, 100, POINTS)
     first, last = np.log10(corners.min() / 10), np.log10(corners.max() * 10)
-    around = np.geomspace(1e-5, 0.3, POINTS // 4)
+    around = np.geomspace(NEAR, 0.3, POINTS // 3)
     close = [corner * np.concatenate([1 - around, 1 + around]) for corner in corners]
     return np.unique(np.concatenate([np.logspace(first, last, POINTS), *close]))
 
