@@ -97,7 +97,7 @@ def _rays(axis: Any, width: float, height: float) -> None:
 
 
 def _name(axis: Any, modes: list[Mode], middle: float, height: float) -> None:
-    """Frequencies and dampings beside the upper poles, towards the middle; those that are close in a column."""
+    """Frequencies and dampings beside the upper poles; those that are close are in a column."""
     points = axis.figure.get_figheight() * 72 * 0.42
     lowest = -np.inf
     for mode in sorted(modes, key=lambda mode: mode.pole.imag):
