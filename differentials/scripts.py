@@ -26,6 +26,9 @@ def pieces(breaks, parts):
     return value
 '''
 
+_HELPERS = {"pieces": (("bisect", "cmath"), _PIECES), "lagged": (("math",), _LAGGED)}
+"""What a signal's text may call, with the modules that it needs."""
+
 
 def script(name: str, ready: Prepared) -> str:
     """The text of a script that runs the module ``name`` and writes every signal as a table."""
@@ -33,15 +36,10 @@ def script(name: str, ready: Prepared) -> str:
         f'    "{one}": {_signal(as_signal(signal, one))},\n' for one, signal in ready.inputs.items()
     )
     initial = "".join(f'    "{one}": {float(v)!r},\n' for one, v in ready.initial.items())
-    helpers = "".join(
-        text for word, text in (("lagged(", _LAGGED), ("pieces(", _PIECES)) if word in inputs
-    )
-    modules = [
-        one
-        for one in ("bisect", "cmath", "math")
-        if f" {one}." in helpers or f"({one}." in helpers or f"[{one}." in helpers
-    ]
-    imports = "".join(f"import {one}\n" for one in modules) + ("\n" if modules else "")
+    used = [helper for word, helper in _HELPERS.items() if f": {word}(" in inputs]
+    imports = "".join(f"import {one}\n" for modules, _ in used for one in modules)
+    imports += "\n" if imports else ""
+    helpers = "".join(text for _, text in used)
     begin, end = float(ready.times[0]), float(ready.times[-1])
     return f'''"""Runs {name} as it was exported and writes every signal as comma-separated columns."""
 
@@ -56,8 +54,8 @@ initial = {{
 {initial}}}
 times = np.linspace({begin!r}, {end!r}, {len(ready.times)})
 result = simulate(times, initial, inputs, step=1e-4)
-table = np.column_stack([times, *result.values()])
-header = ",".join(["t", *result])
+table = np.column_stack([*result.values()])
+header = ",".join(result)
 np.savetxt("{name}.csv", table, delimiter=",", header=header, comments="")
 print("wrote {name}.csv")
 '''

@@ -7,16 +7,14 @@ from typing import Any, NoReturn
 import click
 
 import bondgraph as bg
-from differentials.cli import (
-    exporting,
-    graphs,
-    linearising,
-    options,
-    reading,
-    running,
-    sweeping,
-    tours,
-)
+import differentials.cli.options as options
+from differentials.cli.exporting import export
+from differentials.cli.graphs import convert, draw
+from differentials.cli.linearising import linear, modes
+from differentials.cli.reading import derive, explain, list_all, show
+from differentials.cli.running import simulate
+from differentials.cli.sweeping import sweep
+from differentials.cli.tours import demo, draw_figures
 
 FAILED, REFUSED = 1, 2
 """Status where something went wrong on the way, and where the command can't be meant so."""
@@ -89,10 +87,10 @@ def app() -> None:
 
 
 for _name, _command in {
-    "list": reading.list_all, "show": reading.show, "draw": graphs.draw,
-    "derive": reading.derive, "explain": reading.explain, "modes": linearising.modes,
-    "linear": linearising.linear, "simulate": running.simulate, "sweep": sweeping.sweep,
-    "export": exporting.export, "convert": graphs.convert, "figures": tours.draw_figures,
-    "demo": tours.demo,
+    "list": list_all, "show": show, "draw": draw,
+    "derive": derive, "explain": explain, "modes": modes,
+    "linear": linear, "simulate": simulate, "sweep": sweep,
+    "export": export, "convert": convert, "figures": draw_figures,
+    "demo": demo,
 }.items():  # fmt: skip
     app.add_command(_command, _name)

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import click
 
+import differentials.cli.options as options
 from codegen.fmu.binaries import PLATFORMS
-from differentials.cli import options
 from differentials.cli.names import OneOf, check_names
 from differentials.cli.options import Asked
 from differentials.cli.preparing import prepare

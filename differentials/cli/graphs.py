@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 import bondgraph as bg
-from differentials.cli import options
+import differentials.cli.options as options
 from differentials.cli.names import FileOf
 from differentials.cli.printing import with_folder, written
 from differentials.cli.subject import ENDINGS, Subject

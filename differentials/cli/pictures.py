@@ -1,49 +1,46 @@
 """Runs as files: tables, data sets, and pictures of any model's signals."""
 
 import re
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import click
 
 import bondgraph as bg
+import codegen
 from codegen import Result
 from differentials.cli.printing import with_folder, written
 from differentials.cli.subject import Subject
-from differentials.figures import STYLES, Curve, Figure, Panel, draw, panels
+from differentials.figures import Figure, draw, panels
 
-FORMATS = (".csv", ".nc", ".png", ".pdf", ".svg")
+FORMATS = (".csv", ".nc", ".png")
 """What a run may be written as."""
 
 
-def signal_panels(result: Result) -> tuple[Panel, ...]:
-    """A panel for all columns whose names begin alike, such as omega_1 and omega_2.
+def alike(names: Mapping[str, object]) -> list[list[str]]:
+    """Names in groups that begin alike, and so, in the notation of bond graphs, have one unit.
 
-    Names that begin alike have, in the notation of bond graphs, the same unit.
+    >>> alike(dict.fromkeys(["omega_1", "tau_e", "omega_2", "v"]))
+    [['omega_1', 'omega_2'], ['tau_e'], ['v']]
     """
     groups: dict[str, list[str]] = {}
-    for name in result.columns:
-        begin = re.split(r"[_\d]", name, maxsplit=1)[0] or name
-        groups.setdefault(begin, []).append(name)
-    return tuple(
-        Panel(
-            begin,
-            tuple(
-                Curve(name, name.lstrip("_"), *STYLES[at % len(STYLES)])
-                for at, name in enumerate(names)
-            ),
-        )
-        for begin, names in groups.items()
-    )
+    for name in names:
+        groups.setdefault(re.split(r"[_\d]", name, maxsplit=1)[0] or name, []).append(name)
+    return list(groups.values())
 
 
-def figure(subject: Subject, result: Result, case: str) -> Figure:
-    """The picture of a run: as in the paper for its differentials."""
+def picture(subject: Subject, result: Result, case: str, path: Path) -> None:
+    """Draw a run into a PNG: a differential's as the paper does, others signal by signal."""
     chosen = subject.differential
-    shown = signal_panels(result) if chosen is None else panels(chosen)
-    return Figure(subject.title, ((subject.name, case),), shown)
+    if chosen is None:
+        drawn = codegen.panels(result, alike(result.columns), title=subject.title)
+        drawn.savefig(path, dpi=150, bbox_inches="tight")
+    else:
+        shown = Figure(subject.title, ((subject.name, case),), panels(chosen))
+        draw(shown, (result,), path)
 
 
-def save(result: Result, drawn: Figure, target: Path) -> None:
+def save(result: Result, target: Path, paint: Callable[[Path], None]) -> None:
     """Write a run as what the file's ending says."""
     with_folder(target)
     match target.suffix.lower():
@@ -52,24 +49,23 @@ def save(result: Result, drawn: Figure, target: Path) -> None:
         case ".nc":
             result.write_netcdf(target)
         case _:
-            draw(drawn, (result,), target)
+            paint(target)
 
 
-def save_all(name: str, drawn: Figure, results: tuple[Result, ...], out: Path) -> list[Path]:
-    """Tables of all runs and their picture; without matplotlib the tables alone, and a hint."""
-    out.mkdir(parents=True, exist_ok=True)
+def save_all(
+    name: str, tables: Mapping[str, Result], paint: Callable[[Path], None], out: Path
+) -> list[Path]:
+    """Tables of runs and their picture; without matplotlib the tables alone, and a hint."""
     paths = []
-    for (_, case), result in zip(drawn.runs, results, strict=True):
-        paths.append(out / f"{name if len(results) == 1 else case}.csv")
+    for label, result in tables.items():
+        paths.append(with_folder(out / f"{label}.csv"))
         result.write_csv(paths[-1])
-    picture = out / f"{name}.png"
     try:
-        draw(drawn, results, picture)
+        paint(out / f"{name}.png")
     except bg.MissingExtraError as error:
         click.echo(f"no picture: {error}", err=True)
-    else:
-        paths.append(picture)
-    return paths
+        return paths
+    return [*paths, out / f"{name}.png"]
 
 
 def told(paths: list[Path]) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 import click
 
 import bondgraph as bg
-from differentials.cli import options
+import differentials.cli.options as options
 from differentials.cli.printing import causality_data, equations_data, headed, print_json
 from differentials.cli.subject import Subject, causality_of, mode_text
 from differentials.identification import linear_model

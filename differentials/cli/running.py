@@ -1,15 +1,16 @@
 """``simulate``: one run of a model, its events, and its signals as files."""
 
+from functools import partial
 from pathlib import Path
 
 import click
 
+import differentials.cli.options as options
 from codegen import Result
 from codegen.simulate import BACKENDS
-from differentials.cli import options
 from differentials.cli.names import FileOf, OneOf
 from differentials.cli.options import Asked
-from differentials.cli.pictures import FORMATS, figure, save, save_all, told
+from differentials.cli.pictures import FORMATS, picture, save, save_all, told
 from differentials.cli.preparing import run
 from differentials.cli.printing import print_json, written
 from differentials.cli.subject import Subject
@@ -48,7 +49,7 @@ METHODS = ("auto", "exact", "DOP853", "Radau")
     "target",
     type=FileOf(*FORMATS),
     metavar="FILE",
-    help="Write only this file: a table (.csv, .nc) or a picture (.png, .pdf, .svg).",
+    help="Write only this file: a table (.csv, .nc) or a picture (.png).",
 )
 @options.folder
 @options.as_json
@@ -64,12 +65,13 @@ def simulate(
     result = run(subject, asked, backend, method)
     chosen = subject.differential
     case = asked.scenario or (chosen.scenario if chosen else "run")
-    drawn = figure(subject, result, case)
+    paint = partial(picture, subject, result, case)
     if target is not None:
-        save(result, drawn, target)
+        save(result, target, paint)
         paths = [target]
     else:
-        paths = save_all(f"{subject.name}_{case}", drawn, (result,), out)
+        name = f"{subject.name}_{case}"
+        paths = save_all(name, {name: result}, paint, out)
     if as_json:
         print_json(_data(subject, case, asked, result) | {"files": paths})
         return

@@ -10,8 +10,8 @@ import numpy as np
 
 import bondgraph as bg
 import codegen
+import differentials.cli.options as options
 from codegen.simulate import BACKENDS
-from differentials.cli import options
 from differentials.cli.grids import FORM, GRID, measure_options, measures
 from differentials.cli.names import FileOf, OneOf, check_names
 from differentials.cli.options import Asked

@@ -6,12 +6,13 @@ from pathlib import Path
 import click
 
 import bondgraph as bg
-from differentials.cli import options
+import differentials.cli.options as options
+from codegen import Result
 from differentials.cli.names import OneOf
 from differentials.cli.pictures import save_all, told
 from differentials.cli.printing import headed
 from differentials.cli.subject import causality_of
-from differentials.figures import Figure, figures
+from differentials.figures import Figure, draw, figures
 from differentials.identification import linear_model
 from differentials.parameters import PRINTED_FREQUENCIES
 from differentials.report import equations_text, events_text, modes_text, table
@@ -34,7 +35,14 @@ def _drawn(name: str, figure: Figure, out: Path) -> list[Path]:
     hidden = not sys.stderr.isatty()
     with click.progressbar(figure.runs, label=name, file=sys.stderr, hidden=hidden) as runs:
         results = tuple(simulate(*case) for case in runs)
-    return save_all(name, figure, results, out)
+    return _saved(name, figure, results, out)
+
+
+def _saved(name: str, figure: Figure, results: tuple[Result, ...], out: Path) -> list[Path]:
+    """A figure's picture and tables; where there are several, they are called like their scenarios."""
+    cases = [name] if len(results) == 1 else [case for _, case in figure.runs]
+    tables = dict(zip(cases, results, strict=True))
+    return save_all(name, tables, lambda path: draw(figure, results, path), out)
 
 
 @options.command("A tour: equations, causality, modes, two simulations.", "demo --out out")
@@ -57,7 +65,7 @@ def demo(out: Path) -> None:
     click.echo(headed("Fig. 13: torque to the faster wheel"))
     other = simulate("stationary_tvd", "fig13")
     click.echo(events_text(other))
-    told(save_all("stationary_tvd_fig13", figures["fig13"], (other,), out))
+    told(_saved("stationary_tvd_fig13", figures["fig13"], (other,), out))
 
 
 def _figure_11(out: Path) -> None:
@@ -75,7 +83,7 @@ def _figure_11(out: Path) -> None:
     click.echo(
         f"torque difference tau_hs1 - tau_hs2, mean over the last 0.1 s: {difference:.1f} N m\n"
     )
-    told(save_all("alsd_fig11", figures["fig11"], (result,), out))
+    told(_saved("alsd_fig11", figures["fig11"], (result,), out))
 
 
 def _comparison() -> str:
