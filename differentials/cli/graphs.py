@@ -49,7 +49,7 @@ def draw(
     "convert examples/oscillator.json -o oscillator.graphml",
 )
 @options.subject
-@options.variants
+@options.models
 @click.option(
     "-o",
     "target",
@@ -58,13 +58,10 @@ def draw(
     required=True,
     help="The file to write: .json or .graphml.",
 )
-def convert(
-    subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...], target: Path
-) -> None:
+def convert(subject: Subject, halfshafts: bool, unlumped: bool, target: Path) -> None:
     """MODEL as a file, to be changed and read again: JSON or GraphML."""
-    declared = subject.file if subject.file is not None and not on else None
-    if declared is None or halfshafts or unlumped:
-        declared = subject.graph(halfshafts, unlumped, on)
+    as_it_is = subject.file is not None and not (halfshafts or unlumped)
+    declared = subject.file if as_it_is else subject.graph(halfshafts, unlumped)
     write = bg.write_json if target.suffix.lower() == ".json" else bg.write_graphml
     write(declared, with_folder(target))
     written(target)

@@ -72,15 +72,16 @@ folder = click.option(
 )  # fmt: skip
 
 
+def models(run: Command) -> Command:
+    """Which of a differential's models is meant."""
+    unlumped = click.option("--unlumped", is_flag=True, help="Every inertia an element of its own.")
+    full = click.option("--halfshafts", is_flag=True, help="The full model, with halfshafts.")
+    return full(unlumped(run))
+
+
 def variants(run: Command) -> Command:
-    """Which of a model's graphs is meant."""
-    for option in (
-        on,
-        click.option("--unlumped", is_flag=True, help="Every inertia an element of its own."),
-        click.option("--halfshafts", is_flag=True, help="The full model, with halfshafts."),
-    ):
-        run = option(run)
-    return run
+    """Which of a differential's models, or which mode of a file's switches, is meant."""
+    return models(on(run))
 
 
 @dataclass(frozen=True)

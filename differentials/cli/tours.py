@@ -20,7 +20,7 @@ from differentials.scenarios import scenarios, simulate
 from differentials.topologies import catalog, equations, graph
 
 
-@options.command("The paper's Figs. 11 to 14.", "figures --out out", "figures fig11 fig13")
+@options.command("The paper's Figs. 11 to 14.", "figures --out out", "figures fig11")
 @click.argument("names", nargs=-1, type=OneOf(tuple(figures), "figure"), metavar="[FIGURE]...")
 @options.folder
 def draw_figures(names: tuple[str, ...], out: Path) -> None:

@@ -29,7 +29,7 @@ def _stand_ins(monkeypatch: pytest.MonkeyPatch) -> None:
         Path(path).write_bytes(b"<svg" if str(path).endswith("svg") else b"\x89PNG CDF %PDF")
 
     def text(graph: Any) -> str:
-        return "\n".join(map(str, getattr(graph, "graph", graph)))
+        return "\n".join(map(str, graph.graph if isinstance(graph, bg.CausalGraph) else graph))
 
     if not hasattr(bg, "drawing"):
         make = lambda graph, **_: SimpleNamespace(save=file, text=lambda: text(graph))  # noqa: E731

@@ -15,6 +15,9 @@ Call = Callable[..., Result]
 ROOT = Path(__file__).parents[3]
 LINE = re.compile(r"^ {4}(?:bondgraph|python -m differentials) (.+)$", re.MULTILINE)
 
+ELSEWHERE = {"demo --out out"}
+"""What `test_tours` runs."""
+
 
 def in_readme() -> list[str]:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -32,13 +35,7 @@ def test_there_is_something_to_run() -> None:
     assert len(in_help()) >= 2 * len(app.commands)
 
 
-def test_the_readmes_commands_run_one_after_another(call: Call) -> None:
-    for line in in_readme():
-        done = call(*shlex.split(line))
-        assert done.exit_code == 0, f"{line}: {done.output}"
-
-
-@pytest.mark.parametrize("line", sorted(set(in_help())))
-def test_the_examples_of_help_texts_run(line: str, call: Call) -> None:
+@pytest.mark.parametrize("line", sorted({*in_readme(), *in_help()} - ELSEWHERE))
+def test_what_is_documented_runs(line: str, call: Call) -> None:
     done = call(*shlex.split(line))
     assert done.exit_code == 0, f"{line}: {done.output}"

@@ -56,7 +56,7 @@ def test_the_exported_c_of_a_file_swings_as_the_textbook_says(call: Call, tmp_pa
     sources = [str(path) for path in (tmp_path / "out" / "oscillator").glob("*.c")]
     program = str(tmp_path / "program")
     subprocess.run(["cc", "-std=c99", "-O1", *sources, "-lm", "-o", program], check=True)
-    done = subprocess.run([program, "0.5", "0.1"], check=True, capture_output=True, text=True)
+    done = subprocess.run([program, "0.5", "0.001"], check=True, capture_output=True, text=True)
     header, *rows = done.stdout.splitlines()
     found = np.array([[float(entry) for entry in row.split(",")] for row in rows])
     at = header.removeprefix("# ").split(",").index("v")

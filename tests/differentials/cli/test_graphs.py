@@ -38,8 +38,6 @@ def test_what_is_converted_is_read_as_the_same_graph(
     assert bg.derive(bg.read_json(tmp_path / "again.json")).B == expected.B
 
 
-def test_switches_stay_unless_a_mode_is_asked_for(call: Call, tmp_path: Path) -> None:
+def test_switches_stay_what_they_are(call: Call, tmp_path: Path) -> None:
     assert call("convert", "examples/rectifier.json", "-o", "whole.json").exit_code == 0
     assert [one.name for one in bg.switches(bg.read_json(tmp_path / "whole.json"))] == ["d"]
-    assert call("convert", "examples/rectifier.json", "--on", "d", "-o", "on.json").exit_code == 0
-    assert bg.switches(bg.read_json(tmp_path / "on.json")) == ()
