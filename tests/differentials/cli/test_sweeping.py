@@ -70,6 +70,7 @@ def test_tables_are_written(call: Call, tmp_path: Path) -> None:
     assert call(*arguments, "-o", "new/sweep.csv").exit_code == 0
     found = np.genfromtxt(tmp_path / "new" / "sweep.csv", delimiter=",", names=True)
     assert found["k"].tolist() == [200.0, 800.0]
+    assert found["peak_F_k"] == pytest.approx([20, 40], rel=1e-3)
     xarray = pytest.importorskip("xarray")
     assert call(*arguments, "-o", "sweep.nc").exit_code == 0
     with xarray.open_dataset(tmp_path / "sweep.nc", engine="scipy") as dataset:
