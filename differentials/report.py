@@ -45,10 +45,16 @@ def causality_text(causal: bg.CausalGraph) -> str:
 
 
 def events_text(result: Result) -> str:
-    """When each friction port stuck, slipped and crossed zero, one event a line."""
-    words = {"stick": "sticks", "slip": "slips again", "cross": "crosses zero slip"}
+    """When friction ports stuck, slipped and crossed zero, and switches changed, one event a line."""
+    words = {
+        "stick": "sticks", "slip": "slips again", "cross": "crosses zero slip",
+        "on": "turns on", "off": "turns off",
+    }  # fmt: skip
     lines = [f"t = {e.time:.6f} s   {e.port} {words[e.kind]}" for e in result.events]
-    return "\n".join(lines) or "no friction port stuck, was released or changed its slip's sign"
+    return (
+        "\n".join(lines)
+        or "no events: nothing stuck, was released, changed its slip's sign or switched"
+    )
 
 
 def modes_text(model: StateSpace) -> str:

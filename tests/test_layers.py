@@ -49,7 +49,9 @@ ORDER = {
     ],
     "differentials": [
         "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "model",
-        "identification", "speeds", "scenarios", "exporting", "figures", "report", "commands",
+        "identification", "speeds", "scenarios", "scripts", "exporting", "figures", "report",
+        *_room("cli", "printing names signals subject options preparing pictures reading graphs "
+               "linearising running grids sweeping exporting tours app"),
     ],
 }  # fmt: skip
 
