@@ -24,7 +24,7 @@ ORDER = {
         "junction", "modulation", "sorting", "resistances", "stored", "reduction", "rates",
         "inertia", "loop_gains", "outputs", "readings", "equations", "closures", "slopes",
         "constrained", "holding", "closed_rows", "response", "linear", "explicit", "latex",
-        *_room("drawing", "rich metrics subject shapes tight layers order marks places ends bonds "
+        *_room("drawing", "rich metrics subject shapes tight layers order columns marks places ends bonds "
                "powers compose svg plot listing picture"),
         "renaming", "composition", "declarations", "restored", "nodelink", "safexml", "graphml", "files",
     ],
