@@ -10,7 +10,7 @@ from differentials.cli.printing import causality_data, equations_data, headed, p
 from differentials.cli.subject import Subject, causality_of, mode_text
 from differentials.identification import linear_model
 from differentials.model import model
-from differentials.report import equations_text, modes_text, parameters_text, table
+from differentials.report import modes_text, parameters_text, table
 from differentials.scenarios import scenarios
 from differentials.speeds import zero_slip_ratios
 from differentials.topologies import catalog, graph
@@ -72,7 +72,7 @@ def show(
         print_json(_shown(subject, declared, derived))
         return
     click.echo(headed(f"{subject.name}: {subject.title}") + "\n" + mode_text(subject, on))
-    click.echo(equations_text(derived) + "\n\n" + headed("Causality"))
+    click.echo(f"{derived}\n\n" + headed("Causality"))
     click.echo(causality_of(declared) + "\n")
     if subject.differential is None:
         click.echo(_open_text(subject, derived))

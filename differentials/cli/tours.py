@@ -15,7 +15,7 @@ from differentials.cli.subject import causality_of
 from differentials.figures import Figure, draw, figures
 from differentials.identification import linear_model
 from differentials.parameters import PRINTED_FREQUENCIES
-from differentials.report import equations_text, events_text, modes_text, table
+from differentials.report import events_text, modes_text, table
 from differentials.scenarios import scenarios, simulate
 from differentials.topologies import catalog, equations, graph
 
@@ -52,11 +52,11 @@ def demo(out: Path) -> None:
     chosen, derived = catalog["alsd"], equations("alsd")
     click.echo(f"The {chosen.title}, {chosen.source} of IMECE2008-69248\n")
     click.echo(headed("Rigid model"))
-    click.echo(equations_text(derived) + "\n")
+    click.echo(f"{derived}\n")
     click.echo(headed("Causality of the rigid model"))
     click.echo(causality_of(graph("alsd")) + "\n")
     click.echo(headed("Model with halfshafts (used for the simulation)"))
-    click.echo(equations_text(equations("alsd", halfshafts=True)) + "\n")
+    click.echo(f"{equations('alsd', halfshafts=True)}\n")
     click.echo(headed("Its modes at 80 rad/s, clutch open"))
     click.echo(modes_text(linear_model("alsd")) + "\n")
     _figure_11(out)
