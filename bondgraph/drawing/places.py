@@ -1,0 +1,162 @@
+"""Where every node lies: columns that keep long chains straight and mirror images alike, and rows."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import ceil
+
+import networkx as nx
+
+from bondgraph.drawing.layers import Layers, layered
+from bondgraph.drawing.marks import Side, node_shape
+from bondgraph.drawing.order import Order, ordered
+from bondgraph.drawing.shapes import NodeShape, Point
+from bondgraph.drawing.subject import Subject
+from bondgraph.drawing.tight import extremes
+
+NODE_GAP, SIDE_BOND, LAYER_GAP, CLEAR = 26.0, 44.0, 66.0, 6.0
+"""Least room between nodes of a layer, length of a bond to the side, distance of layers, room at ends."""
+
+STEEPEST = 0.34
+"""A bond falls at least this much for its width, so that it does not run into its layer."""
+
+
+@dataclass(frozen=True)
+class Places:
+    """Every node's shape and the place it is aimed at; ``bends``: of a bond between two layers."""
+
+    at: dict[int, Point]
+    shapes: dict[int, NodeShape]
+    sides: dict[int, Side]
+    bends: dict[tuple[int, int], tuple[Point, ...]]
+
+
+@dataclass(frozen=True)
+class _Cell:
+    """A vertex with what lies beside it: shapes by item and their offsets, and the whole extent."""
+
+    shapes: dict[int, tuple[NodeShape, float, Side]]
+    left: int
+    right: int
+
+
+def places(subject: Subject, room: float) -> Places:
+    """The nodes placed, ``room`` times as far apart as plain bonds need."""
+    found = layered(subject)
+    order = ordered(found.graph, found.layers)
+    lean = dict.fromkeys(found.graph, 0)
+    cells = _cells(subject, found, lean, room)
+    columns = _columns(found.graph, order, cells, room)
+    for _ in range(2):
+        lean = _leaning(found.graph, order, columns)
+        cells = _cells(subject, found, lean, room)
+        columns = _columns(found.graph, order, cells, room)
+    rows = _rows(found.graph, order, columns, room)
+    at: dict[int, Point] = {}
+    shapes: dict[int, NodeShape] = {}
+    sides: dict[int, Side] = {}
+    for vertex, cell in cells.items():
+        for item, (shape, offset, side) in cell.shapes.items():
+            at[item] = (columns[vertex] + offset, rows[vertex])
+            shapes[item], sides[item] = shape, side
+    bends = {
+        ends: tuple((float(columns[v]), rows[v]) for v in path[1:-1])
+        for ends, path in found.paths.items()
+    }
+    return Places(at, shapes, sides, bends)
+
+
+def _cells(
+    subject: Subject, found: Layers, lean: Mapping[int, int], room: float
+) -> dict[int, _Cell]:
+    cells = {}
+    for vertex in found.graph:
+        if vertex >= len(subject.items):
+            cells[vertex] = _Cell({}, 2, 2)
+        else:
+            cells[vertex] = _cell(
+                subject, vertex, found.beside.get(vertex, ()), lean[vertex], room
+            )
+    return cells
+
+
+def _cell(subject: Subject, node: int, beside: tuple[int, ...], lean: int, room: float) -> _Cell:
+    """A node with the one-ports beside it; the first of these is on the side it leans to."""
+    first: Side = "left" if lean < 0 else "right"
+    second: Side = "right" if lean < 0 else "left"
+    caption = second if len(beside) == 1 or (lean < 0 and not beside) else "right"
+    if not beside:
+        caption = first
+    shape = node_shape(subject.items[node], "middle", caption)
+    shapes: dict[int, tuple[NodeShape, float, Side]] = {node: (shape, 0.0, "middle")}
+    left, right = shape.box.left, shape.box.right
+    for item, side in zip(beside, (first, second), strict=False):
+        own = node_shape(subject.items[item], side)
+        if side == "right":
+            offset = shape.box.right + SIDE_BOND * room + 2 * CLEAR
+            right = offset + own.box.right
+        else:
+            offset = shape.box.left - SIDE_BOND * room - 2 * CLEAR
+            left = offset + own.box.left
+        shapes[item] = (own, offset, side)
+    return _Cell(shapes, ceil(-left), ceil(right))
+
+
+def _columns(
+    graph: "nx.DiGraph[int]", order: Order, cells: Mapping[int, _Cell], room: float
+) -> dict[int, float]:
+    """The middle of the best columns: chains straight, others as short as they can be."""
+    vertices = [vertex for layer in order for vertex in layer]
+    number = {vertex: at for at, vertex in enumerate(vertices)}
+    gap = ceil(NODE_GAP * room)
+    gaps = [
+        (number[one], number[two], float(cells[one].right + gap + cells[two].left))
+        for layer in order
+        for one, two in zip(layer, layer[1:], strict=False)
+    ]
+    pulls = [(number[u], number[v], _weight(graph, cells, u, v)) for u, v in graph.edges]
+    low, high = extremes(len(vertices), gaps, pulls)
+    return {vertex: (low[at] + high[at]) / 2 for vertex, at in number.items()}
+
+
+def _weight(
+    graph: "nx.DiGraph[int]", cells: Mapping[int, _Cell], upper: int, lower: int
+) -> float:
+    """Bends and chains weigh most."""
+    bends = (not cells[upper].shapes) + (not cells[lower].shapes)
+    if bends:
+        return 8.0 if bends == 2 else 3.0
+    chain = graph.out_degree(upper) == 1 and graph.in_degree(lower) == 1
+    return 4.0 if chain else 1.0
+
+
+def _leaning(
+    graph: "nx.DiGraph[int]", order: Order, columns: Mapping[int, float]
+) -> dict[int, int]:
+    """The side to which a vertex lies from those above it, or they from theirs: -1, 0 or 1."""
+    lean: dict[int, int] = {}
+    for layer in order:
+        for vertex in layer:
+            above = list(graph.predecessors(vertex))
+            middle = sum(columns[one] for one in above) / len(above) if above else columns[vertex]
+            off = columns[vertex] - middle
+            if abs(off) > 0.5:
+                lean[vertex] = 1 if off > 0 else -1
+            else:
+                total = sum(lean[one] for one in above)
+                lean[vertex] = (total > 0) - (total < 0)
+    return lean
+
+
+def _rows(
+    graph: "nx.DiGraph[int]", order: Order, columns: Mapping[int, float], room: float
+) -> dict[int, float]:
+    rows: dict[int, float] = {}
+    y = 0.0
+    for layer in order:
+        wide = max(
+            (abs(columns[v] - columns[u]) for v in layer for u in graph.predecessors(v)), default=0
+        )
+        if rows:
+            y += max(LAYER_GAP * room, min(STEEPEST * wide, 3 * LAYER_GAP))
+        rows.update(dict.fromkeys(layer, round(y)))
+    return rows

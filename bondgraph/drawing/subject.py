@@ -1,0 +1,148 @@
+"""What there is to draw: the nodes and bonds of a graph with their texts, and where strokes lie."""
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from bondgraph.causality import CausalGraph, assign_causality
+from bondgraph.drawing.rich import MOST, Rich, Run, formula, length, named
+from bondgraph.elements import JUNCTIONS, TWO_PORTS, Element, Kind
+from bondgraph.errors import AlgebraicLoopError, CausalityError
+from bondgraph.graph import Bond, validate
+from bondgraph.laws import ExpressionLaw
+from bondgraph.switching import switches
+
+
+@dataclass(frozen=True)
+class Item:
+    """A node: its symbol (0, 1, TF, Se, ...), what is written beside it, and whether it is dependent.
+
+    ``junction``: what is beside it is its name only, small.
+    """
+
+    name: Hashable
+    symbol: str
+    beside: Rich
+    junction: bool = False
+    one_port: bool = False
+    dependent: bool = False
+
+
+@dataclass(frozen=True)
+class Link:
+    """A bond from ``tail`` to ``head`` (places in `Subject.items`): effort, flow, who receives the effort."""
+
+    tail: int
+    head: int
+    declared: Bond
+    effort: Rich
+    flow: Rich
+    receiver: int | None
+
+
+@dataclass(frozen=True)
+class Subject:
+    """All nodes and bonds of a graph; ``remark`` says why there are no strokes, where there are none."""
+
+    items: tuple[Item, ...]
+    links: tuple[Link, ...]
+    remark: str = ""
+
+
+def subject(graph: Any, values: bool) -> Subject:
+    """What to draw of a causal graph, or of a declared one: its causality is assigned.
+
+    A graph without a causality (in no mode, or refused) has no strokes but a remark.
+
+    Raises `StructureError` for what is not a bond graph.
+    """
+    causal, remark = _causal(graph)
+    checked = causal.graph if causal else validate(graph)
+    strokes = causal.strokes if causal else {}
+    dependent = frozenset(causal.derivative) if causal else frozenset()
+    elements: dict[Hashable, Element] = dict(checked.nodes(data="element"))
+    owners = {name: name if e.owner is None else e.owner for name, e in elements.items()}
+    places = {owner: at for at, owner in enumerate(dict.fromkeys(owners.values()))}
+    ports: dict[Hashable, list[Element]] = {owner: [] for owner in places}
+    for name, owner in owners.items():
+        ports[owner].append(elements[name])
+    items = tuple(_item(owner, own, dependent, values) for owner, own in ports.items())
+    links = tuple(
+        _link(elements[tail], elements[head], declared, (owners[tail], owners[head]), places, strokes)
+        for tail, head, declared in checked.edges(data="declared")
+    )
+    return Subject(items, links, remark)
+
+
+def _causal(graph: Any) -> tuple[CausalGraph | None, str]:
+    """The causality, or why there is none."""
+    if isinstance(graph, CausalGraph):
+        return graph, ""
+    checked = validate(graph)
+    undecided = [str(switch.name) for switch in switches(checked)]
+    if undecided:
+        return None, (
+            f"No causal strokes: {', '.join(undecided)} may be on or off; draw in_mode(graph, on=[...])."
+        )
+    try:
+        return assign_causality(checked), ""
+    except (CausalityError, AlgebraicLoopError) as error:
+        return None, f"No causal strokes: {error}"
+
+
+def _item(
+    owner: Hashable, ports: list[Element], dependent: frozenset[Hashable], values: bool
+) -> Item:
+    element = ports[0]
+    if element.kind in JUNCTIONS:
+        symbol = "0" if element.kind is Kind.ZERO else "1"
+        return Item(owner, symbol, named(owner), junction=True)
+    switched = _switched(element)
+    beside = named(owner)
+    if switched:
+        beside = (*beside, Run(f" ({switched})"))
+    elif values:
+        beside = _value(element) or beside
+    return Item(
+        owner,
+        "Sw" if switched else str(element.kind),
+        beside,
+        one_port=element.kind not in TWO_PORTS and len(ports) == 1,
+        dependent=any(port.name in dependent for port in ports),
+    )
+
+
+def _switched(element: Element) -> str:
+    """On or off: what in_mode leaves of a switch is a port that gives zero of one of the two."""
+    if element.kind is Kind.R and element.law == ExpressionLaw(sp.Integer(0)):
+        return "on" if element.gives == "effort" else "off"
+    return ""
+
+
+def _value(element: Element) -> Rich | None:
+    """What the element is by its value, or by its law if that is a short one."""
+    given = element.value
+    if given is None and element.kind in (Kind.SE, Kind.SF) and element.owner is None:
+        law = element.law
+        given = law.expression if isinstance(law, ExpressionLaw) else element.given
+    if given is None or element.owner is not None:
+        return None
+    text = formula(given)
+    return text if length(text) <= MOST else None
+
+
+def _link(
+    first: Element, second: Element, declared: Bond, ends: tuple[Hashable, Hashable],
+    places: Mapping[Hashable, int], strokes: Mapping[Bond, Hashable],
+) -> Link:  # fmt: skip
+    """The bond, with the variables that its one-port or a junction at its ends has names for."""
+    ported = sorted((first, second), key=lambda element: element.kind in JUNCTIONS)
+    names = [
+        next((named(name) for e in ported if (name := getattr(e, which)) is not None), ())
+        for which in ("effort", "flow")
+    ]
+    receiver = places[strokes[declared]] if strokes else None
+    return Link(places[ends[0]], places[ends[1]], declared, names[0], names[1], receiver)
+

@@ -1,0 +1,80 @@
+"""A picture as SVG: plain text, the same bytes for the same picture, nothing outside it needed."""
+
+from collections.abc import Iterator
+from xml.sax.saxutils import escape
+
+from bondgraph.drawing.metrics import FAMILY, SHIFT, SMALL, run_width
+from bondgraph.drawing.shapes import INK, MARKED, Box, Label, Point, Scene
+
+THIN, THICK = 1.2, 2.0
+"""Widths of bonds and of causal strokes."""
+
+DASH = "3 2"
+_FONTS = f"{FAMILY}, Verdana, sans-serif"
+
+
+def svg(scene: Scene) -> str:
+    """The picture as a document, with its title and a description in words."""
+    return "\n".join(_lines(scene)) + "\n"
+
+
+def _lines(scene: Scene) -> Iterator[str]:
+    wide, high = f"{scene.width:g}", f"{scene.height:g}"
+    yield (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{wide}" height="{high}" '
+        f'viewBox="0 0 {wide} {high}" role="img">'
+    )
+    yield f"<title>{escape(scene.title)}</title>"
+    yield f"<desc>{escape(scene.description)}</desc>"
+    yield f'<rect width="{wide}" height="{high}" fill="#ffffff"/>'
+    yield f'<g fill="none" stroke="{INK}" stroke-width="{THIN}" stroke-linecap="round" stroke-linejoin="round">'
+    for bond in scene.bonds:
+        yield f'<path d="{_path(bond.path + (bond.barb,))}"/>'
+    for bond in scene.bonds:
+        if bond.stroke:
+            yield f'<path d="{_path(bond.stroke)}" stroke-width="{THICK}"/>'
+    yield "</g>"
+    for box in [node.frame for node in scene.nodes] + [scene.swatch]:
+        if box is not None:
+            yield _frame(box)
+    yield f'<g font-family="{_FONTS}" xml:space="preserve">'
+    labels = [label for node in scene.nodes for label in node.labels]
+    labels += [label for bond in scene.bonds for label in bond.labels]
+    for label in (*labels, *scene.notes):
+        yield _text(label)
+    yield "</g>"
+    yield "</svg>"
+
+
+def _text(label: Label) -> str:
+    """Every run at its own place and width, so that no viewer's font can move it."""
+    parts = []
+    x = label.x
+    for run in label.rich:
+        wide = run_width(run.text, run.level, label.size)
+        small = f' font-size="{_number(label.size * SMALL)}"' if run.level else ""
+        y = label.y + SHIFT[run.level] * label.size
+        parts.append(
+            f'<tspan x="{_number(x)}" y="{_number(y)}" textLength="{_number(wide)}" '
+            f'lengthAdjust="spacingAndGlyphs"{small}>{escape(run.text)}</tspan>'
+        )
+        x += wide
+    return f'<text font-size="{_number(label.size)}" fill="{label.colour}">{"".join(parts)}</text>'
+
+
+def _frame(box: Box) -> str:
+    wide, high = box.right - box.left, box.bottom - box.top
+    return (
+        f'<rect x="{_number(box.left)}" y="{_number(box.top)}" width="{_number(wide)}" '
+        f'height="{_number(high)}" rx="2" fill="none" stroke="{MARKED}" stroke-width="{THIN}" '
+        f'stroke-dasharray="{DASH}"/>'
+    )
+
+
+def _path(points: tuple[Point, ...]) -> str:
+    return "M" + " L".join(f"{_number(x)} {_number(y)}" for x, y in points)
+
+
+def _number(value: float) -> str:
+    """At most two decimals, and no sign on a zero."""
+    return f"{round(value, 2) + 0.0:.6g}"
