@@ -8,11 +8,13 @@ from typing import Any
 import sympy as sp
 
 from bondgraph.causality import assign_causality
+from bondgraph.display import equations_text
 from bondgraph.elements import Element
 from bondgraph.errors import StructureError
 from bondgraph.expressions import TIME
 from bondgraph.inertia import check_regular, inertia
 from bondgraph.junction import JunctionStructure, Port, junction_structure
+from bondgraph.latex import notebook_latex
 from bondgraph.laws import Law
 from bondgraph.modulation import Reading
 from bondgraph.outputs import PortRow, named_signals, shown_signals
@@ -21,6 +23,9 @@ from bondgraph.readings import check_laws
 from bondgraph.reduction import reduce_ports
 from bondgraph.sorting import Reduction
 from bondgraph.tidy import tidy_matrices
+
+LARGEST_REPR = 100
+"""Equations with more states, inputs or outputs are represented by their sizes."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +62,21 @@ class StateEquations:
     signals: Mapping[sp.Symbol, PortRow] = field(repr=False)
     #: The ports' reduction, which turns such a row into a reading.
     reduction: Reduction = field(repr=False)
+
+    def __str__(self) -> str:
+        """Matrices side by side, else row by row; of large systems names, sizes and places of entries."""
+        return equations_text(self)
+
+    def __repr__(self) -> str:
+        """Names and matrices; of a large system how many there are."""
+        sizes = (len(self.states), len(self.inputs), len(self.outputs))
+        if max(sizes) > LARGEST_REPR:
+            return "<StateEquations: {} states, {} inputs, {} outputs>".format(*sizes)
+        parts = ("states", "inputs", "outputs", *"AJBEFDG")
+        return f"StateEquations({', '.join(f'{part}={getattr(self, part)}' for part in parts)})"
+
+    def _repr_latex_(self) -> str:
+        return notebook_latex(self)
 
     @property
     def parameters(self) -> tuple[sp.Symbol, ...]:

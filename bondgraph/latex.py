@@ -1,13 +1,15 @@
-r"""Equations as LaTeX."""
+"""Equations as LaTeX."""
+
+from collections.abc import Mapping
 
 import sympy as sp
 
-from bondgraph.equations import StateEquations
+from bondgraph.display import MOST_SIGNS, MOST_STATES, Matrices
 
 RATE = r"\frac{d}{dt}"
 
 
-def latex(equations: StateEquations) -> str:
+def latex(equations: Matrices) -> str:
     r"""``A dx/dt = J x + B u + E du/dt`` and ``y = F x + D u + G du/dt``, zero matrices left out.
 
     Names are Greek where they are called so: ``omega_1`` is \omega_{1}.
@@ -33,8 +35,34 @@ def latex(equations: StateEquations) -> str:
     return " \\\\\n".join(lines)
 
 
-def _sum(equations: StateEquations, *terms: tuple[str, str]) -> str:
+def _sum(equations: Matrices, *terms: tuple[str, str]) -> str:
     """The products of those matrices that are not zero."""
     shown = [(getattr(equations, name), vector) for name, vector in terms]
     products = [sp.latex(sp.Matrix(matrix)) + vector for matrix, vector in shown if matrix.todok()]
     return " + ".join(products) or "0"
+
+
+def notebook_latex(equations: Matrices) -> str:
+    """The equations for a notebook's display; of large systems the sizes alone."""
+    if len(equations.states) <= MOST_STATES and len(equations.outputs) <= 2 * MOST_STATES:
+        text = latex(equations)
+        if len(text) <= MOST_SIGNS:
+            return rf"$$\begin{{gathered}} {text} \end{{gathered}}$$"
+    counts = {name: len(getattr(equations, name).todok()) for name in "AJBEFDG"}
+    sizes = r",\; ".join(
+        rf"{name} \in \mathbb{{R}}^{{{m.rows} \times {m.cols}}}\ (\text{{{counts[name]} entries}})"
+        for name in counts
+        if counts[name]
+        for m in [getattr(equations, name)]
+    )
+    return rf"$$\begin{{gathered}} {_structure(equations, counts)} \\ {sizes} \end{{gathered}}$$"
+
+
+def _structure(equations: Matrices, counts: Mapping[str, int]) -> str:
+    """Both equations with the letters of those matrices that are not zero."""
+    vectors = {"J": "x", "B": "u", "E": r"\dot{u}", "F": "x", "D": "u", "G": r"\dot{u}"}
+    upper, lower = (
+        " + ".join(f"{name} {vectors[name]}" for name in letters if counts[name]) or "0"
+        for letters in ("JBE", "FDG")
+    )
+    return rf"A \dot{{x}} = {upper}" + (rf", \quad y = {lower}" if equations.outputs else "")

@@ -20,8 +20,9 @@ ORDER = {
         "attributes", "declared", "names", "graph", "switching", "strokes", "causal_order",
         "regularity", "stories", "exact", "vanishing", "causality", "lines", "assignments", "tidy",
         "junction", "modulation", "sorting", "resistances", "stored", "reduction", "rates",
-        "inertia", "loop_gains", "outputs", "readings", "equations", "closures", "slopes",
-        "constrained", "holding", "closed_rows", "response", "linear", "explicit", "latex",
+        "inertia", "loop_gains", "outputs", "readings", "sums", "blocks", "display", "latex",
+        "equations", "closures", "slopes", "constrained", "holding", "closed_rows", "response",
+        "linear", "explicit",
         "renaming", "composition", "declarations", "restored", "nodelink", "safexml", "graphml", "files",
     ],
     "codegen": [

@@ -1,0 +1,186 @@
+"""State equations as text for a terminal: matrices, else row by row, else by their structure."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import sympy as sp
+
+from bondgraph.blocks import Block, beside, column_block, matrix_block, sketch
+from bondgraph.sums import Term, rate, text_pieces
+
+WIDTH = 100
+"""Lines are at most about so long."""
+
+MOST_STATES = 12
+MOST_SIGNS = 4_000
+"""Systems with more states, or longer text, are summarised."""
+
+MOST_NAMES = 8
+"""Of longer lists the middle is counted only."""
+
+
+class Matrices(Protocol):
+    """What is shown: ``A x' = J x + B u + E u'``, ``y = F x + D u + G u'``."""
+
+    @property
+    def states(self) -> tuple[sp.Symbol, ...]:
+        """The symbols of x."""
+
+    @property
+    def inputs(self) -> tuple[sp.Symbol, ...]:
+        """The symbols of u."""
+
+    @property
+    def outputs(self) -> tuple[sp.Symbol, ...]:
+        """The symbols of y."""
+
+    @property
+    def A(self) -> sp.ImmutableSparseMatrix:
+        """States by states; so is J, while B and E have a column for each input."""
+
+    @property
+    def J(self) -> sp.ImmutableSparseMatrix:
+        """States by states."""
+
+    @property
+    def B(self) -> sp.ImmutableSparseMatrix:
+        """States by inputs."""
+
+    @property
+    def E(self) -> sp.ImmutableSparseMatrix:
+        """States by inputs."""
+
+    @property
+    def F(self) -> sp.ImmutableSparseMatrix:
+        """Outputs by states."""
+
+    @property
+    def D(self) -> sp.ImmutableSparseMatrix:
+        """Outputs by inputs."""
+
+    @property
+    def G(self) -> sp.ImmutableSparseMatrix:
+        """Outputs by inputs."""
+
+
+def equations_text(equations: Matrices) -> str:
+    """Aligned matrices where they fit a line, else row by row; of large systems sizes and places."""
+    if len(equations.states) > MOST_STATES or len(equations.outputs) > 2 * MOST_STATES:
+        return summary(equations)
+    blocks = _blocks(equations)
+    if max((len(line) for block in blocks for line in block), default=0) <= WIDTH:
+        return "\n\n".join("\n".join(block) for block in blocks)
+    text = "\n".join(line for row in rows_of_terms(equations) for line in written(*row))
+    return text if len(text) <= MOST_SIGNS else summary(equations)
+
+
+def right_sides(
+    equations: Matrices,
+) -> tuple[list[tuple[str, sp.Matrix, Sequence[sp.Symbol]]], ...]:
+    """The products on the right of both equations whose matrix is not zero: letter, matrix, vector."""
+    x, u = equations.states, equations.inputs
+    rates = [rate(name) for name in u]
+    upper = [("J", equations.J, x), ("B", equations.B, u), ("E", equations.E, rates)]
+    lower = [("F", equations.F, x), ("D", equations.D, u), ("G", equations.G, rates)]
+    return tuple([part for part in parts if part[1].todok()] for parts in (upper, lower))
+
+
+def _blocks(equations: Matrices) -> list[Block]:
+    upper, lower = right_sides(equations)
+    blocks = []
+    if equations.states:
+        rates = column_block(rate(name) for name in equations.states)
+        blocks.append(beside(matrix_block(equations.A), " ", rates, *_products(upper)))
+    if equations.outputs:
+        blocks.append(beside(column_block(equations.outputs), *_products(lower)))
+    return blocks
+
+
+def _products(parts: Sequence[tuple[str, sp.Matrix, Sequence[sp.Symbol]]]) -> list[Block | str]:
+    result: list[Block | str] = []
+    for _, matrix, vector in parts:
+        result += [" + " if result else " = ", matrix_block(matrix), " ", column_block(vector)]
+    return result or [" = 0"]
+
+
+def rows_of_terms(equations: Matrices) -> list[tuple[list[Term], list[Term]]]:
+    """Each row of both equations as its left and right side."""
+    upper, lower = right_sides(equations)
+    states = [rate(name) for name in equations.states]
+    rows = [
+        (_terms(equations.A, states, i), _all_terms(upper, i))
+        for i in range(len(equations.states))
+    ]  # fmt: skip
+    one = sp.Integer(1)
+    rows += [([(one, name)], _all_terms(lower, i)) for i, name in enumerate(equations.outputs)]
+    return rows
+
+
+def _all_terms(
+    parts: Sequence[tuple[str, sp.Matrix, Sequence[sp.Symbol]]], row: int
+) -> list[Term]:
+    return [term for _, matrix, vector in parts for term in _terms(matrix, vector, row)]
+
+
+def _terms(matrix: sp.Matrix, names: Sequence[sp.Symbol], row: int) -> list[Term]:
+    return [(matrix[row, j], name) for j, name in enumerate(names) if matrix[row, j] != 0]
+
+
+def written(left: Sequence[Term], right: Sequence[Term]) -> list[str]:
+    """``left = right`` on as many lines as it needs, later ones indented."""
+    pieces = text_pieces(left) + [f"= {piece}" if at == 0 else piece
+                                  for at, piece in enumerate(text_pieces(right))]  # fmt: skip
+    return wrapped(pieces, WIDTH, "    ")
+
+
+def wrapped(pieces: Sequence[str], width: int, indent: str) -> list[str]:
+    """Pieces joined by spaces into lines that end before one that would be too long."""
+    lines: list[str] = []
+    for piece in pieces:
+        if lines and len(lines[-1]) + len(piece) < width:
+            lines[-1] += f" {piece}"
+        else:
+            lines.append((indent if lines else "") + piece)
+    return lines
+
+
+def summary(equations: Matrices) -> str:
+    """Sizes, names, how many entries each matrix has, and where those of A and J stand."""
+    upper, lower = right_sides(equations)
+    suffix = {"E": "E u'", "G": "G u'", "J": "J x", "F": "F x", "B": "B u", "D": "D u"}
+    right, shown = (" + ".join(suffix[p[0]] for p in side) or "0" for side in (upper, lower))
+    lines = [f"A x' = {right},   y = {shown}" if equations.outputs else f"A x' = {right}"]
+    for letter, what, names in (
+        ("x", "state", equations.states), ("u", "input", equations.inputs),
+        ("y", "output", equations.outputs),
+    ):  # fmt: skip
+        if names:
+            lines.append(f"  {letter}: {counted(len(names), what)}: {listed(names)}")
+    matrices = [("A", equations.A, ()), *upper, *lower]
+    counts = [f"{name} {m.rows} x {m.cols}: {len(m.todok())}" for name, m, _ in matrices]
+    lines.append(f"  entries that are not zero: {',  '.join(counts)}")
+    if equations.states:
+        n = len(equations.states)
+        drawn = [(name, matrix) for name, matrix, _ in matrices if name in "AJ"]
+        pictures: list[Block | str] = []
+        for name, matrix in drawn:
+            pictures += ["    ", (name, *sketch(matrix.todok(), n, n))]
+        lines += ["", *beside(*pictures)]
+    return "\n".join(lines)
+
+
+def listed(names: Sequence[object]) -> str:
+    """Names with commas, the middle of a long list left out."""
+    texts = [str(name) for name in names]
+    if len(texts) > MOST_NAMES:
+        texts = [*texts[: MOST_NAMES - 3], "...", *texts[-2:]]
+    return ", ".join(texts)
+
+
+def counted(count: int, what: str) -> str:
+    """A number of things.
+
+    >>> counted(1, "state"), counted(2, "state")
+    ('1 state', '2 states')
+    """
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
