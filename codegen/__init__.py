@@ -1,8 +1,14 @@
 """From state equations to simulators: signals, programs, the event-driven hybrid loop, and sweeps."""
 
+from codegen.analysis.comparison import Comparison, compare
+from codegen.analysis.spectrum import Spectrum, spectrum
 from codegen.c.export import to_c
 from codegen.fmu.export import write_fmu
 from codegen.inputs.signals import Constant, Lag, Ramp, Sampled, Signal, Sine, Step
+from codegen.pictures.bode import bode
+from codegen.pictures.panels import panels
+from codegen.pictures.poles import pole_map
+from codegen.pictures.shapes import mode_shapes
 from codegen.program import Block, Program, lower
 from codegen.python.export import to_python
 from codegen.runs.events import Event
@@ -30,6 +36,7 @@ from codegen.trim import trim
 
 __all__ = [
     "Block",
+    "Comparison",
     "Constant",
     "Event",
     "Failure",
@@ -45,23 +52,30 @@ __all__ = [
     "Simulator",
     "Sine",
     "SparseModel",
+    "Spectrum",
     "Step",
     "Sweep",
     "SweepInterrupted",
     "SwitchedSimulator",
     "Table",
+    "bode",
+    "compare",
     "event_count",
     "final",
     "first_event",
     "integral",
     "largest",
     "lower",
+    "mode_shapes",
+    "panels",
     "peak",
+    "pole_map",
     "run_sparse",
     "samples",
     "simulator",
     "smallest",
     "sparse_model",
+    "spectrum",
     "sweep",
     "switched_simulator",
     "to_c",

@@ -31,6 +31,7 @@ from codegen.runs.legs import EXACT, Settings, Track
 from codegen.runs.observer import Observer
 from codegen.runs.result import Result
 from codegen.runs.snapshots import Snapshots, snapshots
+from codegen.units import told_units
 
 BACKENDS = ("numpy", "c")
 """What runs models."""
@@ -119,6 +120,7 @@ class Simulator:
             found.events,
             MappingProxyType(columns),
             observer,
+            told_units(self.closed.equations),
         )
 
     def _in_c(

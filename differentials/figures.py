@@ -4,20 +4,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bondgraph import MissingExtraError
 from codegen import Result
+from codegen.pictures import stacked
+from codegen.pictures.labels import pretty
+from codegen.pictures.marks import Marks
+from codegen.runs.result import marks_of
 from differentials.scenarios import STIFFNESSES
 from differentials.topologies import Differential, catalog
-
-BLUE, ORANGE, GREEN, PINK = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
-"""Colours that differ for every eye (Okabe and Ito)."""
-
-STYLES = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (PINK, ":"))
 
 
 @dataclass(frozen=True)
@@ -26,8 +23,6 @@ class Curve:
 
     signal: str
     label: str
-    color: str
-    line: str
     minus: str | None = None
     run: int = 0
 
@@ -53,7 +48,7 @@ class Figure:
     title: str
     runs: tuple[tuple[str, str], ...]
     panels: tuple[Panel, ...]
-    shade: bool = True
+    marked: bool = True
 
 
 def panels(chosen: Differential) -> tuple[Panel, ...]:
@@ -61,44 +56,31 @@ def panels(chosen: Differential) -> tuple[Panel, ...]:
     wheels = range(1, chosen.wheels + 1)
     levels = tuple(chosen.clutches.values())
     marks = [level.removeprefix("tau_h") for level in levels]
-    shown = [("In Trq\n[N m]", [*((level, _tau("h", level[5:])) for level in levels),
-                                ("tau_e", r"$\tau_e$")])]  # fmt: skip
+    shown = [_panel("In Trq\n[N m]", *levels, "tau_e")]
     if marks:
-        shown.append(("Cltch Trq\n[N m]", [(f"tau_f{mark}", _tau("f", mark)) for mark in marks]))
+        shown.append(_panel("Cltch Trq\n[N m]", *(f"tau_f{mark}" for mark in marks)))
     if chosen.full or chosen.name == "passive_halfshafts":
-        shown.append(("Out Trq\n[N m]", [(f"tau_hs{j}", _tau("hs", j)) for j in wheels]))
+        shown.append(_panel("Out Trq\n[N m]", *(f"tau_hs{j}" for j in wheels)))
     if chosen.name == "passive_input_shaft":
-        shown.append(("Shaft Trq\n[N m]", [("tau_is", _tau("is", ""))]))
-    speeds = [(f"omega_{j}", rf"$\omega_{j}$") for j in wheels]
+        shown.append(_panel("Shaft Trq\n[N m]", "tau_is"))
     ratio = "i_f" if chosen.wheels == 4 else "i"
-    shown.append(("Diff Spd\n[rad/s]", [*speeds, ("omega_c", rf"$\omega_e/{ratio}$")]))
+    case = Curve("omega_c", rf"$\omega_e/{ratio}$")
+    speeds = _panel("Diff Spd\n[rad/s]", *(f"omega_{j}" for j in wheels))
+    shown.append(Panel(speeds.label, (*speeds.curves, case)))
     if marks:
-        slips = [(f"omega_f{mark}", _omega("f", mark)) for mark in marks]
-        shown.append(("Cltch Spd\n[rad/s]", slips))
-    shown.append(("Whl Spd\n[rad/s]", [(f"omega_t{j}", _omega("t", j)) for j in wheels]))
-    return tuple(Panel(label, _styled(curves)) for label, curves in shown)
+        shown.append(_panel("Cltch Spd\n[rad/s]", *(f"omega_f{mark}" for mark in marks)))
+    shown.append(_panel("Whl Spd\n[rad/s]", *(f"omega_t{j}" for j in wheels)))
+    return tuple(shown)
 
 
-def _tau(letters: str, mark: object) -> str:
-    return rf"$\tau_{{{letters}{mark}}}$"
-
-
-def _omega(letters: str, mark: object) -> str:
-    return rf"$\omega_{{{letters}{mark}}}$"
-
-
-def _styled(curves: list[tuple[str, str]]) -> tuple[Curve, ...]:
-    styles = (*STYLES, ("0.35", ":"))
-    return tuple(
-        Curve(signal, label, color, line)
-        for (signal, label), (color, line) in zip(curves, styles, strict=False)
-    )
+def _panel(label: str, *signals: str) -> Panel:
+    return Panel(label, tuple(Curve(signal, pretty(signal)) for signal in signals))
 
 
 def _stiffness_panel(letter: str, speed: int, first: int) -> Panel:
     curves = tuple(
-        Curve("tau_hs1", f"$k/k_0$ = {factor:g}", color, line, minus="tau_hs2", run=first + at)
-        for at, (factor, (color, line)) in enumerate(zip(STIFFNESSES, STYLES, strict=True))
+        Curve("tau_hs1", f"$k/k_0$ = {factor:g}", minus="tau_hs2", run=first + at)
+        for at, factor in enumerate(STIFFNESSES)
     )
     return Panel(r"$\Delta\tau$ [N m]", curves, rf"({letter}) $\omega_0$ = {speed} rad/s")
 
@@ -110,7 +92,7 @@ figures: Mapping[str, Figure] = MappingProxyType(
             "ALSD: initial speed and halfshaft stiffness",
             tuple(("alsd", f"fig12_{speed}_{k:g}") for speed in (20, 80) for k in STIFFNESSES),
             (_stiffness_panel("a", 20, 0), _stiffness_panel("b", 80, len(STIFFNESSES))),
-            shade=False,
+            marked=False,
         ),
         "fig13": Figure(
             "Response of the stationary clutch TVD",
@@ -133,55 +115,22 @@ figures: Mapping[str, Figure] = MappingProxyType(
 
 
 def draw(figure: Figure, results: tuple[Result, ...], path: str | PathLike[str]) -> None:
-    """Draw runs as the paper does, one panel above the other, stick phases shaded, into a PNG.
+    """Draw runs as the paper does, one panel above the other, events and stick phases marked, into a file.
 
     Raises `MissingExtraError` without matplotlib.
     """
+    shown = [
+        stacked.Panel(
+            panel.label,
+            tuple(
+                stacked.Line(results[curve.run].time, curve.values(results), curve.label)
+                for curve in panel.curves
+            ),
+            panel.heading,
+        )
+        for panel in figure.panels
+    ]
+    marks = marks_of(results[0]) if figure.marked else Marks()
     tall = 2.6 if len(figure.panels) < 3 else 1.45
-    canvas, axes = _subplots(len(figure.panels), tall)
-    for axis, panel in zip(axes, figure.panels, strict=True):
-        for curve in panel.curves:
-            time = results[curve.run].time
-            axis.plot(
-                time, curve.values(results), color=curve.color, linestyle=curve.line,
-                label=curve.label, linewidth=1.1,
-            )  # fmt: skip
-        for begin, end in stuck_spans(results[0]) if figure.shade else ():
-            axis.axvspan(begin, end, color="0.88", linewidth=0)
-        axis.set_ylabel(panel.label)
-        if panel.heading:
-            axis.set_title(panel.heading, fontsize=9, loc="left")
-        axis.grid(True, linewidth=0.3)
-        axis.margins(x=0)
-        axis.legend(loc="center left", bbox_to_anchor=(1.005, 0.5), frameon=False, fontsize=9)
-    canvas.suptitle(figure.title, fontsize=10)
-    shaded = figure.shade and stuck_spans(results[0])
-    axes[-1].set_xlabel("Time [s]" + ("   (grey: a clutch sticks)" if shaded else ""))
-    canvas.align_ylabels(axes)
+    canvas = stacked.stacked(shown, marks, figure.title, tall)
     canvas.savefig(path, dpi=150, bbox_inches="tight")
-
-
-def stuck_spans(result: Result) -> list[tuple[float, float]]:
-    """Begin and end [s] of every stretch in which a friction port sticks after its first event."""
-    begun: dict[object, float] = {}
-    spans: list[tuple[float, float]] = []
-    for event in result.events:
-        if event.kind == "stick":
-            begun[event.port] = event.time
-        elif event.port in begun:
-            spans.append((begun.pop(event.port), event.time))
-    return spans + [(begin, float(result.time[-1])) for begin in begun.values()]
-
-
-def _subplots(count: int, tall: float) -> tuple[Any, Any]:
-    """A figure of its own, outside any global state of matplotlib."""
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure as Canvas
-    except ImportError:
-        raise MissingExtraError(
-            "pictures need matplotlib; install the optional extra: pip install bondgraph-toolkit[pictures]"
-        ) from None
-    canvas = Canvas(figsize=(7.2, tall * count), layout="constrained")
-    FigureCanvasAgg(canvas)
-    return canvas, canvas.subplots(count, 1, sharex=True, squeeze=False)[:, 0]

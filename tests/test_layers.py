@@ -27,10 +27,13 @@ ORDER = {
     ],
     "codegen": [
         "arrays", *_room("inputs", "pieces generators polynomials signals tables"),
-        "model.affine", "closing", "records", "sections", "program", "identifiers", "printing",
+        "model.affine", "closing", "records", "sections", "program", "identifiers", "printing", "units",
         *_room("model", "numpy_backend numbers snapshot sharing friction instant loops rubbing closed "
                "sizes modes guards"),
-        *_room("runs", "events sundials legs exact hybrid arguments observer result snapshots"),
+        *_room("runs", "events sundials legs exact hybrid arguments observer tables summary"),
+        *_room("pictures", "style canvas labels marks stacked"),
+        *_room("runs", "result snapshots"),
+        *_room("pictures", "panels poles bode shapes"), *_room("analysis", "spectrum comparison"),
         *_room("c", "text structure constants rhs blocks rates tables prefix scenario export"),
         *_room("engine", "build sizes modes inputs runs located"),
         "simulate", "trim",

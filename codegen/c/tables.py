@@ -9,6 +9,7 @@ from codegen.c.rhs import Straight
 from codegen.c.structure import Structure
 from codegen.c.text import array, comment, doubles, integers, quoted, strings
 from codegen.program import Group, Program
+from codegen.units import units
 
 MOST_HOLDS = 4
 """Holding equations of all sets of so many friction ports are kept once they are found."""
@@ -55,7 +56,7 @@ def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:
 
 def name_tables(program: Program, equations: StateEquations, name: str) -> list[str]:
     """Names and units, for whoever calls the model."""
-    units = _units(equations)
+    known = units(equations)
     lines = [f"const char *const bg_model_name = {quoted(name)};"]
     groups = (
         ("state", (*program.states, *program.law_states)),
@@ -64,23 +65,13 @@ def name_tables(program: Program, equations: StateEquations, name: str) -> list[
     )
     for what, symbols in groups:
         lines += strings(f"bg_{what}_names", _names(symbols))
-        lines += strings(f"bg_{what}_units", [units.get(symbol, "") for symbol in symbols])
+        lines += strings(f"bg_{what}_units", [known.get(symbol, "") for symbol in symbols])
     lines += strings("bg_parameter_names", _names(program.parameters))
     return [*lines, *strings("bg_friction_names", [str(port.name) for port in program.friction])]
 
 
 def _names(symbols: Iterable[sp.Symbol]) -> list[str]:
     return [symbol.name for symbol in symbols]
-
-
-def _units(equations: StateEquations) -> dict[sp.Symbol, str]:
-    """What elements tell of their unit: that of what they give, or of their state."""
-    units: dict[sp.Symbol, str] = {}
-    for element in equations.elements.values():
-        for symbol in (element.given, element.effort, element.flow):
-            if element.unit and symbol in {*equations.states, *equations.inputs}:
-                units.setdefault(symbol, element.unit)
-    return units
 
 
 def program_tables(

@@ -7,6 +7,7 @@ import sympy as sp
 
 from bondgraph import StateEquations
 from codegen.program import Program
+from codegen.units import units
 
 STEP = "fixed_internal_step"
 """The parameter that is the length of co-simulation's internal steps [s]."""
@@ -66,17 +67,6 @@ def variables(
     listing.unknown()
     listing.made_up(indicators)
     return tuple(listing.found)
-
-
-def units(equations: StateEquations) -> Mapping[sp.Symbol, str]:
-    """What elements tell of their unit: that of what they give, or of their state."""
-    result: dict[sp.Symbol, str] = {}
-    named = {*equations.states, *equations.inputs}
-    for element in equations.elements.values():
-        for symbol in (element.given, element.effort, element.flow):
-            if element.unit and symbol in named:
-                result.setdefault(symbol, element.unit)
-    return result
 
 
 class _Listing:

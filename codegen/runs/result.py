@@ -1,14 +1,21 @@
 """`Result`: the record of a run, and every effort, flow, power and energy in it."""
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import Protocol
+from types import MappingProxyType
+from typing import Any, Protocol
 
 import numpy as np
 
+from bondgraph import SignalError
 from codegen.arrays import Array
+from codegen.pictures.labels import common, measured, pretty
+from codegen.pictures.marks import Marks, stuck_spans
+from codegen.pictures.stacked import Line, Panel, along, fill, stacked
 from codegen.runs.events import Event
+from codegen.runs.summary import summary
+from codegen.runs.tables import dataset, frame, write_netcdf
 
 
 class Watcher(Protocol):
@@ -27,13 +34,17 @@ class Watcher(Protocol):
         """What a storage holds."""
 
 
+def _no_units() -> Mapping[str, str]:
+    return MappingProxyType({})
+
+
 @dataclass(frozen=True)
 class Result:
     """The record of a run: ``result["omega_1"]`` is any named signal of the graph over ``result.time``.
 
     ``events``: what happened at friction ports and switches, in order. At a step or an event a sample
     shows the instant just after. ``columns``: the signals that a table of the run holds: states, inputs,
-    outputs and what laws read.
+    outputs and what laws read. ``units``: of those signals of which elements tell it.
     """
 
     time: Array = field(repr=False)
@@ -43,6 +54,7 @@ class Result:
     events: tuple[Event, ...]
     columns: Mapping[str, Array] = field(repr=False)
     observer: Watcher = field(repr=False, compare=False)
+    units: Mapping[str, str] = field(repr=False, default_factory=_no_units)
 
     def __getitem__(self, name: str) -> Array:
         """The values of one signal; `KeyError` naming what there is."""
@@ -77,3 +89,91 @@ class Result:
         table = np.column_stack([self.time, *self.columns.values()])
         header = ",".join(["t", *self.columns])
         np.savetxt(path, table, delimiter=",", header=header, comments="", fmt="%.17g")
+
+    def to_xarray(self) -> Any:
+        """An `xarray.Dataset` of every column over "time" [s], with units and roles as attributes.
+
+        Events are the coordinates ``event_time``, ``event_port`` and ``event_kind`` along "event". Where
+        a signal has such a name, an underscore is appended. Raises `MissingExtraError` without xarray.
+        """
+        roles = (("output", self.outputs), ("input", self.inputs), ("state", self.states))
+        attributes: dict[str, dict[str, str]] = {name: {} for name in self.columns}
+        for role, names in roles:
+            for name in names:
+                attributes.setdefault(name, {})["role"] = role
+        for name, unit in self.units.items():
+            attributes.setdefault(name, {})["units"] = unit
+        return dataset(self.time, self.columns, attributes, self.events)
+
+    def to_pandas(self) -> Any:
+        """A `pandas.DataFrame` of every column over time [s]; `MissingExtraError` without pandas."""
+        return frame(self.time, self.columns)
+
+    def write_netcdf(self, path: str | PathLike[str]) -> None:
+        """Write `to_xarray` as a netCDF file, which ``xarray.open_dataset`` reads back digit for digit.
+
+        Raises `MissingExtraError` without xarray.
+        """
+        write_netcdf(self.to_xarray(), path)
+
+    def summary(self) -> str:
+        """Samples, where states begin, end and turn, and events, as a short text."""
+        states = {name: self.columns[name] for name in self.states}
+        return summary(self.time, states, self.units, self.events)
+
+    def __str__(self) -> str:
+        return self.summary()
+
+    def plot(
+        self, *names: str, title: str | None = None, ax: Any = None,
+        units: Mapping[str, str] | None = None,
+    ) -> Any:  # fmt: skip
+        """A `matplotlib.figure.Figure` of signals, the states if none are named, with events marked.
+
+        ``ax``: an axis to draw into. ``units``: of signals of which elements tell none.
+
+        Raises `SignalError` for unknown names, `MissingExtraError` without matplotlib.
+        """
+        panel = panel_of(self, names or self.states, units=units)
+        marks = marks_of(self)
+        if ax is None:
+            return stacked([panel], marks, title or "", tall=3.0)
+        fill(ax, panel)
+        along([ax], [panel], marks)
+        if title:
+            ax.set_title(title, pad=28 if marks.events else None)
+        return ax.figure
+
+
+def values_of(result: Result, name: str) -> Array:
+    """A signal of a run; `SignalError` naming what there is."""
+    try:
+        return result[name]
+    except KeyError as error:
+        raise SignalError(error.args[0]) from None
+
+
+def panel_of(
+    result: Result, names: Sequence[str], label: str | None = None,
+    units: Mapping[str, str] | None = None,
+) -> Panel:  # fmt: skip
+    """Signals of a run as a panel, labelled with their names and units."""
+    if not names:
+        raise SignalError("a panel needs at least one signal")
+    told = {**result.units, **({} if units is None else units)}
+    shared = len({told.get(name, "") for name in names}) == 1
+    lines = tuple(
+        Line(
+            result.time,
+            values_of(result, name),
+            pretty(name) if shared else measured(name, told.get(name, "")),
+        )
+        for name in names
+    )
+    own = common(names, [told.get(name, "") for name in names]) if label is None else label
+    return Panel(own, lines)
+
+
+def marks_of(result: Result) -> Marks:
+    """A run's events and the spans in which its ports stick."""
+    return Marks(result.events, tuple(stuck_spans(result.events, float(result.time[-1]))))

@@ -23,6 +23,7 @@ from codegen.runs.result import Result
 from codegen.runs.snapshots import snapshots
 from codegen.switched.phases import Held, Keeping, Moment, On, Phase, Phases
 from codegen.switched.spliced import Spliced
+from codegen.units import told_units
 
 
 @dataclass(frozen=True)
@@ -144,7 +145,8 @@ class _Journey:
             columns, observer = simulator.columns(rest[own], shots)
             self._parts.append(
                 Result(rest[own], simulator.states, simulator.inputs, simulator.outputs, (),
-                       MappingProxyType(columns), observer)
+                       MappingProxyType(columns), observer,
+                       told_units(model.equations))
             )  # fmt: skip
             self._modes += [phase.on] * track.recorded
         pieces = [signal.piece(stretch.t) for signal in signals]
@@ -177,6 +179,7 @@ class _Journey:
         return Result(
             self._times, simulator.states, simulator.inputs, self._parts[0].outputs,
             tuple(self._events), MappingProxyType(columns), spliced,
+            MappingProxyType({name: unit for part in self._parts for name, unit in part.units.items()}),
         )  # fmt: skip
 
 

@@ -1,0 +1,1 @@
+"""What runs tell: how they differ, and how they oscillate."""

@@ -1,0 +1,1 @@
+"""Pictures of runs and of linear models. Needs matplotlib, the optional extra ``pictures``."""

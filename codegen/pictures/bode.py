@@ -1,0 +1,115 @@
+"""`bode`: how a linear model passes oscillations on, over their frequency."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bondgraph import SignalError
+from bondgraph.response import StateSpace
+from codegen.arrays import Array
+from codegen.pictures.canvas import stack
+from codegen.pictures.labels import pretty
+from codegen.pictures.style import FAINT, QUIET, SMALL, TEXT, curve
+
+POINTS = 600
+"""Frequencies from end to end; as many again around each resonance."""
+
+
+def bode(
+    model: StateSpace, input: str, *outputs: str, frequencies: ArrayLike | None = None,
+    title: str = "",
+) -> Any:  # fmt: skip
+    """A `matplotlib.figure.Figure` of magnitudes [dB of output over input] and phases [degrees].
+
+    ``outputs``: all of the model's, if none are named. ``frequencies`` [Hz]: else from a tenth of the slowest
+    oscillation to ten times the fastest. Their frequencies are marked.
+
+    Raises `SignalError` for unknown names or frequencies that are not positive, `ParameterError` where a
+    frequency is that of an undamped oscillation, `MissingExtraError` without matplotlib.
+    """
+    shown = outputs or model.outputs
+    column, rows = _place(input, model.inputs, "input"), [
+        _place(name, model.outputs, "output") for name in shown
+    ]  # fmt: skip
+    hertz = _swept(model) if frequencies is None else _checked(frequencies)
+    values = model.frequency_response(hertz)[:, rows, column]
+    figure, (upper, lower) = stack(2, 2.2)
+    for number, name in enumerate(shown):
+        gain, phase = _gain_and_phase(values[:, number])
+        look = {"linewidth": 1.2, "label": pretty(name), **curve(number)}
+        upper.semilogx(hertz, gain, **look)
+        lower.semilogx(hertz, phase, **look)
+    _mark(upper, lower, model, hertz)
+    upper.set_ylabel("Magnitude [dB]", fontsize=TEXT)
+    lower.set_ylabel("Phase [°]", fontsize=TEXT)
+    lower.set_xlabel("Frequency [Hz]", fontsize=TEXT)
+    for axis in (upper, lower):
+        axis.grid(True, linewidth=0.3)
+        axis.margins(x=0)
+        axis.tick_params(labelsize=TEXT - 1)
+    lower.yaxis.get_major_locator().set_params(steps=[1, 1.5, 3, 4.5, 9, 10])
+    upper.legend(loc="center left", bbox_to_anchor=(1.005, 0.5), frameon=False, fontsize=TEXT,
+                 handlelength=2.6)  # fmt: skip
+    figure.align_ylabels([upper, lower])
+    figure.suptitle(title or f"Response to {pretty(input)}", fontsize=TEXT + 1)
+    return figure
+
+
+def _place(name: str, known: tuple[str, ...], what: str) -> int:
+    if name not in known:
+        raise SignalError(f"{name!r} is not an {what}; there are {', '.join(known)}")
+    return known.index(name)
+
+
+def _checked(frequencies: ArrayLike) -> Array:
+    hertz = np.atleast_1d(np.asarray(frequencies, dtype=float))
+    if hertz.ndim != 1 or not len(hertz) or not (np.isfinite(hertz) & (hertz > 0)).all():
+        raise SignalError("frequencies must be positive numbers [Hz]: the axis is logarithmic")
+    return np.unique(hertz)
+
+
+def _corners(model: StateSpace) -> Array:
+    """The natural frequencies [Hz] of poles that are not at 0."""
+    sizes = np.array([mode.frequency for mode in model.modes()])
+    return np.asarray(sizes[sizes > 1e-9 * sizes.max(initial=0.0)], dtype=float)
+
+
+def _swept(model: StateSpace) -> Array:
+    """Frequencies that show every corner and every resonance, however sharp."""
+    corners = _corners(model)
+    if not len(corners):
+        return np.geomspace(0.01, 100, POINTS)
+    first, last = np.log10(corners.min() / 10), np.log10(corners.max() * 10)
+    around = np.geomspace(1e-5, 0.3, POINTS // 4)
+    close = [corner * np.concatenate([1 - around, 1 + around]) for corner in corners]
+    return np.unique(np.concatenate([np.logspace(first, last, POINTS), *close]))
+
+
+def _gain_and_phase(values: Any) -> tuple[Array, Array]:
+    """In dB and degrees; a gap where nothing passes. The phase is continuous, and begins within 180."""
+    with np.errstate(divide="ignore"):
+        gain = 20 * np.log10(np.abs(values))
+    gain[~np.isfinite(gain)] = np.nan
+    phase = np.degrees(np.unwrap(np.angle(values)))
+    return gain, np.asarray(phase, dtype=float)
+
+
+def _mark(upper: Any, lower: Any, model: StateSpace, hertz: Array) -> None:
+    """Hairlines at oscillations, with their frequencies above those that stand apart."""
+    found = sorted({mode.damped_frequency for mode in model.modes() if mode.damping < 0.7})
+    before = -np.inf
+    for frequency in found:
+        if not hertz[0] <= frequency <= hertz[-1]:
+            continue
+        for axis in (upper, lower):
+            axis.axvline(frequency, linewidth=0.6, color=FAINT, zorder=1, gid="oscillation")
+        place = np.log(frequency / hertz[0]) / np.log(hertz[-1] / hertz[0])
+        if place - before < 0.09:
+            continue
+        before = place
+        upper.annotate(
+            f"{frequency:.4g} Hz", (frequency, 1.0), xycoords=upper.get_xaxis_transform(),
+            xytext=(0, 3), textcoords="offset points", ha="center", va="bottom",
+            fontsize=SMALL, color=QUIET,
+        )  # fmt: skip

@@ -1,0 +1,28 @@
+"""Figures of matplotlib, outside its global state: nothing to close, nothing that opens a window."""
+
+from typing import Any
+
+from bondgraph import MissingExtraError
+
+WIDTH = 7.2
+"""Of every picture [in]."""
+
+
+def canvas(height: float) -> Any:
+    """An empty `matplotlib.figure.Figure` of that height [in]; `MissingExtraError` without matplotlib."""
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise MissingExtraError(
+            "pictures need matplotlib; install the optional extra: pip install bondgraph-toolkit[pictures]"
+        ) from None
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def stack(count: int, height: float) -> tuple[Any, list[Any]]:
+    """A figure, and axes below one another that share what runs to the right; each so high [in]."""
+    figure = canvas(height * count + 0.35)
+    return figure, list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])

@@ -1,0 +1,85 @@
+"""`pole_map`: the poles of a linear model in the complex plane."""
+
+from typing import Any
+
+import numpy as np
+
+from bondgraph.response import Mode, StateSpace
+from codegen.pictures.canvas import stack
+from codegen.pictures.style import FAINT, QUIET, SMALL, TEXT, curve
+
+DAMPINGS = (0.1, 0.2, 0.4, 0.7)
+"""Damping ratios of the rays."""
+
+
+def pole_map(model: StateSpace, title: str = "") -> Any:
+    """A `matplotlib.figure.Figure` of the poles [1/s], oscillations with their frequency and damping ratio.
+
+    Rays join poles of one damping ratio. Raises `MissingExtraError` without matplotlib.
+    """
+    figure, (axis,) = stack(1, 4.4)
+    poles = model.poles()
+    axis.axhline(0, linewidth=0.8, color=QUIET)
+    axis.axvline(0, linewidth=0.8, color=QUIET)
+    stable, others = poles[poles.real < 0], poles[poles.real >= 0]
+    for number, (some, what) in enumerate(
+        ((stable, "stable"), (others, "on the axis, or unstable"))
+    ):
+        if len(some):
+            axis.plot(
+                some.real, some.imag, linestyle="", marker="xo"[number], markersize=7, label=what,
+                color=curve(number)["color"], fillstyle="none", zorder=3,
+            )  # fmt: skip
+    width, height = _limits(axis, poles)
+    _rays(axis, width, height)
+    _name(axis, model.modes(), height)
+    axis.set_xlabel("Real part [1/s]", fontsize=TEXT)
+    axis.set_ylabel("Imaginary part [1/s]", fontsize=TEXT)
+    axis.tick_params(labelsize=TEXT - 1)
+    axis.grid(True, linewidth=0.3)
+    axis.legend(loc="center left", bbox_to_anchor=(1.005, 0.5), frameon=False, fontsize=TEXT)
+    figure.suptitle(title or "Poles", fontsize=TEXT + 1)
+    return figure
+
+
+def _limits(axis: Any, poles: Any) -> tuple[float, float]:
+    """Leave room around the poles; how far the axis goes to the left, and up."""
+    left = max(float(-poles.real.min(initial=0.0)), 0.0)
+    right = max(float(poles.real.max(initial=0.0)), 0.0)
+    height = float(abs(poles.imag).max(initial=0.0))
+    size = max(left, right, height) or 1.0
+    left, right = 1.15 * left + 0.02 * size, 1.15 * right + 0.05 * size
+    height = 1.15 * height if height else 0.5 * size
+    axis.set_xlim(-left, right)
+    axis.set_ylim(-height, height)
+    return left, height
+
+
+def _rays(axis: Any, width: float, height: float) -> None:
+    for ratio in DAMPINGS:
+        slope = np.sqrt(1 - ratio**2) / ratio
+        reach = min(width, height / slope)
+        for sign in (1, -1):
+            axis.plot(
+                [0, -reach], [0, sign * slope * reach], linewidth=0.6, linestyle=":", color=FAINT,
+                gid="ray",
+            )  # fmt: skip
+        inside = slope * width < height
+        axis.annotate(
+            f"{ratio:g}", (-reach, slope * reach), xytext=(3, 0) if inside else (0, -3),
+            textcoords="offset points", fontsize=SMALL, color=FAINT,
+            ha="left" if inside else "center", va="center" if inside else "top",
+        )  # fmt: skip
+
+
+def _name(axis: Any, modes: tuple[Mode, ...], height: float) -> None:
+    """Frequencies and dampings beside the upper poles, one above the other where they are close."""
+    swinging = sorted((m for m in modes if m.pole.imag > 0), key=lambda m: m.pole.imag)
+    least, lowest = 2 * height * 0.05, -np.inf
+    for mode in swinging:
+        lowest = max(lowest + least, mode.pole.imag)
+        axis.annotate(
+            f"{mode.damped_frequency:.4g} Hz, {mode.damping:.2g}", (mode.pole.real, mode.pole.imag),
+            xytext=(-8, (lowest - mode.pole.imag) / height * 140), textcoords="offset points",
+            fontsize=SMALL, color=QUIET, ha="right", va="center", gid="mode",
+        )  # fmt: skip

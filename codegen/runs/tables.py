@@ -1,0 +1,68 @@
+"""Runs as tables of other packages: xarray, pandas, and files of netCDF. The extra ``tables``."""
+
+from collections.abc import Mapping, Sequence
+from os import PathLike, fspath
+from typing import Any
+
+import numpy as np
+
+from bondgraph import MissingExtraError
+from codegen.arrays import Array
+from codegen.runs.events import Event
+
+INSTALL = "install the optional extra: pip install bondgraph-toolkit[tables]"
+
+
+def free(name: str, taken: Mapping[str, object]) -> str:
+    """A name for an axis that no signal has: underscores are appended until it is free.
+
+    >>> free("time", {"time": 0})
+    'time_'
+    """
+    while name in taken:
+        name += "_"
+    return name
+
+
+def dataset(
+    time: Array, columns: Mapping[str, Array], attributes: Mapping[str, Mapping[str, str]],
+    events: Sequence[Event],
+) -> Any:  # fmt: skip
+    """An `xarray.Dataset` over time [s], with the events along an axis of their own.
+
+    ``attributes``: of columns, by name.
+    """
+    try:
+        import xarray
+    except ImportError:
+        raise MissingExtraError(f"data sets need xarray; {INSTALL}") from None
+    axis, event = free("time", columns), free("event", columns)
+    parts = {
+        "event_time": (event, np.array([one.time for one in events], dtype=float), {"units": "s"}),
+        "event_port": (event, np.array([str(one.port) for one in events], dtype=str)),
+        "event_kind": (event, np.array([one.kind for one in events], dtype=str)),
+    }
+    coordinates: dict[str, Any] = {axis: (axis, time, {"units": "s"})}
+    coordinates |= {free(name, columns): part for name, part in parts.items()}
+    data = {
+        name: (axis, values, dict(attributes.get(name, {}))) for name, values in columns.items()
+    }
+    return xarray.Dataset(data, coordinates)
+
+
+def frame(time: Array, columns: Mapping[str, Array]) -> Any:
+    """A `pandas.DataFrame` with a row for each sample, over time [s]."""
+    try:
+        import pandas
+    except ImportError:
+        raise MissingExtraError(f"data frames need pandas; {INSTALL}") from None
+    return pandas.DataFrame(
+        dict(columns), index=pandas.Index(time, name=free("time", columns)), copy=True
+    )
+
+
+def write_netcdf(table: Any, path: str | PathLike[str]) -> None:
+    """Write a data set as netCDF of the 64-bit kind, which every version reads; all digits are kept."""
+    # A length of 0 means an unlimited axis there, so events that there are none of are left out.
+    empty = [name for name, length in table.sizes.items() if length == 0]
+    table.drop_dims(empty).to_netcdf(fspath(path), engine="scipy", format="NETCDF3_64BIT")
