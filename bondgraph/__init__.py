@@ -20,6 +20,8 @@ from bondgraph.errors import (
     StoreError,
     StructureError,
 )
+from bondgraph.explaining.explanation import Explanation, explain
+from bondgraph.explaining.records import Equation, Factor, Formula, Step
 from bondgraph.explicit import explicit
 from bondgraph.expressions import expression
 from bondgraph.files import read_graphml, read_json, write_graphml, write_json
@@ -47,9 +49,13 @@ __all__ = [
     "DependentSourceError",
     "Df",
     "DryFriction",
+    "Equation",
+    "Explanation",
     "ExpressionError",
     "ExpressionLaw",
+    "Factor",
     "FileFormatError",
+    "Formula",
     "I",
     "JunctionStructure",
     "Kind",
@@ -65,6 +71,7 @@ __all__ = [
     "SimulationError",
     "SingularStorageError",
     "StateEquations",
+    "Step",
     "StoreError",
     "StructureError",
     "Sw",
@@ -74,6 +81,7 @@ __all__ = [
     "assign_causality",
     "assignments",
     "derive",
+    "explain",
     "explicit",
     "expression",
     "from_graphml",

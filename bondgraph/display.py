@@ -15,6 +15,9 @@ MOST_STATES = 12
 MOST_SIGNS = 4_000
 """Systems with more states, or longer text, are summarised."""
 
+VECTORS = {"J": "x", "B": "u", "E": "u'", "F": "x", "D": "u", "G": "u'"}
+"""What each matrix is multiplied with."""
+
 MOST_NAMES = 8
 """Of longer lists the middle is counted only."""
 
@@ -116,9 +119,7 @@ def rows_of_terms(equations: Matrices) -> list[tuple[list[Term], list[Term]]]:
     return rows
 
 
-def _all_terms(
-    parts: Sequence[tuple[str, sp.Matrix, Sequence[sp.Symbol]]], row: int
-) -> list[Term]:
+def _all_terms(parts: Sequence[tuple[str, sp.Matrix, Sequence[sp.Symbol]]], row: int) -> list[Term]:
     return [term for _, matrix, vector in parts for term in _terms(matrix, vector, row)]
 
 
@@ -147,9 +148,7 @@ def wrapped(pieces: Sequence[str], width: int, indent: str) -> list[str]:
 def summary(equations: Matrices) -> str:
     """Sizes, names, how many entries each matrix has, and where those of A and J stand."""
     upper, lower = right_sides(equations)
-    suffix = {"E": "E u'", "G": "G u'", "J": "J x", "F": "F x", "B": "B u", "D": "D u"}
-    right, shown = (" + ".join(suffix[p[0]] for p in side) or "0" for side in (upper, lower))
-    lines = [f"A x' = {right},   y = {shown}" if equations.outputs else f"A x' = {right}"]
+    lines = [structure(equations)]
     for letter, what, names in (
         ("x", "state", equations.states), ("u", "input", equations.inputs),
         ("y", "output", equations.outputs),
@@ -167,6 +166,16 @@ def summary(equations: Matrices) -> str:
             pictures += ["    ", (name, *sketch(matrix.todok(), n, n))]
         lines += ["", *beside(*pictures)]
     return "\n".join(lines)
+
+
+def structure(equations: Matrices) -> str:
+    """Both equations with the letters of those matrices that are not zero."""
+    upper, lower = (
+        " + ".join(f"{letter} {VECTORS[letter]}" for letter, *_ in side) or "0"
+        for side in right_sides(equations)
+    )
+    parts = [f"A x' = {upper}"] if equations.states else []
+    return ",   ".join([*parts, f"y = {lower}"] if equations.outputs else parts)
 
 
 def listed(names: Sequence[object]) -> str:

@@ -1,10 +1,9 @@
 """Equations as LaTeX."""
 
-from collections.abc import Mapping
-
 import sympy as sp
 
-from bondgraph.display import MOST_SIGNS, MOST_STATES, Matrices
+from bondgraph.display import MOST_SIGNS, MOST_STATES, Matrices, structure
+from bondgraph.sums import typeset
 
 RATE = r"\frac{d}{dt}"
 
@@ -23,12 +22,12 @@ def latex(equations: Matrices) -> str:
     \left[\J\\right]\frac{d}{dt}\left[\\omega\\right]
     """
     x, u, y = (
-        sp.latex(sp.Matrix(names))
+        typeset(sp.Matrix(names))
         for names in (equations.states, equations.inputs, equations.outputs)
     )
     lines = []
     if equations.states:
-        left = sp.latex(sp.Matrix(equations.A)) + RATE + x
+        left = typeset(sp.Matrix(equations.A)) + RATE + x
         lines.append(f"{left} = {_sum(equations, ('J', x), ('B', u), ('E', RATE + u))}")
     if equations.outputs:
         lines.append(f"{y} = {_sum(equations, ('F', x), ('D', u), ('G', RATE + u))}")
@@ -38,7 +37,7 @@ def latex(equations: Matrices) -> str:
 def _sum(equations: Matrices, *terms: tuple[str, str]) -> str:
     """The products of those matrices that are not zero."""
     shown = [(getattr(equations, name), vector) for name, vector in terms]
-    products = [sp.latex(sp.Matrix(matrix)) + vector for matrix, vector in shown if matrix.todok()]
+    products = [typeset(sp.Matrix(matrix)) + vector for matrix, vector in shown if matrix.todok()]
     return " + ".join(products) or "0"
 
 
@@ -55,14 +54,9 @@ def notebook_latex(equations: Matrices) -> str:
         if counts[name]
         for m in [getattr(equations, name)]
     )
-    return rf"$$\begin{{gathered}} {_structure(equations, counts)} \\ {sizes} \end{{gathered}}$$"
+    return rf"$$\begin{{gathered}} {_structure(equations)} \\ {sizes} \end{{gathered}}$$"
 
 
-def _structure(equations: Matrices, counts: Mapping[str, int]) -> str:
-    """Both equations with the letters of those matrices that are not zero."""
-    vectors = {"J": "x", "B": "u", "E": r"\dot{u}", "F": "x", "D": "u", "G": r"\dot{u}"}
-    upper, lower = (
-        " + ".join(f"{name} {vectors[name]}" for name in letters if counts[name]) or "0"
-        for letters in ("JBE", "FDG")
-    )
-    return rf"A \dot{{x}} = {upper}" + (rf", \quad y = {lower}" if equations.outputs else "")
+def _structure(equations: Matrices) -> str:
+    names = {"x'": r"\dot{x}", "u'": r"\dot{u}"}
+    return " ".join(names.get(word, word) for word in structure(equations).split())

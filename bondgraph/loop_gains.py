@@ -13,7 +13,7 @@ from bondgraph.exact import Row, determinant
 from bondgraph.inertia import inertia
 from bondgraph.junction import junction_structure
 from bondgraph.reduction import reduce_ports
-from bondgraph.resistances import resistive_loops
+from bondgraph.resistances import resistive_groups
 from bondgraph.sorting import Reduction
 from bondgraph.stored import field_row
 from bondgraph.vanishing import MOST
@@ -70,10 +70,12 @@ def _of_bonds(causal: CausalGraph) -> Iterator[Loop]:
 
 def _of_resistances(reduction: Reduction) -> Iterator[Loop]:
     ports = reduction.structure.ports
-    for group, inside in resistive_loops(reduction):
-        if any(len(row) > 1 or row.get(at) != 1 for at, row in enumerate(inside)):
-            names = dict.fromkeys(ports[i].element.owner or ports[i].element.name for i in group)
-            yield Loop("resistances", tuple(names), _gain(inside))
+    for group in resistive_groups(reduction):
+        if group.is_loop:
+            names = dict.fromkeys(
+                ports[i].element.owner or ports[i].element.name for i in group.ports
+            )
+            yield Loop("resistances", tuple(names), _gain(group.inside))
 
 
 def _of_storages(reduction: Reduction) -> Iterator[Loop]:

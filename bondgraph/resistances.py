@@ -1,7 +1,7 @@
 """Linear resistances and fields of them, solved loop by loop for what they give."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import networkx as nx
 import sympy as sp
@@ -23,12 +23,33 @@ def resistances(reduction: Reduction) -> dict[int, Reading]:
     return result
 
 
+@dataclass(frozen=True)
+class ResistiveGroup:
+    """Ports of resistances that hang together: ``z = L w``, and ``1 - S_rr L``, by places in the group."""
+
+    ports: tuple[int, ...]
+    laws: tuple[Row, ...]
+    inside: tuple[Row, ...]
+
+    @property
+    def is_loop(self) -> bool:
+        """Whether what they give comes back to them."""
+        return any(len(row) > 1 or row.get(at) != 1 for at, row in enumerate(self.inside))
+
+
 def resistive_loops(reduction: Reduction) -> Iterator[tuple[list[int], list[Row]]]:
     """Ports of resistances that hang together, and ``1 - S_rr L`` of each such group."""
+    for group in resistive_groups(reduction):
+        yield [*group.ports], [*group.inside]
+
+
+def resistive_groups(reduction: Reduction) -> Iterator[ResistiveGroup]:
+    """The groups in which `resistances` solves."""
     for group in _groups(reduction):
         place = {port: at for at, port in enumerate(group)}
         laws = _given_by_received(reduction, group, place)
-        yield group, _inside(reduction.structure, group, place, laws)
+        inside = _inside(reduction.structure, group, place, laws)
+        yield ResistiveGroup(tuple(group), tuple(laws), tuple(inside))
 
 
 def _groups(reduction: Reduction) -> Iterator[list[int]]:

@@ -96,3 +96,12 @@ def _shortened(lines: list[str]) -> tuple[str, ...]:
         return tuple(lines)
     half = LONGEST_STORY // 2
     return (*lines[:half], f"... ({len(lines) - 2 * half} more strokes)", *lines[-half:])
+
+
+def deciding_nodes(strokes: Strokes, node: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """The nodes behind the stroke of a node's first bond: those that chose, and those that passed it on."""
+    chain = _chain(strokes, [strokes.at[node][0]])
+    reasons = [reason for bond in chain if (reason := strokes.reason[bond]) is not None]
+    chose = dict.fromkeys(reason.node for reason in reasons if not reason.causes)
+    passed = dict.fromkeys(reason.node for reason in reasons if reason.causes)
+    return tuple(chose), tuple(passed)

@@ -1,6 +1,7 @@
 r"""Sums of factors times signals, written as a person would: as text for a terminal, and as LaTeX."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
+from typing import Any
 
 import sympy as sp
 
@@ -19,14 +20,23 @@ def rate(name: sp.Symbol) -> sp.Symbol:
     return sp.Symbol(f"{name.name}'")
 
 
-def alone(expr: sp.Expr) -> Sum:
-    """An expression as a sum of one term."""
-    return ((sp.Integer(1), expr),)
-
-
 def total(terms: Sum) -> sp.Expr:
     """The sum as one expression."""
     return sp.Add(*(factor * signal for factor, signal in terms))
+
+
+def split(expr: sp.Expr, signals: Collection[sp.Symbol]) -> Sum:
+    """An expression as factors times signals, as far as it is a sum of such; positive terms first.
+
+    >>> R, i, u = sp.symbols("R i u")
+    >>> split(u - R*i, {i, u})
+    ((1, u), (-R, i))
+    """
+    terms: list[Term] = []
+    for term in sp.Add(expr).as_ordered_terms():
+        used = sorted(term.free_symbols & set(signals), key=str)
+        terms.append(term.as_independent(*used, as_Add=False) if used else (term, sp.Integer(1)))
+    return tuple(sorted(terms, key=lambda term: _sign_and_size(term[0])[0]))
 
 
 def plain(expr: sp.Expr) -> str:
@@ -38,19 +48,19 @@ def plain(expr: sp.Expr) -> str:
     return str(sp.sstr(expr)).replace("**", "^")
 
 
-def typeset(expr: sp.Expr) -> str:
-    r"""An expression as LaTeX; names that are Greek letters become these, rates have a dot.
+def typeset(expr: Any) -> str:
+    r"""An expression or a matrix as LaTeX; names that are Greek letters become these, rates have a dot.
 
-    >>> print(typeset(rate(sp.Symbol("omega_1"))/2))
-    \frac{\dot{\omega}_{1}}{2}
+    >>> print(typeset(rate(sp.Symbol("omega_1"))/2 + sp.Symbol("e_left_J")))
+    \frac{\dot{\omega}_{1}}{2} + e_{left,J}
     """
-    rates = {s: _dotted(s) for s in expr.free_symbols if s.name.endswith("'")}
-    return str(sp.latex(expr, symbol_names=rates))
+    names = {name: _typeset_name(name.name) for name in expr.free_symbols}
+    return str(sp.latex(expr, symbol_names=names))
 
 
-def _dotted(name: sp.Symbol) -> str:
-    base, line, index = sp.latex(sp.Symbol(name.name[:-1])).partition("_")
-    return rf"\dot{{{base}}}{line}{index}"
+def _typeset_name(name: str) -> str:
+    base, line, index = sp.latex(sp.Symbol(name.rstrip("'"))).partition("_")
+    return (rf"\dot{{{base}}}" if name.endswith("'") else base) + line + index.replace(" ", ",")
 
 
 def text_pieces(terms: Iterable[Term]) -> list[str]:
@@ -60,7 +70,7 @@ def text_pieces(terms: Iterable[Term]) -> list[str]:
     >>> text_pieces([(i/2, a), (-1/i, b), (1 - i, a)])
     ['i/2*a', '- b/i', '+ (1 - i)*a']
     """
-    return _signed([(factor, _text_product(_magnitude(factor), s)) for factor, s in terms])
+    return _signed(terms, _text_product)
 
 
 def latex_pieces(terms: Iterable[Term]) -> list[str]:
@@ -70,26 +80,25 @@ def latex_pieces(terms: Iterable[Term]) -> list[str]:
     >>> print(*latex_pieces([(i/2, a), (-i, a)]))
     \frac{i}{2} \tau_{1} - i \tau_{1}
     """
-    return _signed([(factor, _latex_product(_magnitude(factor), s)) for factor, s in terms])
+    return _signed(terms, _latex_product)
 
 
-def _signed(products: Sequence[tuple[sp.Expr, str]]) -> list[str]:
-    pieces = []
-    for factor, product in products:
-        negative = _is_negative(factor)
+def _signed(terms: Iterable[Term], product: Callable[[sp.Expr, sp.Expr], str]) -> list[str]:
+    pieces: list[str] = []
+    for factor, signal in terms:
+        negative, size = _sign_and_size(factor)
         lead = ("-" if negative else "") if not pieces else ("- " if negative else "+ ")
-        pieces.append(lead + product)
+        pieces.append(lead + product(size, signal))
     return pieces or ["0"]
 
 
-def _is_negative(factor: sp.Expr) -> bool:
-    """Whether a minus sign can stand before the whole factor: of a sum, if every term has one."""
-    parts = factor.args if factor.is_Add else (factor,)
-    return all(part.could_extract_minus_sign() for part in parts)
-
-
-def _magnitude(factor: sp.Expr) -> sp.Expr:
-    return -factor if _is_negative(factor) else factor
+def _sign_and_size(factor: sp.Expr) -> tuple[bool, sp.Expr]:
+    """Whether a minus sign can stand before the whole factor, and what then stands behind it."""
+    if factor.is_Mul:
+        parts = [_sign_and_size(part) for part in factor.args]
+        return sum(negative for negative, _ in parts) % 2 == 1, sp.Mul(*(size for _, size in parts))
+    negative = all(part.could_extract_minus_sign() for part in sp.Add.make_args(factor))
+    return negative, -factor if negative else factor
 
 
 def _text_product(factor: sp.Expr, signal: sp.Expr) -> str:

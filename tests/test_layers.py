@@ -23,6 +23,8 @@ ORDER = {
         "inertia", "loop_gains", "outputs", "readings", "sums", "blocks", "display", "latex",
         "equations", "closures", "slopes", "constrained", "holding", "closed_rows", "response",
         "linear", "explicit",
+        *_room("explaining", "records momenta strokes_told primitives elimination dependence inertias "
+               "layout text typesetting explanation"),
         "renaming", "composition", "declarations", "restored", "nodelink", "safexml", "graphml", "files",
     ],
     "codegen": [

@@ -1,0 +1,91 @@
+"""`explain`: how a bond graph becomes ``A x' = J x + B u + E u'``, step by step."""
+
+from collections.abc import Hashable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from bondgraph.assignments import assignments
+from bondgraph.causal_order import causal_equations
+from bondgraph.causality import CausalGraph, assign_causality
+from bondgraph.display import rows_of_terms
+from bondgraph.equations import StateEquations, state_equations
+from bondgraph.explaining.dependence import balances_step, dependent_step
+from bondgraph.explaining.elimination import loops_step, received_step, resistances_step
+from bondgraph.explaining.inertias import inertia_step
+from bondgraph.explaining.layout import MOST_LINES
+from bondgraph.explaining.momenta import momenta
+from bondgraph.explaining.primitives import junctions_step, laws_step, storages_step
+from bondgraph.explaining.records import Step, equation, numbered
+from bondgraph.explaining.strokes_told import causality_step
+from bondgraph.explaining.text import text_of
+from bondgraph.explaining.typesetting import latex_of, markdown_of
+from bondgraph.junction import junction_structure
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A derivation: its steps in order, and the equations it ends with.
+
+    Shown as text by ``print``, as formulas in a notebook. A step of more than ``limit`` lines shows its
+    first few; ``limit=None`` shows everything.
+    """
+
+    steps: tuple[Step, ...]
+    result: StateEquations
+
+    def text(self, limit: int | None = MOST_LINES) -> str:
+        """Aligned text for a terminal."""
+        return text_of(self.steps, self.result, limit)
+
+    def latex(self, limit: int | None = MOST_LINES) -> str:
+        """The body of a LaTeX document: paragraphs and ``align*`` environments of amsmath."""
+        return latex_of(self.steps, self.result, limit)
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def __repr__(self) -> str:
+        count = sum(len(step.equations) + len(step.formulas) for step in self.steps)
+        return f"<Explanation: {len(self.steps)} steps, {count} equations>"
+
+    def _repr_markdown_(self) -> str:
+        return markdown_of(self.steps, self.result, MOST_LINES)
+
+
+def explain(graph: Any, outputs: Iterable[Hashable] | None = None) -> Explanation:
+    """The derivation of a declared or causal graph, as the engine decided it.
+
+    Who imposes what; storages, laws and junctions as equations; what every port receives, loops and
+    resistances solved; dependent storages differentiated and put in; A, and the result. ``outputs``
+    as for `derive`, whose errors it raises.
+
+    >>> import bondgraph as bg, networkx as nx
+    >>> g = nx.DiGraph()
+    >>> g.add_nodes_from([bg.Se("u", "u"), bg.One("loop"), bg.I("L", "L", flow="i"), bg.R("R", "R")])
+    >>> g.add_edges_from([("u", "loop"), ("loop", "L"), ("loop", "R")])
+    >>> explanation = explain(g)
+    >>> explanation.steps[-1].equations[0].left, explanation.steps[-1].equations[0].right
+    (L*i', -R*i + u)
+    """
+    causal = graph if isinstance(graph, CausalGraph) else assign_causality(graph)
+    result = state_equations(junction_structure(causal), outputs)
+    return Explanation(tuple(numbered(_steps(causal, result))), result)
+
+
+def _steps(causal: CausalGraph, result: StateEquations) -> Iterator[Step]:
+    reduction, strokes, signals = result.reduction, causal.assignment, assignments(causal)
+    taken = {*(line.symbol for line in signals), *result.signals, *result.parameters}
+    held = momenta(reduction, taken)
+    shown = [(name, result.signals[name]) for name in result.outputs]
+    yield causality_step(causal, signals, reduction)
+    yield storages_step(reduction, held)
+    yield laws_step(result, signals)
+    yield junctions_step(strokes, causal_equations(strokes), signals, reduction)
+    yield loops_step(reduction, causal_equations(strokes), signals)
+    yield received_step(reduction, shown)
+    yield resistances_step(reduction)
+    yield dependent_step(reduction, held)
+    yield balances_step(reduction, held, shown)
+    yield inertia_step(result)
+    rows = (equation(*row) for row in rows_of_terms(result))
+    yield Step("result", "Collected", (), tuple(rows))

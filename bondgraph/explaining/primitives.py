@@ -1,0 +1,116 @@
+"""The equations that a bond graph states node by node: storages, laws, junctions and two-ports."""
+
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+
+import sympy as sp
+
+from bondgraph.assignments import Assignment
+from bondgraph.causal_order import CausalEquations
+from bondgraph.elements import Kind
+from bondgraph.equations import StateEquations
+from bondgraph.explaining.momenta import Momenta
+from bondgraph.explaining.records import Equation, Step, equation
+from bondgraph.laws import DryFriction, ExpressionLaw
+from bondgraph.sorting import Reduction, detects
+from bondgraph.strokes import Strokes
+from bondgraph.sums import Term, rate, split
+
+
+def storages_step(reduction: Reduction, momenta: Momenta) -> Step:
+    """Every storage's law as a rate: ``I f' = e``, ``C e' = f``; of a moving value by its momentum."""
+    lines: list[Equation] = []
+    one = sp.Integer(1)
+    for at in sorted((*reduction.states, *reduction.dependent)):
+        port = reduction.structure.ports[at]
+        effect = port.element.effort if port.element.kind is Kind.I else port.element.flow
+        name, stored = port.element.name, momenta.stored[at]
+        if at in momenta.symbols:
+            symbol = momenta.symbols[at]
+            lines.append(equation(symbol, stored, node=name))
+            lines.append(equation(rate(symbol), effect, node=name))
+        else:
+            ((value, variable),) = stored
+            lines.append(equation([(value, rate(variable))], effect, node=name))
+    for port in reduction.structure.ports:
+        if port.own_state is not None:
+            lines.append(
+                equation(rate(port.own_state), [(one, port.received)], node=port.element.name)
+            )
+    return Step("storages", "Storages", (), tuple(lines))
+
+
+def laws_step(equations: StateEquations, signals: Sequence[Assignment]) -> Step:
+    """Linear resistances, detectors, and the laws that close ports."""
+    known = {line.symbol for line in signals}
+    lines = [
+        equation(line.symbol, split(line.right, known), node=line.node)
+        for line in signals
+        if line.kind == "law"
+    ]
+    for port in equations.reduction.structure.ports:
+        if detects(port):
+            lines.append(equation(port.given, sp.Integer(0), node=port.element.name))
+    sentences = []
+    for port in equations.ports:
+        law = port.element.law
+        if isinstance(law, ExpressionLaw):
+            lines.append(equation(port.given, law.expression, node=port.element.name))
+        elif isinstance(law, DryFriction):
+            sentences.append(
+                f"{port.element.name}: dry friction, {port.given} opposes the slip {port.received} with "
+                f"at most {law.level} times its curve {law.curve}"
+            )
+    title = "Resistances and detectors"
+    if equations.laws:
+        title = "Resistances, detectors and laws; what laws give stays an input of the equations"
+    return Step("laws", title, tuple(sentences), tuple(lines))
+
+
+def junctions_step(
+    strokes: Strokes, causal: CausalEquations, signals: Sequence[Assignment], reduction: Reduction
+) -> Step:
+    """Junctions and two-ports in causal order; what a junction hands on in one line."""
+    lines: list[Equation] = []
+    known = {line.symbol for line in signals}
+    handed: dict[tuple[Hashable, sp.Expr], list[sp.Symbol]] = {}
+    for line in signals:
+        if line.kind == "transfer":
+            handed.setdefault((line.node, line.right), []).append(line.symbol)
+    for line in signals:
+        if line.kind == "balance":
+            lines.append(equation(line.symbol, split(line.right, known), node=line.node))
+        elif line.kind == "transfer" and (names := handed.pop((line.node, line.right), None)):
+            lines.append(equation(*names, split(line.right, known), node=line.node))
+    lines += _other_names(strokes, causal, signals, reduction)
+    title = "Junctions, transformers and gyrators, in causal order"
+    return Step("junctions", title, (), tuple(lines))
+
+
+def _other_names(
+    strokes: Strokes, causal: CausalEquations, signals: Sequence[Assignment], reduction: Reduction
+) -> Iterator[Equation]:
+    """Ports whose variable is a bond's under another name, or with the other sign."""
+    symbols = {(line.bond, line.variable): line.symbol for line in signals}
+    known = set(symbols.values())
+    ports = {port.element.name: port for port in reduction.structure.ports}
+    given: dict[int, tuple[int, int]] = {
+        node: (s, sign) for s, (node, sign) in causal.given.items()
+    }
+    for node, name in enumerate(strokes.names):
+        if name not in ports:
+            continue
+        for own, (signal, sign) in (
+            (ports[name].given, given[node]), (ports[name].received, causal.received[node]),
+        ):  # fmt: skip
+            if own in known:
+                continue
+            known.add(own)
+            bond = strokes.declared[signal // 2]
+            term: Term = (sp.Integer(sign), symbols[bond, "flow" if signal % 2 else "effort"])
+            yield equation(own, [term], node=name)
+
+
+def names_of_ports(reduction: Reduction) -> Mapping[int, sp.Symbol]:
+    """What each port gives, by its number; detectors give nothing and are left out."""
+    ports = reduction.structure.ports
+    return {at: port.given for at, port in enumerate(ports) if not detects(port)}
