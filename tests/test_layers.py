@@ -33,7 +33,7 @@ ORDER = {
         *_room("model", "numpy_backend numbers snapshot sharing friction instant loops rubbing closed "
                "sizes modes guards"),
         *_room("runs", "events sundials legs exact hybrid arguments observer tables summary"),
-        *_room("pictures", "style canvas labels marks stacked"),
+        *_room("pictures", "style canvas labels flags marks stacked"),
         *_room("runs", "result snapshots"),
         *_room("pictures", "panels poles bode shapes"), *_room("analysis", "spectrum comparison"),
         *_room("c", "text structure constants rhs blocks rates tables prefix scenario export"),

@@ -1,19 +1,27 @@
 """`bode`: how a linear model passes oscillations on, over their frequency."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bondgraph import SignalError
-from bondgraph.response import StateSpace
+from bondgraph.response import ComplexArray, StateSpace
 from codegen.arrays import Array
 from codegen.pictures.canvas import stack
+from codegen.pictures.flags import Flag, raise_flags
 from codegen.pictures.labels import pretty
-from codegen.pictures.style import FAINT, QUIET, SMALL, TEXT, curve
+from codegen.pictures.style import FAINT, TEXT, curve
 
 POINTS = 600
-"""Frequencies from end to end; as many again around each resonance."""
+"""Frequencies from end to end; half as many again around each corner."""
+
+RINGING = 0.7
+"""Modes of a lower damping ratio are marked as oscillations."""
+
+ROUNDING = 1e-11
+"""What is left of larger terms that cancel, as a part of them, and counts as nothing."""
 
 
 def bode(
@@ -33,14 +41,15 @@ def bode(
         _place(name, model.outputs, "output") for name in shown
     ]  # fmt: skip
     hertz = _swept(model) if frequencies is None else _checked(frequencies)
-    values = model.frequency_response(hertz)[:, rows, column]
+    values = _response(model, hertz, rows, column)
     figure, (upper, lower) = stack(2, 2.2)
     for number, name in enumerate(shown):
         gain, phase = _gain_and_phase(values[:, number])
-        look = {"linewidth": 1.2, "label": pretty(name), **curve(number)}
+        silent = "" if np.isfinite(gain).any() else " (none)"
+        look = {"linewidth": 1.2, "label": pretty(name) + silent, **curve(number)}
         upper.semilogx(hertz, gain, **look)
         lower.semilogx(hertz, phase, **look)
-    _mark(upper, lower, model, hertz)
+    _mark((upper, lower), model, hertz)
     upper.set_ylabel("Magnitude [dB]", fontsize=TEXT)
     lower.set_ylabel("Phase [°]", fontsize=TEXT)
     lower.set_xlabel("Frequency [Hz]", fontsize=TEXT)
@@ -86,30 +95,36 @@ def _swept(model: StateSpace) -> Array:
     return np.unique(np.concatenate([np.logspace(first, last, POINTS), *close]))
 
 
-def _gain_and_phase(values: Any) -> tuple[Array, Array]:
-    """In dB and degrees; a gap where nothing passes. The phase is continuous, and begins within 180."""
-    with np.errstate(divide="ignore"):
-        gain = 20 * np.log10(np.abs(values))
-    gain[~np.isfinite(gain)] = np.nan
-    phase = np.degrees(np.unwrap(np.angle(values)))
-    return gain, np.asarray(phase, dtype=float)
+def _response(model: StateSpace, hertz: Array, rows: list[int], column: int) -> ComplexArray:
+    """Outputs over an input, frequencies x outputs; nan where what is left is rounding of what cancels."""
+    n = len(model.states)
+    inner = replace(
+        model, outputs=model.states, F=np.eye(n), D=0 * model.Q, G=0 * model.R
+    ).frequency_response(hertz)[:, :, column]
+    s = 2j * np.pi * hertz[:, None]
+    F, D, G = model.F[rows], model.D[rows, column], model.G[rows, column]
+    values = inner @ F.T + D + s * G
+    sizes = np.abs(inner) @ np.abs(F).T + np.abs(D) + np.abs(s * G)
+    return np.where(np.abs(values) > ROUNDING * sizes, values, np.nan)
 
 
-def _mark(upper: Any, lower: Any, model: StateSpace, hertz: Array) -> None:
-    """Hairlines at oscillations, with their frequencies above those that stand apart."""
-    found = sorted({mode.damped_frequency for mode in model.modes() if mode.damping < 0.7})
-    before = -np.inf
-    for frequency in found:
-        if not hertz[0] <= frequency <= hertz[-1]:
-            continue
-        for axis in (upper, lower):
+def _gain_and_phase(values: ComplexArray) -> tuple[Array, Array]:
+    """In dB and degrees, with gaps; the phase is continuous, and begins within 180."""
+    passed = np.isfinite(values)
+    gain, phase = np.full(len(values), np.nan), np.full(len(values), np.nan)
+    gain[passed] = 20 * np.log10(np.abs(values[passed]))
+    phase[passed] = np.degrees(np.unwrap(np.angle(values[passed])))
+    return gain, phase
+
+
+def _mark(axes: tuple[Any, Any], model: StateSpace, hertz: Array) -> None:
+    """Hairlines at oscillations, with their frequencies above."""
+    found = sorted({m.damped_frequency for m in model.modes() if m.damping < RINGING})
+    shown = [frequency for frequency in found if hertz[0] <= frequency <= hertz[-1]]
+    for frequency in shown:
+        for axis in axes:
             axis.axvline(frequency, linewidth=0.6, color=FAINT, zorder=1, gid="oscillation")
-        place = np.log(frequency / hertz[0]) / np.log(hertz[-1] / hertz[0])
-        if place - before < 0.09:
-            continue
-        before = place
-        upper.annotate(
-            f"{frequency:.4g} Hz", (frequency, 1.0), xycoords=upper.get_xaxis_transform(),
-            xytext=(0, 3), textcoords="offset points", ha="center", va="bottom",
-            fontsize=SMALL, color=QUIET,
-        )  # fmt: skip
+    whole = np.log(hertz[-1] / hertz[0]) or 1.0
+    raise_flags(
+        axes[0], [Flag(f, float(np.log(f / hertz[0]) / whole), f"{f:.4g} Hz") for f in shown]
+    )

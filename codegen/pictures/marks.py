@@ -4,8 +4,8 @@ from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from codegen.pictures.labels import plain
-from codegen.pictures.style import FAINT, QUIET, SHADE, SMALL, curve
+from codegen.pictures.flags import Flag, raise_flags
+from codegen.pictures.style import FAINT, SHADE, curve
 from codegen.runs.events import Event
 
 MOST = 40
@@ -13,12 +13,6 @@ MOST = 40
 
 APART = 1 / 60
 """How far, as a part of what is shown."""
-
-ROWS = 4
-"""Of labels; those that fit in none are left out."""
-
-WIDE, LETTER = 0.8, 0.6
-"""An axis as a part of its figure, and a letter as a part of its height: about."""
 
 
 @dataclass(frozen=True)
@@ -73,33 +67,15 @@ def draw(axes: Sequence[Any], marks: Marks, begin: float, end: float) -> str:
             axis.axvline(
                 marks.events[at].time, linewidth=0.6, zorder=1, gid="event", **marks.look(at)
             )
-    _label(axes[0], marks, kept, begin, end)
+    raise_flags(axes[0], [_flag(marks, at, begin, end) for at in kept])
     said = ["grey: sticking"] if marks.spans else []
     if len(kept) < len(inside):
         said.append(f"{len(kept)} of {len(inside)} events marked")
     return "; ".join(said)
 
 
-def _label(axis: Any, marks: Marks, kept: Sequence[int], begin: float, end: float) -> None:
-    """Labels over an axis, in rows, so that none is over another or over another's line."""
-    points = axis.figure.get_figwidth() * 72 * WIDE
-    starts = [float("inf")] * ROWS
-    for at in reversed(kept):
-        event, color = marks.events[at], marks.look(at)["color"]
-        text = f"{event.port}: {event.kind}"
-        place = (event.time - begin) / (end - begin) * points
-        stop = place + LETTER * SMALL * len(text)
-        # Lines of later events pass through the rows below theirs.
-        row = next((row for row in range(ROWS) if stop <= min(starts[row:])), None)
-        if row is None:
-            continue
-        starts[row] = place
-        axis.annotate(
-            plain(text), (event.time, 1.0), xycoords=axis.get_xaxis_transform(),
-            xytext=(0, 3 + 1.3 * SMALL * row), textcoords="offset points", ha="left", va="bottom",
-            fontsize=SMALL, color=color if marks.owners else QUIET, annotation_clip=False, gid="event",
-            arrowprops={
-                "arrowstyle": "-", "linewidth": 0.6, "color": color, "shrinkA": 0, "shrinkB": 0,
-                "relpos": (0, 0),
-            },
-        )  # fmt: skip
+def _flag(marks: Marks, at: int, begin: float, end: float) -> Flag:
+    event = marks.events[at]
+    part = (event.time - begin) / (end - begin) if end > begin else 0.0
+    color = marks.look(at)["color"] if marks.owners else None
+    return Flag(event.time, part, f"{event.port}: {event.kind}", color)

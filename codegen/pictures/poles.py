@@ -11,9 +11,12 @@ from codegen.pictures.style import FAINT, QUIET, SMALL, TEXT, curve
 DAMPINGS = (0.1, 0.2, 0.4, 0.7)
 """Damping ratios of the rays."""
 
+BEHIND = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+"""What texts have behind them, so that no line runs through."""
+
 
 def pole_map(model: StateSpace, title: str = "") -> Any:
-    """A `matplotlib.figure.Figure` of the poles [1/s], oscillations with their frequency and damping ratio.
+    """A `matplotlib.figure.Figure` of the poles [1/s], oscillations with frequency and damping ratio.
 
     Rays join poles of one damping ratio. Raises `MissingExtraError` without matplotlib.
     """
@@ -37,7 +40,8 @@ def pole_map(model: StateSpace, title: str = "") -> Any:
     axis.set_ylabel("Imaginary part [1/s]", fontsize=TEXT)
     axis.tick_params(labelsize=TEXT - 1)
     axis.grid(True, linewidth=0.3)
-    axis.legend(loc="center left", bbox_to_anchor=(1.005, 0.5), frameon=False, fontsize=TEXT)
+    if len(stable) and len(others):
+        axis.legend(loc="center left", bbox_to_anchor=(1.005, 0.5), frameon=False, fontsize=TEXT)
     figure.suptitle(title or "Poles", fontsize=TEXT + 1)
     return figure
 
@@ -56,6 +60,8 @@ def _limits(axis: Any, poles: Any) -> tuple[float, float]:
 
 
 def _rays(axis: Any, width: float, height: float) -> None:
+    """Rays of equal damping, named at the edge where there is room."""
+    before = np.full(2, -np.inf)
     for ratio in DAMPINGS:
         slope = np.sqrt(1 - ratio**2) / ratio
         reach = min(width, height / slope)
@@ -64,22 +70,29 @@ def _rays(axis: Any, width: float, height: float) -> None:
                 [0, -reach], [0, sign * slope * reach], linewidth=0.6, linestyle=":", color=FAINT,
                 gid="ray",
             )  # fmt: skip
-        inside = slope * width < height
-        axis.annotate(
-            f"{ratio:g}", (-reach, slope * reach), xytext=(3, 0) if inside else (0, -3),
-            textcoords="offset points", fontsize=SMALL, color=FAINT,
-            ha="left" if inside else "center", va="center" if inside else "top",
-        )  # fmt: skip
+        end = np.array([reach / width, slope * reach / (2 * height)])
+        if (abs(end - before) > (0.09, 0.04)).any():
+            before = end
+            left = slope * width < height
+            axis.annotate(
+                f"ζ = {ratio:g}", (-reach, slope * reach), xytext=(3, 0) if left else (0, -3),
+                textcoords="offset points", fontsize=SMALL, color=FAINT, bbox=BEHIND,
+                ha="left" if left else "center", va="center" if left else "top",
+            )  # fmt: skip
 
 
 def _name(axis: Any, modes: tuple[Mode, ...], height: float) -> None:
     """Frequencies and dampings beside the upper poles, one above the other where they are close."""
-    swinging = sorted((m for m in modes if m.pole.imag > 0), key=lambda m: m.pole.imag)
-    least, lowest = 2 * height * 0.05, -np.inf
-    for mode in swinging:
-        lowest = max(lowest + least, mode.pole.imag)
+    points = axis.figure.get_figheight() * 72 * 0.42
+    lowest = -np.inf
+    for mode in sorted(modes, key=lambda mode: mode.pole.imag):
+        if mode.pole.imag <= 0:
+            continue
+        own = mode.pole.imag / height * points
+        lowest = max(lowest + 1.4 * SMALL, own)
         axis.annotate(
-            f"{mode.damped_frequency:.4g} Hz, {mode.damping:.2g}", (mode.pole.real, mode.pole.imag),
-            xytext=(-8, (lowest - mode.pole.imag) / height * 140), textcoords="offset points",
-            fontsize=SMALL, color=QUIET, ha="right", va="center", gid="mode",
+            f"{mode.damped_frequency:.4g} Hz, ζ = {mode.damping:.2g}",
+            (mode.pole.real, mode.pole.imag), xytext=(-16, lowest - own), textcoords="offset points",
+            fontsize=SMALL, color=QUIET, ha="right", va="center", gid="mode", bbox=BEHIND,
+            arrowprops={"arrowstyle": "-", "linewidth": 0.5, "color": FAINT, "shrinkA": 0, "shrinkB": 4},
         )  # fmt: skip

@@ -15,6 +15,9 @@ from codegen.pictures.style import COLOURS, QUIET, SMALL, TEXT
 COLUMNS = 2
 """Modes beside one another."""
 
+MOST = 12
+"""Modes, and states of each; of more those are drawn that are slowest, and take part most."""
+
 LEAST = 0.02
 """What takes part by less, as a part of what does most, has no arrow: its phase says nothing."""
 
@@ -28,30 +31,39 @@ def mode_shapes(
 
     An arrow to the right swings with the state that takes part most, one to the left against it, one
     upwards a quarter period ahead. Participation has no unit, so speeds and torques compare. ``modes``:
-    all of the model's, if none are given.
+    else the model's 12 slowest; of more than 12 states those that take part most.
 
     Raises `SignalError` if there are none, `MissingExtraError` without matplotlib.
     """
     shown = model.modes() if modes is None else tuple(modes)
     if not shown:
         raise SignalError("there are no modes to draw")
+    count, shown = len(shown), shown[:MOST]
+    names = _taking_part(shown)
+    said = f"Modes, the first {MOST} of {count}" if count > MOST else "Modes"
     rows = ceil(len(shown) / COLUMNS)
     figure = canvas(1.9 * rows + 0.5)
     axes = figure.subplots(rows, COLUMNS, sharey=True, squeeze=False).ravel()
     top = max(max(mode.participation.values()) for mode in shown)
     for axis, mode in zip(axes, shown, strict=False):
-        _draw(axis, mode, top)
+        _draw(axis, mode, names, top)
     for axis in axes[len(shown) :]:
         axis.remove()
     for axis in axes[: len(shown) : COLUMNS]:
         axis.set_ylabel("Participation", fontsize=TEXT)
-    figure.suptitle(title or "Modes", fontsize=TEXT + 1)
+    figure.suptitle(title or said, fontsize=TEXT + 1)
     figure.supxlabel(CAPTION, fontsize=SMALL, color=QUIET)
     return figure
 
 
-def _draw(axis: Any, mode: Mode, top: float) -> None:
-    names = list(mode.shape)
+def _taking_part(modes: Sequence[Mode]) -> list[str]:
+    """The states in their order; of many those that take part most in any of the modes."""
+    largest = {name: max(mode.participation[name] for mode in modes) for name in modes[0].shape}
+    kept = set(sorted(largest, key=lambda name: -largest[name])[:MOST])
+    return [name for name in largest if name in kept]
+
+
+def _draw(axis: Any, mode: Mode, names: Sequence[str], top: float) -> None:
     part = np.array([mode.participation[name] for name in names])
     shape = np.array([mode.shape[name] for name in names])
     phases = np.angle(shape / shape[int(np.argmax(part))])
@@ -61,7 +73,8 @@ def _draw(axis: Any, mode: Mode, top: float) -> None:
     # Directions and lengths are those on paper, whatever the axes' scales.
     axis.quiver(
         places[moved], part[moved] + 0.13 * top, np.cos(phases[moved]), np.sin(phases[moved]),
-        angles="uv", pivot="middle", scale=4.5, scale_units="inches", units="inches", width=0.018,
+        angles="uv", pivot="middle", scale=max(4.5, 0.45 * len(names)), scale_units="inches",
+        units="inches", width=0.018,
         headwidth=5, headlength=5, headaxislength=4.5, color=COLOURS[1], zorder=3,
     )  # fmt: skip
     axis.set_xticks(places, [pretty(name) for name in names], fontsize=TEXT)
