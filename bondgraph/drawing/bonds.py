@@ -1,45 +1,32 @@
-"""Bonds between placed nodes: where they end, half arrows and causal strokes."""
+"""Bonds between placed nodes: half arrows and causal strokes that touch no label."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
-from bondgraph.drawing.places import CLEAR, Places
-from bondgraph.drawing.shapes import BondShape, Box, Point
+from bondgraph.drawing.ends import HALF_STROKE, bond_paths
+from bondgraph.drawing.places import Places
+from bondgraph.drawing.shapes import BondShape, Box, NodeShape, Point
 from bondgraph.drawing.subject import Link, Subject
 
-RADIUS = 13.0
-"""Where bonds end from the centre of a junction."""
+BARB_BACK, BARB_OUT = 9.0, 5.0
+"""How far the barb of a half arrow reaches back along the bond, and aside."""
 
-BARB_BACK, BARB_OUT, HALF_STROKE = 9.0, 5.0, 6.0
-
-_FAN = (40.0, 140.0)
-_APART = 36.0
+_STEP, _MOST, _FREE = 1.5, 30.0, 1.5
+"""An end gives way to labels in such steps, so far at most, and keeps so far from them."""
 
 
-@dataclass(frozen=True)
-class _Way:
-    """A bond of the layers: its lower and upper node, and the bends it keeps, from the top."""
-
-    link: Link
-    upper: int
-    lower: int
-    bends: tuple[Point, ...]
-
-
-def bond_shapes(subject: Subject, places: Places, boxes: Sequence[Box]) -> tuple[BondShape, ...]:
-    """Every bond as a line that ends clear of its nodes; ``boxes``: what nodes fill, by their places."""
-    ways = [_way(link, places, boxes) for link in subject.links]
-    ends: dict[tuple[int, int], Point] = {}
-    for node in range(len(subject.items)):
-        for upper in (True, False):
-            own = [(at, way) for at, way in enumerate(ways) if way and _at(way, upper) == node]
-            aims = [(_aim(way, places, upper), at) for at, way in own]
-            ends.update(_ends(subject, places, boxes, node, aims, below=upper))
-    return tuple(
-        _shape(subject, link, _path(link, way, at, ends, places, boxes))
-        for at, (link, way) in enumerate(zip(subject.links, ways, strict=True))
-    )
+def bond_shapes(
+    subject: Subject, places: Places, nodes: Sequence[NodeShape]
+) -> tuple[BondShape, ...]:
+    """Every bond as it is drawn."""
+    paths = bond_paths(subject, places, [node.box for node in nodes])
+    shapes = []
+    for link, path in zip(subject.links, paths, strict=True):
+        near = [nodes[link.tail], nodes[link.head]]
+        boxes = [label.box.grown(_FREE) for node in near for label in node.labels]
+        boxes += [node.frame.grown(_FREE) for node in near if node.frame]
+        shapes.append(_shape(subject, link, path, boxes))
+    return tuple(shapes)
 
 
 def flow_side(first: Point, last: Point) -> Point:
@@ -51,107 +38,48 @@ def flow_side(first: Point, last: Point) -> Point:
     return (-normal[0], -normal[1]) if turned else normal
 
 
-def _at(way: _Way, upper: bool) -> int:
-    return way.upper if upper else way.lower
-
-
-def _way(link: Link, places: Places, boxes: Sequence[Box]) -> _Way | None:
-    """The bond's way through the layers, without the bends it can do without; None for one to the side."""
-    for upper, lower in ((link.tail, link.head), (link.head, link.tail)):
-        if (upper, lower) in places.bends:
-            bends = places.bends[upper, lower]
-            first, last = places.at[upper], places.at[lower]
-            others = (box for at, box in enumerate(boxes) if at not in (upper, lower))
-            if not any(box.grown(CLEAR).crossed(first, last) for box in others):
-                bends = ()
-            return _Way(link, upper, lower, bends)
-    return None
-
-
-def _aim(way: _Way, places: Places, upper: bool) -> Point:
-    """What the bond runs to from its upper, or its lower, node."""
-    if way.bends:
-        return way.bends[0] if upper else way.bends[-1]
-    return places.at[way.lower if upper else way.upper]
-
-
-def _ends(
-    subject: Subject, places: Places, boxes: Sequence[Box], node: int,
-    aims: list[tuple[Point, int]], below: bool,
-) -> dict[tuple[int, int], Point]:  # fmt: skip
-    """Where the bonds above or below a node end, by bond and node, in the order of what they aim at."""
-    aims.sort()
-    x, y = places.at[node]
-    found: dict[tuple[int, int], Point] = {}
-    if not subject.items[node].junction:
-        box = boxes[node]
-        edge = box.bottom + CLEAR - 2 if below else box.top - CLEAR + 2
-        for at, (_, bond) in enumerate(aims):
-            share = (at + 1) / (len(aims) + 1) - 0.5
-            found[bond, node] = (x + share * (box.right - box.left), edge)
-            if len(aims) == 1:
-                found[bond, node] = (x, edge)
-        return found
-    wanted = [math.degrees(math.atan2(abs(aim[1] - y), aim[0] - x)) for aim, _ in aims]
-    angles, apart = _fanned(wanted)
-    radius = max(RADIUS, HALF_STROKE / math.sin(math.radians(apart / 2))) if aims[1:] else RADIUS
-    for angle, (_, bond) in zip(angles, aims, strict=True):
-        turn = math.radians(angle)
-        down = radius * math.sin(turn)
-        found[bond, node] = (x + radius * math.cos(turn), y + (down if below else -down))
-    return found
-
-
-def _fanned(wanted: list[float]) -> tuple[list[float], float]:
-    """Angles [degrees] in falling order, near the wanted ones but apart from each other, and how far."""
-    low, high = _FAN
-    clipped = [min(max(angle, low), high) for angle in wanted]
-    gaps = [one - two for one, two in zip(clipped, clipped[1:], strict=False)]
-    if not gaps or min(gaps) >= _APART:
-        return clipped, min(gaps, default=_APART)
-    step = min(_APART, (high - low) / len(gaps))
-    middle = sum(clipped) / len(clipped)
-    reach = step * len(gaps) / 2
-    middle = min(max(middle, low + reach), high - reach)
-    return [middle + reach - step * at for at in range(len(clipped))], step
-
-
-def _path(
-    link: Link, way: _Way | None, bond: int, ends: dict[tuple[int, int], Point], places: Places,
-    boxes: Sequence[Box],
-) -> tuple[Point, ...]:  # fmt: skip
-    """The points from tail to head."""
-    if way is not None:
-        path = (ends[bond, way.upper], *way.bends, ends[bond, way.lower])
-        return path if way.upper == link.tail else path[::-1]
-    side = link.tail if places.sides[link.tail] != "middle" else link.head
-    node = link.head if side == link.tail else link.tail
-    y = places.at[node][1]
-    outer, inner = boxes[side], boxes[node]
-    if places.sides[side] == "right":
-        path = ((inner.right + CLEAR, y), (outer.left - CLEAR, y))
-    else:
-        path = ((inner.left - CLEAR, y), (outer.right + CLEAR, y))
-    return path if node == link.tail else path[::-1]
-
-
-def _shape(subject: Subject, link: Link, path: tuple[Point, ...]) -> BondShape:
+def _shape(subject: Subject, link: Link, path: tuple[Point, ...], boxes: list[Box]) -> BondShape:
+    at_head = None if link.receiver is None else link.receiver == link.head
+    head = _given_way(path[-1], path[-2], boxes, barbed=True, stroked=at_head is True)
+    tail = _given_way(path[0], path[1], boxes, barbed=False, stroked=at_head is False)
+    path = (tail, *path[1:-1], head)
     names = [subject.items[end].name for end in (link.tail, link.head)]
-    (x, y), before = path[-1], path[-2]
-    along = _unit(before, path[-1])
-    out = flow_side(before, path[-1])
-    barb = (
-        x - BARB_BACK * along[0] + BARB_OUT * out[0],
-        y - BARB_BACK * along[1] + BARB_OUT * out[1],
+    stroke, receiver = None, None
+    if link.receiver is not None:
+        stroke = _stroke(head, path[-2]) if at_head else _stroke(tail, path[1])
+        receiver = subject.items[link.receiver].name
+    barb = _barb(head, path[-2])
+    return BondShape(link.declared, names[0], names[1], path, barb, stroke, receiver)
+
+
+def _given_way(end: Point, before: Point, boxes: list[Box], barbed: bool, stroked: bool) -> Point:
+    """The end drawn back along the bond until what is drawn there touches none of the boxes."""
+    back = _unit(end, before)
+    room = min(_MOST, math.dist(end, before) - 3 * BARB_BACK)
+    for step in range(max(int(room / _STEP), 0) + 1):
+        at = (end[0] + step * _STEP * back[0], end[1] + step * _STEP * back[1])
+        lines = [(at, before)]
+        lines += [(at, _barb(at, before))] if barbed else []
+        lines += [_stroke(at, before)] if stroked else []
+        if not any(box.crossed(*line) for box in boxes for line in lines):
+            return at
+    return end
+
+
+def _barb(head: Point, before: Point) -> Point:
+    """Where the half arrow's barb ends."""
+    back, out = _unit(head, before), flow_side(before, head)
+    return (
+        head[0] + BARB_BACK * back[0] + BARB_OUT * out[0],
+        head[1] + BARB_BACK * back[1] + BARB_OUT * out[1],
     )
-    if link.receiver is None:
-        return BondShape(link.declared, names[0], names[1], path, barb)
-    at_head = link.receiver == link.head
-    end, inside = (path[-1], path[-2]) if at_head else (path[0], path[1])
-    across = flow_side(inside, end)
-    stroke = tuple((end[0] + way * across[0], end[1] + way * across[1]) for way in (-HALF_STROKE, HALF_STROKE))
-    receiver = subject.items[link.receiver].name
-    return BondShape(link.declared, names[0], names[1], path, barb, (stroke[0], stroke[1]), receiver)
+
+
+def _stroke(end: Point, inside: Point) -> tuple[Point, Point]:
+    """The causal stroke across a bond's end."""
+    x, y = flow_side(inside, end)
+    (left, top), by = end, HALF_STROKE
+    return (left - by * x, top - by * y), (left + by * x, top + by * y)
 
 
 def _unit(first: Point, last: Point) -> Point:

@@ -31,8 +31,7 @@ def scene(subject: Subject, title: str, powers: bool) -> Scene:
     for room in _ROOMS[1 if powers else 0 :]:
         placed = places(subject, room)
         nodes = [moved(placed.shapes[at], placed.at[at]) for at in range(len(subject.items))]
-        boxes = [node.box for node in nodes]
-        bonds = bond_shapes(subject, placed, boxes)
+        bonds = bond_shapes(subject, placed, nodes)
         if not powers:
             break
         names = [(link.effort, link.flow) for link in subject.links]

@@ -89,6 +89,6 @@ def _beside(subject: Subject, down: "nx.DiGraph[int]") -> dict[int, tuple[int, .
 def _ranks(down: "nx.DiGraph[int]") -> dict[int, int]:
     """The layer of every node, the least sum of bond lengths, each as far up as that allows."""
     number = {node: at for at, node in enumerate(down)}
-    bonds = [(number[upper], number[lower], 1.0) for upper, lower in down.edges]
-    low, _ = extremes(len(number), bonds, bonds)
+    gaps = [(number[upper], number[lower], 1.0) for upper, lower in down.edges]
+    low, _ = extremes(len(number), gaps, [(*gap, 0.0) for gap in gaps])
     return {node: low[at] - min(low) for node, at in number.items()}

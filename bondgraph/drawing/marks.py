@@ -15,16 +15,18 @@ Side = Literal["left", "right", "middle"]
 """Where an element lies from its bond: its symbol is next to the bond."""
 
 _MIDDLE = (ASCENT - DESCENT) / 2
-_FRAME = 3.0
+_FRAME = 5.0
 
 
 def node_shape(item: Item, side: Side, caption: Side = "right") -> NodeShape:
     """A node with the place where its bonds aim at (0, 0): the centre, or beside its bond the near end.
 
-    ``caption``: the side of a junction on which its name stands.
+    ``caption``: the side on which a junction's name, or a transformer's ratio, stands.
     """
     if item.junction:
         labels = _junction(item, caption)
+    elif item.symbol in ("TF", "GY"):
+        labels = _two_port(item, caption)
     else:
         labels = _element(item, side)
     if not item.dependent:
@@ -52,14 +54,21 @@ def _junction(item: Item, caption: Side) -> tuple[Label, ...]:
     return own, Label(item.beside, x, SMALLER * _MIDDLE, SMALLER, QUIET)
 
 
-def _element(item: Item, side: Side) -> tuple[Label, ...]:
-    """``I: J`` right of its bond, ``J :I`` left of it; a transformer's letters stand in the middle."""
+def _two_port(item: Item, caption: Side) -> tuple[Label, ...]:
+    """The letters stand in the middle, the ratio beside them."""
     symbol, y = (Run(item.symbol),), SIZE * _MIDDLE
+    half = width(symbol, SIZE) / 2
+    if caption == "left":
+        text = (*item.beside, Run(" :" + item.symbol))
+        return (Label(text, half - width(text, SIZE), y, SIZE),)
+    return (Label((Run(item.symbol + ": "), *item.beside), -half, y, SIZE),)
+
+
+def _element(item: Item, side: Side) -> tuple[Label, ...]:
+    """``I: J`` right of its bond or in its middle, ``J :I`` left of it."""
+    y = SIZE * _MIDDLE
     if side == "left":
         text = (*item.beside, Run(" :" + item.symbol))
         return (Label(text, -width(text, SIZE), y, SIZE),)
     text = (Run(item.symbol + ": "), *item.beside)
-    if side == "right":
-        return (Label(text, 0.0, y, SIZE),)
-    centred = symbol if item.symbol in ("TF", "GY") else text
-    return (Label(text, -width(centred, SIZE) / 2, y, SIZE),)
+    return (Label(text, 0.0 if side == "right" else -width(text, SIZE) / 2, y, SIZE),)

@@ -1,7 +1,7 @@
 """The order of the vertices in every layer: few crossings, by barycentres and exchanges of neighbours."""
 
 from bisect import bisect_right, insort
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import networkx as nx
 
@@ -73,3 +73,51 @@ def _exchange(graph: "nx.DiGraph[int]", order: Order) -> None:
                     saved = True
                 else:
                     layer[at], layer[at + 1] = layer[at + 1], layer[at]
+
+
+def mirrored(
+    graph: "nx.DiGraph[int]", order: Order, lean: Mapping[int, int], kinds: Mapping[int, str]
+) -> Order:
+    """The order with twigs turned so that the left half is the image of the right one, if that crosses no more.
+
+    A twig is a vertex whose bonds lead on to vertices of its own alone, or one that has no bond above
+    and one below. ``lean``: the side on which a vertex lies; ``kinds``: what tells twigs apart.
+    """
+    now = [list(layer) for layer in order]
+    for number, layer in enumerate(now):
+        for twigs, side in _twigs(graph, now, number, lean):
+            slots = [at for at, vertex in enumerate(layer) if vertex in twigs]
+            twigs = [layer[at] for at in slots]
+            twigs.sort(key=lambda twig: _bough(graph, twig, kinds), reverse=side < 0)
+            for slot, twig in zip(slots, twigs, strict=True):
+                layer[slot] = twig
+    _sweep(graph, now, down=True)
+    return now if crossings(graph, now) <= crossings(graph, order) else order
+
+
+def _twigs(
+    graph: "nx.DiGraph[int]", order: Order, number: int, lean: Mapping[int, int]
+) -> list[tuple[list[int], int]]:
+    """Groups of a layer's vertices that may change places with each other, and the side they are on."""
+    groups: list[tuple[list[int], int]] = []
+    for parent in order[number - 1] if number else []:
+        own = [one for one in graph.successors(parent) if _free(graph, one)]
+        groups.append((own, lean[parent]))
+    for child in order[number + 1] if number + 1 < len(order) else []:
+        above = list(graph.predecessors(child))
+        own = [one for one in above if graph.in_degree(one) == 0 and graph.out_degree(one) == 1]
+        others = [one for one in above if one not in own]
+        if own and len(others) == 1 and graph.out_degree(others[0]) == 1:
+            groups.append(([*own, *others], lean[others[0]]))
+    return [(own, side) for own, side in groups if side and len(own) > 1]
+
+
+def _free(graph: "nx.DiGraph[int]", vertex: int) -> bool:
+    below = nx.descendants(graph, vertex)
+    return all(graph.in_degree(one) == 1 for one in {vertex, *below})
+
+
+def _bough(graph: "nx.DiGraph[int]", vertex: int, kinds: Mapping[int, str]) -> tuple[object, ...]:
+    """What a twig consists of: a key that is the same for its mirror image."""
+    own = sorted(kinds[one] for one in {vertex, *nx.descendants(graph, vertex)})
+    return graph.in_degree(vertex) == 0, own

@@ -8,13 +8,16 @@ import networkx as nx
 
 from bondgraph.drawing.layers import Layers, layered
 from bondgraph.drawing.marks import Side, node_shape
-from bondgraph.drawing.order import Order, ordered
+from bondgraph.drawing.order import Order, mirrored, ordered
 from bondgraph.drawing.shapes import NodeShape, Point
 from bondgraph.drawing.subject import Subject
 from bondgraph.drawing.tight import extremes
 
 NODE_GAP, SIDE_BOND, LAYER_GAP, CLEAR = 26.0, 44.0, 66.0, 6.0
 """Least room between nodes of a layer, length of a bond to the side, distance of layers, room at ends."""
+
+FAN = (0.0, 30.0, 70.0, 120.0, 180.0, 250.0, 350.0, 500.0, 700.0)
+"""From each of these widths on, a bond's width counts once more."""
 
 STEEPEST = 0.34
 """A bond falls at least this much for its width, so that it does not run into its layer."""
@@ -43,13 +46,19 @@ def places(subject: Subject, room: float) -> Places:
     """The nodes placed, ``room`` times as far apart as plain bonds need."""
     found = layered(subject)
     order = ordered(found.graph, found.layers)
+    two_ports = frozenset(
+        at for at, item in enumerate(subject.items) if item.symbol in ("TF", "GY")
+    )
     lean = dict.fromkeys(found.graph, 0)
     cells = _cells(subject, found, lean, room)
-    columns = _columns(found.graph, order, cells, room)
+    columns = _columns(found.graph, order, cells, two_ports, room)
+    kinds = {vertex: _kind(subject, found, vertex) for vertex in found.graph}
+    order = mirrored(found.graph, order, _leaning(found.graph, order, columns), kinds)
+    columns = _columns(found.graph, order, cells, two_ports, room)
     for _ in range(2):
         lean = _leaning(found.graph, order, columns)
         cells = _cells(subject, found, lean, room)
-        columns = _columns(found.graph, order, cells, room)
+        columns = _columns(found.graph, order, cells, two_ports, room)
     rows = _rows(found.graph, order, columns, room)
     at: dict[int, Point] = {}
     shapes: dict[int, NodeShape] = {}
@@ -63,6 +72,13 @@ def places(subject: Subject, room: float) -> Places:
         for ends, path in found.paths.items()
     }
     return Places(at, shapes, sides, bends)
+
+
+def _kind(subject: Subject, found: Layers, vertex: int) -> str:
+    """The symbols of a node and of what lies beside it."""
+    if vertex >= len(subject.items):
+        return ""
+    return " ".join(subject.items[at].symbol for at in (vertex, *found.beside.get(vertex, ())))
 
 
 def _cells(
@@ -98,11 +114,14 @@ def _cell(subject: Subject, node: int, beside: tuple[int, ...], lean: int, room:
             offset = shape.box.left - SIDE_BOND * room - 2 * CLEAR
             left = offset + own.box.left
         shapes[item] = (own, offset, side)
+    if lean == 0 and not beside:
+        left, right = min(left, -right), max(right, -left)
     return _Cell(shapes, ceil(-left), ceil(right))
 
 
 def _columns(
-    graph: "nx.DiGraph[int]", order: Order, cells: Mapping[int, _Cell], room: float
+    graph: "nx.DiGraph[int]", order: Order, cells: Mapping[int, _Cell], two_ports: frozenset[int],
+    room: float,
 ) -> dict[int, float]:
     """The middle of the best columns: chains straight, others as short as they can be."""
     vertices = [vertex for layer in order for vertex in layer]
@@ -113,32 +132,45 @@ def _columns(
         for layer in order
         for one, two in zip(layer, layer[1:], strict=False)
     ]
-    pulls = [(number[u], number[v], _weight(graph, cells, u, v)) for u, v in graph.edges]
+    pulls = [
+        (number[u], number[v], weight, free)
+        for u, v in graph.edges
+        for weight, free in _weights(graph, cells, two_ports, u, v)
+    ]
     low, high = extremes(len(vertices), gaps, pulls)
     return {vertex: (low[at] + high[at]) / 2 for vertex, at in number.items()}
 
 
-def _weight(
-    graph: "nx.DiGraph[int]", cells: Mapping[int, _Cell], upper: int, lower: int
-) -> float:
-    """Bends and chains weigh most."""
+def _weights(
+    graph: "nx.DiGraph[int]", cells: Mapping[int, _Cell], two_ports: frozenset[int], upper: int, lower: int
+) -> list[tuple[float, float]]:
+    """Bends and chains are kept straight; in a fan the wider a bond, the more its width counts.
+
+    It counts more for transformers, which carry the main power, and for small branches.
+    """
     bends = (not cells[upper].shapes) + (not cells[lower].shapes)
     if bends:
-        return 8.0 if bends == 2 else 3.0
-    chain = graph.out_degree(upper) == 1 and graph.in_degree(lower) == 1
-    return 4.0 if chain else 1.0
+        return [(16.0 if bends == 2 else 4.0, 0.0)]
+    if graph.out_degree(upper) == 1 and graph.in_degree(lower) == 1:
+        return [(64.0, 0.0)]
+    weight = 4.0 if two_ports & {upper, lower} else 1.0
+    small = max(1.0, 8.0 // (1 + len(nx.descendants(graph, lower))))
+    return [(weight * small, free) for free in FAN]
 
 
 def _leaning(
     graph: "nx.DiGraph[int]", order: Order, columns: Mapping[int, float]
 ) -> dict[int, int]:
-    """The side to which a vertex lies from those above it, or they from theirs: -1, 0 or 1."""
+    """The side to which a vertex lies from those above it, or they from theirs: -1, 0 or 1.
+
+    One with nothing above it leans away from those below.
+    """
     lean: dict[int, int] = {}
     for layer in order:
         for vertex in layer:
             above = list(graph.predecessors(vertex))
-            middle = sum(columns[one] for one in above) / len(above) if above else columns[vertex]
-            off = columns[vertex] - middle
+            near = above or list(graph.successors(vertex)) or [vertex]
+            off = columns[vertex] - sum(columns[one] for one in near) / len(near)
             if abs(off) > 0.5:
                 lean[vertex] = 1 if off > 0 else -1
             else:

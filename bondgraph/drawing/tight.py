@@ -5,8 +5,8 @@ from collections.abc import Sequence
 Gap = tuple[int, int, float]
 """The second number is at least this much more than the first."""
 
-Pull = tuple[int, int, float]
-"""The distance between two numbers counts this much."""
+Pull = tuple[int, int, float, float]
+"""The distance between two numbers counts this much, beyond a distance that is free."""
 
 _SLACK = 1e-6
 
@@ -32,12 +32,12 @@ def extremes(count: int, gaps: Sequence[Gap], pulls: Sequence[Pull]) -> tuple[li
 
     for first, second, gap in gaps:
         at_most([(first, 1), (second, -1)], -gap)
-    for at, (first, second, _) in enumerate(pulls):
-        at_most([(first, 1), (second, -1), (count + at, -1)], 0)
-        at_most([(second, 1), (first, -1), (count + at, -1)], 0)
+    for at, (first, second, _, free) in enumerate(pulls):
+        at_most([(first, 1), (second, -1), (count + at, -1)], free)
+        at_most([(second, 1), (first, -1), (count + at, -1)], free)
     size = count + len(pulls)
     cost = np.zeros(size)
-    cost[count:] = [weight for *_, weight in pulls]
+    cost[count:] = [weight for _, _, weight, _ in pulls]
     bounds = [(0, 0)] + [(None, None)] * (count - 1) + [(0, None)] * len(pulls)
 
     def least(objective: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> "list[float]":
