@@ -3,6 +3,7 @@
 from bondgraph.assignments import Assignment, assignments
 from bondgraph.causality import CausalGraph, assign_causality
 from bondgraph.composition import assemble, prefixed
+from bondgraph.drawing.picture import Drawing, drawing
 from bondgraph.elements import GY, TF, C, De, Df, I, Kind, One, R, Se, Sf, Sw, Switch, Zero
 from bondgraph.equations import StateEquations, derive, state_equations
 from bondgraph.errors import (
@@ -48,6 +49,7 @@ __all__ = [
     "De",
     "DependentSourceError",
     "Df",
+    "Drawing",
     "DryFriction",
     "Equation",
     "Explanation",
@@ -81,6 +83,7 @@ __all__ = [
     "assign_causality",
     "assignments",
     "derive",
+    "drawing",
     "explain",
     "explicit",
     "expression",

@@ -45,6 +45,12 @@ class CausalGraph:
             raise KeyError(node)
         return stroke_story(self.assignment, self.assignment.names.index(node))
 
+    def _repr_svg_(self) -> str:
+        """The drawn graph, for notebooks."""
+        from bondgraph.drawing.picture import drawing
+
+        return drawing(self).svg()
+
 
 def assign_causality(graph: Any) -> CausalGraph:
     """Give every bond its causal stroke; storages get integral causality wherever that is possible.

@@ -35,7 +35,9 @@ def scene(subject: Subject, title: str, powers: bool) -> Scene:
         if not powers:
             break
         names = [(link.effort, link.flow) for link in subject.links]
-        labels, clean = power_labels(names, bonds, [one.box for node in nodes for one in node.labels])
+        taken = [one.box for node in nodes for one in node.labels]
+        taken += [node.frame for node in nodes if node.frame]
+        labels, clean = power_labels(names, bonds, taken)
         bonds = tuple(replace(bond, labels=own) for bond, own in zip(bonds, labels, strict=True))
         if clean:
             break

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from bondgraph.drawing.places import CLEAR, Places
 from bondgraph.drawing.shapes import Box, Point
@@ -12,7 +13,7 @@ RADIUS, HALF_STROKE = 13.0, 6.0
 """Where bonds end from the centre of a junction; half the length of a causal stroke."""
 
 _FAN = (40.0, 140.0)
-_APART = 36.0
+_APART = 42.0
 
 
 @dataclass(frozen=True)
@@ -25,9 +26,7 @@ class _Way:
     bends: tuple[Point, ...]
 
 
-def bond_paths(
-    subject: Subject, places: Places, boxes: Sequence[Box]
-) -> list[tuple[Point, ...]]:
+def bond_paths(subject: Subject, places: Places, boxes: Sequence[Box]) -> list[tuple[Point, ...]]:
     """Every bond's points from tail to head; ``boxes``: what nodes fill, by their places."""
     ways = [_way(link, places, boxes) for link in subject.links]
     ends: dict[tuple[int, int], Point] = {}
@@ -85,7 +84,9 @@ def _ends(
         return found
     wanted = [math.degrees(math.atan2(abs(aim[1] - y), aim[0] - x)) for aim, _ in aims]
     angles, apart = _fanned(wanted)
-    radius = max(RADIUS, HALF_STROKE / math.sin(math.radians(apart / 2))) if aims[1:] else RADIUS
+    radius = RADIUS
+    if len(aims) > 1:
+        radius = min(max(RADIUS, HALF_STROKE / math.sin(math.radians(apart / 2))), 2 * RADIUS)
     for angle, (_, bond) in zip(angles, aims, strict=True):
         turn = math.radians(angle)
         down = radius * math.sin(turn)
@@ -94,17 +95,30 @@ def _ends(
 
 
 def _fanned(wanted: list[float]) -> tuple[list[float], float]:
-    """Angles [degrees] in falling order, near the wanted ones but apart from each other, and how far."""
+    """Angles [degrees] in falling order, near the wanted ones but apart from each other, and how far.
+
+    One that is upright stays so.
+    """
     low, high = _FAN
-    clipped = [min(max(angle, low), high) for angle in wanted]
-    gaps = [one - two for one, two in zip(clipped, clipped[1:], strict=False)]
-    if not gaps or min(gaps) >= _APART:
-        return clipped, min(gaps, default=_APART)
-    step = min(_APART, (high - low) / len(gaps))
-    middle = sum(clipped) / len(clipped)
-    reach = step * len(gaps) / 2
-    middle = min(max(middle, low + reach), high - reach)
-    return [middle + reach - step * at for at in range(len(clipped))], step
+    upright = next((at for at, one in enumerate(wanted) if abs(one - 90) < 2), None)
+    if upright is None:
+        step = min(_APART, (high - low) / max(len(wanted) - 1, 1))
+        return _spread(wanted, low, high, step), step
+    left, right = wanted[:upright][::-1], wanted[upright + 1 :]
+    step = min(_APART, (high - 90) / max(len(left), len(right), 1))
+    over = _spread([180 - one for one in left], low, 90 - step, step) if left else []
+    under = _spread(right, low, 90 - step, step) if right else []
+    return [180 - one for one in over][::-1] + [90.0] + under, step
+
+
+def _spread(wanted: list[float], low: float, high: float, step: float) -> list[float]:
+    """The angles in falling order between the limits, each at least a step from the next."""
+    found = [min(max(one, low), high) for one in wanted]
+    if any(one - two < step for one, two in pairwise(found)):
+        reach = step * (len(found) - 1) / 2
+        middle = min(max(sum(found) / len(found), low + reach), high - reach)
+        found = [middle + reach - step * at for at in range(len(found))]
+    return found
 
 
 def _path(

@@ -51,8 +51,10 @@ def layered(subject: Subject) -> Layers:
 def _downwards(subject: Subject) -> "nx.DiGraph[int]":
     """The bonds, those turned that close a cycle of directions; sources are followed first."""
     graph: nx.DiGraph[int] = nx.DiGraph()
-    items = range(len(subject.items))
-    graph.add_nodes_from(sorted(items, key=lambda at: subject.items[at].symbol not in ("Se", "Sf")))
+    places = range(len(subject.items))
+    sources = [at for at in places if subject.items[at].symbol in ("Se", "Sf")]
+    graph.add_nodes_from(sources)
+    graph.add_nodes_from(places)
     graph.add_edges_from((link.tail, link.head) for link in subject.links)
     place = {node: at for at, node in enumerate(_preorder(graph))}
     turned = [(tail, head) for tail, head in graph.edges if place[tail] > place[head]]

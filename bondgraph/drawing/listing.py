@@ -1,5 +1,7 @@
 """A bond graph as text for a terminal: a line a bond, from top to bottom, with strokes and half arrows."""
 
+from collections.abc import Mapping
+
 from bondgraph.drawing.compose import LEGEND
 from bondgraph.drawing.rich import plain
 from bondgraph.drawing.subject import Item, Link, Subject
@@ -8,7 +10,7 @@ MARK = " *"
 """Behind a dependent storage."""
 
 
-def listing(subject: Subject, rows: dict[int, tuple[float, float]], powers: bool) -> str:
+def listing(subject: Subject, rows: Mapping[int, tuple[float, float]], powers: bool) -> str:
     """The bonds in the order of their places, ``|`` at the end that receives the effort.
 
     ``rows``: every node's place in the picture, layer first.
@@ -27,7 +29,7 @@ def listing(subject: Subject, rows: dict[int, tuple[float, float]], powers: bool
     return "\n".join(lines or [_name(item) for item in subject.items])
 
 
-def _place(link: Link, rows: dict[int, tuple[float, float]]) -> tuple[object, ...]:
+def _place(link: Link, rows: Mapping[int, tuple[float, float]]) -> tuple[object, ...]:
     upper, lower = sorted((rows[link.tail], rows[link.head]))
     return upper, lower
 

@@ -5,7 +5,7 @@ from typing import Literal
 
 from bondgraph.drawing.metrics import ASCENT, DESCENT, width
 from bondgraph.drawing.rich import Run
-from bondgraph.drawing.shapes import INK, MARKED, QUIET, Box, Label, NodeShape, Point, around
+from bondgraph.drawing.shapes import MARKED, QUIET, Box, Label, NodeShape, Point, around
 from bondgraph.drawing.subject import Item
 
 SIZE, SMALLER = 14.0, 9.5
@@ -34,7 +34,9 @@ def node_shape(item: Item, side: Side, caption: Side = "right") -> NodeShape:
     shift = {"left": -_FRAME, "right": _FRAME, "middle": 0.0}[side]
     labels = tuple(replace(label, x=label.x + shift, colour=MARKED) for label in labels)
     frame = around([label.box for label in labels]).grown(_FRAME)
-    return NodeShape(item.name, labels, Box(frame.left, frame.top + 2, frame.right, frame.bottom - 1))
+    return NodeShape(
+        item.name, labels, Box(frame.left, frame.top + 2, frame.right, frame.bottom - 1)
+    )
 
 
 def moved(shape: NodeShape, to: Point) -> NodeShape:

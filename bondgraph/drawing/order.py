@@ -1,11 +1,13 @@
 """The order of the vertices in every layer: few crossings, by barycentres and exchanges of neighbours."""
 
+import random
 from bisect import bisect_right, insort
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 import networkx as nx
 
-SWEEPS = 16
+STARTS, SWEEPS = 10, 8
 
 Order = list[list[int]]
 """The layers, each from left to right."""
@@ -13,24 +15,39 @@ Order = list[list[int]]
 
 def ordered(graph: "nx.DiGraph[int]", layers: Sequence[Sequence[int]]) -> Order:
     """The layers with their vertices in an order of few crossings, like the given one where free."""
-    now = [list(layer) for layer in layers]
-    best = [list(layer) for layer in now]
+    best = [list(layer) for layer in layers]
     least = crossings(graph, best)
-    for sweep in range(SWEEPS):
-        _sweep(graph, now, down=sweep % 2 == 0)
-        _exchange(graph, now)
-        count = crossings(graph, now)
-        if count < least:
-            best, least = [list(layer) for layer in now], count
-        if least == 0:
-            break
+    dice = random.Random(0)  # always the same starts
+    for start in range(STARTS):
+        now = [list(layer) for layer in layers]
+        for layer in now if start else ():
+            dice.shuffle(layer)
+        for sweep in range(SWEEPS):
+            if least == 0:
+                return best
+            _sweep(graph, now, down=sweep % 2 == 0)
+            _exchange(graph, now)
+            count = crossings(graph, now)
+            if count < least:
+                best, least = [list(layer) for layer in now], count
     return best
+
+
+def faced(order: Order) -> Order:
+    """The order or its mirror image, whichever has more of the lower numbers on the left."""
+    rising = sum(
+        (one < two) - (one > two)
+        for layer in order
+        for at, one in enumerate(layer)
+        for two in layer[at + 1 :]
+    )
+    return order if rising >= 0 else [layer[::-1] for layer in order]
 
 
 def crossings(graph: "nx.DiGraph[int]", order: Sequence[Sequence[int]]) -> int:
     """How many pairs of bonds cross."""
     return sum(
-        _between(graph, upper, lower) for upper, lower in zip(order, order[1:], strict=False)
+        _between(graph, upper, lower) for upper, lower in pairwise(order)
     )
 
 
@@ -61,24 +78,33 @@ def _sweep(graph: "nx.DiGraph[int]", order: Order, down: bool) -> None:
 
 def _exchange(graph: "nx.DiGraph[int]", order: Order) -> None:
     """Exchange neighbours in a layer as long as that saves crossings."""
+    place = {vertex: at for layer in order for at, vertex in enumerate(layer)}
     saved = True
     while saved:
         saved = False
-        for number, layer in enumerate(order):
-            near = order[max(number - 1, 0) : number + 2]
+        for layer in order:
             for at in range(len(layer) - 1):
-                before = crossings(graph, near)
-                layer[at], layer[at + 1] = layer[at + 1], layer[at]
-                if crossings(graph, near) < before:
+                one, two = layer[at], layer[at + 1]
+                if _saving(graph, place, one, two) > 0:
+                    layer[at], layer[at + 1] = two, one
+                    place[one], place[two] = at + 1, at
                     saved = True
-                else:
-                    layer[at], layer[at + 1] = layer[at + 1], layer[at]
+
+
+def _saving(graph: "nx.DiGraph[int]", place: Mapping[int, int], one: int, two: int) -> int:
+    """How many crossings fewer there are with the second of two neighbours before the first."""
+    return sum(
+        (place[far] > place[near]) - (place[far] < place[near])
+        for sides in (graph.pred, graph.succ)
+        for far in sides[one]
+        for near in sides[two]
+    )
 
 
 def mirrored(
     graph: "nx.DiGraph[int]", order: Order, lean: Mapping[int, int], kinds: Mapping[int, str]
 ) -> Order:
-    """The order with twigs turned so that the left half is the image of the right one, if that crosses no more.
+    """The order with twigs turned to make the halves images of each other, if that crosses no more.
 
     A twig is a vertex whose bonds lead on to vertices of its own alone, or one that has no bond above
     and one below. ``lean``: the side on which a vertex lies; ``kinds``: what tells twigs apart.

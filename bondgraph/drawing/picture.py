@@ -72,6 +72,10 @@ def drawing(
     >>> g.add_nodes_from([bg.Se("engine", "tau_e"), bg.One("shaft"), bg.I("J", "J"), bg.I("rotor", "J_r")])
     >>> g.add_edges_from([("engine", "shaft"), ("shaft", "J"), ("shaft", "rotor")])
     >>> print(drawing(g).text())
+    Se: τₑ    ──⇀|  1 shaft
+    1 shaft   ──⇀|  I: J
+    1 shaft  |──⇀   I: Jᵣ *
+    * dependent storage (derivative causality)
     """
     what = subject(graph, values)
     return Drawing(scene(what, title, powers), what, powers)

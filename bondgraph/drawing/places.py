@@ -2,13 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from math import ceil
 
 import networkx as nx
 
 from bondgraph.drawing.layers import Layers, layered
 from bondgraph.drawing.marks import Side, node_shape
-from bondgraph.drawing.order import Order, mirrored, ordered
+from bondgraph.drawing.order import Order, faced, mirrored, ordered
 from bondgraph.drawing.shapes import NodeShape, Point
 from bondgraph.drawing.subject import Subject
 from bondgraph.drawing.tight import extremes
@@ -18,6 +19,9 @@ NODE_GAP, SIDE_BOND, LAYER_GAP, CLEAR = 26.0, 44.0, 66.0, 6.0
 
 FAN = (0.0, 30.0, 70.0, 120.0, 180.0, 250.0, 350.0, 500.0, 700.0)
 """From each of these widths on, a bond's width counts once more."""
+
+STRAIGHT = 64.0
+"""What the width of a bond counts that should be straight."""
 
 STEEPEST = 0.34
 """A bond falls at least this much for its width, so that it does not run into its layer."""
@@ -45,20 +49,17 @@ class _Cell:
 def places(subject: Subject, room: float) -> Places:
     """The nodes placed, ``room`` times as far apart as plain bonds need."""
     found = layered(subject)
-    order = ordered(found.graph, found.layers)
-    two_ports = frozenset(
-        at for at, item in enumerate(subject.items) if item.symbol in ("TF", "GY")
-    )
+    order = faced(ordered(found.graph, found.layers))
     lean = dict.fromkeys(found.graph, 0)
     cells = _cells(subject, found, lean, room)
-    columns = _columns(found.graph, order, cells, two_ports, room)
+    columns = _columns(found.graph, order, cells, room)
     kinds = {vertex: _kind(subject, found, vertex) for vertex in found.graph}
-    order = mirrored(found.graph, order, _leaning(found.graph, order, columns), kinds)
-    columns = _columns(found.graph, order, cells, two_ports, room)
     for _ in range(2):
+        order = mirrored(found.graph, order, _leaning(found.graph, order, columns), kinds)
+        columns = _columns(found.graph, order, cells, room)
         lean = _leaning(found.graph, order, columns)
         cells = _cells(subject, found, lean, room)
-        columns = _columns(found.graph, order, cells, two_ports, room)
+        columns = _columns(found.graph, order, cells, room)
     rows = _rows(found.graph, order, columns, room)
     at: dict[int, Point] = {}
     shapes: dict[int, NodeShape] = {}
@@ -89,9 +90,7 @@ def _cells(
         if vertex >= len(subject.items):
             cells[vertex] = _Cell({}, 2, 2)
         else:
-            cells[vertex] = _cell(
-                subject, vertex, found.beside.get(vertex, ()), lean[vertex], room
-            )
+            cells[vertex] = _cell(subject, vertex, found.beside.get(vertex, ()), lean[vertex], room)
     return cells
 
 
@@ -120,42 +119,44 @@ def _cell(subject: Subject, node: int, beside: tuple[int, ...], lean: int, room:
 
 
 def _columns(
-    graph: "nx.DiGraph[int]", order: Order, cells: Mapping[int, _Cell], two_ports: frozenset[int],
-    room: float,
+    graph: "nx.DiGraph[int]", order: Order, cells: Mapping[int, _Cell], room: float
 ) -> dict[int, float]:
     """The middle of the best columns: chains straight, others as short as they can be."""
     vertices = [vertex for layer in order for vertex in layer]
     number = {vertex: at for at, vertex in enumerate(vertices)}
+    bends = min((at for at, cell in cells.items() if not cell.shapes), default=max(cells) + 1)
+    sizes = {
+        vertex: 1 + sum(one < bends for one in nx.descendants(graph, vertex)) for vertex in graph
+    }
     gap = ceil(NODE_GAP * room)
     gaps = [
         (number[one], number[two], float(cells[one].right + gap + cells[two].left))
         for layer in order
-        for one, two in zip(layer, layer[1:], strict=False)
+        for one, two in pairwise(layer)
     ]
     pulls = [
         (number[u], number[v], weight, free)
         for u, v in graph.edges
-        for weight, free in _weights(graph, cells, two_ports, u, v)
+        for weight, free in _weights(graph, sizes, bends, u, v)
     ]
     low, high = extremes(len(vertices), gaps, pulls)
     return {vertex: (low[at] + high[at]) / 2 for vertex, at in number.items()}
 
 
 def _weights(
-    graph: "nx.DiGraph[int]", cells: Mapping[int, _Cell], two_ports: frozenset[int], upper: int, lower: int
+    graph: "nx.DiGraph[int]", sizes: Mapping[int, int], bends: int, upper: int, lower: int
 ) -> list[tuple[float, float]]:
-    """Bends and chains are kept straight; in a fan the wider a bond, the more its width counts.
+    """Bends, chains and what leads to most of the graph are kept straight; in a fan wide bonds weigh more.
 
-    It counts more for transformers, which carry the main power, and for small branches.
+    A small branch keeps to its place more than a large one. ``bends``: from this vertex on.
     """
-    bends = (not cells[upper].shapes) + (not cells[lower].shapes)
-    if bends:
-        return [(16.0 if bends == 2 else 4.0, 0.0)]
-    if graph.out_degree(upper) == 1 and graph.in_degree(lower) == 1:
-        return [(64.0, 0.0)]
-    weight = 4.0 if two_ports & {upper, lower} else 1.0
-    small = max(1.0, 8.0 // (1 + len(nx.descendants(graph, lower))))
-    return [(weight * small, free) for free in FAN]
+    bent = (upper >= bends) + (lower >= bends)
+    if bent:
+        return [(STRAIGHT / 4 if bent == 2 else STRAIGHT / 16, 0.0)]
+    rest = [sizes[one] for one in graph.successors(upper) if one != lower]
+    if graph.in_degree(lower) == 1 and sizes[lower] > 1.5 * max(rest, default=0):
+        return [(STRAIGHT, 0.0)]
+    return [(max(1.0, 8.0 // sizes[lower]), free) for free in FAN]
 
 
 def _leaning(

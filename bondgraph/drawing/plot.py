@@ -63,7 +63,9 @@ def _frame(axes: Any, box: Box) -> None:
 
     corner, wide, high = (box.left, box.top), box.right - box.left, box.bottom - box.top
     axes.add_patch(
-        Rectangle(corner, wide, high, fill=False, edgecolor=MARKED, linewidth=THIN, linestyle=(0, (3, 2)))
+        Rectangle(
+            corner, wide, high, fill=False, edgecolor=MARKED, linewidth=THIN, linestyle=(0, (3, 2))
+        )
     )
 
 

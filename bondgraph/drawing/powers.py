@@ -61,7 +61,9 @@ def power_labels(
 def _candidates(rich: Rich, bond: BondShape, side: float) -> Iterator[Label]:
     """Places of a label on one side of a bond's longest piece, the best first."""
     pieces = zip(bond.path, bond.path[1:], strict=False)
-    first, last = max(pieces, key=lambda piece: abs(piece[1][0] - piece[0][0]) + abs(piece[1][1] - piece[0][1]))
+    first, last = max(
+        pieces, key=lambda piece: abs(piece[1][0] - piece[0][0]) + abs(piece[1][1] - piece[0][1])
+    )
     out = flow_side(first, last)
     wide, high = width(rich, SIZE), (ASCENT + DESCENT) * SIZE
     reach = (abs(out[0]) * wide + abs(out[1]) * high) / 2

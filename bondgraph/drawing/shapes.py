@@ -1,6 +1,5 @@
 """What a picture consists of: labels, nodes and bonds with their places, y downwards, in points."""
 
-import math
 from collections.abc import Hashable
 from dataclasses import dataclass
 
@@ -124,8 +123,3 @@ class Scene:
     bonds: tuple[BondShape, ...]
     notes: tuple[Label, ...] = ()
     swatch: Box | None = None
-
-
-def length(path: tuple[Point, ...]) -> float:
-    """How long a line with bends is."""
-    return sum(math.dist(*pair) for pair in zip(path, path[1:], strict=False))

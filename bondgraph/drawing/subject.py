@@ -62,7 +62,7 @@ def subject(graph: Any, values: bool) -> Subject:
     checked = causal.graph if causal else validate(graph)
     strokes = causal.strokes if causal else {}
     dependent = frozenset(causal.derivative) if causal else frozenset()
-    elements: dict[Hashable, Element] = dict(checked.nodes(data="element"))
+    elements: dict[Hashable, Element] = {name: checked.nodes[name]["element"] for name in checked}
     owners = {name: name if e.owner is None else e.owner for name, e in elements.items()}
     places = {owner: at for at, owner in enumerate(dict.fromkeys(owners.values()))}
     ports: dict[Hashable, list[Element]] = {owner: [] for owner in places}
@@ -70,9 +70,12 @@ def subject(graph: Any, values: bool) -> Subject:
         ports[owner].append(elements[name])
     items = tuple(_item(owner, own, dependent, values) for owner, own in ports.items())
     links = tuple(
-        _link(elements[tail], elements[head], declared, (owners[tail], owners[head]), places, strokes)
-        for tail, head, declared in checked.edges(data="declared")
-    )
+        _link(
+            elements[tail], elements[head], checked.edges[tail, head]["declared"],
+            (owners[tail], owners[head]), places, strokes,
+        )
+        for tail, head in checked.edges
+    )  # fmt: skip
     return Subject(items, links, remark)
 
 
@@ -145,4 +148,3 @@ def _link(
     ]
     receiver = places[strokes[declared]] if strokes else None
     return Link(places[ends[0]], places[ends[1]], declared, names[0], names[1], receiver)
-

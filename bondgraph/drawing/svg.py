@@ -27,7 +27,10 @@ def _lines(scene: Scene) -> Iterator[str]:
     yield f"<title>{escape(scene.title)}</title>"
     yield f"<desc>{escape(scene.description)}</desc>"
     yield f'<rect width="{wide}" height="{high}" fill="#ffffff"/>'
-    yield f'<g fill="none" stroke="{INK}" stroke-width="{THIN}" stroke-linecap="round" stroke-linejoin="round">'
+    yield (
+        f'<g fill="none" stroke="{INK}" stroke-width="{THIN}" stroke-linecap="round" '
+        'stroke-linejoin="round">'
+    )
     for bond in scene.bonds:
         yield f'<path d="{_path(bond.path + (bond.barb,))}"/>'
     for bond in scene.bonds:

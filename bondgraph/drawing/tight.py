@@ -43,7 +43,9 @@ def extremes(count: int, gaps: Sequence[Gap], pulls: Sequence[Pull]) -> tuple[li
     def least(objective: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> "list[float]":
         rows, columns, values = zip(*entries, strict=True)
         matrix = csr_array((values, (rows, columns)), shape=(len(limits), size))
-        found = linprog(objective, matrix, limits, bounds=bounds, method="highs")
+        found = linprog(  # type: ignore[call-overload]  # its stubs know dense matrices only
+            objective, matrix, limits, bounds=bounds, method="highs"
+        )
         return [float(value) for value in found.x]
 
     best = float(cost @ np.array(least(cost)))
