@@ -43,7 +43,8 @@ ORDER = {
         *_room("c", "text structure constants rhs blocks rates tables prefix scenario export"),
         *_room("engine", "build sizes modes inputs runs located"),
         "simulate", "trim",
-        *_room("sweeps", "packing family measures design batch_inputs batch_engine batch job crews "
+        *_room("sweeps", "packing family measures design columns batch_inputs batch_engine batch_model batch "
+               "job crews "
                "cluster drive result store sweep"),
         *_room("python", "sticking text blocks tables export"),
         *_room("switched", "handover phases spliced simulator"),

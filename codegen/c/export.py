@@ -143,6 +143,11 @@ def texts(
     return {"config.h": sizes, "model.c": "\n".join(lines) + "\n", **runtime}
 
 
+def stepped(files: Mapping[str, str]) -> dict[str, str]:
+    """An export without what only event-located runs need."""
+    return {name: text for name, text in files.items() if name not in LOCATED}
+
+
 def runtime_file(name: str) -> str:
     """The text of a hand-written file."""
     return files("codegen").joinpath("runtime", name).read_text(encoding="utf-8")

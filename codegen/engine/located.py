@@ -91,21 +91,17 @@ class LocatedRuns:
         """Run and record; None where it could not go on."""
         ffi, _ = self.library.opened
         rows = np.empty((len(times), sum(_widths(self.model))))
-        modes = np.zeros((len(times), max(len(self.model.program.friction), 1)), dtype=np.intc)
         start = np.append(states, 0.0)
-        asked, target = ffi.new("bg_request *"), ffi.new("bg_rows *")
-        target.table, target.modes = _pointer(ffi, rows), _pointer(ffi, modes, "int *")
+        asked = ffi.new("bg_request *")
         asked.times, asked.states = _pointer(ffi, times), _pointer(ffi, start)
         asked.samples, asked.method = len(times), METHODS.index(settings.method)
         asked.rtol, asked.atol = settings.rtol, settings.atol
-        events = self._called(
-            asked, target, signal_table(signals, float(times[0]), float(times[-1]))
-        )
+        events = self._called(asked, rows, signal_table(signals, float(times[0]), float(times[-1])))
         if events is None or not np.isfinite(rows).all():
             return None
         return Recorded(events, self._shots(rows))
 
-    def _called(self, asked: Any, target: Any, table: SignalTable) -> tuple[Event, ...] | None:
+    def _called(self, asked: Any, rows: Array, table: SignalTable) -> tuple[Event, ...] | None:
         """Call C, with more room for events if it asks for it; its events if the run is whole."""
         ffi, library = self.library.opened
         inputs, kept = packed_signals(ffi, table)
@@ -117,7 +113,7 @@ class LocatedRuns:
             status = library.bg_rows_run(
                 ffi.cast("bg_located *", run.ctypes.data),
                 ffi.cast("bg_model *", instance.ctypes.data),
-                _pointer(ffi, self._parameters), inputs, asked, target,
+                _pointer(ffi, self._parameters), inputs, asked, _pointer(ffi, rows),
             )  # fmt: skip
             room *= 16
         del kept

@@ -41,7 +41,8 @@ class Sizes:
         """The generated header."""
         named = {**vars(self), "MODES": 3**self.K}
         lines = ",\n".join(f"    BG_{name} = {value}" for name, value in named.items())
-        return f"/* The sizes of one model. */\nenum {{\n{lines}\n}};\n"
+        guard = "#ifndef BG_SIZES_H\n#define BG_SIZES_H\n"
+        return f"/* The sizes of one model. */\n{guard}enum {{\n{lines}\n}};\n#endif\n"
 
     @property
     def numbers(self) -> dict[str, int]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from bondgraph import BondGraphError, SignalError, StateEquations
 from bondgraph.expressions import normal
-from codegen.c.export import LOCATED, runtime_file, to_c
+from codegen.c.export import runtime_file, stepped, to_c
 from codegen.fmu.binaries import binaries, chosen_platforms, headers
 from codegen.fmu.model import FmuModel, config_text, model_text
 from codegen.fmu.switches import switching
@@ -79,8 +79,7 @@ def write_fmu(
     official = headers(version)
     model = _model(name or target.stem, equations, parameters, laws, initial or {}, inputs or {})
     code = to_c(equations, parameters, laws, name=model.name)
-    stepped = {file: text for file, text in code.items() if file not in LOCATED}
-    sources = stepped | {file: runtime_file(file) for file in GLUE[version]}
+    sources = stepped(code) | {file: runtime_file(file) for file in GLUE[version]}
     sources |= {"fmu_model.c": model_text(model), **official}
     units = sorted(file for file in sources if file.endswith(".c"))
     token = _token(sources, description(model, version, "", units), config_text(model, ""))

@@ -5,16 +5,19 @@
 
 void batch_sizes(unsigned long *sizes)
 {
+    const unsigned long row = BG_Z * (1 + BATCH_STRIDE);
     sizes[0] = (unsigned long)sizeof(batch_room);
-    sizes[1] = (unsigned long)sizeof(batch_reader);
-    sizes[2] = batch_model_size();
+    sizes[1] = batch_model_size();
+    sizes[2] = BATCH_POWERS * BG_Z * BG_Z + BATCH_OWN * row;
+    sizes[3] = row;
+    sizes[4] = BG_ENTRIES;
 }
 
 /* The integrated vector at the start; a status. */
-static int start_of(const batch_room *room, const batch_job *job, const bg_inputs *inputs,
-                    const double *states, double *s)
+static int start_of(const batch_room *room, const bg_inputs *inputs, const double *states,
+                    double *s)
 {
-    const double t = job->times[0];
+    const double t = room->job->times[0];
     const int segment = bg_segment(inputs, t);
     double g[BG_G], w[2 * BG_W];
     bg_slots(inputs, segment, t, g);
@@ -22,53 +25,60 @@ static int start_of(const batch_room *room, const batch_job *job, const bg_input
     return batch_model_start(room->model, t, states, w, s) ? BATCH_REFUSED : BG_OK;
 }
 
-/* One run, modes supplied as it asks for them, which begins it again: those of the run before
- * first; a status. */
-static int one(batch_room *room, const batch_job *job, const batch_numbers *numbers,
-               const bg_inputs *inputs, bg_task *task)
+/* Binds parameters. The modes that the run before needed are worked out at once; a status. */
+static int bind(batch_room *room, const double *parameters, batch_numbers *numbers)
 {
     const int expected = room->made;
-    int status = BG_MISSING, likely[BATCH_MODES];
+    int likely[BATCH_MODES];
     memcpy(likely, room->number, sizeof likely);
     room->made = 0;
+    if (batch_model_begin(room->model, parameters, numbers))
+        return BATCH_REFUSED;
+    batch_magnitudes(&room->record, numbers);
+    bg_forget(room->context);
     for (int k = 0; k < expected; k++)
-        batch_supply(room, job, numbers, likely[k]);
-    while (status == BG_MISSING) {
-        status = bg_run(room->context, &room->record, inputs, task);
-        if (status == BG_MISSING && batch_supply(room, job, numbers, task->where))
-            return BG_UNSUPPORTED;
-    }
-    return status;
+        batch_supply(room, numbers, likely[k]);
+    return BG_OK;
 }
 
-static int run(batch_room *room, const batch_job *job, const batch_runs *runs, int k)
+/* One run, modes supplied as it asks for them, which begins it again; a status. */
+static int run(batch_room *room, const batch_numbers *numbers, const bg_inputs *inputs,
+               const double *states, double *results)
 {
-    const bg_inputs *const inputs = runs->inputs[k];
-    batch_numbers numbers;
     double start[BG_N];
-    bg_task task = {0};
-    if (batch_model_begin(room->model, runs->parameters + k * BATCH_PARAMETERS, &numbers))
-        return BATCH_REFUSED;
-    batch_magnitudes(&room->record, &numbers);
-    bg_forget(room->context);
-    int status = start_of(room, job, inputs, runs->states + k * BG_N, start);
-    task.times = job->times;
-    task.samples = job->samples;
-    task.grid = job->grid;
-    task.start = start;
-    task.rows = room->rows;
-    task.modes = room->modes;
-    task.events = room->events;
-    task.capacity = room->capacity;
-    if (status == BG_OK)
-        status = one(room, job, &numbers, inputs, &task);
-    if (status == BG_OK)
-        batch_reduce(room, job, inputs, &task, runs->results + (long)k * job->width);
-    return status;
+    bg_task task = {
+        .times = room->job->times, .samples = room->job->samples, .grid = room->job->grid,
+        .start = start, .events = room->events, .capacity = room->capacity,
+    };
+    int status = start_of(room, inputs, states, start);
+    if (status)
+        return status;
+    status = BG_MISSING;
+    while (status == BG_MISSING) {
+        status = bg_run_by(room->context, &room->record, inputs, &task, batch_advance, room);
+        if (status == BG_MISSING && batch_supply(room, numbers, task.where))
+            return BG_UNSUPPORTED;
+    }
+    if (status)
+        return status;
+    batch_sample_last(room->context, room);
+    batch_reduce(room, &task, results);
+    return BG_OK;
 }
 
 void batch_run(batch_room *room, const batch_job *job, const batch_runs *runs)
 {
-    for (int k = 0; k < runs->runs; k++)
-        runs->status[k] = run(room, job, runs, k);
+    const double *bound = 0;
+    batch_numbers numbers;
+    int refused = 0;
+    room->job = job;
+    for (int k = 0; k < runs->runs; k++) {
+        const double *const own = runs->parameters + (long)k * BATCH_PARAMETERS;
+        if (!bound || memcmp(bound, own, sizeof(double) * BATCH_PARAMETERS) != 0)
+            refused = bind(room, own, &numbers);
+        bound = own;
+        runs->status[k] = refused ? refused
+                                  : run(room, &numbers, runs->inputs[k], runs->states + k * BG_N,
+                                        runs->results + (long)k * job->width);
+    }
 }

@@ -10,7 +10,10 @@
 
 #include "bg_engine.h"
 
-enum { BATCH_MODES = BG_MODES < 27 ? BG_MODES : 27 };
+enum {
+    BATCH_MODES = BG_MODES < 27 ? BG_MODES : 27,
+    BATCH_STRIDE = 8 /* so many steps are taken from one state */
+};
 
 /* Beyond those of the engine: the model refuses these numbers. */
 enum { BATCH_REFUSED = 20 };
@@ -43,28 +46,27 @@ typedef struct {
     int *status;
 } batch_runs;
 
-/* A signal in a mode over (s, w, w', 1): a component of s alone, if `column` is one. */
-typedef struct {
-    int column, driven;
-    double row[BG_L];
-} batch_reader;
+typedef double batch_lanes[BATCH_STRIDE];
 
-/* Where runs are done, one at a time. The caller gives what is pointed to: `rows`, `modes`,
- * `values` for the samples, `given` for samples times 2 BG_W, `readers` for BATCH_MODES times the
- * signals. `number`: the `made` modes of the latest run. */
+/* Where runs are done, one at a time. The caller gives what is pointed to: `readers` for BATCH_MODES
+ * times the signals, over (s, w, w', 1); `tables` as `batch_sizes` tells; `values` for the signals
+ * times `pitch`, which is BATCH_STRIDE more than the samples; `levels` for the
+ * signals; `constants` for 4 BG_K and the signals. `number`: the `made` modes of the latest run. */
 typedef struct {
     bg_context *context;
     void *model;
-    double (*rows)[BG_ROW];
-    int *modes, capacity, made, number[BATCH_MODES], place[BG_MODES];
+    const batch_job *job;
     bg_event *events;
-    double *values, *given;
-    batch_reader *readers;
+    double (*readers)[BG_L];
+    double *tables, *values, *levels;
+    batch_lanes *constants;
+    int capacity, pitch, made, number[BATCH_MODES], place[BG_MODES];
     bg_model record;
     bg_mode mode[BATCH_MODES];
 } batch_room;
 
-/* The sizes of a room, a reader and an instance of the model, in bytes. */
+/* The sizes of a room and an instance of the model, in bytes; those of a table, in doubles, without
+ * signals and of each signal, and how many tables there are. */
 void batch_sizes(unsigned long *sizes);
 
 /* Does every run; a status for each. */

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { N = BG_N, STATES = BATCH_STATES, M = BATCH_INPUTS, ROUNDS = 10 };
+enum { N = BG_N, STATES = BATCH_STATES, M = BATCH_INPUTS, ROUNDS = 3 };
 
 /* What an affine map over fewer inputs has in a column of the engine's maps; -1 for none. */
 static int column_of(int j)
@@ -17,34 +17,44 @@ static int column_of(int j)
     return input < BATCH_EXTERNAL ? N + rate * BATCH_EXTERNAL + input : -1;
 }
 
-/* The largest magnitude; of no elements 0. */
+/* The largest magnitude. */
 static double largest(double (*matrix)[N])
 {
-    double size = 0.0;
+    double most[N] = {0}, size = 0.0;
     for (int i = 0; i < N; i++)
+#pragma GCC unroll 1
         for (int j = 0; j < N; j++)
-            size = bg_greater(fabs(matrix[i][j]), size);
+            most[j] = bg_greater(fabs(matrix[i][j]), most[j]);
+    for (int j = 0; j < N; j++)
+        size = bg_greater(most[j], size);
     return size;
 }
 
-/* The largest magnitude of an eigenvalue, nearly: from a high power of the matrix. */
+static void square(double (*restrict matrix)[N], double factor, double (*restrict to)[N])
+{
+    for (int i = 0; i < N; i++)
+#pragma GCC unroll 1
+        for (int j = 0; j < N; j++) {
+            double sum = 0.0;
+#pragma GCC unroll 32
+            for (int l = 0; l < N; l++)
+                sum += matrix[i][l] * matrix[l][j];
+            to[i][j] = factor * sum;
+        }
+}
+
+/* The largest magnitude of an eigenvalue, nearly: from a high power of a balanced matrix. It is
+ * scaled at every second square only. */
 static double spectral_radius(double (*matrix)[N])
 {
-    double power[N][N], square[N][N], size = largest(matrix), logarithm = 0.0, share = 1.0;
+    double power[N][N], other[N][N], size = largest(matrix), logarithm = 0.0, share = 1.0;
     memcpy(power, matrix, sizeof power);
     for (int k = 0; k < ROUNDS && size > 0.0; k++) {
         const double shrink = 1.0 / size;
         logarithm += share * log(size);
-        share /= 2;
-        for (int i = 0; i < N; i++)
-            for (int j = 0; j < N; j++)
-                power[i][j] *= shrink;
-        memset(square, 0, sizeof square);
-        for (int i = 0; i < N; i++)
-            for (int l = 0; l < N; l++)
-                for (int j = 0; j < N; j++)
-                    square[i][j] += power[i][l] * power[l][j];
-        memcpy(power, square, sizeof power);
+        share /= 4;
+        square(power, shrink * shrink, other);
+        square(other, 1.0, power);
         size = largest(power);
     }
     return size > 0.0 ? exp(logarithm + share * log(size)) : 0.0;
@@ -53,16 +63,19 @@ static double spectral_radius(double (*matrix)[N])
 /* One over the scales, powers of 2, that make rows and columns alike. */
 static void balance(double (*matrix)[N], double *weight)
 {
+    double scale[N];
     for (int i = 0; i < N; i++)
-        weight[i] = 1.0;
+        weight[i] = scale[i] = 1.0;
     for (int changed = 1, turn = 0; changed && turn < 50; turn++) {
         changed = 0;
         for (int i = 0; i < N; i++) {
             double row = 0.0, column = 0.0, factor = 1.0;
             for (int j = 0; j < N; j++) {
-                row += j == i ? 0.0 : fabs(matrix[i][j]) * weight[i] / weight[j];
-                column += j == i ? 0.0 : fabs(matrix[j][i]) * weight[j] / weight[i];
+                row += j == i ? 0.0 : fabs(matrix[i][j]) * scale[j];
+                column += j == i ? 0.0 : fabs(matrix[j][i]) * weight[j];
             }
+            row *= weight[i];
+            column *= scale[i];
             if (!(row > 0.0 && column > 0.0) || !isfinite(row + column))
                 continue;
             const double before = row + column;
@@ -72,6 +85,7 @@ static void balance(double (*matrix)[N], double *weight)
                 factor /= 2;
             if (row + column < 0.95 * before) {
                 weight[i] /= factor;
+                scale[i] *= factor;
                 changed = 1;
             }
         }
@@ -122,10 +136,15 @@ static double product(const double *map, int first, int count, const double *fac
 /* How fast the slip of a port changes: F x' + D u', where x' has that of driven storages, too. */
 static double push(const double *map, const batch_numbers *a, int reading, int column)
 {
-    double sum = product(map, BATCH_AT_U + M, M, a->D + reading * M, column);
+    double sum = 0.0;
+    for (int j = 0; j < M; j++)
+        if (a->D[reading * M + j] != 0.0)
+            sum += a->D[reading * M + j] * map[(BATCH_AT_U + M + j) * BATCH_COLUMNS + column];
     for (int l = 0; l < STATES; l++) {
         const double factor = a->F[reading * STATES + l];
-        if (factor != 0.0)
+        if (factor != 0.0 && !a->driven)
+            sum += factor * map[(BATCH_AT_RATE + l) * BATCH_COLUMNS + column];
+        else if (factor != 0.0)
             sum += factor * (product(map, 0, STATES, a->P + l * STATES, column)
                              + product(map, BATCH_AT_U, M, a->Q + l * M, column)
                              + product(map, BATCH_AT_U + M, M, a->R + l * M, column));
@@ -150,9 +169,35 @@ static void fill_column(const double *map, const batch_numbers *a, int column, d
         shot[BG_AT_RATE + i] = map[(BATCH_AT_RATE + i) * BATCH_COLUMNS + column];
 }
 
+/* How fast the states are by themselves, and what balances them: as of a mode that has the same
+ * rates, such as one that slips the other way, or from the rates. */
+static void find_fastest(batch_room *room, int at)
+{
+    bg_mode *const made = room->mode + at;
+    double own[N][N];
+    for (int k = 0; k < at; k++) {
+        int same = 1;
+        for (int j = 0; j < N && same; j++)
+            same = memcmp(made->shot[j] + BG_AT_RATE, room->mode[k].shot[j] + BG_AT_RATE,
+                          sizeof own[j]) == 0;
+        if (same) {
+            made->fastest = room->mode[k].fastest;
+            memcpy(made->weight, room->mode[k].weight, sizeof made->weight);
+            return;
+        }
+    }
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++)
+            own[i][j] = made->shot[j][BG_AT_RATE + i];
+    balance(own, made->weight);
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++)
+            own[i][j] *= made->weight[i] / made->weight[j];
+    made->fastest = spectral_radius(own);
+}
+
 static void fill(bg_mode *made, const double *map, const batch_numbers *a, const batch_hold *held)
 {
-    double own[N][N];
     memset(made, 0, sizeof *made);
     for (int j = 0; j < BG_L; j++) {
         const int column = column_of(j);
@@ -163,48 +208,30 @@ static void fill(bg_mode *made, const double *map, const batch_numbers *a, const
             made->left[j][k] = product(map, 0, STATES, held->slip_x + k * STATES, column)
                                + product(map, BATCH_AT_U, M, held->slip_u + k * M, column);
     }
-    for (int i = 0; i < N; i++)
-        for (int j = 0; j < N; j++)
-            own[i][j] = made->shot[j][BG_AT_RATE + i];
     made->supported = 1;
-    made->fastest = spectral_radius(own);
-    balance(own, made->weight);
     made->held = held->kept;
     for (int k = 0; k < held->kept; k++)
         for (int i = 0; i < STATES; i++)
             made->take_away[k][i] = held->take_away[i * held->kept + k];
 }
 
-static void fill_readers(const batch_job *job, const double *map, batch_reader *readers)
+static void fill_readers(const batch_job *job, const double *map, double (*readers)[BG_L])
 {
-    for (int s = 0; s < job->signals; s++) {
-        batch_reader *const reader = readers + s;
-        const int row = job->signal[s];
-        int others = 0;
-        reader->column = -1;
-        reader->driven = 0;
+    for (int s = 0; s < job->signals; s++)
         for (int j = 0; j < BG_L; j++) {
-            const int column = column_of(j);
-            double value = row < 0 && j == N - 1 - row ? 1.0 : 0.0;
-            if (row >= 0 && column >= 0)
-                value = map[row * BATCH_COLUMNS + column];
-            reader->row[j] = value;
-            if (value == 1.0 && j < N && reader->column < 0)
-                reader->column = j;
+            const int row = job->signal[s], column = column_of(j);
+            if (row < 0)
+                readers[s][j] = j == N - 1 - row;
             else
-                others |= value != 0.0;
-            reader->driven |= value != 0.0 && j >= N && j < BG_L - 1;
+                readers[s][j] = column < 0 ? 0.0 : map[row * BATCH_COLUMNS + column];
         }
-        if (others)
-            reader->column = -1;
-    }
 }
 
-int batch_supply(batch_room *room, const batch_job *job, const batch_numbers *numbers, int number)
+int batch_supply(batch_room *room, const batch_numbers *numbers, int number)
 {
     static const int signs[3] = {0, 1, -1};
     double map[BATCH_ROWS * BATCH_COLUMNS];
-    int mode[BG_PORTS], digits = number;
+    int mode[BG_PORTS] = {0}, digits = number;
     batch_hold held;
     if (room->made >= BATCH_MODES)
         return BG_UNSUPPORTED;
@@ -214,7 +241,8 @@ int batch_supply(batch_room *room, const batch_job *job, const batch_numbers *nu
         return BG_UNSUPPORTED;
     const int at = room->made++;
     fill(room->mode + at, map, numbers, &held);
-    fill_readers(job, map, room->readers + at * job->signals);
+    find_fastest(room, at);
+    fill_readers(room->job, map, room->readers + at * room->job->signals);
     room->record.modes[number] = room->mode + at;
     room->place[number] = at;
     room->number[at] = number;

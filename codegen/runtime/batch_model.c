@@ -1,51 +1,241 @@
-/* The generated model as the batch of runs uses it. */
+/* The generated model as the batch of runs uses it. Friction that acts back on nothing at once moves
+ * inputs, readings and rates alone: then every mode's map follows from that of slipping forwards. */
 #include "batch_model.h"
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "model_internal.h"
 
+enum { K = BG_FRICTION, N = BG_STATES, OWN = BG_LAW_STATES, M = BG_INPUTS, ROWS = BG_READINGS };
+
 /* Pivots of A, whose diagonal is scaled to 1, below which it may well be singular. */
 static const double DOUBTFUL = 1e-9;
+static const double FAR = 1073741824.0; /* 2^30: dividing by it is exact */
+
+typedef double map_row[BG_MAP_COLUMNS];
+
+/* The parts of a map over [s, w, dw, 1]. */
+typedef struct {
+    map_row x[BG_ROOM(N)], z[BG_ROOM(OWN)], u[BG_ROOM(M)], du[BG_ROOM(M)], y[BG_ROOM(ROWS)];
+    map_row rate[BG_SIZE], caps[BG_ROOM(K)];
+} map_parts;
+
+/* An instance; where `based`, without friction, and the efforts of slipping forwards. */
+typedef struct {
+    bg_model m;
+    int based;
+    map_parts base;
+    map_row forward[BG_ROOM(K)];
+} instance;
 
 unsigned long batch_model_size(void)
 {
-    return (unsigned long)sizeof(bg_model);
+    return (unsigned long)sizeof(instance);
 }
 
 int batch_model_begin(void *model, const double *parameters, batch_numbers *found)
 {
-    bg_model *const m = model;
+    instance *const own = model;
+    bg_model *const m = &own->m;
     const bg_numbers *const a = &m->numbers;
-    const int status = bg_model_init(m, parameters);
+    int status = BG_OK;
+    memset(m, 0, sizeof *m); /* as bg_model_init does, which also prepares what is not used here */
+    own->based = 0;
+    m->where = -1;
+    memcpy(m->now.p, parameters, sizeof(double) * BG_PARAMETERS);
+    status = bg_finite(BG_PARAMETERS, m->now.p) ? bg_assemble(m) : BG_PARAMETER;
     if (status != BG_OK)
         return status;
     for (int i = 0; i < BG_STATES; i++)
         if (!(fabs(a->A[i * BG_STATES + i]) > DOUBTFUL))
             return BG_SINGULAR;
-    *found = (batch_numbers){a->P, a->Q, a->R, a->F, a->D, bg_friction_inputs,
+    *found = (batch_numbers){BG_DRIVEN, a->P, a->Q, a->R, a->F, a->D, bg_friction_inputs,
                              bg_friction_readings, bg_beside};
     return BG_OK;
 }
 
+/* to += factor row */
+static void add(double factor, const double *row, double *to)
+{
+    for (int j = 0; j < BG_MAP_COLUMNS && factor != 0.0; j++)
+        to[j] += factor * row[j];
+}
+
+/* to += a rows, where a has `count` columns */
+static void add_rows(int rows, int count, const double *a, map_row *from, map_row *to)
+{
+    for (int i = 0; i < rows; i++)
+        for (int j = 0; j < count; j++)
+            add(a[i * count + j], from[j], to[i]);
+}
+
+/* The effort at a port moves inputs, readings and rates. */
+static void push(const bg_numbers *a, int port, double factor, const double *effort, map_parts *map)
+{
+    const int column = bg_friction_inputs[port];
+    add(factor, effort, map->u[column]);
+    for (int i = 0; i < ROWS; i++)
+        add(factor * a->D[i * M + column], effort, map->y[i]);
+    for (int i = 0; i < N; i++)
+        add(factor * a->Q[i * M + column], effort, map->rate[i]);
+}
+
+static void put(int count, const double *values, int column, map_row *to)
+{
+    for (int i = 0; i < count; i++)
+        to[i][column] = values[i];
+}
+
+/* Evaluates the model where component `at` of [s, w, dw] is FAR and all others are 0. */
+static int probe(bg_model *m, int at, map_parts *map)
+{
+    double point[BG_MAP_COLUMNS] = {0};
+    const bg_snapshot *const shot = &m->shot;
+    int forward[BG_ROOM(K)];
+    for (int i = 0; i < BG_ROOM(K); i++)
+        forward[i] = 1;
+    point[at] = at < BG_MAP_COLUMNS - 1 ? FAR : 0.0;
+    const int status = bg_evaluate(m, 0.0, point, point + BG_SIZE, point + BG_SIZE + BG_EXTERNAL,
+                                   forward, 0, &m->shot);
+    put(N, shot->x, at, map->x);
+    put(OWN, shot->z, at, map->z);
+    put(M, shot->u, at, map->u);
+    put(M, shot->du, at, map->du);
+    put(ROWS, shot->y, at, map->y);
+    put(BG_SIZE, shot->rate, at, map->rate);
+    put(K, shot->caps, at, map->caps);
+    return status;
+}
+
+/* Where no law has a rate and inputs drive no storage, rates of inputs show in nothing else. */
+static void pass_rates(map_parts *map)
+{
+    for (int i = 0; i < BG_OUTSIDE; i++)
+        map->du[bg_outside_inputs[i]][BG_SIZE + BG_EXTERNAL + i] = 1.0;
+}
+
+/* Readings and rates from states and inputs: not by taking friction away, which would leave
+ * rounding where there is nothing. */
+static void show(const bg_numbers *a, map_parts *map)
+{
+    memset(map->y, 0, sizeof map->y);
+    memset(map->rate, 0, sizeof map->rate);
+    add_rows(ROWS, N, a->F, map->x, map->y);
+    add_rows(ROWS, M, a->D, map->u, map->y);
+    add_rows(ROWS, M, a->G, map->du, map->y);
+    add_rows(N, N, a->P, map->x, map->rate);
+    add_rows(N, M, a->Q, map->u, map->rate);
+}
+
+static int find_base(instance *own)
+{
+    const int last = BG_MAP_COLUMNS - 1, rates = BG_RATED || BG_DRIVEN;
+    map_row *const rows = own->base.x;
+    int status;
+    memset(&own->base, 0, sizeof own->base);
+    status = probe(&own->m, last, &own->base);
+    for (int j = 0; j < (rates ? last : BG_SIZE + BG_EXTERNAL) && status == BG_OK; j++) {
+        status = probe(&own->m, j, &own->base);
+        for (size_t i = 0; i < sizeof own->base / sizeof *rows; i++)
+            rows[i][j] = (rows[i][j] - rows[i][last]) / FAR;
+    }
+    if (!rates)
+        pass_rates(&own->base);
+    for (int k = 0; k < K; k++) {
+        memcpy(own->forward[k], own->base.u[bg_friction_inputs[k]], sizeof(map_row));
+        memset(own->base.u[bg_friction_inputs[k]], 0, sizeof(map_row));
+    }
+    show(&own->m.numbers, &own->base);
+    own->based = status == BG_OK;
+    return status;
+}
+
+/* Takes away what rounding would make of slips that stick, or they drifted. */
+static void correct(const bg_hold *held, map_parts *map)
+{
+    map_row drift[BG_ROOM(K)];
+    memset(drift, 0, sizeof drift);
+    add_rows(held->kept, N, held->slip_x, map->rate, drift);
+    add_rows(held->kept, M, held->fixed, map->du, drift);
+    add_rows(N, held->kept, held->take_away, drift, map->rate);
+}
+
+static void hold(const bg_numbers *a, const bg_hold *held, map_parts *map)
+{
+    map_row right[BG_ROOM(K)], efforts[BG_ROOM(K)];
+    memset(right, 0, sizeof right);
+    memset(efforts, 0, sizeof efforts);
+    add_rows(held->count, N, held->X, map->x, right);
+    add_rows(held->count, M, held->U, map->u, right);
+    add_rows(held->count, M, held->V, map->du, right);
+    add_rows(held->count, held->count, held->inverse, right, efforts);
+    for (int r = 0; r < held->count; r++)
+        push(a, held->ports[r], -1.0, efforts[r], map);
+    for (int turn = 0; turn < 2; turn++) /* the second, of what rounding the first has left */
+        correct(held, map);
+}
+
+/* A mode's map from the base; by rows. */
+static void combine(const instance *own, const int *mode, const bg_hold *held, map_parts *map)
+{
+    const bg_numbers *const a = &own->m.numbers;
+    memcpy(map, &own->base, sizeof *map);
+    for (int k = 0; k < K; k++)
+        push(a, k, mode[k], own->forward[k], map);
+    if (held)
+        hold(a, held, map);
+    for (int i = 0; i < OWN; i++)
+        memcpy(map->rate[N + i], map->y[bg_law_rates[i]], sizeof(map_row));
+}
+
+static double *copy(double *to, int count, map_row *rows)
+{
+    memcpy(to, rows, sizeof(map_row) * (size_t)count);
+    return to + count * BG_MAP_COLUMNS;
+}
+
+/* The parts one after the other, without the room of those that are empty. */
+static void flatten(map_parts *map, double *matrix)
+{
+    matrix = copy(matrix, N, map->x);
+    matrix = copy(matrix, OWN, map->z);
+    matrix = copy(matrix, M, map->u);
+    matrix = copy(matrix, M, map->du);
+    matrix = copy(matrix, ROWS, map->y);
+    matrix = copy(matrix, BG_SIZE, map->rate);
+    copy(matrix, K, map->caps);
+}
+
 int batch_model_mode(void *model, const int *mode, double *map, batch_hold *held)
 {
-    bg_model *const m = model;
+    instance *const own = model;
     bg_hold *hold = NULL;
-    int sticking = 0, status = bg_model_affine_map(m, mode, map);
-    for (int i = 0; i < BG_FRICTION; i++)
+    map_parts parts;
+    int sticking = 0, status = BG_AFFINE ? BG_OK : BG_NOT_AFFINE;
+    for (int i = 0; i < K; i++)
         sticking |= mode[i] == 0;
     *held = (batch_hold){0, NULL, NULL, NULL};
-    if (status != BG_OK || !sticking)
-        return status;
-    status = bg_hold_of(m, mode, &hold);
-    if (status == BG_OK)
+    if (status == BG_OK && sticking)
+        status = bg_hold_of(&own->m, mode, &hold);
+    if (status == BG_OK && hold) {
         *held = (batch_hold){hold->kept, hold->slip_x, hold->slip_u, hold->take_away};
-    return status;
+        status = hold->share_count > 0 ? BG_NOT_AFFINE : BG_OK;
+    }
+    if (status == BG_OK && BG_JOINT)
+        return bg_model_affine_map(&own->m, mode, map);
+    if (status == BG_OK && !own->based)
+        status = find_base(own);
+    if (status != BG_OK)
+        return status;
+    combine(own, mode, hold, &parts);
+    flatten(&parts, map);
+    return BG_OK;
 }
 
 int batch_model_start(void *model, double t, const double *states, const double *w, double *s)
 {
-    return bg_model_vector(model, t, states, w, s);
+    instance *const own = model;
+    return bg_model_vector(&own->m, t, states, w, s);
 }

@@ -3,8 +3,10 @@
 #ifndef BATCH_MODEL_H
 #define BATCH_MODEL_H
 
-/* The matrices of one set of parameters, and the places of the friction ports. */
+/* The matrices of one set of parameters, and the places of the friction ports. `driven`: whether
+ * inputs drive storages. */
 typedef struct {
+    int driven;
     const double *P, *Q, *R, *F, *D;
     const int *friction_inputs, *friction_readings, *beside;
 } batch_numbers;

@@ -4,13 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Where a stretch has come to. `base`: the sample that is there, -1 if none is. */
-typedef struct {
-    double t, stop, z[BG_Z];
-    int at, last, base;
-    unsigned ports;
-} bg_place;
-
 /* The first sample that is not before a time. */
 static int first_not_before(const bg_task *task, int low, double stop)
 {
@@ -26,7 +19,7 @@ static int first_not_before(const bg_task *task, int low, double stop)
 }
 
 /* Refuses a friction level below zero: a rough look at a sample, an exact one where it may be. */
-static int check_levels(bg_context *c, double t, double *row)
+int bg_check_levels(bg_context *c, double t, double *row)
 {
     int below = 0;
     for (int i = 0; i < BG_K; i++) {
@@ -47,11 +40,11 @@ static int record(bg_context *c, bg_place *p)
     bg_fill(&c->stretch, row);
     c->task->modes[p->at] = bg_number(c->mode);
     p->base = p->at++;
-    return check_levels(c, p->t, row);
+    return bg_check_levels(c, p->t, row);
 }
 
 /* How many steps from the present sample on have one length, but for rounding; the stop, too. */
-static int alike(const bg_context *c, const bg_place *p, double *h)
+int bg_alike(const bg_context *c, const bg_place *p, double *h)
 {
     const double *times = c->task->times;
     int end = p->last;
@@ -68,7 +61,7 @@ static int alike(const bg_context *c, const bg_place *p, double *h)
 }
 
 /* Whether all triggers are armed; those are that have risen above rounding. */
-static int armed(bg_context *c, const double *row)
+int bg_armed(bg_context *c, const double *row)
 {
     int all = 1;
     for (int i = 0; i < BG_T; i++) {
@@ -98,7 +91,7 @@ static int doubtful(bg_context *c, bg_place *p, int done, double *next)
     }
     memcpy(next, p->z, sizeof p->z);
     bg_fill(&c->stretch, next);
-    return (done + 1) % e->parts ? BG_OK : check_levels(c, end, next);
+    return (done + 1) % e->parts ? BG_OK : bg_check_levels(c, end, next);
 }
 
 /* `count` samples by leaps of steps from sample `base`; how many steps there were goes to *done. */
@@ -162,17 +155,36 @@ static int step_on(bg_context *c, bg_place *p)
     return sample ? record(c, p) : BG_OK;
 }
 
+void bg_set_out(const bg_context *c, bg_place *p, int at, double stop)
+{
+    p->t = c->t;
+    p->stop = stop;
+    p->at = at;
+    p->base = -1;
+    p->ports = 0;
+    p->last = first_not_before(c->task, at, stop);
+    memcpy(p->z, c->s, sizeof c->s);
+    bg_slots(c->inputs, c->segment, c->t, p->z + BG_N);
+}
+
+void bg_arrive(bg_context *c, const bg_place *p, int *at)
+{
+    *at = p->at;
+    memcpy(c->s, p->z, sizeof c->s);
+    c->t = p->stop;
+    for (int i = 0; i < BG_K; i++)
+        c->touched[i] = p->ports >> i & 1u;
+}
+
 int bg_advance(bg_context *c, int *at, double stop)
 {
-    bg_place p = {.t = c->t, .stop = stop, .at = *at, .base = -1};
+    bg_place p;
     int status = BG_OK;
-    p.last = first_not_before(c->task, *at, stop);
-    memcpy(p.z, c->s, sizeof c->s);
-    bg_slots(c->inputs, c->segment, c->t, p.z + BG_N);
+    bg_set_out(c, &p, *at, stop);
     while (!status && !p.ports && (p.t < stop || p.at < p.last)) {
         double h = 0.0;
-        const int count = p.base >= 0 ? alike(c, &p, &h) : 0;
-        if (count >= BG_STRIDE && armed(c, c->task->rows[p.base])) {
+        const int count = p.base >= 0 ? bg_alike(c, &p, &h) : 0;
+        if (count >= BG_STRIDE && bg_armed(c, c->task->rows[p.base])) {
             if (!c->stretch.leaping || c->stretch.entry->h != h) {
                 bg_leaps(c, &c->stretch, h, c->task->rows[p.base]);
                 bg_fill(&c->stretch, c->task->rows[p.base]);
@@ -182,10 +194,6 @@ int bg_advance(bg_context *c, int *at, double stop)
             status = step_on(c, &p);
         }
     }
-    *at = p.at;
-    memcpy(c->s, p.z, sizeof c->s);
-    c->t = p.ports ? p.stop : stop;
-    for (int i = 0; i < BG_K; i++)
-        c->touched[i] = p.ports >> i & 1u;
+    bg_arrive(c, &p, at);
     return status;
 }

@@ -50,7 +50,7 @@ static double square_norm(bg_context *c, const bg_entry *e)
 /* Bounds on the fourth derivatives of triggers during the next BG_RENEWAL steps, as weights of the
  * magnitudes of the rates z'. With f = W M^3, f exp(M tau) is known at steps, and differs between
  * them from the straight line by at most h^2/8 |f exp(M tau) M^2|. */
-static void bound(bg_context *c, bg_entry *e, double (*E)[BG_Z])
+void bg_bound(bg_context *c, bg_entry *e, double (*E)[BG_Z])
 {
     double at[BG_Z][BG_TRIGGERS], next[BG_Z][BG_TRIGGERS], most[BG_TRIGGERS] = {0};
     const double bend = e->step * e->step / 8.0 * square_norm(c, e);
@@ -122,20 +122,25 @@ static void constants(bg_stretch *stretch, const double *row)
     }
 }
 
+void bg_divide(bg_context *c, bg_entry *e, double h, double (*E)[BG_Z])
+{
+    e->h = h;
+    e->parts = (int)bg_greater(ceil(e->norm * h / BG_LONGEST), 1.0);
+    e->step = h / e->parts;
+    bg_exponential(c, e->M, e->norm, e->step, E, e->gather);
+}
+
 void bg_leaps(bg_context *c, bg_stretch *stretch, double h, const double *row)
 {
     bg_entry *e = stretch->entry;
     if (e->h != h) {
         double(*E)[BG_Z] = c->work[5];
-        e->h = h;
-        e->parts = (int)bg_greater(ceil(e->norm * h / BG_LONGEST), 1.0);
-        e->step = h / e->parts;
-        bg_exponential(c, e->M, e->norm, e->step, E, e->gather);
+        bg_divide(c, e, h, E);
         first_leap(e, E);
         for (int r = 1; r < BG_STRIDE; r++)
             leap_further(e->leap[0], e->leap[r - 1], e->leap[r]);
         if (BG_K)
-            bound(c, e, E);
+            bg_bound(c, e, E);
     }
     constants(stretch, row);
     stretch->leaping = 1;

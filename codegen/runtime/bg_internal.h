@@ -54,10 +54,22 @@ typedef struct {
 
 typedef double bg_shot[BG_SHOT];
 
+/* Where a stretch has come to. `base`: the sample that is there, -1 if none is. */
+typedef struct {
+    double t, stop, z[BG_Z];
+    int at, last, base;
+    unsigned ports;
+} bg_place;
+
+/* Goes on to `stop` or the first event; *at is the next sample. A status. */
+typedef int bg_advancing(bg_context *c, int *at, double stop);
+
 struct bg_context {
     const bg_model *model;
     const bg_inputs *inputs;
     bg_task *task;
+    bg_advancing *advance;
+    void *caller;                       /* for `advance` */
     int clock, segment, where;
     double t, s[BG_N], span;
     int known, known_segment;           /* whether `given` holds, for `known_time` */
@@ -105,10 +117,15 @@ int bg_decide(bg_context *c, double time);
 int bg_begin(bg_context *c, double stop);
 void bg_leaps(bg_context *c, bg_stretch *stretch, double h, const double *row);
 
+/* bg_bounds.c: e for steps that divide h, whose exponential goes to E; and bounds on its triggers'
+ * fourth derivatives. */
+void bg_divide(bg_context *c, bg_entry *e, double h, double (*E)[BG_Z]);
+void bg_bound(bg_context *c, bg_entry *e, double (*E)[BG_Z]);
+
 /* bg_exponential.c: exp(M h) and its integral. */
 void bg_exponential(bg_context *c, double (*M)[BG_Z], double norm, double h, double (*E)[BG_Z],
                     double (*gather)[BG_Z]);
-void bg_multiply(double (*left)[BG_Z], double (*right)[BG_Z], double (*product)[BG_Z]);
+void bg_multiply(double (*left)[BG_Z], double (*right)[BG_Z], double (*restrict product)[BG_Z]);
 
 /* bg_roots.c: where sum p[k] tau^k falls to zero in (begin, 1]: 1 if it does, 0 if not, -1 if the
  * search has no end. */
@@ -122,8 +139,19 @@ int bg_series(bg_context *c, double t, double length, double *z, double *end, un
 /* bg_leap.c: steps from rows[0]; how many are certain to be without an event. */
 int bg_leap(const bg_stretch *stretch, int count, double (*rows)[BG_ROW]);
 void bg_fill(const bg_stretch *stretch, double *row);
+void bg_uncertainty(const bg_stretch *stretch, const double *row, double *slack);
 
-/* bg_advance.c: to `stop` or the first event. */
+/* bg_advance.c: to `stop` or the first event; and its parts. How many steps from the present sample
+ * on have one length; whether all triggers are armed; a friction level below zero is refused. */
 int bg_advance(bg_context *c, int *at, double stop);
+void bg_set_out(const bg_context *c, bg_place *p, int at, double stop);
+void bg_arrive(bg_context *c, const bg_place *p, int *at);
+int bg_alike(const bg_context *c, const bg_place *p, double *h);
+int bg_armed(bg_context *c, const double *row);
+int bg_check_levels(bg_context *c, double t, double *row);
+
+/* bg_run.c: a run but for its last sample; a status. */
+int bg_run_by(bg_context *c, const bg_model *model, const bg_inputs *inputs, bg_task *task,
+              bg_advancing *advance, void *caller);
 
 #endif

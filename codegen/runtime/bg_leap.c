@@ -32,23 +32,24 @@ void bg_fill(const bg_stretch *stretch, double *row)
 }
 
 /* How far triggers may be from the cubics during the next steps. A cap that is zero is none below. */
-static void uncertainty(const bg_stretch *stretch, const double *row, double *slack)
+void bg_uncertainty(const bg_stretch *stretch, const double *row, double *slack)
 {
     const bg_entry *e = stretch->entry;
     double rate[BG_Z];
-    for (int i = 0; i < BG_Z; i++)
-        rate[i] = stretch->b[i];
-    for (int j = 0; j < BG_Z; j++)
-        for (int i = 0; i < BG_Z; i++)
-            rate[i] += e->M[j][i] * row[j];
-    for (int i = 0; i < BG_T; i++)
-        slack[i] = 0.0;
-    for (int j = 0; j < BG_Z; j++)
-        for (int i = 0; i < BG_T; i++)
-            slack[i] += e->fourth[j][i] * fabs(rate[j]);
-    for (int i = 0; i < BG_T; i++)
-        if (e->caps >> i & 1u)
-            slack[i] = -DBL_MIN;
+#pragma GCC unroll 1
+    for (int i = 0; i < BG_Z; i++) {
+        double sum = stretch->b[i];
+#pragma GCC unroll 32
+        for (int j = 0; j < BG_Z; j++)
+            sum += e->M[j][i] * row[j];
+        rate[i] = fabs(sum);
+    }
+    for (int i = 0; i < BG_T; i++) {
+        double sum = 0.0;
+        for (int j = 0; j < BG_Z; j++)
+            sum += e->fourth[j][i] * rate[j];
+        slack[i] = e->caps >> i & 1u ? -DBL_MIN : sum;
+    }
 }
 
 /* By how much a step is certain: the least coefficient of all its triggers, less the slack. */
@@ -108,7 +109,7 @@ int bg_leap(const bg_stretch *stretch, int count, double (*rows)[BG_ROW])
         double(*at)[BG_ROW] = rows + done;
         int sure = ahead;
         if (done % BG_RENEWAL == 0 && BG_K)
-            uncertainty(stretch, at[0], slack);
+            bg_uncertainty(stretch, at[0], slack);
         for (int r = 0; r < ahead; r++)
             leap((const double(*)[BG_ROW])e->leap[r], stretch->constant[r], stretch->origin, z,
                  at[r + 1], beyond);

@@ -43,11 +43,14 @@ int bg_look(bg_context *c, double t, const double *s, const bg_mode *mode, doubl
 {
     double v[BG_L];
     bg_vector(c, t, s, v);
-    for (int i = 0; i < BG_SHOT; i++)
-        shot[i] = 0.0;
-    for (int j = 0; j < BG_L; j++)
-        for (int i = 0; i < BG_SHOT; i++)
-            shot[i] += mode->shot[j][i] * v[j];
+#pragma GCC unroll 1
+    for (int i = 0; i < BG_SHOT; i++) {
+        double sum = 0.0;
+#pragma GCC unroll 32
+        for (int j = 0; j < BG_L; j++)
+            sum += mode->shot[j][i] * v[j];
+        shot[i] = sum;
+    }
     for (int i = 0; i < BG_K; i++)
         if (!(shot[BG_AT_CAP + i] >= 0.0)) {
             c->task->time = t;

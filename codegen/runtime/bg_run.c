@@ -116,11 +116,11 @@ static int goes_on(const bg_context *c, double end)
     return touched || (c->segment > 0 && c->inputs->breaks[c->segment - 1] == c->t);
 }
 
-static int run(bg_context *c, int *at)
+static int run(bg_context *c)
 {
     const double end = c->task->times[c->task->samples - 1];
     const double most = 16.0 * c->task->capacity + c->inputs->segments + 1000.0;
-    int status = BG_OK;
+    int status = BG_OK, at = 0;
     for (double turns = 0.0; !status && turns < most; turns += 1.0) {
         c->segment = bg_segment(c->inputs, c->t);
         if (turns > 0 && !goes_on(c, end))
@@ -133,27 +133,35 @@ static int run(bg_context *c, int *at)
             stop = bg_lesser(c->inputs->breaks[c->segment], end);
         status = bg_begin(c, stop);
         if (status == BG_OK)
-            status = bg_advance(c, at, stop);
+            status = c->advance(c, &at, stop);
     }
     return status ? status : BG_FULL;
 }
 
-int bg_run(bg_context *c, const bg_model *model, const bg_inputs *inputs, bg_task *task)
+int bg_run_by(bg_context *c, const bg_model *model, const bg_inputs *inputs, bg_task *task,
+              bg_advancing *advance, void *caller)
 {
-    int at = 0;
     begin(c, model, inputs, task);
-    int status = run(c, &at);
+    c->advance = advance;
+    c->caller = caller;
+    int status = run(c);
     if (status != BG_NEGATIVE)
         task->time = c->t;
-    if (status) {
+    if (status)
         task->where = c->where;
-        return status;
-    }
-    memcpy(task->rows[at], c->s, sizeof c->s);
-    task->modes[at] = bg_number(c->mode);
-    for (int i = 0; i < BG_N; i++)
+    for (int i = 0; !status && i < BG_N; i++)
         if (!isfinite(c->s[i]))
             status = BG_UNUSABLE;
+    return status;
+}
+
+int bg_run(bg_context *c, const bg_model *model, const bg_inputs *inputs, bg_task *task)
+{
+    const int status = bg_run_by(c, model, inputs, task, bg_advance, 0);
+    if (status == BG_OK) {
+        memcpy(task->rows[task->samples - 1], c->s, sizeof c->s);
+        task->modes[task->samples - 1] = bg_number(c->mode);
+    }
     return status;
 }
 

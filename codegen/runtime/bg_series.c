@@ -3,25 +3,34 @@
 
 #include <math.h>
 
+/* next = factor (M term + constant), in two sums that don't wait for each other */
+static inline void differentiate(const bg_entry *e, const double *restrict term,
+                                 const double *restrict constant, double factor,
+                                 double *restrict next)
+{
+#pragma GCC unroll 1
+    for (int i = 0; i < BG_Z; i++) {
+        double sum = constant[i], other = 0.0;
+#pragma GCC unroll 32
+        for (int j = 0; j < BG_Z / 2; j++)
+            sum += e->M[j][i] * term[j];
+#pragma GCC unroll 32
+        for (int j = BG_Z / 2; j < BG_Z; j++)
+            other += e->M[j][i] * term[j];
+        next[i] = (sum + other) * factor;
+    }
+}
+
 /* The powers of the state, z(tau) = sum terms[k] tau^k over a step, and of the triggers. */
 static void expand(bg_context *c, const double *z, double step)
 {
     const bg_entry *e = c->stretch.entry;
     double(*terms)[BG_Z] = c->terms;
+    const double none[BG_Z] = {0};
     for (int i = 0; i < BG_Z; i++)
         terms[0][i] = z[i];
-    for (int k = 1; k <= BG_DEGREE; k++) {
-        double sum[BG_Z] = {0};
-        for (int j = 0; j < BG_Z; j++)
-#pragma GCC unroll 1
-            for (int i = 0; i < BG_Z; i++)
-                sum[i] += e->M[j][i] * terms[k - 1][j];
-        if (k == 1)
-            for (int i = 0; i < BG_Z; i++)
-                sum[i] += c->stretch.b[i];
-        for (int i = 0; i < BG_Z; i++)
-            terms[k][i] = sum[i] * (step / k);
-    }
+    for (int k = 1; k <= BG_DEGREE; k++)
+        differentiate(e, terms[k - 1], k == 1 ? c->stretch.b : none, step / k, terms[k]);
     for (int k = 0; k <= BG_DEGREE; k++)
         for (int i = 0; i < BG_T; i++) {
             double sum = k ? 0.0 : c->stretch.level[i];

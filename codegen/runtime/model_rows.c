@@ -10,8 +10,8 @@ static double *put(double *to, int count, const double *from)
 
 static void record(void *to, int sample, const double *w, const int *mode, const bg_snapshot *shot)
 {
-    const bg_rows *const rows = to;
-    double *row = rows->table + (size_t)sample * BG_ROW_WIDTH;
+    double *row = (double *)to + (size_t)sample * BG_ROW_WIDTH;
+    (void)mode;
     row = put(row, BG_STATES, shot->x);
     row = put(row, BG_LAW_STATES, shot->z);
     row = put(row, BG_INPUTS, shot->u);
@@ -19,8 +19,6 @@ static void record(void *to, int sample, const double *w, const int *mode, const
     row = put(row, BG_READINGS, shot->y);
     row = put(row, BG_SIZE, shot->rate);
     put(row, BG_EXTERNAL, w);
-    for (int i = 0; i < BG_FRICTION; i++)
-        rows->modes[(size_t)sample * BG_FRICTION + i] = mode[i];
 }
 
 void bg_rows_sizes(unsigned long *sizes)
@@ -31,10 +29,10 @@ void bg_rows_sizes(unsigned long *sizes)
 }
 
 int bg_rows_run(bg_located *c, bg_model *m, const double *parameters, const bg_signals *signals,
-                bg_request *asked, bg_rows *rows)
+                bg_request *asked, double *table)
 {
     const int status = bg_model_init(m, parameters);
-    asked->to = rows;
+    asked->to = table;
     asked->record = record;
     return status == BG_OK ? bg_model_run(c, m, signals, asked) : status;
 }

@@ -9,17 +9,12 @@ enum {
     BG_ROW_WIDTH = BG_STATES + BG_LAW_STATES + 2 * BG_INPUTS + BG_READINGS + BG_SIZE + BG_EXTERNAL
 };
 
-/* The caller's: `samples` rows of the table, and of modes, BG_FRICTION in each. */
-typedef struct {
-    double *table;
-    int *modes;
-} bg_rows;
-
 /* The sizes of an instance, a run and a row, in bytes. */
 void bg_rows_sizes(unsigned long *sizes);
 
-/* Makes an instance and runs it; `asked` says all but where samples go. A status. */
+/* Makes an instance and runs it; `asked` says all but where samples go: to the rows of a table. A
+ * status. */
 int bg_rows_run(bg_located *c, bg_model *m, const double *parameters, const bg_signals *signals,
-                bg_request *asked, bg_rows *rows);
+                bg_request *asked, double *table);
 
 #endif

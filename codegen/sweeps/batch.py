@@ -3,7 +3,6 @@
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import reduce
 from threading import Lock
 from typing import Any
 
@@ -12,17 +11,16 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from bondgraph import BondGraphError
-from bondgraph.elements import Kind
 from bondgraph.resistances import resistive_loops
 from codegen.arrays import Array
-from codegen.c.export import to_c
-from codegen.engine.inputs import segments
+from codegen.engine.inputs import Packed, segments
 from codegen.engine.runs import KINDS, grid_of, not_affine
 from codegen.engine.sizes import Engine, sizes
 from codegen.program import Program
 from codegen.runs.arguments import named_numbers, signals_for
-from codegen.sweeps.batch_engine import Room, batch_engine
+from codegen.sweeps.batch_engine import Room
 from codegen.sweeps.batch_inputs import BatchInputs, each, varied
+from codegen.sweeps.batch_model import Flags, batch_model
 from codegen.sweeps.family import Family
 from codegen.sweeps.measures import READY, Measure
 
@@ -34,8 +32,6 @@ WHATS = (
 EVENTS = WHATS.index("first_event")
 
 Given = Mapping[str, Any] | Callable[[Mapping[str, float]], Mapping[str, Any]] | None
-Found = tuple[Array, ...] | None
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -63,24 +59,21 @@ class Batch:
     """The loop for one sweep; calls may come from several threads."""
 
     def __init__(self, asked: Asked, plan: Plan) -> None:
-        family = asked.family
-        self.asked, self.plan, self.program = asked, plan, family.program
-        self._closed = family.simulator().closed
-        self._sources = to_c(family.equations, family.parameters, family.laws)
-        exact = self._closed.parameters
-        self._defaults = np.array([float(exact[p.name]) for p in self.program.parameters])
-        self._values = _checked_values(family, self.program)
+        self.asked, self.plan = asked, plan
+        self._model = batch_model(asked.family)
         self._time, self._grid = np.ascontiguousarray(asked.time), grid_of(asked.time)
-        self._engines: dict[int, Engine] = {}
         self._rooms: dict[int, list[Room]] = {}
         self._lock = Lock()
-        self._shared: Any = None
+        self._shared: tuple[Engine, Packed, Array] | None = None
         self.statuses: Counter[int] = Counter()
 
-    def __call__(self, rows: Sequence[tuple[float, ...]]) -> list[Found]:
-        """For each run its measures, or None where it has to be done another way."""
-        found: list[Found] = [None] * len(rows)
-        table = np.array(rows, dtype=float).reshape(len(rows), len(self.asked.names))
+    def __call__(
+        self, rows: Sequence[Sequence[float]] | Array
+    ) -> tuple[tuple[Array, ...], list[int]]:
+        """A column for each measure, and which runs have to be done another way."""
+        table = np.asarray(rows, dtype=float).reshape(len(rows), len(self.asked.names))
+        found = np.empty((len(table), self.plan.width))
+        done = np.zeros(len(table), dtype=bool)
         with self._lock:
             parameters, usable = self._parameters(table)
             states, settled = self._states(table)
@@ -89,21 +82,21 @@ class Batch:
             indices = inputs.indices
             results, status = self._run(inputs, parameters[indices], states[indices])
             with self._lock:
-                self.statuses.update(Counter(status.tolist()))
-            for at, row, one in zip(indices.tolist(), results, status.tolist(), strict=True):
-                if one == 0:
-                    found[at] = self._measures(row)
-        return found
+                kinds, counts = np.unique(status, return_counts=True)
+                self.statuses.update(dict(zip(kinds.tolist(), counts.tolist(), strict=True)))
+            found[indices], done[indices] = results, status == 0
+        return self._columns(found), np.flatnonzero(~done).tolist()
 
     def _parameters(self, table: Array) -> tuple[Array, Flags]:
         """The parameters of each run, and which runs' elements have values that can be used."""
-        parameters = np.tile(self._defaults, (len(table), 1))
+        model = self._model
+        parameters = np.tile(model.defaults, (len(table), 1))
         for column, name in enumerate(self.asked.names):
-            for at, symbol in enumerate(self.program.parameters):
+            for at, symbol in enumerate(model.program.parameters):
                 if symbol.name == name:
                     parameters[:, at] = table[:, column]
         with np.errstate(all="ignore"):
-            usable = self._values(parameters)
+            usable = model.usable(parameters)
         return np.ascontiguousarray(parameters), usable
 
     def _states(self, table: Array) -> tuple[Array, Flags]:
@@ -133,12 +126,11 @@ class Batch:
         swept = {name: at for at, name in enumerate(asked.names) if name in names}
         begin, end = float(self._time[0]), float(self._time[-1])
         if not callable(asked.inputs):
-            if self._shared is None:
-                given = {**(asked.inputs or {}), **dict.fromkeys(swept, 0.0)}
-                self._shared = segments(signals_for(given, names), begin, end)
-            engine = self._engine(self._shared.slots)
+            shared = self._shared or self._share(asked.inputs or {}, begin, end)
+            engine, packed, constants = shared
             places = [names.index(name) for name in swept]
-            return [varied(engine, self._shared, places, table[:, [*swept.values()]], indices)]
+            held = table[:, [*swept.values()]]
+            return [varied(engine, packed, constants, places, held, indices)]
         made: dict[int, list[tuple[int, Any]]] = {}
         for k in indices.tolist():
             values = dict(zip(asked.names, table[k].tolist(), strict=True))
@@ -148,14 +140,19 @@ class Batch:
                 one = segments(signals_for(given, names), begin, end)
             except Exception:  # noqa: BLE001 - told by whoever does the run then
                 continue
-            made.setdefault(sizes(self._closed, one.slots).G, []).append((k, one))
-        return [each(self._engine(slots), found) for slots, found in made.items()]
+            made.setdefault(sizes(self._model.closed, one.slots).G, []).append((k, one))
+        return [each(self._model.engine(slots), found) for slots, found in made.items()]
 
-    def _engine(self, slots: int) -> Engine:
-        wanted = sizes(self._closed, slots)
-        if wanted.G not in self._engines:
-            self._engines[wanted.G] = batch_engine(self._sources, self.program, wanted)
-        return self._engines[wanted.G]
+    def _share(
+        self, inputs: Mapping[str, Any], begin: float, end: float
+    ) -> tuple[Engine, Packed, Array]:
+        """The inputs that all runs have; swept ones are zero."""
+        asked, names = self.asked, self.asked.family.inputs
+        given = {**inputs, **{n: 0.0 for n in asked.names if n in names}}
+        made = segments(signals_for(given, names), begin, end)
+        engine = self._model.engine(made.slots)
+        self._shared = engine, Packed(engine, made), made.constants
+        return self._shared
 
     def _run(
         self, inputs: BatchInputs, parameters: Array, states: Array
@@ -170,8 +167,9 @@ class Batch:
         job.grid, job.samples, job.width = self._grid, len(self._time), plan.width
         job.signals, job.measures = len(plan.rows), len(plan.entries)
         job.signal, job.measure = rows, entries
-        runs.runs, runs.inputs = count, inputs.pointers
+        runs.runs = count
         for name, kind, array in (
+            ("inputs", "bg_inputs **", inputs.pointers),
             ("parameters", "double *", parameters), ("states", "double *", states),
             ("results", "double *", results), ("status", "int *", status),
         ):  # fmt: skip
@@ -185,12 +183,10 @@ class Batch:
         rooms.append(room)
         return results, status
 
-    def _measures(self, row: Array) -> tuple[Array, ...]:
-        if self.plan.width == len(self.plan.entries):
-            return tuple(map(np.array, row.tolist()))
-        samples = WHATS.index("samples")
+    def _columns(self, found: Array) -> tuple[Array, ...]:
+        samples, length = WHATS.index("samples"), len(self._time)
         return tuple(
-            row[at : at + len(self._time)].copy() if what == samples else np.array(row[at])
+            found[:, at : at + length] if what == samples else found[:, at]
             for what, _, _, _, at in self.plan.entries
         )
 
@@ -263,32 +259,3 @@ def _places(program: Program) -> dict[str, int]:
         for name, row in zip(names, rows, strict=False):
             places.setdefault(name.name, row)
     return places
-
-
-def _checked_values(family: Family, program: Program) -> Callable[[Array], Flags]:
-    """Whether storages and moduli are certain not to be zero, for rows of parameters."""
-    elements = [e for e in family.equations.elements.values() if e.kind is not Kind.R]
-    values = [sp.sympify(e.value) for e in elements if e.value is not None]
-    known = {symbol.name for symbol in program.parameters}
-    constant = [v for v in values if {s.name for s in v.free_symbols} <= known]
-    pairs = [(value, _size(value)) for value in constant]
-    function = sp.lambdify(list(program.parameters), pairs, "numpy", cse=True)
-
-    def usable(parameters: Array) -> Flags:
-        found = np.ones(len(parameters), dtype=bool)
-        for value, size in function(*parameters.T):
-            found &= np.isfinite(size) & (np.abs(value) > 1e-12 * np.abs(size))
-        return found
-
-    return usable
-
-
-def _size(value: sp.Expr) -> sp.Expr:
-    """The magnitude of an expression's terms, before they cancel."""
-    if value.is_Add:
-        return reduce(lambda a, b: a + b, (_size(part) for part in value.args))
-    if value.is_Mul:
-        return reduce(lambda a, b: a * b, (_size(part) for part in value.args))
-    if value.is_Pow and value.exp.is_positive:
-        return _size(value.base) ** value.exp
-    return abs(value)

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from bondgraph import SimulationError
@@ -14,8 +13,8 @@ from codegen.engine.sizes import Engine, Sizes, aligned, declarations, sources
 from codegen.program import Program
 
 FILES = (
-    "batch.h", "batch.c", "batch_internal.h", "batch_mode.c", "batch_measure.c",
-    "batch_model.h", "batch_model.c",
+    "batch.h", "batch_internal.h", "batch.c", "batch_advance.c", "batch_leap.c", "batch_measure.c",
+    "batch_mode.c", "batch_model.h", "batch_model.c", "batch_signal.c", "batch_table.c",
 )  # fmt: skip
 
 CAPACITY = 256
@@ -23,6 +22,9 @@ CAPACITY = 256
 
 MOST_MODES = 27
 """Of one run."""
+
+STRIDE = 8
+"""Steps that are taken from one state."""
 
 
 def batch_engine(
@@ -34,13 +36,14 @@ def batch_engine(
     library = compiled(files, flags)
     numbers = wanted.numbers
     text = declarations("bg_engine.h", numbers)
-    text += declarations("batch.h", {"MODES": min(numbers["MODES"], MOST_MODES)}, "BATCH")
+    shared = {"MODES": min(numbers["MODES"], MOST_MODES), "STRIDE": STRIDE}
+    text += declarations("batch.h", shared, "BATCH")
     for name in ("MODES", "ROW", "L"):
         text = text.replace(f"[BG_{name}]", f"[{numbers[name]}]")
     ffi, opened = loaded(library, text)
-    found = ffi.new("unsigned long[3]")
+    found = ffi.new("unsigned long[5]")
     opened.batch_sizes(found)
-    if [ffi.sizeof("batch_room"), ffi.sizeof("batch_reader")] != list(found)[:2]:
+    if ffi.sizeof("batch_room") != found[0]:
         raise SimulationError(f"the library {library} was compiled for other sizes; delete it")
     return Engine(wanted, ffi, opened)
 
@@ -67,30 +70,26 @@ class Room:
     kept: list[Any] = field(init=False, default_factory=list)
 
     def __post_init__(self) -> None:
-        ffi, numbers = self.engine.ffi, self.engine.sizes.numbers
-        sizes = ffi.new("unsigned long[3]")
+        ffi, numbers, signals = self.engine.ffi, self.engine.sizes.numbers, max(self.signals, 1)
+        sizes = ffi.new("unsigned long[5]")
         self.engine.library.batch_sizes(sizes)
+        _, model, table, of_signal, tables = sizes
         self.record = self.engine.new("batch_room")
-        context, pointer = self.engine.context()
+        context, self.record.context = self.engine.context()
         self.kept.append(context)
-        self.record.context = pointer
-        self.record.capacity = CAPACITY
-        width = numbers["ROW"]
+        self.record.capacity, self.record.pitch = CAPACITY, self.samples + STRIDE
+        events = ffi.new("bg_event[]", CAPACITY)
+        self.kept.append(events)
+        self.record.events = events
         for name, kind, array in (
-            ("model", "void *", aligned(sizes[2] // 8 + 1)),
-            ("rows", f"double(*)[{width}]", aligned(self.samples, width)),
-            ("modes", "int *", np.empty(self.samples, dtype=np.intc)),
-            ("values", "double *", np.empty(self.samples)),
-            ("given", "double *", np.empty(self.samples * 2 * numbers["W"])),
+            ("model", "void *", aligned(model // 8 + 1)),
+            ("readers", f"double(*)[{numbers['L']}]", aligned(MOST_MODES * signals, numbers["L"])),
+            ("tables", "double *", aligned(tables * (table + signals * of_signal))),
+            ("values", "double *", aligned(signals, self.record.pitch)),
+            ("levels", "double *", aligned(signals)),
+            ("constants", f"double(*)[{STRIDE}]", aligned(4 * numbers["K"] + signals, STRIDE)),
         ):
             self._point(name, kind, array)
-        for name, kind, count in (
-            ("events", "bg_event[]", CAPACITY),
-            ("readers", "batch_reader[]", MOST_MODES * max(self.signals, 1)),
-        ):
-            made = ffi.new(kind, count)
-            self.kept.append(made)
-            setattr(self.record, name, made)
 
     def _point(self, name: str, kind: str, array: NDArray[Any]) -> None:
         self.kept.append(array)

@@ -18,34 +18,41 @@ class BatchInputs:
 
     engine: Engine
     indices: NDArray[np.intp]
-    pointers: Any
+    pointers: NDArray[np.uintp]
     kept: Any
 
 
 def varied(
-    engine: Engine, made: Segments, places: Sequence[int], values: Array, indices: NDArray[np.intp]
+    engine: Engine,
+    packed: Packed,
+    constants: Array,
+    places: Sequence[int],
+    values: Array,
+    indices: NDArray[np.intp],
 ) -> BatchInputs:
-    """One record for all runs, or the same with other constants at ``places`` for each of them."""
-    ffi, count = engine.ffi, len(indices)
-    packed = Packed(engine, made)
+    """One record for all runs, or the same with other ``constants`` at ``places`` for each of them."""
+    count = len(indices)
+    pointers = np.empty(count, dtype=np.uintp)
     if not places:
-        pointers = ffi.new("bg_inputs *[]", [packed.record] * count)
+        pointers[:] = _address(engine, packed.record)
         return BatchInputs(engine, indices, pointers, packed)
-    constants = np.tile(made.constants, (count, 1, 1))
+    constants = np.tile(constants, (count, 1, 1))
     constants[:, :, list(places)] = values[indices][:, None, :]
-    records = ffi.new("bg_inputs[]", count)
-    pointers = ffi.new("bg_inputs *[]", count)
-    for k in range(count):
-        records[k] = packed.record[0]
-        records[k].constant = ffi.cast(
-            f"double(*)[{engine.sizes.W}]", constants.ctypes.data + k * constants[0].nbytes
-        )
-        pointers[k] = records + k
+    record = np.frombuffer(engine.ffi.buffer(packed.record), dtype=np.uint8)
+    records = np.tile(record, (count, 1))
+    at = engine.ffi.offsetof("bg_inputs", "constant")
+    own = constants.ctypes.data + constants[0].nbytes * np.arange(count, dtype=np.uintp)
+    records[:, at : at + own.itemsize] = own[:, None].view(np.uint8)
+    pointers[:] = records.ctypes.data + len(record) * np.arange(count, dtype=np.uintp)
     return BatchInputs(engine, indices, pointers, (packed, constants, records))
 
 
 def each(engine: Engine, found: Sequence[tuple[int, Segments]]) -> BatchInputs:
     """A record for each run."""
     packed = [Packed(engine, made) for _, made in found]
-    pointers = engine.ffi.new("bg_inputs *[]", [one.record for one in packed])
+    pointers = np.array([_address(engine, one.record) for one in packed], dtype=np.uintp)
     return BatchInputs(engine, np.array([k for k, _ in found]), pointers, packed)
+
+
+def _address(engine: Engine, record: Any) -> int:
+    return int(engine.ffi.cast("uintptr_t", record))

@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from bondgraph import SignalError
 from bondgraph.expressions import normal
@@ -48,6 +48,10 @@ class Table:
         """The numbers of one run, in the order of ``names``."""
         return tuple(float(column[index]) for column in self._columns.values())
 
+    def rows(self, indices: NDArray[np.intp]) -> Array:
+        """The numbers of some runs, a row for each."""
+        return np.column_stack([column[indices] for column in self._columns.values()])
+
     def column(self, name: str) -> Array:
         """The numbers of one name, one for each run."""
         return self._columns[name]
@@ -84,6 +88,12 @@ class Grid(Table):
         return tuple(
             float(axis[at]) for axis, at in zip(self._columns.values(), places, strict=False)
         )
+
+    def rows(self, indices: NDArray[np.intp]) -> Array:
+        """The numbers of some runs, a row for each."""
+        places = np.unravel_index(indices, self.shape or (1,))
+        axes = zip(self._columns.values(), places, strict=False)
+        return np.column_stack([axis[at] for axis, at in axes])
 
     def column(self, name: str) -> Array:
         """The numbers of one name, one for each run."""

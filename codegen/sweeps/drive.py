@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,14 +12,28 @@ from codegen.sweeps.crews import Crew, Lost
 from codegen.sweeps.design import Table
 from codegen.sweeps.job import Chunk, Outcome
 
-SHORTEST, LONGEST = 0.5, 10.0
-"""How long a chunk should take [s]: in short sweeps and towards the end, and in long ones."""
+
+class Rhythm(NamedTuple):
+    """How chunks grow.
+
+    ``shortest``, ``longest``: the time one should take [s], in short sweeps and towards the end, and in
+    long ones. ``first``: runs of the first. ``growth``: a chunk may have this many times the runs done so
+    far, as the first may not be like the others.
+    """
+
+    shortest: float
+    longest: float
+    first: int
+    growth: int
+
+
+STEADY = Rhythm(0.5, 10.0, 1, 4)
+
+QUICK = Rhythm(0.01, 1.0, 32, 16)
+"""For runs by a loop in C: a chunk costs little, and cannot be interrupted."""
 
 SHARES = 4
 """Chunks that what is left is cut into for every slot."""
-
-GROWTH = 4
-"""A chunk may have this many times the runs done so far: the first may not be like the others."""
 
 ENDED = "the process that did it ended: killed, out of memory, or by an exit in a measure"
 
@@ -28,6 +43,7 @@ class Pace:
     """How many runs a chunk has: as many as asked for, else what the time that runs take suggests."""
 
     fixed: int | None
+    rhythm: Rhythm = STEADY
     runs: int = 0
     seconds: float = 0.0
 
@@ -45,10 +61,10 @@ class Pace:
         if self.fixed is not None:
             return self.fixed
         if not self.runs:
-            return 1
-        each = max(self.seconds / self.runs, 1e-6)
-        target = min(max(left * each / (SHARES * slots), SHORTEST), LONGEST)
-        return max(1, min(round(target / each), GROWTH * self.runs))
+            return self.rhythm.first
+        each, rhythm = max(self.seconds / self.runs, 1e-6), self.rhythm
+        target = min(max(left * each / (SHARES * slots), rhythm.shortest), rhythm.longest)
+        return max(1, min(round(target / each), rhythm.growth * self.runs))
 
 
 @dataclass
@@ -72,14 +88,14 @@ class Work:
         if not left:
             return None
         end = self.at + min(self.pace.size(left, slots), left)
-        indices = tuple(int(index) for index in self.todo[self.at : end])
+        indices = self.todo[self.at : end]
         self.at = end
-        return Chunk(indices, tuple(self.design.row(index) for index in indices))
+        return Chunk(indices, self.design.rows(indices))
 
     def suspect(self, chunk: Chunk) -> None:
         """Have the runs of a chunk done one by one."""
         for index, row in zip(*chunk, strict=True):
-            self.suspects.append(Chunk((index,), (row,)))
+            self.suspects.append(Chunk((int(index),), (row,)))
 
 
 def drive(crew: Crew, work: Work, keep: Callable[[Outcome], None]) -> None:

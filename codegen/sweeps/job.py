@@ -11,12 +11,14 @@ from typing import Any, NamedTuple, Protocol
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bondgraph import BondGraphError, SignalError
 from codegen.arrays import Array
 from codegen.runs.legs import EXACT
 from codegen.runs.result import Result
 from codegen.sweeps.batch import Asked, Batch, batch
+from codegen.sweeps.columns import Columns
 from codegen.sweeps.family import Family
 from codegen.sweeps.measures import Measure
 from codegen.sweeps.packing import packed
@@ -63,10 +65,10 @@ class Model(Protocol):
 
 
 class Chunk(NamedTuple):
-    """Runs that are done together: their indices and their numbers."""
+    """Runs that are done together: their indices, and a row of numbers for each."""
 
-    indices: tuple[int, ...]
-    rows: tuple[tuple[float, ...], ...]
+    indices: Sequence[int] | NDArray[np.intp]
+    rows: Sequence[Sequence[float]] | Array
 
 
 class Outcome(NamedTuple):
@@ -75,8 +77,8 @@ class Outcome(NamedTuple):
     ``seconds``: how long it took.
     """
 
-    indices: tuple[int, ...]
-    results: tuple[tuple[Array, ...] | str, ...]
+    indices: Sequence[int] | NDArray[np.intp]
+    results: Sequence[tuple[Array, ...] | str] | Columns
     seconds: float
 
 
@@ -135,10 +137,13 @@ def measured(job: Job, chunk: Chunk) -> Outcome:
     """The outcome of a chunk, run after run."""
     start = time.perf_counter()
     loop = batch_of(job)
-    found = [None] * len(chunk.rows) if loop is None else loop(chunk.rows)
-    results = tuple(
-        job.run(row) if one is None else one for one, row in zip(found, chunk.rows, strict=True)
-    )
+    rows = np.asarray(chunk.rows, dtype=float)
+    results: tuple[tuple[Array, ...] | str, ...] | Columns
+    if loop is None:
+        results = tuple(job.run(row) for row in rows.tolist())
+    else:
+        columns, left = loop(rows)
+        results = Columns(columns, {at: job.run(rows[at].tolist()) for at in left})
     return Outcome(chunk.indices, results, time.perf_counter() - start)
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from bondgraph import MissingExtraError
 from codegen.arrays import Array
+from codegen.sweeps.columns import Columns
 from codegen.sweeps.design import Table
 from codegen.sweeps.job import Outcome
 
@@ -115,6 +116,8 @@ class Collected:
 
     def add(self, outcome: Outcome) -> int:
         """Take what is new; how many runs that is."""
+        if isinstance(outcome.results, Columns) and self._alike(outcome.results):
+            return self._add_columns(np.asarray(outcome.indices), outcome.results)
         new = 0
         for index, result in zip(outcome.indices, outcome.results, strict=True):
             if self.done[index]:
@@ -126,6 +129,23 @@ class Collected:
             else:
                 self._put(index, result)
         return new
+
+    def _alike(self, results: Columns) -> bool:
+        """Whether columns have the shapes of what came in before."""
+        shapes = tuple(column.shape[1:] for column in results.columns)
+        if self._shapes is None and results.plain.any():
+            self._allot(shapes)
+        return shapes == self._shapes
+
+    def _add_columns(self, indices: NDArray[np.intp], results: Columns) -> int:
+        new = ~self.done[indices]
+        taken = new & results.plain
+        for array, column in zip(self._arrays, results.columns, strict=True):
+            array[indices[taken]] = column[taken]
+        self.done[indices[taken]] = True
+        others = [at for at in results.others if new[at]]
+        found = tuple(results[at] for at in others)
+        return int(taken.sum()) + self.add(Outcome(indices[others].tolist(), found, 0.0))
 
     def _put(self, index: int, result: tuple[Array, ...]) -> None:
         shapes = tuple(part.shape for part in result)

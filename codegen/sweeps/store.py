@@ -90,6 +90,7 @@ class Store:
 
     def keep(self, outcome: Outcome) -> None:
         """Write a finished chunk."""
+        indices = [int(index) for index in outcome.indices]
         results = [
             found if isinstance(found, str) else [part.shape for part in found]
             for found in outcome.results
@@ -100,8 +101,8 @@ class Store:
             if not isinstance(found, str)
             for part in found
         ]
-        about = json.dumps({"indices": outcome.indices, "results": results})
-        name = f"runs-{min(outcome.indices):09d}-{secrets.token_hex(4)}.npz"
+        about = json.dumps({"indices": indices, "results": results})
+        name = f"runs-{min(indices):09d}-{secrets.token_hex(4)}.npz"
         beside = self._folder / f"{name}.tmp"
         try:
             with beside.open("xb") as file:

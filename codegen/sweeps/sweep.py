@@ -16,7 +16,7 @@ from codegen.runs.result import Result
 from codegen.sweeps.cluster import Cluster
 from codegen.sweeps.crews import Crew, Here, Processes, Threads
 from codegen.sweeps.design import Table, design
-from codegen.sweeps.drive import Pace, Work, drive
+from codegen.sweeps.drive import QUICK, STEADY, Pace, Work, drive
 from codegen.sweeps.job import Given, Job, Model, Outcome, batch_of, sent
 from codegen.sweeps.measures import Measure
 from codegen.sweeps.result import Collected, Sweep, SweepInterrupted
@@ -85,8 +85,10 @@ def sweep(
     _check_count(workers, "workers", 0)
     _check_count(chunk, "chunk", 1)
     collected = Collected(len(runs), tuple(measures))
-    about = {**job.about(), "parameters": runs.fingerprint(), "runs": len(runs)}
-    kept = None if store is None else Store(store, about)
+    kept = None
+    if store is not None:
+        about = {**job.about(), "parameters": runs.fingerprint(), "runs": len(runs)}
+        kept = Store(store, about)
     for outcome in () if kept is None else kept.finished():
         collected.add(outcome)
     over_time = frozenset(n for n, m in measures.items() if isinstance(m, Measure) and m.over_time)
@@ -101,7 +103,9 @@ def sweep(
                 advance(new)
 
             if len(todo):
-                _run(_crew(job, client, workers, len(todo)), Work(runs, todo, Pace(chunk)), keep)
+                quick = client is None and batch_of(job) is not None
+                pace = Pace(chunk, QUICK if quick else STEADY)
+                _run(_crew(job, client, workers, len(todo)), Work(runs, todo, pace), keep)
     except KeyboardInterrupt:
         raise SweepInterrupted(collected.sweep(runs, job.time, over_time)) from None
     return collected.sweep(runs, job.time, over_time)

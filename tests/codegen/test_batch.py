@@ -73,9 +73,9 @@ def test_stiffnesses_and_initial_speeds() -> None:
 
 def test_the_loop_does_these_runs_itself() -> None:
     loop = _batch_of(("k", "demand"), MEASURES, _demand)
-    found = loop([(8600.0, 1000.0), (8600.0, 900.0)])
+    _, left = loop([(8600.0, 1000.0), (8600.0, 900.0)])
     assert loop.statuses == {0: 2}
-    assert None not in found
+    assert not left
 
 
 def test_demands_by_a_function_of_a_runs_numbers() -> None:

@@ -1,13 +1,10 @@
 """The C engine against the numpy loop: samples, events, statuses, and clean under sanitizers."""
 
-import os
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from oracles.chains import random_chain
 from oracles.models import belt, block, oscillator, stacked_blocks
+from oracles.sanitized import check_clean
 from references.build import bond_graph
 
 import bondgraph as bg
@@ -190,34 +187,19 @@ def test_the_engine_compiles_without_warnings(K: int) -> None:
 
 
 SANITIZED = """
-import sys
-import numpy as np
-sys.path[:0] = {paths!r}
 import test_c_backend as cases
-from codegen.engine.runs import CRuns, Status
-CRuns.__init__.__defaults__ = (("-O1", "-g", "-std=c99", "-fsanitize=address,undefined",
-                                "-fno-sanitize-recover=all"),)
+from codegen.engine.runs import CRuns
+from oracles.sanitized import FLAGS
+CRuns.__init__.__defaults__ = (FLAGS,)
 cases.test_an_oscillator_on_a_belt_through_all_kinds_of_inputs()
 cases.test_blocks_on_top_of_each_other(641)
 cases.test_steps_much_longer_than_time_constants_are_divided()
 cases.test_random_chains_with_random_inputs_at_ragged_times(1)
 cases.test_a_level_below_zero_has_its_status_and_its_time()
 cases.test_models_without_friction_run()
-print("clean")
 """
 
 
 @pytest.mark.slow
 def test_the_engine_is_clean_under_sanitizers() -> None:
-    here = os.path.dirname(__file__)
-    found = subprocess.run(
-        ["gcc", "-print-file-name=libasan.so"], capture_output=True, text=True, check=True
-    )
-    environment = os.environ | {
-        "LD_PRELOAD": found.stdout.strip(), "ASAN_OPTIONS": "detect_leaks=0",
-    }  # fmt: skip
-    done = subprocess.run(
-        [sys.executable, "-c", SANITIZED.format(paths=[here, os.path.dirname(here)])],
-        env=environment, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert done.stdout == "clean\n", done.stderr[-3000:]
+    check_clean(SANITIZED)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from codegen import to_c
-from codegen.c.export import LOCATED
+from codegen.c.export import stepped
 from codegen.model.closed import ClosedModel
 from codegen.program import Program, lower
 
@@ -139,9 +139,7 @@ class Pair:
 
     def __init__(self, folder: Path, equations, values, laws=None, level: str = "-O0") -> None:
         self.equations, self.laws = equations, laws
-        files = to_c(equations, values, laws)
-        stepped = {name: text for name, text in files.items() if name not in LOCATED}
-        sources = written(folder, stepped)
+        sources = written(folder, stepped(to_c(equations, values, laws)))
         library = compiled(
             folder, [*sources, str(HARNESS)], level, "-shared", "-fPIC", to="model.so"
         )

@@ -1,0 +1,26 @@
+"""Compiled code under the sanitizers of addresses and of undefined behaviour, called from Python."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+FLAGS = ("-O1", "-g", "-std=c99", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+
+TESTS = Path(__file__).parents[1]
+
+
+def check_clean(script: str) -> None:
+    """Run a script beside the tests, in a process of its own; it fails where a sanitizer complains."""
+    found = subprocess.run(
+        ["gcc", "-print-file-name=libasan.so"], capture_output=True, text=True, check=True
+    )
+    environment = os.environ | {
+        "LD_PRELOAD": found.stdout.strip(), "ASAN_OPTIONS": "detect_leaks=0",
+    }  # fmt: skip
+    paths = [str(TESTS), str(TESTS.parent)]
+    text = f"import sys\nsys.path[:0] = {paths!r}\n{script}\nprint('clean')\n"
+    done = subprocess.run(
+        [sys.executable, "-c", text], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.stdout == "clean\n", done.stderr[-3000:]
