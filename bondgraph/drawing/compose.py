@@ -3,10 +3,11 @@
 import textwrap
 from dataclasses import replace
 
-from bondgraph.drawing.bonds import bond_shapes
+from bondgraph.drawing.bonds import BARB_BACK, bond_shapes
 from bondgraph.drawing.marks import SMALLER, moved
+from bondgraph.drawing.metrics import width
 from bondgraph.drawing.places import places
-from bondgraph.drawing.powers import lines_of, power_labels
+from bondgraph.drawing.powers import SIZE, lines_of, power_labels
 from bondgraph.drawing.rich import Run, plain
 from bondgraph.drawing.shapes import (
     INK,
@@ -28,8 +29,9 @@ _ROOMS = (1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 4.0)
 
 def scene(subject: Subject, title: str, powers: bool) -> Scene:
     """The picture; with ``powers`` as much wider as the labels need to lie free."""
+    reach = _reach(subject) if powers else {}
     for room in _ROOMS[1 if powers else 0 :]:
-        placed = places(subject, room)
+        placed = places(subject, room, reach)
         nodes = [moved(placed.shapes[at], placed.at[at]) for at in range(len(subject.items))]
         bonds = bond_shapes(subject, placed, nodes)
         if not powers:
@@ -42,6 +44,16 @@ def scene(subject: Subject, title: str, powers: bool) -> Scene:
         if clean:
             break
     return _framed(subject, title, nodes, bonds)
+
+
+def _reach(subject: Subject) -> dict[int, float]:
+    """How long the bond of every one-port must be for its labels to lie beside it."""
+    return {
+        end: max(width(rich, SIZE) for rich in (link.effort, link.flow)) + 2 * BARB_BACK + 4
+        for link in subject.links
+        for end in (link.tail, link.head)
+        if subject.items[end].one_port
+    }
 
 
 def _framed(

@@ -49,13 +49,18 @@ def layered(subject: Subject) -> Layers:
 
 
 def _downwards(subject: Subject) -> "nx.DiGraph[int]":
-    """The bonds, those turned that close a cycle of directions; sources are followed first."""
-    graph: nx.DiGraph[int] = nx.DiGraph()
+    """The bonds away from the first source, and as they point where that does not tell; without cycles."""
     places = range(len(subject.items))
-    sources = [at for at in places if subject.items[at].symbol in ("Se", "Sf")]
-    graph.add_nodes_from(sources)
+    first = next((at for at in places if subject.items[at].symbol in ("Se", "Sf")), None)
+    bonds: nx.Graph[int] = nx.Graph()
+    bonds.add_edges_from((link.tail, link.head) for link in subject.links)
+    far = {} if first is None else nx.single_source_shortest_path_length(bonds, first)
+    graph: nx.DiGraph[int] = nx.DiGraph()
+    graph.add_nodes_from([] if first is None else [first])
     graph.add_nodes_from(places)
-    graph.add_edges_from((link.tail, link.head) for link in subject.links)
+    for link in subject.links:
+        up = far.get(link.tail, 0) > far.get(link.head, 0)
+        graph.add_edge(*((link.head, link.tail) if up else (link.tail, link.head)))
     place = {node: at for at, node in enumerate(_preorder(graph))}
     turned = [(tail, head) for tail, head in graph.edges if place[tail] > place[head]]
     graph.remove_edges_from(turned)

@@ -46,9 +46,7 @@ def faced(order: Order) -> Order:
 
 def crossings(graph: "nx.DiGraph[int]", order: Sequence[Sequence[int]]) -> int:
     """How many pairs of bonds cross."""
-    return sum(
-        _between(graph, upper, lower) for upper, lower in pairwise(order)
-    )
+    return sum(_between(graph, upper, lower) for upper, lower in pairwise(order))
 
 
 def _between(graph: "nx.DiGraph[int]", upper: Sequence[int], lower: Sequence[int]) -> int:

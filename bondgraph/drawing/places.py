@@ -14,6 +14,9 @@ from bondgraph.drawing.shapes import NodeShape, Point
 from bondgraph.drawing.subject import Subject
 from bondgraph.drawing.tight import extremes
 
+BAND = 18.0
+"""A bond that passes a layer is upright so far above and below its middle."""
+
 NODE_GAP, SIDE_BOND, LAYER_GAP, CLEAR = 26.0, 44.0, 66.0, 6.0
 """Least room between nodes of a layer, length of a bond to the side, distance of layers, room at ends."""
 
@@ -46,19 +49,25 @@ class _Cell:
     right: int
 
 
-def places(subject: Subject, room: float) -> Places:
-    """The nodes placed, ``room`` times as far apart as plain bonds need."""
+def places(subject: Subject, room: float, reach: Mapping[int, float]) -> Places:
+    """The nodes placed, ``room`` times as far apart as plain bonds need.
+
+    ``reach``: how long the bond of a one-port beside its junction must be, at least.
+    """
     found = layered(subject)
     order = faced(ordered(found.graph, found.layers))
+    lengths = {
+        item: max(SIDE_BOND, reach.get(item, 0.0)) for own in found.beside.values() for item in own
+    }
     lean = dict.fromkeys(found.graph, 0)
-    cells = _cells(subject, found, lean, room)
+    cells = _cells(subject, found, lean, lengths)
     columns = _columns(found.graph, order, cells, room)
     kinds = {vertex: _kind(subject, found, vertex) for vertex in found.graph}
     for _ in range(2):
         order = mirrored(found.graph, order, _leaning(found.graph, order, columns), kinds)
         columns = _columns(found.graph, order, cells, room)
         lean = _leaning(found.graph, order, columns)
-        cells = _cells(subject, found, lean, room)
+        cells = _cells(subject, found, lean, lengths)
         columns = _columns(found.graph, order, cells, room)
     rows = _rows(found.graph, order, columns, room)
     at: dict[int, Point] = {}
@@ -69,7 +78,7 @@ def places(subject: Subject, room: float) -> Places:
             at[item] = (columns[vertex] + offset, rows[vertex])
             shapes[item], sides[item] = shape, side
     bends = {
-        ends: tuple((float(columns[v]), rows[v]) for v in path[1:-1])
+        ends: tuple((columns[bend], rows[bend] + by) for bend in path[1:-1] for by in (-BAND, BAND))
         for ends, path in found.paths.items()
     }
     return Places(at, shapes, sides, bends)
@@ -83,18 +92,22 @@ def _kind(subject: Subject, found: Layers, vertex: int) -> str:
 
 
 def _cells(
-    subject: Subject, found: Layers, lean: Mapping[int, int], room: float
+    subject: Subject, found: Layers, lean: Mapping[int, int], lengths: Mapping[int, float]
 ) -> dict[int, _Cell]:
     cells = {}
     for vertex in found.graph:
         if vertex >= len(subject.items):
             cells[vertex] = _Cell({}, 2, 2)
         else:
-            cells[vertex] = _cell(subject, vertex, found.beside.get(vertex, ()), lean[vertex], room)
+            cells[vertex] = _cell(
+                subject, vertex, found.beside.get(vertex, ()), lean[vertex], lengths
+            )
     return cells
 
 
-def _cell(subject: Subject, node: int, beside: tuple[int, ...], lean: int, room: float) -> _Cell:
+def _cell(
+    subject: Subject, node: int, beside: tuple[int, ...], lean: int, lengths: Mapping[int, float]
+) -> _Cell:
     """A node with the one-ports beside it; the first of these is on the side it leans to."""
     first: Side = "left" if lean < 0 else "right"
     second: Side = "right" if lean < 0 else "left"
@@ -107,10 +120,10 @@ def _cell(subject: Subject, node: int, beside: tuple[int, ...], lean: int, room:
     for item, side in zip(beside, (first, second), strict=False):
         own = node_shape(subject.items[item], side)
         if side == "right":
-            offset = shape.box.right + SIDE_BOND * room + 2 * CLEAR
+            offset = shape.box.right + lengths[item] + 2 * CLEAR
             right = offset + own.box.right
         else:
-            offset = shape.box.left - SIDE_BOND * room - 2 * CLEAR
+            offset = shape.box.left - lengths[item] - 2 * CLEAR
             left = offset + own.box.left
         shapes[item] = (own, offset, side)
     if lean == 0 and not beside:
@@ -153,10 +166,18 @@ def _weights(
     bent = (upper >= bends) + (lower >= bends)
     if bent:
         return [(STRAIGHT / 4 if bent == 2 else STRAIGHT / 16, 0.0)]
-    rest = [sizes[one] for one in graph.successors(upper) if one != lower]
-    if graph.in_degree(lower) == 1 and sizes[lower] > 1.5 * max(rest, default=0):
+    if graph.in_degree(lower) == 1 and _leading(graph, sizes, upper) == lower:
         return [(STRAIGHT, 0.0)]
-    return [(max(1.0, 8.0 // sizes[lower]), free) for free in FAN]
+    weight = max(1.0, 8.0 // sizes[lower])
+    if _leading(graph, sizes, upper) is not None:
+        weight /= 2
+    return [(weight, free) for free in FAN]
+
+
+def _leading(graph: "nx.DiGraph[int]", sizes: Mapping[int, int], upper: int) -> int | None:
+    """The vertex below that leads to much more of the graph than the others do, if there is one."""
+    first, *rest = sorted(graph.successors(upper), key=lambda one: -sizes[one])
+    return first if not rest or sizes[first] > 1.5 * sizes[rest[0]] else None
 
 
 def _leaning(

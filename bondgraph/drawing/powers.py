@@ -10,8 +10,8 @@ from bondgraph.drawing.shapes import QUIET, BondShape, Box, Label, Point
 
 SIZE = SMALLER + 0.5
 
-_SHARES = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)
-_AWAY = (3.0, 6.0, 10.0)
+_SHARES = (0.5, 0.44, 0.56, 0.38, 0.62, 0.32, 0.68)
+_AWAY = (3.0, 5.0)
 
 Line = tuple[Point, Point]
 

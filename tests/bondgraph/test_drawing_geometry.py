@@ -52,7 +52,9 @@ def touching(scene: Scene) -> list[tuple[object, object]]:
         if node.frame is not None:
             own = {label.box for label in node.labels}
             found += [
-                (node.name, text) for text, box in texts if box not in own and box.overlaps(node.frame)
+                (node.name, text)
+                for text, box in texts
+                if box not in own and box.overlaps(node.frame)
             ]
             found += [(node.name, e) for e, a, b in lines(scene) if node.frame.crossed(a, b)]
     return found
