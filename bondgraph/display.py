@@ -1,11 +1,12 @@
 """State equations as text for a terminal: matrices, else row by row, else by their structure."""
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Literal, Protocol
 
 import sympy as sp
 
 from bondgraph.blocks import Block, beside, column_block, matrix_block, sketch
+from bondgraph.exact import rows_of
 from bondgraph.sums import Term, rate, text_pieces
 
 WIDTH = 100
@@ -66,15 +67,24 @@ class Matrices(Protocol):
         """Outputs by inputs."""
 
 
+Form = Literal["matrices", "rows", "structure"]
+"""The forms of a text: whole matrices, one row after the other, sizes and places of entries."""
+
+
 def equations_text(equations: Matrices) -> str:
     """Aligned matrices where they fit a line, else row by row; of large systems sizes and places."""
+    return equations_shown(equations)[1]
+
+
+def equations_shown(equations: Matrices) -> tuple[Form, str]:
+    """The text and the form that it has."""
     if len(equations.states) > MOST_STATES or len(equations.outputs) > 2 * MOST_STATES:
-        return summary(equations)
+        return "structure", summary(equations)
     blocks = _blocks(equations)
     if max((len(line) for block in blocks for line in block), default=0) <= WIDTH:
-        return "\n\n".join("\n".join(block) for block in blocks)
+        return "matrices", "\n\n".join("\n".join(block) for block in blocks)
     text = "\n".join(line for row in rows_of_terms(equations) for line in written(*row))
-    return text if len(text) <= MOST_SIGNS else summary(equations)
+    return ("rows", text) if len(text) <= MOST_SIGNS else ("structure", summary(equations))
 
 
 def right_sides(
@@ -109,22 +119,26 @@ def _products(parts: Sequence[tuple[str, sp.Matrix, Sequence[sp.Symbol]]]) -> li
 def rows_of_terms(equations: Matrices) -> list[tuple[list[Term], list[Term]]]:
     """Each row of both equations as its left and right side."""
     upper, lower = right_sides(equations)
-    states = [rate(name) for name in equations.states]
-    rows = [
-        (_terms(equations.A, states, i), _all_terms(upper, i))
-        for i in range(len(equations.states))
-    ]  # fmt: skip
+    lefts = _rows(equations.A, [rate(name) for name in equations.states])
     one = sp.Integer(1)
-    rows += [([(one, name)], _all_terms(lower, i)) for i, name in enumerate(equations.outputs)]
-    return rows
+    outputs = [[(one, name)] for name in equations.outputs]
+    return [*zip(lefts, _sums(upper, len(lefts)), strict=True),
+            *zip(outputs, _sums(lower, len(outputs)), strict=True)]  # fmt: skip
 
 
-def _all_terms(parts: Sequence[tuple[str, sp.Matrix, Sequence[sp.Symbol]]], row: int) -> list[Term]:
-    return [term for _, matrix, vector in parts for term in _terms(matrix, vector, row)]
+def _sums(
+    parts: Sequence[tuple[str, sp.Matrix, Sequence[sp.Symbol]]], count: int
+) -> list[list[Term]]:
+    """The right sides of so many rows."""
+    result: list[list[Term]] = [[] for _ in range(count)]
+    for _, matrix, vector in parts:
+        for row, terms in zip(result, _rows(matrix, vector), strict=True):
+            row += terms
+    return result
 
 
-def _terms(matrix: sp.Matrix, names: Sequence[sp.Symbol], row: int) -> list[Term]:
-    return [(matrix[row, j], name) for j, name in enumerate(names) if matrix[row, j] != 0]
+def _rows(matrix: sp.Matrix, names: Sequence[sp.Symbol]) -> list[list[Term]]:
+    return [[(row[j], names[j]) for j in sorted(row)] for row in rows_of(matrix)]
 
 
 def written(left: Sequence[Term], right: Sequence[Term]) -> list[str]:
@@ -186,10 +200,10 @@ def listed(names: Sequence[object]) -> str:
     return ", ".join(texts)
 
 
-def counted(count: int, what: str) -> str:
+def counted(count: int, what: str, many: str | None = None) -> str:
     """A number of things.
 
     >>> counted(1, "state"), counted(2, "state")
     ('1 state', '2 states')
     """
-    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+    return f"{count} {what if count == 1 else many or what + 's'}"

@@ -44,6 +44,12 @@ def _given(
         return "given", [], none
     if is_independent(strokes, node):
         return "given", [], sign * variable_of(element, strokes.gives(node))
+    if element.kind in STORAGES and element.inverse is not None:
+        # The state as a function of what the element receives, written as a multiple of that.
+        signal, known = equations.received[node]
+        other = "effort" if strokes.gives(node) == "flow" else "flow"
+        factor = element.inverse / variable_of(element, other)
+        return "rate", [(signal, sign * known * factor)], none
     if element.kind in STORAGES:
         row = element.row or ((element.name, element.constant),)
         effort = element.kind is Kind.C

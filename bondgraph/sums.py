@@ -51,8 +51,8 @@ def plain(expr: sp.Expr) -> str:
 def typeset(expr: Any) -> str:
     r"""An expression or a matrix as LaTeX; names that are Greek letters become these, rates have a dot.
 
-    >>> print(typeset(rate(sp.Symbol("omega_1"))/2 + sp.Symbol("e_left_J")))
-    \frac{\dot{\omega}_{1}}{2} + e_{left,J}
+    >>> print(typeset(rate(sp.Symbol("omega_1"))), typeset(sp.Symbol("e_left_J")))
+    \dot{\omega}_{1} e_{left,J}
     """
     names = {name: _typeset_name(name.name) for name in expr.free_symbols}
     return str(sp.latex(expr, symbol_names=names))
@@ -60,7 +60,8 @@ def typeset(expr: Any) -> str:
 
 def _typeset_name(name: str) -> str:
     base, line, index = sp.latex(sp.Symbol(name.rstrip("'"))).partition("_")
-    return (rf"\dot{{{base}}}" if name.endswith("'") else base) + line + index.replace(" ", ",")
+    head = rf"\dot{{{base}}}" if name.endswith("'") else base
+    return f"{head}{line}{index.replace(' ', ',')}"
 
 
 def text_pieces(terms: Iterable[Term]) -> list[str]:

@@ -8,7 +8,7 @@ from bondgraph.assignments import Assignment
 from bondgraph.causal_order import CausalEquations, causal_groups
 from bondgraph.exact import combined
 from bondgraph.explaining.primitives import names_of_ports
-from bondgraph.explaining.records import Equation, Step, equation, terms_of
+from bondgraph.explaining.records import Equation, Step, equation
 from bondgraph.modulation import Reading
 from bondgraph.resistances import ResistiveGroup, resistive_groups
 from bondgraph.sorting import Reduction
@@ -21,11 +21,10 @@ LARGEST_TIDIED = 100
 
 def reading_terms(reduction: Reduction, reading: Reading) -> list[Term]:
     """A reading as a sum over states, inputs and their rates, entries as a person would write them."""
-    shorter = tidy if len(reduction.structure.ports) <= LARGEST_TIDIED else sp.sympify
     x, u = reduction.names, reduction.inputs
     columns = (x, u, [rate(name) for name in x], [rate(name) for name in u])
     return [
-        (shorter(row[j]), names[j])
+        (_tidied(reduction, row[j]), names[j])
         for row, names in zip(reading.parts, columns, strict=True)
         for j in sorted(row)
     ]
@@ -33,7 +32,12 @@ def reading_terms(reduction: Reduction, reading: Reading) -> list[Term]:
 
 def row_terms(reduction: Reduction, row: Mapping[int, sp.Expr]) -> list[Term]:
     """A row over what the ports give, as a sum."""
-    return terms_of(row, names_of_ports(reduction))
+    names = names_of_ports(reduction)
+    return [(_tidied(reduction, row[at]), names[at]) for at in sorted(row) if at in names]
+
+
+def _tidied(reduction: Reduction, entry: sp.Expr) -> sp.Expr:
+    return tidy(entry) if len(reduction.structure.ports) <= LARGEST_TIDIED else entry
 
 
 def loops_step(

@@ -3,8 +3,12 @@
 from collections.abc import Sequence
 from typing import TypeVar
 
-from bondgraph.display import counted, listed, structure as formula
+import sympy as sp
+
+from bondgraph.display import counted, listed
+from bondgraph.display import structure as formula
 from bondgraph.equations import StateEquations
+from bondgraph.sums import Sum
 
 MOST_LINES = 40
 """A step of more lines than this, unless told otherwise, shows its first few."""
@@ -13,6 +17,9 @@ FIRST_FEW = 6
 
 MOST_TERMS = 16
 """Of longer sums the first terms are shown, unless everything is."""
+
+MOST_OPERATIONS = 80
+"""Of longer factors the length is shown, unless everything is."""
 
 LARGEST_MATRIX = 8
 """Matrices with more rows or columns are told by their size, unless everything is shown."""
@@ -28,25 +35,36 @@ def first_few(lines: Sequence[T], limit: int | None) -> tuple[Sequence[T], int]:
     return lines[:shown], len(lines) - shown
 
 
-def shortened(pieces: Sequence[str], limit: int | None) -> tuple[list[str], int]:
-    """The terms of a sum to show and how many are left out."""
-    if limit is None or len(pieces) <= MOST_TERMS:
-        return list(pieces), 0
-    return list(pieces[:MOST_TERMS]), len(pieces) - MOST_TERMS
+def shortened(side: Sum, limit: int | None, name: str) -> tuple[Sum, int]:
+    """The terms of a sum to show and how many are left out; long factors are told by their length.
+
+    ``name``: what such a factor is called, with a place for the number of its operations.
+    """
+    if limit is None:
+        return side, 0
+    terms = tuple((_named(factor, name), signal) for factor, signal in side[:MOST_TERMS])
+    return terms, len(side) - len(terms)
+
+
+def _named(factor: sp.Expr, name: str) -> sp.Expr:
+    operations = factor.count_ops()
+    return sp.Symbol(name.format(operations)) if operations > MOST_OPERATIONS else factor
 
 
 def fits(equations: StateEquations, limit: int | None) -> bool:
-    """Whether matrices over states are small enough to be shown."""
-    return limit is None or len(equations.states) <= LARGEST_MATRIX
+    """Whether matrices over states and dependent storages are small enough to be shown."""
+    largest = max(len(equations.states), len(equations.reduction.dependent))
+    return limit is None or largest <= LARGEST_MATRIX
 
 
 def heading(equations: StateEquations) -> tuple[str, ...]:
     """What is derived, and the names that the derivation is about."""
     structure = equations.reduction.structure
     dependent = [structure.ports[port].element.name for port in equations.reduction.dependent]
+    goal = formula(equations) or "no equations: there is neither a state nor an output"
     lines = [
         f"From a bond graph of {counted(len(structure.elements), 'node')} and "
-        f"{counted(len(structure.bonds), 'bond')} to {formula(equations)}"
+        f"{counted(len(structure.bonds), 'bond')} to {goal}"
     ]
     for count, what, names in (
         (len(equations.states), "state", equations.states),

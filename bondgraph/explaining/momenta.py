@@ -1,5 +1,6 @@
-"""Storages whose momentum or displacement is more than a constant times a variable, under names of their own."""
+"""Momenta and displacements; those that are more than a constant times a variable get names."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -44,7 +45,8 @@ def momenta(reduction: Reduction, taken: set[sp.Symbol]) -> Momenta:
         if isinstance(law, ExpressionLaw) and law.state is not None:
             symbols[at] = law.state
             continue
-        text = f"{'p' if port.element.kind is Kind.I else 'q'}_{port.element.name}"
+        letter = "p" if port.element.kind is Kind.I else "q"
+        text = re.sub(r"\W", "_", f"{letter}_{port.element.name}")
         while text in names:
             text += "_"
         names.add(text)

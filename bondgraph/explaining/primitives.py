@@ -1,6 +1,6 @@
 """The equations that a bond graph states node by node: storages, laws, junctions and two-ports."""
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 
 import sympy as sp
 
@@ -13,7 +13,7 @@ from bondgraph.explaining.records import Equation, Step, equation
 from bondgraph.laws import DryFriction, ExpressionLaw
 from bondgraph.sorting import Reduction, detects
 from bondgraph.strokes import Strokes
-from bondgraph.sums import Term, rate, split
+from bondgraph.sums import rate, split
 
 
 def storages_step(reduction: Reduction, momenta: Momenta) -> Step:
@@ -81,33 +81,34 @@ def junctions_step(
             lines.append(equation(line.symbol, split(line.right, known), node=line.node))
         elif line.kind == "transfer" and (names := handed.pop((line.node, line.right), None)):
             lines.append(equation(*names, split(line.right, known), node=line.node))
-    lines += _other_names(strokes, causal, signals, reduction)
     title = "Junctions, transformers and gyrators, in causal order"
-    return Step("junctions", title, (), tuple(lines))
+    given, received = _other_names(strokes, causal, signals, reduction)
+    return Step("junctions", title, (), (*given, *lines, *received))
 
 
 def _other_names(
     strokes: Strokes, causal: CausalEquations, signals: Sequence[Assignment], reduction: Reduction
-) -> Iterator[Equation]:
-    """Ports whose variable is a bond's under another name, or with the other sign."""
+) -> tuple[list[Equation], list[Equation]]:
+    """What ports give and receive, where a bond has it under another name or with the other sign."""
     symbols = {(line.bond, line.variable): line.symbol for line in signals}
     known = set(symbols.values())
     ports = {port.element.name: port for port in reduction.structure.ports}
-    given: dict[int, tuple[int, int]] = {
-        node: (s, sign) for s, (node, sign) in causal.given.items()
-    }
-    for node, name in enumerate(strokes.names):
-        if name not in ports:
-            continue
-        for own, (signal, sign) in (
-            (ports[name].given, given[node]), (ports[name].received, causal.received[node]),
-        ):  # fmt: skip
-            if own in known:
-                continue
-            known.add(own)
-            bond = strokes.declared[signal // 2]
-            term: Term = (sp.Integer(sign), symbols[bond, "flow" if signal % 2 else "effort"])
-            yield equation(own, [term], node=name)
+
+    def bonds(signal: int) -> sp.Symbol:
+        return symbols[strokes.declared[signal // 2], "flow" if signal % 2 else "effort"]
+
+    given, received = [], []
+    for signal, (node, sign) in causal.given.items():
+        name = strokes.names[node]
+        own = [(sp.Integer(sign), ports[name].given)]
+        given.append(equation(bonds(signal), own, node=name))
+    for node, (signal, sign) in causal.received.items():
+        name = strokes.names[node]
+        if ports[name].received not in known:
+            known.add(ports[name].received)
+            own = [(sp.Integer(sign), bonds(signal))]
+            received.append(equation(ports[name].received, own, node=name))
+    return given, received
 
 
 def names_of_ports(reduction: Reduction) -> Mapping[int, sp.Symbol]:

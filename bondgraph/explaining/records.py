@@ -1,6 +1,6 @@
-"""`Step`, `Equation` and `Formula`: what a derivation consists of, as sympy expressions that can be checked."""
+"""`Step`, `Equation` and `Formula`: what a derivation consists of, as sympy that can be checked."""
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -107,8 +107,3 @@ def numbered(steps: Iterable[Step]) -> Iterator[Step]:
             formulas.append(replace(formula, number=count))
         if equations or formulas or step.sentences:
             yield replace(step, equations=tuple(equations), formulas=tuple(formulas))
-
-
-def terms_of(row: Mapping[int, sp.Expr], names: Mapping[int, sp.Symbol]) -> list[Term]:
-    """A sparse row as a sum over the names of its columns, in their order; unnamed columns are zero."""
-    return [(row[j], names[j]) for j in sorted(row) if j in names]

@@ -1,6 +1,7 @@
-"""The causal story in the order in which it came about: who imposes what on whom, and who became dependent."""
+"""The causal story as it came about: who imposes what on whom, and who became dependent."""
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
+from typing import Literal
 
 import sympy as sp
 
@@ -8,9 +9,13 @@ from bondgraph.assignments import Assignment
 from bondgraph.causality import CausalGraph
 from bondgraph.elements import JUNCTIONS, Kind
 from bondgraph.explaining.records import Step
+from bondgraph.graph import Bond
 from bondgraph.sorting import Reduction
 from bondgraph.stories import deciding_nodes
 from bondgraph.strokes import Reason, Strokes
+
+Symbols = Mapping[tuple[Bond, Literal["effort", "flow"]], sp.Symbol]
+"""The symbol of each bond's effort and flow."""
 
 KINDS = {Kind.ZERO: "0-junction", Kind.ONE: "1-junction"}
 
@@ -27,7 +32,7 @@ def causality_step(
     return Step("causality", "Who imposes what on whom", tuple(lines))
 
 
-def _imposed(strokes: Strokes, symbols: Mapping[tuple[object, str], sp.Symbol]) -> Iterator[str]:
+def _imposed(strokes: Strokes, symbols: Symbols) -> Iterator[str]:
     """A sentence for every choice, every two-port and every junction, as their strokes were set."""
     for bond in strokes.trail:
         reason = strokes.reason[bond]
@@ -41,21 +46,18 @@ def _imposed(strokes: Strokes, symbols: Mapping[tuple[object, str], sp.Symbol]) 
                 yield _common(strokes, symbols, bond, node)
 
 
-def _decision(
-    strokes: Strokes, symbols: Mapping[tuple[object, str], sp.Symbol], bond: int, reason: Reason
-) -> str:
+def _decision(strokes: Strokes, symbols: Symbols, bond: int, reason: Reason) -> str:
     node = reason.node
-    gives = "flow" if strokes.end[bond] == node else "effort"
+    gives: Literal["effort", "flow"] = "flow" if strokes.end[bond] == node else "effort"
     symbol = symbols[strokes.declared[bond], gives]
     other = strokes.names[strokes.other(bond, node)]
-    return f"{_called(strokes, node)} {reason.text}: it gives the {gives} {symbol} to {other}"
+    return f"{_called(strokes, node)} {reason.text}; it gives the {gives} {symbol} to {other}"
 
 
-def _common(
-    strokes: Strokes, symbols: Mapping[tuple[object, str], sp.Symbol], bond: int, node: int
-) -> str:
+def _common(strokes: Strokes, symbols: Symbols, bond: int, node: int) -> str:
     """A junction, the one bond that brings its common variable, and those that take it from there."""
-    what = "effort" if strokes.elements[node].kind is Kind.ZERO else "flow"
+    zero = strokes.elements[node].kind is Kind.ZERO
+    what: Literal["effort", "flow"] = "effort" if zero else "flow"
     others = [strokes.other(b, node) for b in strokes.at[node] if b != bond]
     reason = strokes.reason[bond]
     last = reason is not None and reason.node == node
@@ -93,4 +95,4 @@ def _listed(strokes: Strokes, nodes: Sequence[int]) -> str:
     if len(names) > MOST_NODES:
         left = len(names) - MOST_NODES + 1
         names = [*names[: MOST_NODES // 2], f"{left} more", *names[-(MOST_NODES // 2 - 1) :]]
-    return ", ".join(names) or "nothing but itself"
+    return ", ".join(names) or "the structure alone"

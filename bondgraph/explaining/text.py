@@ -3,14 +3,17 @@
 from collections.abc import Iterator, Sequence
 
 from bondgraph.blocks import Block, beside, matrix_block
-from bondgraph.display import WIDTH, equations_text, wrapped
+from bondgraph.display import WIDTH, counted, equations_shown, wrapped
 from bondgraph.equations import StateEquations
 from bondgraph.explaining.layout import first_few, fits, heading, shortened
-from bondgraph.explaining.records import Equation, Formula, Step
+from bondgraph.explaining.records import Equation, Factor, Formula, Step
 from bondgraph.sums import Sum, text_pieces
 
+WIDEST_MATRIX = 120
+"""Wider matrices are told by their size."""
+
 LONGEST_NODE = 18
-LONGEST_LEFT = 30
+LONGEST_LEFT = 32
 """Longer names and left sides stand out of their columns."""
 
 
@@ -21,12 +24,15 @@ def text_of(steps: Sequence[Step], result: StateEquations, limit: int | None) ->
     for number, step in enumerate(steps, 1):
         lines += ["", f"{number}. {step.title}"]
         lines += _step(step, fits(result, limit), limit)
-    return "\n".join([*lines, "", _ending(result), ""])
+    return "\n".join([*lines, *_ending(result)])
 
 
-def _ending(result: StateEquations) -> str:
-    lines = (f"  {line}".rstrip() for line in equations_text(result).splitlines())
-    return "\n".join(["In matrices", "", *lines])
+def _ending(result: StateEquations) -> Iterator[str]:
+    """The equations in matrices, or their structure; rows have been shown."""
+    form, text = equations_shown(result)
+    if text and form != "rows":
+        yield from ("", "In matrices", "")
+        yield from (f"  {line}".rstrip() for line in text.splitlines())
 
 
 def _step(step: Step, matrices: bool, limit: int | None) -> Iterator[str]:
@@ -52,30 +58,39 @@ def _equations(equations: Sequence[Equation], limit: int | None) -> Iterator[str
     ]  # fmt: skip
     for one, *cells in zip(equations, numbers, nodes, lefts, strict=True):
         number, node, left = (cell.ljust(width) for cell, width in zip(cells, widths, strict=True))
-        head = f"  {number}  {node}  {left.strip():>{widths[2]}}"
+        label = f"  {number}  {node}  "
         rights = [_joined(side, limit) for side in one.sides[1:]]
-        line = " = ".join([head, *rights])
+        line = " = ".join([f"{label}{left.strip():>{widths[2]}}", *rights])
         if len(line) <= WIDTH:
             yield line
-            continue
-        yield from _broken(head, one, limit)
+        else:
+            yield from _broken(label, widths[2], one, limit)
 
 
-def _broken(head: str, one: Equation, limit: int | None) -> Iterator[str]:
+def _broken(label: str, width: int, one: Equation, limit: int | None) -> Iterator[str]:
     """Each further side on a line of its own, or several, below one another."""
-    column = min(len(head), WIDTH // 2)
-    for at, side in enumerate(one.sides[1:]):
-        pieces, more = shortened(text_pieces(side), limit)
-        if more:
-            pieces.append(f"... ({more} more terms)")
-        for count, line in enumerate(wrapped(pieces, WIDTH - column, "")):
-            start = head if at == count == 0 else " " * column
-            yield f"{start} {'=' if count == 0 else ' '} {line}"
+    left = wrapped(_pieces(one.sides[0], limit), WIDTH - len(label), "  ")
+    head = f"{label}{left[0]:>{width}}"
+    column = len(label) + width
+    if len(left) > 1 or len(head) > column:
+        yield head
+        column = len(label) + 2
+        yield from (f"{' ' * len(label)}{line}" for line in left[1:])
+        head = " " * column
+    for side in one.sides[1:]:
+        for count, line in enumerate(wrapped(_pieces(side, limit), WIDTH - column - 3, "  ")):
+            yield f"{head} {'=' if count == 0 else ' '} {line}"
+            head = " " * column
+
+
+def _pieces(side: Sum, limit: int | None) -> list[str]:
+    terms, more = shortened(side, limit, "<{} operations>")
+    pieces = text_pieces(terms)
+    return [*pieces, f"... ({more} more terms)"] if more else pieces
 
 
 def _joined(side: Sum, limit: int | None) -> str:
-    pieces, more = shortened(text_pieces(side), limit)
-    return " ".join(pieces) + (f" ... ({more} more terms)" if more else "")
+    return " ".join(_pieces(side, limit))
 
 
 def _width(cells: Sequence[str], most: int) -> int:
@@ -85,26 +100,28 @@ def _width(cells: Sequence[str], most: int) -> int:
 def _formula(formula: Formula, matrices: bool) -> Iterator[str]:
     products = [" ".join(factor.text for factor in product) for product in formula.products]
     yield f"  ({formula.number})  {formula.left.text} = {' + '.join(products)}"
-    if not matrices:
-        sizes = dict.fromkeys(
-            f"{one.text} {one.matrix.rows} x {one.matrix.cols} with {len(one.matrix.todok())} entries"
-            for product in formula.products
-            for one in product
-        )
-        yield f"       {', '.join(sizes)}"
-        return
-    parts: list[Block | str] = ["  = "]
-    for at, product in enumerate(formula.products):
-        parts += [" + "] if at else []
-        for place, factor in enumerate(product):
-            parts += [" "] if place else []
-            parts.append(matrix_block(factor.matrix))
-    block = beside(*parts)
-    if max(map(len, block)) <= WIDTH:
+    if matrices:
+        parts: list[Block | str] = ["  = "]
+        for at, product in enumerate(formula.products):
+            parts += [" + "] if at else []
+            for place, factor in enumerate(product):
+                parts += [" "] if place else []
+                parts.append(matrix_block(factor.matrix))
+        block = beside(*parts)
         yield ""
-        yield from (f"     {line}" for line in block)
-        return
+        if max(map(len, block)) <= WIDTH:
+            yield from (f"     {line}" for line in block)
+            return
     for factor in {one.text: one for product in formula.products for one in product}.values():
+        yield from _matrix(factor, matrices)
+
+
+def _matrix(factor: Factor, matrices: bool) -> Iterator[str]:
+    """One matrix under its name, or its size."""
+    block = beside(f"{factor.text} = ", matrix_block(factor.matrix)) if matrices else ()
+    if matrices and max(map(len, block)) <= WIDEST_MATRIX:
+        yield from (f"     {line}" for line in block)
         yield ""
-        named = beside(f"{factor.text} = ", matrix_block(factor.matrix))
-        yield from (f"     {line}" for line in named)
+        return
+    entries = counted(len(factor.matrix.todok()), "entry", "entries")
+    yield f"       {factor.text}: {factor.matrix.rows} x {factor.matrix.cols}, {entries}"

@@ -137,7 +137,8 @@ def _in_formula(text: str) -> str:
 
 
 def _pieces(side: Sum, limit: int | None) -> list[str]:
-    pieces, more = shortened(latex_pieces(side), limit)
+    terms, more = shortened(side, limit, r"\langle\text{{{} operations}}\rangle")
+    pieces = latex_pieces(terms)
     return [*pieces, rf"+ \dots \text{{({more} more terms)}}"] if more else pieces
 
 

@@ -82,6 +82,19 @@ def test_the_alsd_has_its_input_inertia_as_a_rate() -> None:
     assert (slip.variable, slip.bond, slip.node) == ("flow", ("slip", "clutch"), "slip")
 
 
+def test_a_nonlinear_storage_that_is_dependent_is_the_rate_of_its_inverse_law() -> None:
+    """A relativistic mass behind a lever: its momentum is m v/sqrt(1 - v^2/c^2)."""
+    law, inverse = "p_fast/sqrt(m**2 + p_fast**2/c**2)", "m*f_fast/sqrt(1 - f_fast**2/c**2)"
+    nodes = [bg.Se("T", "T"), bg.One("a"), bg.I("J", "J", flow="w", priority=1), bg.TF("lever", "n"),
+             bg.I("fast", law=law, inverse=inverse)]  # fmt: skip
+    for bonds in ("T>a>J a>lever>fast", "T>a>J fast>lever>a"):
+        (rate,) = (line for line in bg.assignments(bond_graph(nodes, bonds)) if line.kind == "rate")
+        m, c, v = sp.symbols("m c f_fast")
+        momentum = m * v / sp.sqrt(1 - v**2 / c**2)
+        # The bond's effort is the element's negative where the element is its tail.
+        assert rate.right == (momentum if rate.bond[1] == "fast" else -momentum)
+
+
 def test_a_loop_is_one_group() -> None:
     """Two resistances in series with a source: e_r = r f_r, f_p = e_p/p and the junction in a loop."""
     nodes = [bg.Se("s", "U"), bg.One("a"), bg.R("r", "r"), bg.R("p", "p")]
