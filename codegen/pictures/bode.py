@@ -12,10 +12,14 @@ from codegen.arrays import Array
 from codegen.pictures.canvas import stack
 from codegen.pictures.flags import Flag, raise_flags
 from codegen.pictures.labels import pretty
+from codegen.pictures.poles import oscillations
 from codegen.pictures.style import FAINT, TEXT, curve
 
 POINTS = 600
-"""Frequencies from end to end; half as many again around each corner."""
+"""Frequencies from end to end; two thirds as many again around each corner."""
+
+NEAR = 1e-7
+"""How close to a corner, as a part of it: resonances of that damping ratio are still seen in full."""
 
 RINGING = 0.7
 """Modes of a lower damping ratio are marked as oscillations."""
@@ -45,7 +49,7 @@ def bode(
     figure, (upper, lower) = stack(2, 2.2)
     for number, name in enumerate(shown):
         gain, phase = _gain_and_phase(values[:, number])
-        silent = "" if np.isfinite(gain).any() else " (none)"
+        silent = "" if np.isfinite(gain).any() else " (no response)"
         look = {"linewidth": 1.2, "label": pretty(name) + silent, **curve(number)}
         upper.semilogx(hertz, gain, **look)
         lower.semilogx(hertz, phase, **look)
@@ -90,7 +94,7 @@ def _swept(model: StateSpace) -> Array:
     if not len(corners):
         return np.geomspace(0.01, 100, POINTS)
     first, last = np.log10(corners.min() / 10), np.log10(corners.max() * 10)
-    around = np.geomspace(1e-5, 0.3, POINTS // 4)
+    around = np.geomspace(NEAR, 0.3, POINTS // 3)
     close = [corner * np.concatenate([1 - around, 1 + around]) for corner in corners]
     return np.unique(np.concatenate([np.logspace(first, last, POINTS), *close]))
 
@@ -119,7 +123,7 @@ def _gain_and_phase(values: ComplexArray) -> tuple[Array, Array]:
 
 def _mark(axes: tuple[Any, Any], model: StateSpace, hertz: Array) -> None:
     """Hairlines at oscillations, with their frequencies above."""
-    found = sorted({m.damped_frequency for m in model.modes() if m.damping < RINGING})
+    found = sorted({m.damped_frequency for m in oscillations(model) if m.damping < RINGING})
     shown = [frequency for frequency in found if hertz[0] <= frequency <= hertz[-1]]
     for frequency in shown:
         for axis in axes:

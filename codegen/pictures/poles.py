@@ -11,6 +11,9 @@ from codegen.pictures.style import FAINT, QUIET, SMALL, TEXT, curve
 DAMPINGS = (0.1, 0.2, 0.4, 0.7)
 """Damping ratios of the rays."""
 
+ROUNDING = 1e-9
+"""Poles that are smaller, as a part of the largest, are at 0."""
+
 BEHIND = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
 """What texts have behind them, so that no line runs through."""
 
@@ -35,7 +38,7 @@ def pole_map(model: StateSpace, title: str = "") -> Any:
             )  # fmt: skip
     width, height = _limits(axis, poles)
     _rays(axis, width, height)
-    _name(axis, model.modes(), height)
+    _name(axis, oscillations(model), height)
     axis.set_xlabel("Real part [1/s]", fontsize=TEXT)
     axis.set_ylabel("Imaginary part [1/s]", fontsize=TEXT)
     axis.tick_params(labelsize=TEXT - 1)
@@ -44,6 +47,13 @@ def pole_map(model: StateSpace, title: str = "") -> Any:
         axis.legend(loc="center left", bbox_to_anchor=(1.005, 0.5), frameon=False, fontsize=TEXT)
     figure.suptitle(title or "Poles", fontsize=TEXT + 1)
     return figure
+
+
+def oscillations(model: StateSpace) -> list[Mode]:
+    """The modes that oscillate, slowest first; poles at 0 come with imaginary parts of rounding."""
+    modes = model.modes()
+    least = ROUNDING * max((abs(mode.pole) for mode in modes), default=0.0)
+    return [mode for mode in modes if mode.pole.imag > least]
 
 
 def _limits(axis: Any, poles: Any) -> tuple[float, float]:
@@ -81,13 +91,11 @@ def _rays(axis: Any, width: float, height: float) -> None:
             )  # fmt: skip
 
 
-def _name(axis: Any, modes: tuple[Mode, ...], height: float) -> None:
+def _name(axis: Any, modes: list[Mode], height: float) -> None:
     """Frequencies and dampings beside the upper poles, one above the other where they are close."""
     points = axis.figure.get_figheight() * 72 * 0.42
     lowest = -np.inf
     for mode in sorted(modes, key=lambda mode: mode.pole.imag):
-        if mode.pole.imag <= 0:
-            continue
         own = mode.pole.imag / height * points
         lowest = max(lowest + 1.4 * SMALL, own)
         axis.annotate(

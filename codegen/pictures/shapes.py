@@ -10,6 +10,7 @@ from bondgraph import SignalError
 from bondgraph.response import Mode, StateSpace
 from codegen.pictures.canvas import canvas
 from codegen.pictures.labels import pretty
+from codegen.pictures.poles import oscillations
 from codegen.pictures.style import COLOURS, QUIET, SMALL, TEXT
 
 COLUMNS = 2
@@ -45,8 +46,10 @@ def mode_shapes(
     figure = canvas(1.9 * rows + 0.5)
     axes = figure.subplots(rows, COLUMNS, sharey=True, squeeze=False).ravel()
     top = max(max(mode.participation.values()) for mode in shown)
+    swinging = {mode.pole for mode in oscillations(model)}
     for axis, mode in zip(axes, shown, strict=False):
         _draw(axis, mode, names, top)
+        axis.set_title(_headline(mode, mode.pole in swinging), fontsize=TEXT)
     for axis in axes[len(shown) :]:
         axis.remove()
     for axis in axes[: len(shown) : COLUMNS]:
@@ -81,12 +84,11 @@ def _draw(axis: Any, mode: Mode, names: Sequence[str], top: float) -> None:
     axis.tick_params(axis="y", labelsize=TEXT - 1)
     axis.set_xlim(-0.7, len(names) - 0.3)
     axis.set_ylim(0, 1.28 * top)
-    axis.set_title(_headline(mode), fontsize=TEXT)
     axis.grid(True, axis="y", linewidth=0.3)
     axis.set_axisbelow(True)
 
 
-def _headline(mode: Mode) -> str:
-    if mode.pole.imag > 0:
+def _headline(mode: Mode, swings: bool) -> str:
+    if swings:
         return f"{mode.damped_frequency:.4g} Hz, damping ratio {mode.damping:.2g}"
-    return f"{mode.pole.real:.4g} 1/s" if mode.pole else "at rest anywhere"
+    return f"{mode.pole.real:.4g} 1/s"

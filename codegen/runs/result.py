@@ -112,7 +112,7 @@ class Result:
     def write_netcdf(self, path: str | PathLike[str]) -> None:
         """Write `to_xarray` as a netCDF file, which ``xarray.open_dataset`` reads back digit for digit.
 
-        Raises `MissingExtraError` without xarray.
+        Raises `MissingExtraError` without xarray or h5netcdf.
         """
         write_netcdf(self.to_xarray(), path)
 

@@ -1,6 +1,7 @@
 """Runs as tables of other packages: xarray, pandas, and files of netCDF. The extra ``tables``."""
 
 from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
 from os import PathLike, fspath
 from typing import Any
 
@@ -42,10 +43,11 @@ def dataset(
         "event_port": (event, np.array([str(one.port) for one in events], dtype=str)),
         "event_kind": (event, np.array([one.kind for one in events], dtype=str)),
     }
-    coordinates: dict[str, Any] = {axis: (axis, time, {"units": "s"})}
+    coordinates: dict[str, Any] = {axis: (axis, time.copy(), {"units": "s"})}
     coordinates |= {free(name, columns): part for name, part in parts.items()}
     data = {
-        name: (axis, values, dict(attributes.get(name, {}))) for name, values in columns.items()
+        name: (axis, values.copy(), dict(attributes.get(name, {})))
+        for name, values in columns.items()
     }
     return xarray.Dataset(data, coordinates)
 
@@ -62,7 +64,7 @@ def frame(time: Array, columns: Mapping[str, Array]) -> Any:
 
 
 def write_netcdf(table: Any, path: str | PathLike[str]) -> None:
-    """Write a data set as netCDF of the 64-bit kind, which every version reads; all digits are kept."""
-    # A length of 0 means an unlimited axis there, so events that there are none of are left out.
-    empty = [name for name, length in table.sizes.items() if length == 0]
-    table.drop_dims(empty).to_netcdf(fspath(path), engine="scipy", format="NETCDF3_64BIT")
+    """Write a data set as a netCDF-4 file; `MissingExtraError` without h5netcdf."""
+    if find_spec("h5netcdf") is None:
+        raise MissingExtraError(f"netCDF files need h5netcdf; {INSTALL}")
+    table.to_netcdf(fspath(path), engine="h5netcdf")

@@ -1,13 +1,14 @@
 """The figures' panels and what is drawn in them."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import bondgraph as bg
 import differentials
-from codegen import Event, Result
-from differentials.figures import Figure, draw, figures, panels, stuck_spans
+from codegen import Result
+from differentials.figures import Figure, draw, figures, panels
 from differentials.model import model
 
 #: Panels of Figs. 11, 13 and 14 as printed, top to bottom, by what they show.
@@ -50,7 +51,6 @@ def test_every_differential_has_all_that_its_panels_show(name: str) -> None:
     known = {str(symbol) for symbol in full.equations.signals} | set(chosen.clutches.values())
     shown = {curve.signal for panel in panels(chosen) for curve in panel.curves}
     assert shown <= known
-    assert len({curve.color for curve in panels(chosen)[0].curves}) == len(panels(chosen)[0].curves)
 
 
 def _short() -> tuple[Figure, Result]:
@@ -67,14 +67,23 @@ def test_a_picture_is_the_same_bytes_every_time(tmp_path: Path) -> None:
     assert one[:8] == b"\x89PNG\r\n\x1a\n"
 
 
-def test_stick_phases_begin_and_end_with_their_ports_events() -> None:
-    _, result = _short()
-    events = (Event(0.01, "a", "stick"), Event(0.015, "b", "stick"), Event(0.02, "a", "slip"),
-              Event(0.03, "b", "cross"))  # fmt: skip
-    changed = Result(result.time, (), (), (), events, {}, result.observer)
-    assert stuck_spans(changed) == [(0.01, 0.02), (0.015, 0.03)]
-    still = Result(result.time, (), (), (), events[:1], {}, result.observer)
-    assert stuck_spans(still) == [(0.01, 0.05)]
+def test_what_is_drawn_is_the_run_with_its_lock_marked(monkeypatch: pytest.MonkeyPatch) -> None:
+    figure, result = _short()
+    drawn: list[Any] = []
+    monkeypatch.setattr(
+        "matplotlib.figure.Figure.savefig", lambda self, *_, **__: drawn.append(self)
+    )
+    draw(figure, (result,), "nowhere.png")
+    (picture,) = drawn
+    for axis, panel in zip(picture.axes, figure.panels, strict=True):
+        assert axis.get_ylabel() == panel.label
+        lines = [line for line in axis.lines if line.get_gid() is None]
+        for line, curve in zip(lines, panel.curves, strict=True):
+            assert (line.get_ydata() == result[curve.signal]).all()
+        assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == len(lines)
+        marks = [line.get_xdata()[0] for line in axis.lines if line.get_gid() == "event"]
+        assert marks == [event.time for event in result.events]
+    assert picture.get_suptitle() == "Response of the ALSD"
 
 
 def test_without_matplotlib_the_extra_is_named(
