@@ -48,12 +48,16 @@ def _fixed(reduction: Reduction, held: Momenta, port: int) -> Iterator[Equation]
 
 def _moving(reduction: Reduction, held: Momenta, port: int) -> Iterator[Equation]:
     """A momentum over states and inputs, and its rate by the rules of products and chains."""
-    one, symbol = reduction.structure.ports[port], held.symbols[port]
+    structure, one, symbol = (
+        reduction.structure,
+        reduction.structure.ports[port],
+        held.symbols[port],
+    )
+    used = total(held.stored[port]).free_symbols
     ruled = {
-        reduction.structure.ports[d].received: reading_terms(
-            reduction, reduction.reading(reduction.structure.rows[d])
-        )
+        structure.ports[d].received: reading_terms(reduction, reduction.reading(structure.rows[d]))
         for d in reduction.dependent
+        if structure.ports[d].received in used
     }
     yield equation(
         symbol, held.stored[port], _put_in(held.stored[port], ruled), node=one.element.name

@@ -7,11 +7,10 @@ import sympy as sp
 from bondgraph.assignments import Assignment
 from bondgraph.causal_order import CausalEquations, causal_groups
 from bondgraph.exact import combined
-from bondgraph.explaining.primitives import names_of_ports
 from bondgraph.explaining.records import Equation, Step, equation
 from bondgraph.modulation import Reading
 from bondgraph.resistances import ResistiveGroup, resistive_groups
-from bondgraph.sorting import Reduction
+from bondgraph.sorting import Reduction, detects
 from bondgraph.sums import Term, rate
 from bondgraph.tidy import tidy
 
@@ -22,18 +21,21 @@ LARGEST_TIDIED = 100
 def reading_terms(reduction: Reduction, reading: Reading) -> list[Term]:
     """A reading as a sum over states, inputs and their rates, entries as a person would write them."""
     x, u = reduction.names, reduction.inputs
-    columns = (x, u, [rate(name) for name in x], [rate(name) for name in u])
-    return [
-        (_tidied(reduction, row[j]), names[j])
-        for row, names in zip(reading.parts, columns, strict=True)
-        for j in sorted(row)
-    ]
+    terms: list[Term] = []
+    for row, names, is_rate in zip(
+        reading.parts, (x, u, x, u), (False, False, True, True), strict=True
+    ):
+        for j in sorted(row):
+            signal = rate(names[j]) if is_rate else names[j]
+            terms.append((_tidied(reduction, row[j]), signal))
+    return terms
 
 
 def row_terms(reduction: Reduction, row: Mapping[int, sp.Expr]) -> list[Term]:
-    """A row over what the ports give, as a sum."""
-    names = names_of_ports(reduction)
-    return [(_tidied(reduction, row[at]), names[at]) for at in sorted(row) if at in names]
+    """A row over what the ports give, as a sum; detectors give nothing and are left out."""
+    ports = reduction.structure.ports
+    shown = (at for at in sorted(row) if not detects(ports[at]))
+    return [(_tidied(reduction, row[at]), ports[at].given) for at in shown]
 
 
 def _tidied(reduction: Reduction, entry: sp.Expr) -> sp.Expr:

@@ -1,6 +1,6 @@
 """The equations that a bond graph states node by node: storages, laws, junctions and two-ports."""
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Sequence
 
 import sympy as sp
 
@@ -109,9 +109,3 @@ def _other_names(
             own = [(sp.Integer(sign), bonds(signal))]
             received.append(equation(ports[name].received, own, node=name))
     return given, received
-
-
-def names_of_ports(reduction: Reduction) -> Mapping[int, sp.Symbol]:
-    """What each port gives, by its number; detectors give nothing and are left out."""
-    ports = reduction.structure.ports
-    return {at: port.given for at, port in enumerate(ports) if not detects(port)}

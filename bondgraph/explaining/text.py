@@ -13,7 +13,7 @@ WIDEST_MATRIX = 120
 """Wider matrices are told by their size."""
 
 LONGEST_NODE = 18
-LONGEST_LEFT = 32
+LONGEST_LEFT = 48
 """Longer names and left sides stand out of their columns."""
 
 

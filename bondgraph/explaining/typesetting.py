@@ -1,7 +1,7 @@
 r"""A derivation as LaTeX and as Markdown with formulas, names in Greek letters where they are called so."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import sympy as sp
 
@@ -94,19 +94,23 @@ def _plain(text: str) -> str:
     return re.sub(r"([\\`*_$<>\[\]#|])", r"\\\1", text)
 
 
-def _names(steps: Sequence[Step]) -> dict[str, sp.Symbol]:
+def _names(steps: Sequence[Step]) -> dict[str, str]:
+    """The LaTeX of every name in equations, and of every matrix in formulas."""
     equations = (one for step in steps for one in step.equations)
     used = (name for one in equations for side in one.expressions for name in side.free_symbols)
-    return {name.name: name for name in used}
+    found = {name.name: typeset(name) for name in used}
+    formulas = (one for step in steps for one in step.formulas)
+    factors = (factor for one in formulas for product in one.products for factor in product)
+    return found | {factor.text: factor.latex for factor in factors}
 
 
-def _worded(sentence: str, names: dict[str, sp.Symbol], every: bool = False) -> str:
+def _worded(sentence: str, names: Mapping[str, str], every: bool = False) -> str:
     """A sentence with the signals it names as formulas; of names like words only those after their kind."""
     parts = re.split(r"([^\w']+)", sentence)
     shown = []
     for at, part in enumerate(parts):
         clear = every or "_" in part or (at > 1 and parts[at - 2] in ("effort", "flow"))
-        shown.append(f"${typeset(names[part])}$" if part in names and clear else escaped(part))
+        shown.append(f"${names[part]}$" if part in names and clear else escaped(part))
     return "".join(shown)
 
 

@@ -56,7 +56,8 @@ def _config(model: str, program: Program, wanted: Sizes) -> str:
         "READINGS": len(program.readings), "PARAMETERS": len(program.parameters),
     }  # fmt: skip
     lines = ",\n".join(f"    BATCH_{name} = {value}" for name, value in shared.items())
-    return f"#ifdef BG_ENGINE_H\n{wanted.config}enum {{\n{lines}\n}};\n#else\n{model}#endif\n"
+    batch = f"#ifndef BATCH_SIZES_H\n#define BATCH_SIZES_H\nenum {{\n{lines}\n}};\n#endif\n"
+    return f"#ifdef BG_ENGINE_H\n{wanted.config}{batch}#else\n{model}#endif\n"
 
 
 @dataclass
