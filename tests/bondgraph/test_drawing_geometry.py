@@ -2,8 +2,7 @@
 
 import math
 import random
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from importlib import util
 from itertools import combinations
 from pathlib import Path
@@ -113,9 +112,10 @@ def test_strokes_of_the_catalog(name: str, full: bool) -> None:
     check_strokes(bg.assign_causality(differentials.graph(name, full)))
 
 
+@pytest.mark.slow
 def test_strokes_of_random_graphs() -> None:
     drawn = 0
-    for seed in range(130):
+    for seed in range(170):
         graph = random_graph(random.Random(seed), 4 + seed % 24)
         try:
             causal = bg.assign_causality(graph)
@@ -124,3 +124,47 @@ def test_strokes_of_random_graphs() -> None:
         check_strokes(causal)
         drawn += 1
     assert drawn >= 100
+
+
+def test_barbs_are_on_the_side_of_the_flow() -> None:
+    """Below flat bonds, right of steep ones, at the end that power flows to."""
+    scene = bg.drawing(differentials.graph("four_wheel_drive_tvd")).scene
+    for bond in scene.bonds:
+        (x0, y0), (x1, y1) = bond.path[-2:]
+        off = (bond.barb[0] - x1, bond.barb[1] - y1)
+        cross = (x1 - x0) * off[1] - (y1 - y0) * off[0]
+        left_to_right = x1 > x0 if abs(x1 - x0) >= abs(y1 - y0) else y1 < y0
+        assert (cross > 0) == left_to_right, bond.ends
+        assert math.dist(bond.barb, (x0, y0)) < math.dist((x0, y0), (x1, y1))
+
+
+@pytest.mark.parametrize(
+    ("name", "full"), [("passive", False), ("passive", True), ("stationary_tvd", False),
+                       ("stationary_tvd", True), ("passive_halfshafts", False)],
+)  # fmt: skip
+def test_mirror_images(name: str, full: bool) -> None:
+    """Left and right are images of each other in the line through the case; inputs are on top."""
+    scene = bg.drawing(differentials.graph(name, full)).scene
+    box = {str(node.name): node.labels[0].box for node in scene.nodes}
+    middle = (box["case"].left + box["case"].right) / 2
+    assert (box["input"].left + box["input"].right) / 2 == pytest.approx(middle)
+    pairs = [("left", "right"), ("tire_1", "tire_2"), ("I_w1", "I_w2")]
+    if full:
+        pairs += [("wheel_1", "wheel_2"), ("halfshaft_1_spring", "halfshaft_2_spring")]
+    if name == "stationary_tvd":
+        pairs += [("clutch_1", "clutch_2"), ("carrier_1", "carrier_2")]
+    for left, right in pairs:
+        assert box[left].top == pytest.approx(box[right].top)
+        assert middle - box[left].left == pytest.approx(box[right].right - middle), (left, right)
+        assert box[left].right < middle
+    assert box["engine"].top == min(one.top for one in box.values())
+    assert box["tire_1"].top == max(one.top for one in box.values()) or name == "stationary_tvd"
+
+
+def test_pictures_are_inside_their_frame() -> None:
+    scene = bg.drawing(differentials.graph("superposition_tvd", True), powers=True).scene
+    whole = Box(0, 0, scene.width, scene.height)
+    points = [point for _, *line in lines(scene) for point in line]
+    for _, box in boxes(scene):
+        points += [(box.left, box.top), (box.right, box.bottom)]
+    assert all(distance(point, whole) == 0 for point in points)
