@@ -23,7 +23,7 @@ def linear_model(
     18.6
     """
     full = model(name)
-    return _linear(full).numeric(_numbers(full, parameters or {}, wheel_speed))
+    return _linear(full).numeric(numbers(full, parameters or {}, wheel_speed))
 
 
 def identified_inertia(
@@ -45,7 +45,7 @@ def identified_inertia(
     linear, given = _linear(full), dict(parameters or {})
 
     def distance(inertia: float) -> float:
-        values = _numbers(full, {**given, **dict.fromkeys(symbols, inertia)}, wheel_speed)
+        values = numbers(full, {**given, **dict.fromkeys(symbols, inertia)}, wheel_speed)
         return linear.numeric(values).mode(pattern).damped_frequency - frequency
 
     if distance(LEAST) * distance(MOST) > 0:
@@ -61,7 +61,11 @@ def _linear(full: Model) -> bg.LinearModel:
     return bg.linearize(full.equations, laws=full.laws)
 
 
-def _numbers(full: Model, changed: Mapping[str, float], speed: float) -> dict[str, float]:
+def numbers(full: Model, changed: Mapping[str, float], speed: float) -> dict[str, float]:
+    """A full model's defaults, its tires at a wheel speed [rad/s], and what is changed.
+
+    Raises `ParameterError` for a name that the differential does not use.
+    """
     name = full.differential.name
     values = {symbol: parameter.value for symbol, parameter in full.parameters.items()}
     values |= dict.fromkeys(full.starts, speed)

@@ -113,7 +113,7 @@ def prepared(
     if len(case.clutch_torques) != len(clutches):
         raise bg.SignalError(
             f"{name} has {len(clutches)} clutch(es); the scenario gives "
-            f"{len(case.clutch_torques)} clutch torques"
+            f"{len(case.clutch_torques)} clutch torques; {full.differential.scenario!r} suits it"
         )
     values = _parameters(full, case, parameters or {})
     times = np.linspace(0.0, case.duration, round(case.duration / SAMPLE) + 1)

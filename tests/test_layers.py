@@ -27,7 +27,7 @@ ORDER = {
         "linear", "explicit",
         *_room("explaining", "records momenta strokes_told primitives elimination dependence inertias "
                "layout text typesetting explanation"),
-        *_room("drawing", "rich metrics subject shapes tight layers order marks places ends bonds "
+        *_room("drawing", "rich metrics subject shapes tight layers order columns marks places ends bonds "
                "powers compose svg plot listing picture"),
         "renaming", "composition", "declarations", "restored", "nodelink", "safexml", "graphml", "files",
     ],
@@ -53,7 +53,9 @@ ORDER = {
     ],
     "differentials": [
         "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "model",
-        "identification", "speeds", "scenarios", "exporting", "figures", "report", "commands",
+        "identification", "speeds", "scenarios", "scripts", "exporting", "figures", "report",
+        *_room("cli", "printing names signals subject options preparing pictures reading graphs "
+               "linearising running grids sweeping exporting tours app"),
     ],
 }  # fmt: skip
 

@@ -75,7 +75,7 @@ def _ends(
     found: dict[tuple[int, int], Point] = {}
     if not subject.items[node].junction:
         box = boxes[node]
-        edge = box.bottom + CLEAR - 2 if below else box.top - CLEAR + 2
+        edge = box.bottom + CLEAR - 2 if below else box.top - CLEAR
         for at, (_, bond) in enumerate(aims):
             share = (at + 1) / (len(aims) + 1) - 0.5
             found[bond, node] = (x + share * (box.right - box.left), edge)

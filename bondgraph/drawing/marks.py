@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Literal
 
-from bondgraph.drawing.metrics import ASCENT, DESCENT, width
+from bondgraph.drawing.metrics import width
 from bondgraph.drawing.rich import Run
 from bondgraph.drawing.shapes import MARKED, QUIET, Box, Label, NodeShape, Point, around
 from bondgraph.drawing.subject import Item
@@ -14,7 +14,9 @@ SIZE, SMALLER = 14.0, 9.5
 Side = Literal["left", "right", "middle"]
 """Where an element lies from its bond: its symbol is next to the bond."""
 
-_MIDDLE = (ASCENT - DESCENT) / 2
+_MIDDLE = 0.35
+"""From the base line up to the middle of capitals and digits, of the size."""
+
 _FRAME = 5.0
 
 

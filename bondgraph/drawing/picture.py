@@ -16,9 +16,9 @@ from bondgraph.errors import StructureError
 
 @dataclass(frozen=True)
 class Drawing:
-    """A picture of a bond graph: its geometry in points, y downwards, and what it shows.
+    """A picture of a bond graph, which notebooks show by itself.
 
-    ``nodes``, ``bonds``: by name, what is drawn of them and where. Notebooks show it by itself.
+    ``scene``: its nodes and bonds with their places in points, y downwards; ``subject``: what it shows.
     """
 
     scene: Scene
@@ -62,8 +62,11 @@ def drawing(
     Half arrows point with positive power, the causal stroke lies at the end that receives the effort;
     storages in derivative causality stand in a dashed frame. ``powers`` writes efforts over and flows
     under the bonds, where the one-port or a junction at the bond has a name for them. ``values=False``
-    writes names of elements instead of their values. A graph that has no causality (one with switches
-    in no mode, or one that `assign_causality` refuses) is drawn without strokes, with the reason under it.
+    writes names of elements instead of their values.
+
+    The first source is on top. Elements left of their bond read ``J :I``, so that the symbol is at the
+    bond. A switch in a mode is a Sw that is on or off. A graph that has no causality (one with switches in
+    no mode, or one that `assign_causality` refuses) is drawn without strokes, with the reason under it.
 
     Raises `StructureError` for what is not a bond graph.
 

@@ -2,29 +2,22 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from math import ceil
 
 import networkx as nx
 
+from bondgraph.drawing.columns import columns_of, leaning
 from bondgraph.drawing.layers import Layers, layered
 from bondgraph.drawing.marks import Side, node_shape
 from bondgraph.drawing.order import Order, faced, mirrored, ordered
 from bondgraph.drawing.shapes import NodeShape, Point
 from bondgraph.drawing.subject import Subject
-from bondgraph.drawing.tight import extremes
 
 BAND = 18.0
 """A bond that passes a layer is upright so far above and below its middle."""
 
 NODE_GAP, SIDE_BOND, LAYER_GAP, CLEAR = 26.0, 44.0, 66.0, 6.0
 """Least room between nodes of a layer, length of a bond to the side, distance of layers, room at ends."""
-
-FAN = (0.0, 30.0, 70.0, 120.0, 180.0, 250.0, 350.0, 500.0, 700.0)
-"""From each of these widths on, a bond's width counts once more."""
-
-STRAIGHT = 64.0
-"""What the width of a bond counts that should be straight."""
 
 STEEPEST = 0.34
 """A bond falls at least this much for its width, so that it does not run into its layer."""
@@ -60,15 +53,15 @@ def places(subject: Subject, room: float, reach: Mapping[int, float]) -> Places:
         item: max(SIDE_BOND, reach.get(item, 0.0)) for own in found.beside.values() for item in own
     }
     lean = dict.fromkeys(found.graph, 0)
-    cells = _cells(subject, found, lean, lengths)
-    columns = _columns(found.graph, order, cells, room)
+    cells, bends = _cells(subject, found, lean, lengths), len(subject.items)
+    columns = columns_of(found.graph, order, _extents(cells), bends, NODE_GAP * room)
     kinds = {vertex: _kind(subject, found, vertex) for vertex in found.graph}
     for _ in range(2):
-        order = mirrored(found.graph, order, _leaning(found.graph, order, columns), kinds)
-        columns = _columns(found.graph, order, cells, room)
-        lean = _leaning(found.graph, order, columns)
+        order = mirrored(found.graph, order, leaning(found.graph, order, columns), kinds)
+        columns = columns_of(found.graph, order, _extents(cells), bends, NODE_GAP * room)
+        lean = leaning(found.graph, order, columns)
         cells = _cells(subject, found, lean, lengths)
-        columns = _columns(found.graph, order, cells, room)
+        columns = columns_of(found.graph, order, _extents(cells), bends, NODE_GAP * room)
     rows = _rows(found.graph, order, columns, room)
     at: dict[int, Point] = {}
     shapes: dict[int, NodeShape] = {}
@@ -77,11 +70,15 @@ def places(subject: Subject, room: float, reach: Mapping[int, float]) -> Places:
         for item, (shape, offset, side) in cell.shapes.items():
             at[item] = (columns[vertex] + offset, rows[vertex])
             shapes[item], sides[item] = shape, side
-    bends = {
+    turns = {
         ends: tuple((columns[bend], rows[bend] + by) for bend in path[1:-1] for by in (-BAND, BAND))
         for ends, path in found.paths.items()
     }
-    return Places(at, shapes, sides, bends)
+    return Places(at, shapes, sides, turns)
+
+
+def _extents(cells: Mapping[int, _Cell]) -> dict[int, tuple[int, int]]:
+    return {vertex: (cell.left, cell.right) for vertex, cell in cells.items()}
 
 
 def _kind(subject: Subject, found: Layers, vertex: int) -> str:
@@ -129,76 +126,6 @@ def _cell(
     if lean == 0 and not beside:
         left, right = min(left, -right), max(right, -left)
     return _Cell(shapes, ceil(-left), ceil(right))
-
-
-def _columns(
-    graph: "nx.DiGraph[int]", order: Order, cells: Mapping[int, _Cell], room: float
-) -> dict[int, float]:
-    """The middle of the best columns: chains straight, others as short as they can be."""
-    vertices = [vertex for layer in order for vertex in layer]
-    number = {vertex: at for at, vertex in enumerate(vertices)}
-    bends = min((at for at, cell in cells.items() if not cell.shapes), default=max(cells) + 1)
-    sizes = {
-        vertex: 1 + sum(one < bends for one in nx.descendants(graph, vertex)) for vertex in graph
-    }
-    gap = ceil(NODE_GAP * room)
-    gaps = [
-        (number[one], number[two], float(cells[one].right + gap + cells[two].left))
-        for layer in order
-        for one, two in pairwise(layer)
-    ]
-    pulls = [
-        (number[u], number[v], weight, free)
-        for u, v in graph.edges
-        for weight, free in _weights(graph, sizes, bends, u, v)
-    ]
-    low, high = extremes(len(vertices), gaps, pulls)
-    return {vertex: (low[at] + high[at]) / 2 for vertex, at in number.items()}
-
-
-def _weights(
-    graph: "nx.DiGraph[int]", sizes: Mapping[int, int], bends: int, upper: int, lower: int
-) -> list[tuple[float, float]]:
-    """Bends, chains and what leads to most of the graph are kept straight; in a fan wide bonds weigh more.
-
-    A small branch keeps to its place more than a large one. ``bends``: from this vertex on.
-    """
-    bent = (upper >= bends) + (lower >= bends)
-    if bent:
-        return [(STRAIGHT / 4 if bent == 2 else STRAIGHT / 16, 0.0)]
-    if graph.in_degree(lower) == 1 and _leading(graph, sizes, upper) == lower:
-        return [(STRAIGHT, 0.0)]
-    weight = max(1.0, 8.0 // sizes[lower])
-    if _leading(graph, sizes, upper) is not None:
-        weight /= 2
-    return [(weight, free) for free in FAN]
-
-
-def _leading(graph: "nx.DiGraph[int]", sizes: Mapping[int, int], upper: int) -> int | None:
-    """The vertex below that leads to much more of the graph than the others do, if there is one."""
-    first, *rest = sorted(graph.successors(upper), key=lambda one: -sizes[one])
-    return first if not rest or sizes[first] > 1.5 * sizes[rest[0]] else None
-
-
-def _leaning(
-    graph: "nx.DiGraph[int]", order: Order, columns: Mapping[int, float]
-) -> dict[int, int]:
-    """The side to which a vertex lies from those above it, or they from theirs: -1, 0 or 1.
-
-    One with nothing above it leans away from those below.
-    """
-    lean: dict[int, int] = {}
-    for layer in order:
-        for vertex in layer:
-            above = list(graph.predecessors(vertex))
-            near = above or list(graph.successors(vertex)) or [vertex]
-            off = columns[vertex] - sum(columns[one] for one in near) / len(near)
-            if abs(off) > 0.5:
-                lean[vertex] = 1 if off > 0 else -1
-            else:
-                total = sum(lean[one] for one in above)
-                lean[vertex] = (total > 0) - (total < 0)
-    return lean
 
 
 def _rows(

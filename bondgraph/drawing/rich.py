@@ -25,6 +25,9 @@ Rich = tuple[Run, ...]
 MOST = 24
 """Longer texts are cut, with an ellipsis."""
 
+SHORT = 2
+"""Longer subscripts stay ordinary letters in a terminal, where they are easier to read."""
+
 _TOKEN = re.compile(r"\d+\.?\d*(?:e[+-]?\d+)?|[^\W\d]\w*|\*\*\d+|\*\*|.", re.DOTALL)
 
 
@@ -104,7 +107,7 @@ def _plain(run: Run) -> str:
     if run.level == 0:
         return run.text
     known, mark = (_LOW, "_") if run.level < 0 else (_HIGH, "^")
-    if all(letter in known for letter in run.text):
+    if len(run.text) <= SHORT and all(letter in known for letter in run.text):
         return "".join(known[letter] for letter in run.text)
     return mark + run.text
 

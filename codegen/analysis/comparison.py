@@ -69,7 +69,7 @@ class Comparison:
         if self.shifts:
             events = [("events", first, "other", "later by")]
             events += [
-                (f"{s.port}: {s.kind}, {s.run}", _time(s.first), _time(s.other), _time(s.shift))
+                (f"{s.port}: {s.kind}, {s.run}", _time(s.first), _time(s.other), _time(s.shift, 3))
                 for s in self.shifts
             ]
             lines += ["", *aligned(events)]
@@ -96,8 +96,8 @@ class Comparison:
         return stacked(shown, marks, title, tall=2.4 if len(shown) < 3 else 1.6)
 
 
-def _time(value: float | None) -> str:
-    return "-" if value is None else f"{value:.6g} s"
+def _time(value: float | None, digits: int = 6) -> str:
+    return "-" if value is None else f"{value:.{digits}g} s"
 
 
 def compare(

@@ -8,7 +8,7 @@ from scipy.signal import detrend, find_peaks, periodogram
 
 from bondgraph import SignalError
 from codegen.arrays import Array
-from codegen.pictures.canvas import stack
+from codegen.pictures.canvas import rule, stack
 from codegen.pictures.labels import measured
 from codegen.pictures.style import QUIET, SMALL, TEXT, curve
 from codegen.runs.result import Result, values_of
@@ -84,8 +84,7 @@ class Spectrum:
         highest = max(float(self.amplitude.max()), *(peak.amplitude for peak in peaks), 0.0)
         axis.set_ylim(0, 1.12 * highest or 1.0)
         axis.margins(x=0)
-        axis.tick_params(labelsize=TEXT - 1)
-        axis.grid(True, linewidth=0.3)
+        rule(axis)
         span = f"{self.begin:g} to {self.end:g} s"
         figure.suptitle(span if title is None else title, fontsize=TEXT + 1)
         return figure

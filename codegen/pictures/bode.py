@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from bondgraph import SignalError
 from bondgraph.response import ComplexArray, StateSpace
 from codegen.arrays import Array
-from codegen.pictures.canvas import stack
+from codegen.pictures.canvas import name_curves, rule, stack
 from codegen.pictures.flags import Flag, raise_flags
 from codegen.pictures.labels import pretty
 from codegen.pictures.poles import oscillations
@@ -41,9 +41,8 @@ def bode(
     frequency is that of an undamped oscillation, `MissingExtraError` without matplotlib.
     """
     shown = outputs or model.outputs
-    column, rows = _place(input, model.inputs, "input"), [
-        _place(name, model.outputs, "output") for name in shown
-    ]  # fmt: skip
+    column = _place(input, model.inputs, "input")
+    rows = [_place(name, model.outputs, "output") for name in shown]
     hertz = _swept(model) if frequencies is None else _checked(frequencies)
     values = _response(model, hertz, rows, column)
     figure, (upper, lower) = stack(2, 2.2)
@@ -58,12 +57,10 @@ def bode(
     lower.set_ylabel("Phase [°]", fontsize=TEXT)
     lower.set_xlabel("Frequency [Hz]", fontsize=TEXT)
     for axis in (upper, lower):
-        axis.grid(True, linewidth=0.3)
         axis.margins(x=0)
-        axis.tick_params(labelsize=TEXT - 1)
+        rule(axis)
     lower.yaxis.get_major_locator().set_params(steps=[1, 1.5, 3, 4.5, 9, 10])
-    upper.legend(loc="center left", bbox_to_anchor=(1.005, 0.5), frameon=False, fontsize=TEXT,
-                 handlelength=2.6)  # fmt: skip
+    name_curves(upper)
     figure.align_ylabels([upper, lower])
     figure.suptitle(title or f"Response to {pretty(input)}", fontsize=TEXT + 1)
     return figure

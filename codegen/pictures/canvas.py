@@ -3,6 +3,7 @@
 from typing import Any
 
 from bondgraph import MissingExtraError
+from codegen.pictures.style import TEXT
 
 WIDTH = 7.2
 """Of every picture [in]."""
@@ -26,3 +27,16 @@ def stack(count: int, height: float) -> tuple[Any, list[Any]]:
     """A figure, and axes below one another that share what runs to the right; each so high [in]."""
     figure = canvas(height * count + 0.35)
     return figure, list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
+
+
+def rule(axis: Any) -> None:
+    """Fine lines across an axis, and small numbers beside it."""
+    axis.grid(True, linewidth=0.3)
+    axis.tick_params(labelsize=TEXT - 1)
+
+
+def name_curves(axis: Any) -> None:
+    """A legend to the right of an axis, where it covers nothing."""
+    axis.legend(
+        loc="center left", bbox_to_anchor=(1.005, 0.5), frameon=False, fontsize=TEXT, handlelength=2.6
+    )  # fmt: skip

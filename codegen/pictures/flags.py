@@ -9,6 +9,9 @@ from codegen.pictures.style import FAINT, QUIET, SMALL
 ROWS = 4
 """Flags that fit in none are left out."""
 
+ROW = 1.3 * SMALL
+"""How far rows are apart [pt]."""
+
 WIDE, LETTER = 0.8, 0.6
 """An axis as a part of its figure, and a letter as a part of its height: about."""
 
@@ -22,22 +25,25 @@ class Flag(NamedTuple):
     color: object = None
 
 
-def raise_flags(axis: Any, flags: Sequence[Flag]) -> None:
-    """Draw flags above an axis, from left to right, each to the right of its pole."""
+def raise_flags(axis: Any, flags: Sequence[Flag]) -> float:
+    """Draw flags above an axis, from left to right, each to the right of its pole; how high they are [pt]."""
     points = axis.figure.get_figwidth() * 72 * WIDE
     spans = [(f.part * points, f.part * points + LETTER * SMALL * len(f.text)) for f in flags]
+    highest = 0.0
     for flag, row in zip(flags, rows(spans), strict=True):
         if row is None:
             continue
+        highest = max(highest, 3 + ROW * (row + 1))
         axis.annotate(
             plain(flag.text), (flag.place, 1.0), xycoords=axis.get_xaxis_transform(),
-            xytext=(0, 3 + 1.3 * SMALL * row), textcoords="offset points", ha="left", va="bottom",
+            xytext=(0, 3 + ROW * row), textcoords="offset points", ha="left", va="bottom",
             fontsize=SMALL, color=flag.color or QUIET, annotation_clip=False, gid="flag",
             arrowprops={
                 "arrowstyle": "-", "linewidth": 0.6, "color": flag.color or FAINT,
                 "shrinkA": 0, "shrinkB": 0, "relpos": (0, 0),
             },
         )  # fmt: skip
+    return highest
 
 
 def rows(spans: Sequence[tuple[float, float]]) -> list[int | None]:

@@ -54,8 +54,12 @@ def apart(times: Sequence[float], span: float) -> list[int]:
     return kept
 
 
-def draw(axes: Sequence[Any], marks: Marks, begin: float, end: float) -> str:
-    """Draw marks across axes below one another, with labels above the first; what is to be said of them."""
+def draw(axes: Sequence[Any], marks: Marks, begin: float, end: float
+) -> tuple[str, float]:  # fmt: skip
+    """Draw marks across axes below one another, with labels above the first; what is to be said of them.
+
+    Second comes how high the labels are [pt].
+    """
     for first, last in marks.spans:
         for axis in axes:
             axis.axvspan(first, last, color=SHADE, linewidth=0, zorder=0)
@@ -67,11 +71,11 @@ def draw(axes: Sequence[Any], marks: Marks, begin: float, end: float) -> str:
             axis.axvline(
                 marks.events[at].time, linewidth=0.6, zorder=1, gid="event", **marks.look(at)
             )
-    raise_flags(axes[0], [_flag(marks, at, begin, end) for at in kept])
+    height = raise_flags(axes[0], [_flag(marks, at, begin, end) for at in kept])
     said = ["grey: sticking"] if marks.spans else []
     if len(kept) < len(inside):
         said.append(f"{len(kept)} of {len(inside)} events marked")
-    return "; ".join(said)
+    return "; ".join(said), height
 
 
 def _flag(marks: Marks, at: int, begin: float, end: float) -> Flag:

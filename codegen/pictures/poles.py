@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from bondgraph.response import Mode, StateSpace
-from codegen.pictures.canvas import stack
+from bondgraph.response import ComplexArray, Mode, StateSpace
+from codegen.pictures.canvas import name_curves, rule, stack
 from codegen.pictures.style import FAINT, QUIET, SMALL, TEXT, curve
 
 DAMPINGS = (0.1, 0.2, 0.4, 0.7)
@@ -27,7 +27,8 @@ def pole_map(model: StateSpace, title: str = "") -> Any:
     poles = model.poles()
     axis.axhline(0, linewidth=0.8, color=QUIET)
     axis.axvline(0, linewidth=0.8, color=QUIET)
-    stable, others = poles[poles.real < 0], poles[poles.real >= 0]
+    decays = poles.real < -ROUNDING * abs(poles).max(initial=0.0)
+    stable, others = poles[decays], poles[~decays]
     for number, (some, what) in enumerate(
         ((stable, "stable"), (others, "on the axis, or unstable"))
     ):
@@ -36,15 +37,14 @@ def pole_map(model: StateSpace, title: str = "") -> Any:
                 some.real, some.imag, linestyle="", marker="xo"[number], markersize=7, label=what,
                 color=curve(number)["color"], fillstyle="none", zorder=3,
             )  # fmt: skip
-    width, height = _limits(axis, poles)
-    _rays(axis, width, height)
-    _name(axis, oscillations(model), height)
+    left, right, height = _limits(axis, poles)
+    _rays(axis, left, height)
+    _name(axis, oscillations(model), (right - left) / 2, height)
     axis.set_xlabel("Real part [1/s]", fontsize=TEXT)
     axis.set_ylabel("Imaginary part [1/s]", fontsize=TEXT)
-    axis.tick_params(labelsize=TEXT - 1)
-    axis.grid(True, linewidth=0.3)
+    rule(axis)
     if len(stable) and len(others):
-        axis.legend(loc="center left", bbox_to_anchor=(1.005, 0.5), frameon=False, fontsize=TEXT)
+        name_curves(axis)
     figure.suptitle(title or "Poles", fontsize=TEXT + 1)
     return figure
 
@@ -56,17 +56,22 @@ def oscillations(model: StateSpace) -> list[Mode]:
     return [mode for mode in modes if mode.pole.imag > least]
 
 
-def _limits(axis: Any, poles: Any) -> tuple[float, float]:
-    """Leave room around the poles; how far the axis goes to the left, and up."""
+def damping_of(mode: Mode) -> str:
+    """The damping ratio as text, without what is rounding."""
+    return f"{round(mode.damping, 9) + 0.0:.2g}"
+
+
+def _limits(axis: Any, poles: ComplexArray) -> tuple[float, float, float]:
+    """Leave room around the poles; how far the axis goes to the left, to the right, and up."""
     left = max(float(-poles.real.min(initial=0.0)), 0.0)
     right = max(float(poles.real.max(initial=0.0)), 0.0)
     height = float(abs(poles.imag).max(initial=0.0))
-    size = max(left, right, height) or 1.0
-    left, right = 1.15 * left + 0.02 * size, 1.15 * right + 0.05 * size
-    height = 1.15 * height if height else 0.5 * size
+    size = (left + right) or height or 1.0
+    left, right = left + 0.15 * size, right + 0.1 * size
+    height = 1.15 * height or 0.5 * size
     axis.set_xlim(-left, right)
     axis.set_ylim(-height, height)
-    return left, height
+    return left, right, height
 
 
 def _rays(axis: Any, width: float, height: float) -> None:
@@ -83,24 +88,25 @@ def _rays(axis: Any, width: float, height: float) -> None:
         end = np.array([reach / width, slope * reach / (2 * height)])
         if (abs(end - before) > (0.09, 0.04)).any():
             before = end
-            left = slope * width < height
+            left, top = reach > 0.9 * width, slope * reach > 0.95 * height
             axis.annotate(
-                f"ζ = {ratio:g}", (-reach, slope * reach), xytext=(3, 0) if left else (0, -3),
+                f"ζ = {ratio:g}", (-reach, slope * reach), xytext=(3 * left, -3 * top),
                 textcoords="offset points", fontsize=SMALL, color=FAINT, bbox=BEHIND,
-                ha="left" if left else "center", va="center" if left else "top",
+                ha="left" if left else "center", va="top" if top else "center",
             )  # fmt: skip
 
 
-def _name(axis: Any, modes: list[Mode], height: float) -> None:
-    """Frequencies and dampings beside the upper poles, one above the other where they are close."""
+def _name(axis: Any, modes: list[Mode], middle: float, height: float) -> None:
+    """Frequencies and dampings beside the upper poles; those that are close are in a column."""
     points = axis.figure.get_figheight() * 72 * 0.42
     lowest = -np.inf
     for mode in sorted(modes, key=lambda mode: mode.pole.imag):
         own = mode.pole.imag / height * points
         lowest = max(lowest + 1.4 * SMALL, own)
+        side, reach = ("right", -16) if mode.pole.real > middle else ("left", 16)
         axis.annotate(
-            f"{mode.damped_frequency:.4g} Hz, ζ = {mode.damping:.2g}",
-            (mode.pole.real, mode.pole.imag), xytext=(-16, lowest - own), textcoords="offset points",
-            fontsize=SMALL, color=QUIET, ha="right", va="center", gid="mode", bbox=BEHIND,
+            f"{mode.damped_frequency:.4g} Hz, ζ = {damping_of(mode)}",
+            (mode.pole.real, mode.pole.imag), xytext=(reach, lowest - own), textcoords="offset points",
+            fontsize=SMALL, color=QUIET, ha=side, va="center", gid="mode", bbox=BEHIND,
             arrowprops={"arrowstyle": "-", "linewidth": 0.5, "color": FAINT, "shrinkA": 0, "shrinkB": 4},
         )  # fmt: skip

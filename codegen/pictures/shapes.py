@@ -10,7 +10,7 @@ from bondgraph import SignalError
 from bondgraph.response import Mode, StateSpace
 from codegen.pictures.canvas import canvas
 from codegen.pictures.labels import pretty
-from codegen.pictures.poles import oscillations
+from codegen.pictures.poles import ROUNDING, damping_of, oscillations
 from codegen.pictures.style import COLOURS, QUIET, SMALL, TEXT
 
 COLUMNS = 2
@@ -46,10 +46,11 @@ def mode_shapes(
     figure = canvas(1.9 * rows + 0.5)
     axes = figure.subplots(rows, COLUMNS, sharey=True, squeeze=False).ravel()
     top = max(max(mode.participation.values()) for mode in shown)
+    largest = float(abs(model.poles()).max(initial=0.0))
     swinging = {mode.pole for mode in oscillations(model)}
     for axis, mode in zip(axes, shown, strict=False):
         _draw(axis, mode, names, top)
-        axis.set_title(_headline(mode, mode.pole in swinging), fontsize=TEXT)
+        axis.set_title(_headline(mode, mode.pole in swinging, largest), fontsize=TEXT)
     for axis in axes[len(shown) :]:
         axis.remove()
     for axis in axes[: len(shown) : COLUMNS]:
@@ -88,7 +89,8 @@ def _draw(axis: Any, mode: Mode, names: Sequence[str], top: float) -> None:
     axis.set_axisbelow(True)
 
 
-def _headline(mode: Mode, swings: bool) -> str:
+def _headline(mode: Mode, swings: bool, largest: float) -> str:
     if swings:
-        return f"{mode.damped_frequency:.4g} Hz, damping ratio {mode.damping:.2g}"
-    return f"{mode.pole.real:.4g} 1/s"
+        return f"{mode.damped_frequency:.4g} Hz, damping ratio {damping_of(mode)}"
+    moved = abs(mode.pole) > ROUNDING * largest
+    return f"{mode.pole.real:.4g} 1/s" if moved else "0 1/s"

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from codegen.arrays import Array
-from codegen.pictures.canvas import stack
+from codegen.pictures.canvas import name_curves, rule, stack
 from codegen.pictures.marks import Marks, draw
 from codegen.pictures.style import TEXT, curve
 
@@ -45,22 +45,19 @@ def fill(axis: Any, panel: Panel) -> None:
     for number, line in enumerate(panel.lines):
         axis.plot(line.time, line.values, label=line.label, linewidth=1.2, **curve(number))
     axis.set_ylabel(panel.label, fontsize=TEXT)
-    axis.tick_params(labelsize=TEXT - 1)
+    axis.margins(x=0)
+    rule(axis)
     if panel.heading:
         axis.set_title(panel.heading, fontsize=TEXT, loc="left")
-    axis.grid(True, linewidth=0.3)
-    axis.margins(x=0)
     if len(panel.lines) > 1 or panel.lines[0].label not in panel.label:
-        axis.legend(
-            loc="center left", bbox_to_anchor=(1.005, 0.5), frameon=False, fontsize=TEXT,
-            handlelength=2.6,
-        )  # fmt: skip
+        name_curves(axis)
 
 
-def along(axes: Sequence[Any], panels: Sequence[Panel], marks: Marks) -> None:
-    """Mark events along all axes, and label the time below the last."""
+def along(axes: Sequence[Any], panels: Sequence[Panel], marks: Marks) -> float:
+    """Mark events along all axes, and label the time below the last; how high the marks' labels are [pt]."""
     lines = [line for panel in panels for line in panel.lines]
     begin = min(float(line.time[0]) for line in lines)
     end = max(float(line.time[-1]) for line in lines)
-    said = draw(axes, marks, begin, end)
+    said, height = draw(axes, marks, begin, end)
     axes[-1].set_xlabel("Time [s]" + (f"   ({said})" if said else ""), fontsize=TEXT)
+    return height

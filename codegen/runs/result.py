@@ -139,9 +139,9 @@ class Result:
         if ax is None:
             return stacked([panel], marks, title or "", tall=3.0)
         fill(ax, panel)
-        along([ax], [panel], marks)
+        height = along([ax], [panel], marks)
         if title:
-            ax.set_title(title, pad=28 if marks.events else None)
+            ax.set_title(title, pad=6 + height)
         return ax.figure
 
 

@@ -157,6 +157,9 @@ def test_mirror_images(name: str, full: bool) -> None:
         assert box[left].top == pytest.approx(box[right].top)
         assert middle - box[left].left == pytest.approx(box[right].right - middle), (left, right)
         assert box[left].right < middle
+    wheels = ("wheel_1", "wheel_2") if "wheel_1" in box else ("left", "right")
+    assert box["I_w1"].right < box[wheels[0]].left  # inertias outside
+    assert box["I_w2"].left > box[wheels[1]].right
     assert box["engine"].top == min(one.top for one in box.values())
     assert box["tire_1"].top == max(one.top for one in box.values()) or name == "stationary_tvd"
 

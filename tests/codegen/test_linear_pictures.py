@@ -117,6 +117,17 @@ def test_poles_that_do_not_decay_are_told_from_those_that_do() -> None:
     assert len(axis.get_legend().get_texts()) == 2
 
 
+def test_rounding_is_not_shown() -> None:
+    """Undamped: poles at 0, 2 and 2 sqrt(3) times i, none of which decays, whatever rounding makes of it."""
+    model = two_masses()
+    (axis,) = pole_map(model).axes
+    assert [line.get_marker() for line in axis.lines if line.get_linestyle() == "None"] == ["o"]
+    first, second, third = sorted(axis.get_title() for axis in mode_shapes(model).axes)
+    assert first == "0 1/s"
+    assert second.endswith("damping ratio 0")
+    assert third.endswith("damping ratio 0")
+
+
 def test_rays_have_their_damping_ratio() -> None:
     (axis,) = pole_map(oscillator(1.6)).axes
     rays = [line for line in axis.lines if line.get_gid() == "ray"]

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 from oracles.slides import slide, swing
+from references.build import bond_graph
 
 import bondgraph as bg
-from codegen import Event, Result, panels
+from codegen import Event, Result, panels, switched_simulator
 from codegen.pictures.flags import ROWS, rows
 from codegen.pictures.labels import common, measured, pretty
 from codegen.pictures.marks import APART, MOST, stuck_spans
@@ -254,3 +255,17 @@ def test_an_axis_tells_the_unit_that_all_signals_have() -> None:
 def test_units_are_those_that_elements_tell() -> None:
     assert dict(slide().units) == {"v": "m/s"}
     assert dict(swing().units) == {"P": "N"}
+
+
+def test_switchings_are_marked_and_their_units_kept() -> None:
+    graph = bond_graph(
+        [bg.One("first"), bg.I("m_1", 1, flow="v_1", unit="m/s"), bg.Zero("gap"),
+         bg.Sw("slack", on="1 - t"), bg.One("second"), bg.I("m_2", 3, flow="v_2")],
+        "first>m_1 first>gap>slack gap>second>m_2",
+    )  # fmt: skip
+    run = switched_simulator(graph, {}).run(np.linspace(0, 2, 21), initial={"v_1": 4.0})
+    (axis,) = run.plot("v_1").axes
+    assert axis.get_ylabel() == "$v_{1}$ [m/s]"
+    assert [text.get_text() for text in axis.texts] == ["slack: off"]
+    assert _marks(axis) == pytest.approx([1.0])
+    assert not axis.patches

@@ -11,7 +11,6 @@ import pytest
 
 import bondgraph as bg
 import differentials
-from differentials.__main__ import main
 from differentials.exporting import export
 
 
@@ -55,9 +54,3 @@ def test_the_exported_unit_has_its_sources_inside(target: str, tmp_path: Path) -
 def test_unknown_targets_are_refused(tmp_path: Path) -> None:
     with pytest.raises(bg.SignalError, match="there are python, c, fmu2, fmu3"):
         export("alsd", "fortran", "fig11", None, tmp_path)
-
-
-def test_the_command_says_how_to_go_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["export", "passive", "--to", "python", "--out", str(tmp_path)]) == 0
-    assert "python run_passive.py" in capsys.readouterr().out
-    assert main(["export", "nothing", "--to", "python", "--out", str(tmp_path)]) == 2

@@ -1,0 +1,1 @@
+"""The command line, built with click: the optional extra ``cli``."""

@@ -1,0 +1,96 @@
+"""The commands together, and what becomes of errors: one line that says how to go on, and a status."""
+
+import sys
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+import click
+
+import bondgraph as bg
+import differentials.cli.options as options
+from differentials.cli.exporting import export
+from differentials.cli.graphs import convert, draw
+from differentials.cli.linearising import linear, modes
+from differentials.cli.reading import derive, explain, list_all, show
+from differentials.cli.running import simulate
+from differentials.cli.sweeping import sweep
+from differentials.cli.tours import demo, draw_figures
+
+FAILED, REFUSED = 1, 2
+"""Status where something went wrong on the way, and where the command can't be meant so."""
+
+
+class App(click.Group):
+    """A group that lists its commands as they were added, and whose complaints are one line."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The commands from the first look to the last use."""
+        return list(self.commands)
+
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        *rest: Any,
+        **more: Any,
+    ) -> NoReturn:
+        """Run a command and leave: 0 if it did what it says, 1 if something failed, 2 if it was refused."""
+        given = list(sys.argv[1:] if args is None else args)
+        more["standalone_mode"] = False
+        program = prog_name or self.name or ""
+        where = next((f"{program} {one}" for one in given if one in self.commands), program)
+        try:
+            status = super().main(given, program, *rest, **more)
+        except click.exceptions.NoArgsIsHelpError as error:
+            error.show()
+            status = REFUSED
+        except click.UsageError as error:
+            path = error.ctx.command_path if error.ctx else where
+            _complain(path, f"{error.format_message().rstrip('.')} (see {path} --help)")
+            status = REFUSED
+        except click.ClickException as error:
+            _complain(where, error.format_message())
+            status = FAILED
+        except bg.BondGraphError as error:
+            _complain(where, str(error))
+            status = REFUSED
+        except OSError as error:
+            _complain(where, str(error))
+            status = FAILED
+        except click.Abort:
+            _complain(where, "interrupted")
+            status = FAILED
+        sys.exit(status if isinstance(status, int) else 0)
+
+
+def _complain(where: str, message: str) -> None:
+    click.echo(f"{where}: {' '.join(message.split())}", err=True)
+
+
+@click.group(
+    "bondgraph",
+    cls=App,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+    epilog=options.examples(
+        "list", "show superposition_tvd", "simulate alsd --scenario fig11 --set k=4300 --out out",
+        "sweep alsd --grid k=4300:17200:3 --peak tau_k1 --workers 0", "figures --out out",
+        "export alsd --to c --scenario fig11 --set I_1=0.008 --out out",
+    ),
+)  # fmt: skip
+@click.version_option(package_name="bondgraph-toolkit", prog_name="bondgraph")
+def app() -> None:
+    """Bond graphs: their equations, drawings, runs and exports.
+
+    MODEL is one of the differentials of Deur, Hancock and Assadian (IMECE2008-69248) that `bondgraph
+    list` shows, or a graph in a .json or .graphml file. All numbers are in SI units.
+    """
+
+
+for _name, _command in {
+    "list": list_all, "show": show, "draw": draw,
+    "derive": derive, "explain": explain, "modes": modes,
+    "linear": linear, "simulate": simulate, "sweep": sweep,
+    "export": export, "convert": convert, "figures": draw_figures,
+    "demo": demo,
+}.items():  # fmt: skip
+    app.add_command(_command, _name)

@@ -1,0 +1,65 @@
+"""``export``: a model outside the toolkit, as Python, C or a functional mock-up unit."""
+
+from pathlib import Path
+
+import click
+
+import differentials.cli.options as options
+from codegen.fmu.binaries import PLATFORMS
+from differentials.cli.names import OneOf, check_names
+from differentials.cli.options import Asked
+from differentials.cli.preparing import prepare
+from differentials.cli.printing import print_json
+from differentials.cli.subject import Subject
+from differentials.exporting import TARGETS, write
+
+NEXT = {
+    "python": "cd {out} && python run_{name}.py",
+    "c": "cc -std=c99 -O2 {out}/{name}/*.c -lm -o run_{name}",
+    "fmu2": "load {out}/{name}.fmu into any tool that knows FMI 2.0",
+    "fmu3": "load {out}/{name}.fmu into any tool that knows FMI 3.0",
+}
+"""What to do with an export."""
+
+
+@options.command(
+    "Write it as Python, C or an FMU.",
+    "export alsd --to python --scenario fig11 --set I_1=0.008 --out out",
+    "export alsd --to c --out out",
+    "export examples/oscillator.json --to c --set m=2 --set k=800 --set b=4 --initial v=1",
+)
+@options.subject
+@click.option(
+    "--to",
+    "target",
+    type=OneOf(TARGETS, "target"),
+    metavar="TARGET",
+    required=True,
+    help=f"What to write: {', '.join(TARGETS)}.",
+)
+@options.run_options
+@click.option(
+    "--platforms",
+    metavar="LIST",
+    help=f"Of a unit: all, or some of {','.join(PLATFORMS)}; this machine's by default.",
+)
+@options.folder
+@options.as_json
+def export(
+    subject: Subject, target: str, asked: Asked, platforms: str | None, out: Path, as_json: bool
+) -> None:
+    """Write MODEL with its numbers, its start and its inputs as Python, C or an FMU."""
+    if platforms is not None and not target.startswith("fmu"):
+        raise click.UsageError("--platforms is for --to fmu2 and --to fmu3; leave it out")
+    chosen = (
+        platforms if platforms in (None, "all") else [one.strip() for one in platforms.split(",")]
+    )
+    if isinstance(chosen, list):
+        check_names(chosen, list(PLATFORMS), "platform")
+    paths = write(subject.name, target, prepare(subject, asked), out, chosen)
+    if as_json:
+        print_json({"model": subject.name, "target": target, "files": paths})
+        return
+    for path in paths:
+        click.echo(path)
+    click.echo(f"\nNext: {NEXT[target].format(name=subject.name, out=out)}")

@@ -1,0 +1,74 @@
+"""``draw`` and ``convert``: the graph itself, as a picture or a file."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+import bondgraph as bg
+import differentials.cli.options as options
+from differentials.cli.names import FileOf
+from differentials.cli.printing import with_folder, written
+from differentials.cli.subject import ENDINGS, Subject
+
+
+@options.command(
+    "The bond graph, in the terminal or as a picture.",
+    "draw alsd",
+    "draw alsd -o alsd.svg",
+    "draw examples/oscillator.json -o oscillator.svg",
+)
+@options.subject
+@options.variants
+@click.option("--powers", is_flag=True, help="With the names of efforts and flows.")
+@click.option("--no-values", is_flag=True, help="Without the elements' values.")
+@click.option(
+    "-o",
+    "target",
+    type=FileOf(".svg", ".png", ".pdf"),
+    metavar="FILE",
+    help="A picture to write: .svg, .png or .pdf; by default it is drawn as text.",
+)
+def draw(
+    subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...], powers: bool,
+    no_values: bool, target: Path | None,
+) -> None:  # fmt: skip
+    """The bond graph of MODEL with its causal strokes, in the terminal or as a picture.
+
+    A graph with switches has strokes only in a mode: see --on.
+    """
+    shown: Any = subject.file
+    # With switches, strokes differ from mode to mode.
+    if on or not subject.switches():
+        shown = bg.assign_causality(subject.graph(halfshafts, unlumped, on))
+    drawn = bg.drawing(shown, powers=powers, values=not no_values)
+    if target is None:
+        click.echo(drawn.text())
+    else:
+        drawn.save(with_folder(target))
+        written(target)
+
+
+@options.command(
+    "Write the graph as JSON or GraphML, to be changed.",
+    "convert alsd -o alsd.json",
+    "convert alsd --halfshafts -o alsd.graphml",
+    "convert examples/oscillator.json -o oscillator.graphml",
+)
+@options.subject
+@options.models
+@click.option(
+    "-o",
+    "target",
+    type=FileOf(*ENDINGS),
+    metavar="FILE",
+    required=True,
+    help="The file to write: .json or .graphml.",
+)
+def convert(subject: Subject, halfshafts: bool, unlumped: bool, target: Path) -> None:
+    """MODEL as a file, to be changed and read again: JSON or GraphML."""
+    as_it_is = subject.file is not None and not (halfshafts or unlumped)
+    declared = subject.file if as_it_is else subject.graph(halfshafts, unlumped)
+    write = bg.write_json if target.suffix.lower() == ".json" else bg.write_graphml
+    write(declared, with_folder(target))
+    written(target)

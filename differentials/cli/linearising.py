@@ -1,0 +1,129 @@
+"""``modes`` and ``linear``: a model for small deviations, in numbers."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import click
+import numpy as np
+from numpy.typing import NDArray
+
+import bondgraph as bg
+import differentials.cli.options as options
+from bondgraph.response import StateSpace
+from differentials.cli.names import check_names
+from differentials.cli.options import START, Command
+from differentials.cli.printing import print_json
+from differentials.cli.subject import Subject, nodes_called
+from differentials.identification import numbers
+from differentials.model import model
+from differentials.report import modes_text, table
+
+SPEED = 80.0
+"""Wheel speed [rad/s] at which tires are linearised."""
+
+
+def _options(command: Command) -> Command:
+    """What says which linear model is meant."""
+    given = (
+        options.subject,
+        options.parameters,
+        options.laws,
+        options.assigned("--at", "at", START, "A signal at the operating point."),
+        click.option("--speed", type=click.FloatRange(min=0, min_open=True), metavar="RAD/S",
+                     help=f"Wheel speed of a differential's tires, {SPEED:g} rad/s by default."),
+        click.option("--stuck", multiple=True, metavar="PORT",
+                     help="A friction port that sticks. May be repeated."),
+        options.on,
+        options.as_json,
+    )  # fmt: skip
+    for option in reversed(given):
+        command = option(command)
+    return command
+
+
+def _linear(
+    subject: Subject, parameters: Mapping[str, float], laws: Mapping[str, Any],
+    at: Mapping[str, float], speed: float | None, stuck: tuple[str, ...], on: tuple[str, ...],
+) -> StateSpace:  # fmt: skip
+    if subject.differential is None:
+        if speed is not None:
+            raise bg.SignalError(
+                "--speed is for the catalog's differentials; use --at SIGNAL=NUMBER"
+            )
+        equations = bg.derive(subject.graph(on=on))
+        held = nodes_called(stuck, (port.element.name for port in equations.ports), "port")
+        return bg.linearize(equations, at, laws, stuck=held).numeric(parameters)
+    full = model(subject.name, laws)
+    subject.graph(on=on)
+    check_names(parameters, (*full.parameters, *full.starts), "parameter")
+    held = nodes_called(stuck, full.differential.clutches, "clutch")
+    values = numbers(full, parameters, SPEED if speed is None else speed)
+    return bg.linearize(full.equations, at, full.laws, stuck=held).numeric(values)
+
+
+@options.command(
+    "Frequencies, damping, poles and mode shapes.",
+    "modes alsd",
+    "modes alsd --stuck clutch --set k=4300 --json",
+    "modes examples/oscillator.json --set m=2 --set k=800 --set b=4",
+)
+@_options
+def modes(as_json: bool, **which: Any) -> None:
+    """Frequency, damping, pole and shape of every mode of MODEL."""
+    found = _linear(**which)
+    if not as_json:
+        click.echo(modes_text(found))
+        return
+    print_json(
+        [
+            {"damped_frequency": mode.damped_frequency, "frequency": mode.frequency,
+             "damping": mode.damping, "pole": mode.pole, "shape": mode.shape}
+            for mode in found.modes()
+        ]
+    )  # fmt: skip
+
+
+@options.command(
+    "The matrices for small deviations, in numbers.",
+    "linear alsd --speed 20",
+    "linear passive --json",
+    "linear examples/oscillator.json --set m=2 --set k=800 --set b=4",
+)
+@_options
+def linear(as_json: bool, **which: Any) -> None:
+    """MODEL for small deviations: x' = P x + Q u + R u', y = F x + D u + G u', in numbers."""
+    found = _linear(**which)
+    names = {part: getattr(found, part) for part in ("states", "inputs", "outputs")}
+    matrices: dict[str, NDArray[np.float64]] = {name: getattr(found, name) for name in "PQRFDG"}
+    if as_json:
+        print_json({**names, **matrices, "poles": found.poles()})
+        return
+    click.echo("x' = P x + Q u + R u',   y = F x + D u + G u';   what is zero is left out")
+    across = {
+        "P": "states",
+        "Q": "inputs",
+        "R": "inputs",
+        "F": "states",
+        "D": "inputs",
+        "G": "inputs",
+    }
+    for name, matrix in matrices.items():
+        if matrix.any():
+            rows = names["states" if name in "PQR" else "outputs"]
+            click.echo("\n" + _matrix(name, matrix, rows, names[across[name]]))
+    poles = ", ".join(
+        f"{p.real:.4g}{p.imag:+.4g}i" if p.imag else f"{p.real:.4g}" for p in found.poles()
+    )
+    click.echo(f"\npoles [1/s]: {poles or 'none'}")
+
+
+def _matrix(
+    name: str, matrix: NDArray[np.float64], rows: tuple[str, ...], columns: tuple[str, ...]
+) -> str:
+    """A matrix with the names of its rows and columns."""
+    lines = [(name, *columns)]
+    lines += [
+        (row, *(f"{value:.6g}" for value in values))
+        for row, values in zip(rows, matrix, strict=True)
+    ]
+    return table(lines)

@@ -1,0 +1,132 @@
+"""Options that several commands share, and the examples below their help."""
+
+import functools
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import click
+
+from differentials.cli.names import Assigned, OneOf
+from differentials.cli.signals import law, signal
+from differentials.cli.subject import SubjectType
+from differentials.scenarios import scenarios
+
+Command = Callable[..., Any]
+
+NUMBER = Assigned("NAME=NUMBER", "k=4300", float)
+START = Assigned("STATE=NUMBER", "omega_1=80", float)
+SIGNAL = Assigned("INPUT=SIGNAL", "tau_e=step(0.1, 350)", signal)
+LAW = Assigned("NODE=LAW", "clutch=friction(1000)", law)
+
+
+def examples(*lines: str) -> str:
+    """Commands to be shown below a help text, one a line."""
+    return "\b\nExamples:\n" + "\n".join(f"  bondgraph {line}" for line in lines)
+
+
+def command(short: str, *lines: str) -> Callable[[Command], click.Command]:
+    """A command with what a list of commands says of it, and examples below its help."""
+    return click.command(short_help=short, epilog=examples(*lines))
+
+
+def _pairs(ctx: Any, param: Any, given: tuple[tuple[str, Any], ...]) -> dict[str, Any]:
+    """Assignments as a mapping; a name given twice is refused."""
+    for at, (name, _) in enumerate(given):
+        if name in dict(given[:at]):
+            raise click.UsageError(f"{name} is given twice; keep one", ctx)
+    return dict(given)
+
+
+def assigned(flag: str, name: str, kind: Assigned, text: str) -> Callable[[Command], Command]:
+    """An option that may be repeated and becomes a mapping."""
+    return click.option(
+        flag, name, multiple=True, type=kind, metavar=kind.name, callback=_pairs,
+        help=f"{text} May be repeated.",
+    )  # fmt: skip
+
+
+subject = click.argument("subject", type=SubjectType(), metavar="MODEL")
+as_json = click.option("--json", "as_json", is_flag=True, help="Data for programs, as JSON.")
+parameters = assigned(
+    "--set", "parameters", NUMBER, "A parameter's value, in SI units (`bondgraph show` lists them)."
+)
+laws = assigned(
+    "--law", "laws", LAW,
+    "What closes an open port: an expression, or friction(level[, curve[, breakaway]]).",
+)  # fmt: skip
+on = click.option(
+    "--on",
+    multiple=True,
+    metavar="SWITCH",
+    help="A switch that is on: at first in a run, else in the mode that is meant. May be repeated.",
+)
+scenario = click.option(
+    "--scenario", type=OneOf(tuple(scenarios), "scenario"), metavar="NAME",
+    help="A scenario that `bondgraph list` shows; by default the differential's own.",
+)  # fmt: skip
+folder = click.option(
+    "--out", type=click.Path(file_okay=False, path_type=Path), default=Path("out"), metavar="DIR",
+    show_default=True, help="A folder for files.",
+)  # fmt: skip
+
+
+def models(run: Command) -> Command:
+    """Which of a differential's models is meant."""
+    unlumped = click.option("--unlumped", is_flag=True, help="Every inertia an element of its own.")
+    full = click.option("--halfshafts", is_flag=True, help="The full model, with halfshafts.")
+    return full(unlumped(run))
+
+
+def variants(run: Command) -> Command:
+    """Which of a differential's models, or which mode of a file's switches, is meant."""
+    return models(on(run))
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What the options of a run say."""
+
+    scenario: str | None
+    parameters: Mapping[str, float]
+    laws: Mapping[str, Any]
+    initial: Mapping[str, float]
+    inputs: Mapping[str, Any]
+    until: float | None
+    sample: float | None
+    backlash: bool
+    on: tuple[str, ...]
+
+
+_RUN = (
+    scenario,
+    parameters,
+    assigned("--initial", "initial", START, "A state at the start; a file's others start at 0."),
+    assigned(
+        "--input", "inputs", SIGNAL,
+        "A number, or step(time, value), ramp(time, slope), sine(amplitude, frequency), "
+        "lag(signal, time_constant), constant(value), or a sum.",
+    ),
+    laws,
+    click.option("--until", type=click.FloatRange(min=0, min_open=True), metavar="SECONDS",
+                 help="The end of the run: the scenario's, 1 s for a file."),
+    click.option("--sample", type=click.FloatRange(min=0, min_open=True), metavar="SECONDS",
+                 help="Time between samples: 1 ms, a thousandth of the run for a file."),
+    click.option("--backlash", is_flag=True, help="With play in the shafts (parameter gap, rad)."),
+    on,
+)  # fmt: skip
+
+
+def run_options(run: Command) -> Command:
+    """The options that say what is run; the command gets them together as ``asked``."""
+
+    @functools.wraps(run)
+    def collected(**given: Any) -> Any:
+        asked = Asked(**{part.name: given.pop(part.name) for part in fields(Asked)})
+        return run(asked=asked, **given)
+
+    wrapped: Command = collected
+    for option in reversed(_RUN):
+        wrapped = option(wrapped)
+    return wrapped

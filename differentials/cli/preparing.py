@@ -1,0 +1,127 @@
+"""From what was typed to what is run: equations, numbers, laws, start, inputs and times."""
+
+from collections.abc import Collection, Hashable, Iterable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import bondgraph as bg
+import codegen
+from codegen import Result
+from differentials.cli.names import check_names
+from differentials.cli.options import Asked
+from differentials.cli.subject import Subject, nodes_called
+from differentials.model import model
+from differentials.scenarios import SAMPLE, Prepared, named, prepared
+
+LARGEST = 10_000_000
+"""Samples of a run beyond which a typing error is more likely than a wish."""
+
+
+def times(until: float, sample: float) -> NDArray[np.float64]:
+    """Points in time [s] from 0 to the end, as far apart as asked for, or a little less."""
+    count = until / sample
+    if count > LARGEST:
+        raise bg.SignalError(
+            f"{count:.3g} samples; give --until {until:g} a longer --sample than {sample:g}"
+        )
+    return np.linspace(0.0, until, max(int(np.ceil(count * (1 - 1e-12))), 1) + 1)
+
+
+def prepare(subject: Subject, asked: Asked, free: Collection[str] = ()) -> Prepared:
+    """What a run of the differential or of the file's graph needs; ``free``: names that get numbers later.
+
+    Raises `BondGraphError` for names and numbers that don't fit it.
+    """
+    if subject.differential is not None:
+        return _from_catalog(subject, asked)
+    _refuse_catalog_options(subject, asked)
+    if subject.switches() and not asked.on:
+        raise bg.StructureError(
+            f"{subject.name} has switches, and this takes one of their modes: add --on "
+            f"{subject.switches()[0]}"
+        )
+    equations = bg.derive(subject.graph(on=asked.on))
+    missing = [name.name for name in equations.parameters if name.name not in asked.parameters]
+    _refuse_missing(subject, [name for name in missing if name not in free])
+    laws = _laws(asked, [port.element.name for port in equations.ports])
+    return Prepared(equations, asked.parameters, laws, asked.initial, asked.inputs, _times(asked))
+
+
+def run(subject: Subject, asked: Asked, backend: str, method: str) -> Result:
+    """The run itself; graphs with switches run from mode to mode."""
+    if subject.switches():
+        return _switched(subject, asked, backend, method)
+    ready = prepare(subject, asked)
+    simulator = codegen.simulator(ready.equations, ready.parameters, ready.laws, backend)
+    _check_given(subject, asked, simulator)
+    return simulator.run(ready.times, ready.initial, ready.inputs, method)
+
+
+def _switched(subject: Subject, asked: Asked, backend: str, method: str) -> Result:
+    _refuse_catalog_options(subject, asked)
+    if backend != "numpy":
+        raise bg.SignalError("graphs with switches run with --backend numpy")
+    laws = _laws(asked, [] if subject.file is None else subject.file)
+    simulator = codegen.switched_simulator(subject.file, asked.parameters, laws)
+    _check_given(subject, asked, simulator)
+    first = nodes_called(asked.on, simulator.switches, "switch")
+    return simulator.run(_times(asked), asked.initial, asked.inputs, first, method)
+
+
+def _laws(asked: Asked, nodes: Iterable[Any]) -> dict[Hashable, object]:
+    """Laws by nodes, which need not be texts."""
+    known = {str(node): node for node in nodes}
+    return {known.get(name, name): law for name, law in asked.laws.items()}
+
+
+def _times(asked: Asked) -> NDArray[np.float64]:
+    until = 1.0 if asked.until is None else asked.until
+    return times(until, until / 1000 if asked.sample is None else asked.sample)
+
+
+def _refuse_missing(subject: Subject, missing: Sequence[str]) -> None:
+    if missing:
+        more = " ".join(f"--set {name}=NUMBER" for name in missing)
+        raise bg.ParameterError(f"{subject.name}: no number for {', '.join(missing)}; add {more}")
+
+
+def _check_given(
+    subject: Subject, asked: Asked, simulator: codegen.Simulator | codegen.SwitchedSimulator
+) -> None:
+    """Refuse starts and inputs that the model has not, and inputs of a file that nothing gives."""
+    check_names(asked.initial, simulator.states, "state")
+    check_names(asked.inputs, simulator.inputs, "input")
+    missing = [name for name in simulator.inputs if name not in asked.inputs]
+    if missing and subject.differential is None:
+        raise bg.SignalError(
+            f"{subject.name}: nothing gives {', '.join(missing)}; add --input {missing[0]}=SIGNAL, a law "
+            f"with --law NODE=LAW or, if it is a parameter, --set {missing[0]}=NUMBER"
+        )
+
+
+def _from_catalog(subject: Subject, asked: Asked) -> Prepared:
+    chosen = subject.differential
+    assert chosen is not None
+    if asked.on:
+        raise bg.StructureError(f"{subject.name} has no switches; leave --on out")
+    full = model(subject.name, asked.laws, asked.backlash)
+    check_names(asked.parameters, (*full.parameters, *full.starts), "parameter")
+    case = asked.scenario or chosen.scenario
+    ready = prepared(subject.name, case, asked.parameters, asked.laws, asked.backlash)
+    if asked.until is not None or asked.sample is not None:
+        until = named(case).duration if asked.until is None else asked.until
+        ready = replace(ready, times=times(until, asked.sample or SAMPLE))
+    initial = {**ready.initial, **asked.initial}
+    return replace(ready, initial=initial, inputs={**ready.inputs, **asked.inputs})
+
+
+def _refuse_catalog_options(subject: Subject, asked: Asked) -> None:
+    for given, flag in ((asked.scenario, "--scenario"), (asked.backlash, "--backlash")):
+        if given:
+            raise bg.SignalError(
+                f"{flag} is for the catalog's differentials; {subject.name} comes from a file: use "
+                "--initial, --input and --until"
+            )

@@ -1,0 +1,96 @@
+"""``simulate``: one run of a model, its events, and its signals as files."""
+
+from functools import partial
+from pathlib import Path
+
+import click
+
+import differentials.cli.options as options
+from codegen import Result
+from codegen.simulate import BACKENDS
+from differentials.cli.names import FileOf, OneOf
+from differentials.cli.options import Asked
+from differentials.cli.pictures import FORMATS, picture, save, save_all, told
+from differentials.cli.preparing import run
+from differentials.cli.printing import print_json, written
+from differentials.cli.subject import Subject
+from differentials.report import events_text
+
+METHODS = ("auto", "exact", "DOP853", "Radau")
+
+
+@options.command(
+    "Run it: events, every signal as a table, a picture.",
+    "simulate alsd --scenario fig11 --set k=4300 --out out",
+    "simulate alsd -o alsd.csv --json",
+    "simulate examples/oscillator.json --set m=2 --set k=800 --set b=4 "
+    "--input 'F=step(0.1, 10)' --until 2 -o oscillator.csv",
+)
+@options.subject
+@options.run_options
+@click.option(
+    "--backend",
+    type=OneOf(BACKENDS, "backend"),
+    default="numpy",
+    show_default=True,
+    metavar="NAME",
+    help="numpy, or c: compiled, faster.",
+)
+@click.option(
+    "--method",
+    type=OneOf(METHODS, "method"),
+    default="auto",
+    show_default=True,
+    metavar="NAME",
+    help=f"How to integrate: {', '.join(METHODS)}.",
+)
+@click.option(
+    "-o",
+    "target",
+    type=FileOf(*FORMATS),
+    metavar="FILE",
+    help="Write only this file: a table (.csv, .nc) or a picture (.png).",
+)
+@options.folder
+@options.as_json
+def simulate(
+    subject: Subject, asked: Asked, backend: str, method: str, target: Path | None, out: Path,
+    as_json: bool,
+) -> None:  # fmt: skip
+    """Run MODEL; print its events, write every signal as a table, and a picture.
+
+    A differential runs through a scenario, which --set, --initial, --input, --until and --sample change. A
+    file's graph starts at --initial under --input.
+    """
+    result = run(subject, asked, backend, method)
+    chosen = subject.differential
+    case = asked.scenario or (chosen.scenario if chosen else "run")
+    paint = partial(picture, subject, result, case)
+    if target is not None:
+        save(result, target, paint)
+        paths = [target]
+    else:
+        name = f"{subject.name}_{case}"
+        paths = save_all(name, {name: result}, paint, out)
+    if as_json:
+        print_json(_data(subject, case, asked, result) | {"files": paths})
+        return
+    changes = "".join(f", {name} = {value:g}" for name, value in asked.parameters.items())
+    click.echo(f"{subject.name}, {case}{changes}\n\n{events_text(result)}\n")
+    if target is None:
+        told(paths)
+    else:
+        written(target)
+
+
+def _data(subject: Subject, case: str, asked: Asked, result: Result) -> dict[str, object]:
+    """What a run gave: its events, and every signal at its end."""
+    return {
+        "model": subject.name,
+        "scenario": case if subject.differential else None,
+        "parameters": asked.parameters,
+        "until": result.time[-1],
+        "samples": len(result.time),
+        "events": [event._asdict() for event in result.events],
+        "final": {name: column[-1] for name, column in result.columns.items()},
+    }

@@ -1,0 +1,38 @@
+"""The demo and the paper's figures."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from click.testing import Result
+
+import differentials
+
+Call = Callable[..., Result]
+
+
+def test_the_demo_prints_what_it_found_and_writes_what_it_says(call: Call, tmp_path: Path) -> None:
+    done = call("demo", "--out", str(tmp_path / "made here"))
+    assert (done.exit_code, done.stderr) == (0, "")
+    for part in ("dependent (derivative causality):   I_i", "A = ", "B = ", "F = [1/2  -1/2]"):
+        assert part in done.stdout
+    assert "t = 0.501222 s   clutch sticks" in done.stdout
+    assert "t = 0.568431 s   clutch slips again" in done.stdout
+    assert all(name in done.stdout for name in differentials.catalog)
+    written = [
+        Path(line.split(":  ")[-1].strip())
+        for line in done.stdout.splitlines()
+        if str(tmp_path) in line
+    ]
+    assert len(written) == 4
+    assert all(path.exists() for path in written)
+    data = np.genfromtxt(written[0], delimiter=",", names=True)
+    assert len(data) == 1001
+    assert abs(data["omega_f"][510:560]).max() < 1e-9
+
+
+def test_figures_draws_those_asked_for(call: Call, tmp_path: Path) -> None:
+    assert call("figures", "fig13", "fig12", "--out", "figs").exit_code == 0
+    names = {path.name for path in (tmp_path / "figs").iterdir()}
+    tables = {f"fig12_{speed}_{k}.csv" for speed in (20, 80) for k in ("0.5", "1", "2", "5")}
+    assert names == {"fig12.png", "fig13.png", "fig13.csv", *tables}
