@@ -4,11 +4,12 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: demo test lint types unit bench bench-agreement bench-peers bench-speed clean help
+.PHONY: demo test lint types unit docs bench bench-agreement bench-peers bench-speed clean help
 
 help:
 	@echo "make demo   derive and simulate differentials; tables and pictures in out/"
-	@echo "make test   format, lint, types, tests and doctests"
+	@echo "make test   format, lint, types, tests, documentation and doctests"
+	@echo "make docs   README's guides and the API as pages in site/"
 	@echo "make bench  how time and memory to derive grow with the size of a graph"
 	@echo "make bench-speed  how fast and how exact runs are: generated C, numpy, scipy and SUNDIALS beside C by hand"
 	@echo "make bench-agreement  how far simulators, exported Python and C, and FMUs agree"
@@ -18,7 +19,7 @@ help:
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -c "import sys; sys.exit('Python 3.11 or newer is needed: make PYTHON=...' if sys.version_info < (3, 11) else 0)"
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[cli,pictures,tables,control,c,sweep,cluster,sundae,export,notebooks,test]"
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[cli,pictures,tables,control,c,sweep,cluster,sundae,export,notebooks,docs,test]"
 	@touch $(READY)
 
 demo: $(READY)
@@ -35,6 +36,9 @@ types: $(READY)
 
 unit: $(READY)
 	$(BIN)/python -m pytest -n 2
+
+docs: $(READY)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 
 bench: $(READY)
 	$(BIN)/python benchmarks/derivation.py
@@ -54,4 +58,4 @@ bench-peers: $(READY)
 	$(BIN)/python benchmarks/peers.py
 
 clean:
-	rm -rf $(VENV) .peers out build *.egg-info .mypy_cache .pytest_cache .ruff_cache
+	rm -rf $(VENV) .peers out site build *.egg-info .mypy_cache .pytest_cache .ruff_cache
