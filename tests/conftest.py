@@ -1,5 +1,6 @@
 """Ends a test that would never end by itself; the option that rewrites files of exported text."""
 
+import os
 import signal
 from collections.abc import Iterator
 
@@ -7,6 +8,11 @@ import pytest
 
 LONGEST = 180
 """Seconds after which a test counts as hanging: many times what the longest one takes."""
+
+
+def pytest_configure() -> None:
+    """Compiled code is tested here, not timed: compilers take half the time over it."""
+    os.environ.setdefault("CFLAGS", "-O1")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

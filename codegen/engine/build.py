@@ -52,10 +52,13 @@ def check_tools() -> None:
 def compiled(sources: Mapping[str, str], flags: Sequence[str] = FLAGS) -> Path:
     """The shared library of these sources, file name to text; compiled unless the cache has it.
 
+    ``CFLAGS`` of the environment come after ``flags``, and override them.
+
     Several processes may do so at once: a library appears whole or not at all. Raises
     `MissingExtraError` without a compiler, `SimulationError` with its message if it refuses.
     """
     command = compiler()
+    flags = [*flags, *shlex.split(os.environ.get("CFLAGS", ""))]
     library = cache_folder() / f"{_fingerprint(sources, flags, command)}.so"
     if library.exists():
         return library

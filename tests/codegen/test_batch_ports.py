@@ -138,7 +138,10 @@ STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
 
 
 @pytest.mark.parametrize("flags", [("-O2", "-Wconversion", "-Wno-sign-conversion"), ("-O3",)])
-def test_the_loop_compiles_without_warnings(flags: tuple[str, ...]) -> None:
+def test_the_loop_compiles_without_warnings(
+    flags: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("CFLAGS", raising=False)
     for family in (_stacked(), spring_mass()):
         model = to_c(family.equations, family.parameters, family.laws)
         wanted = sizes(family.simulator().closed, 2)

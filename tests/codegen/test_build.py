@@ -47,6 +47,16 @@ def test_sources_and_flags_make_another_library() -> None:
     assert sorted(path.suffix for path in first.parent.iterdir()) == [".so"] * 3
 
 
+def test_flags_of_the_environment_come_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    source = {"one.c": "int one(void) { return ONE; }\n"}
+    flags = (*FLAGS, "-DONE=1")
+    first = build.compiled(source, flags)
+    monkeypatch.setenv("CFLAGS", "-UONE -DONE=2")
+    second = build.compiled(source, flags)
+    assert second != first
+    assert build.loaded(second, "int one(void);")[1].one() == 2
+
+
 def test_several_processes_share_the_cache() -> None:
     program = (
         "from codegen.engine import build\n"

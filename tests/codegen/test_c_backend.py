@@ -179,7 +179,8 @@ STRICT = ("-O2", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wcon
 
 
 @pytest.mark.parametrize("K", [0, 1, 3])
-def test_the_engine_compiles_without_warnings(K: int) -> None:
+def test_the_engine_compiles_without_warnings(K: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("CFLAGS", raising=False)
     engine(Sizes(N=3, X=2, U=1, W=1, K=K, G=1), STRICT)
     engine(
         Sizes(N=3, X=2, U=1, W=1, K=K, G=1), (*FLAGS, "-Wall", "-Wextra", "-Wpedantic", "-Werror")

@@ -286,8 +286,9 @@ STRICT = ("-O2", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
 
 
 @pytest.mark.parametrize("name", ["duffing", "diode", "stacked", "crank", "clutches_with_loss"])
-def test_located_runs_compile_without_warnings(name: str) -> None:
+def test_located_runs_compile_without_warnings(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Models without friction ports, without states, with several ports, with moving ratios."""
+    monkeypatch.delenv("CFLAGS", raising=False)
     equations, numbers, laws = SMALL[name]
     ready = simulator(equations, numbers, laws)
     runs = LocatedRuns(ready.closed, LocatedLibrary(ready.closed, STRICT))

@@ -37,10 +37,11 @@ def test_list_as_data_has_the_papers_orders(data: Data) -> None:
 def test_show_gives_equations_causality_parameters_and_modes(name: str, call: Call) -> None:
     done = call("show", name)
     assert done.exit_code == 0
-    states = differentials.equations(name).states
-    assert f"x = [{', '.join(map(str, states))}]" in done.stdout
+    equations = differentials.equations(name)
+    assert str(equations) in done.stdout
+    assert all(f"{state}'" in done.stdout for state in equations.states)
     assert differentials.catalog[name].title in done.stdout
-    for part in ("A = ", "B = ", "dependent (derivative causality)", "kg m^2", "pole [1/s]"):
+    for part in ("dependent (derivative causality)", "kg m^2", "pole [1/s]"):
         assert part in done.stdout
 
 
