@@ -11,6 +11,7 @@ from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.c.export import runtime_file, texts
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
+from codegen.engine.runs import KINDS
 from codegen.engine.sizes import aligned, declarations
 from codegen.inputs.signals import Signal
 from codegen.inputs.tables import SignalTable, signal_table
@@ -19,7 +20,6 @@ from codegen.runs.events import Event
 from codegen.runs.legs import Settings
 from codegen.runs.snapshots import Snapshots
 
-KINDS = ("stick", "slip", "cross")
 METHODS = ("auto", "DOP853", "Radau")
 """In the order of ``model_located.h``."""
 

@@ -1,5 +1,4 @@
 /* Explicit steps of order 8 with an interpolant of order 7. */
-#include <float.h>
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,4 @@
 /* The event-driven loop: stretches between breakpoints, sticking, release and zero crossings. */
-#include <float.h>
 #include <math.h>
 #include <string.h>
 

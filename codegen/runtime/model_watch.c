@@ -1,5 +1,4 @@
 /* Events inside one step of an integrator: where a slip or a margin falls through zero. */
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
