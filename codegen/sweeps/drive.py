@@ -17,23 +17,22 @@ class Rhythm(NamedTuple):
     """How chunks grow.
 
     ``shortest``, ``longest``: the time one should take [s], in short sweeps and towards the end, and in
-    long ones. ``first``: runs of the first. ``growth``: a chunk may have this many times the runs done so
-    far, as the first may not be like the others.
+    long ones. ``shares``: how many what is left is cut into for every slot. ``first``: runs of the first.
+    ``growth``: a chunk may have this many times the runs done so far, as the first may not be like the
+    others.
     """
 
     shortest: float
     longest: float
+    shares: int
     first: int
     growth: int
 
 
-STEADY = Rhythm(0.5, 10.0, 1, 4)
+STEADY = Rhythm(shortest=0.5, longest=10.0, shares=4, first=1, growth=4)
 
-QUICK = Rhythm(0.01, 1.0, 32, 16)
-"""For runs by a loop in C: a chunk costs little, and cannot be interrupted."""
-
-SHARES = 4
-"""Chunks that what is left is cut into for every slot."""
+QUICK = Rhythm(shortest=0.01, longest=1.0, shares=2, first=32, growth=16)
+"""For runs by a loop in C: those of a chunk cost little and cannot be interrupted."""
 
 ENDED = "the process that did it ended: killed, out of memory, or by an exit in a measure"
 
@@ -63,7 +62,7 @@ class Pace:
         if not self.runs:
             return self.rhythm.first
         each, rhythm = max(self.seconds / self.runs, 1e-6), self.rhythm
-        target = min(max(left * each / (SHARES * slots), rhythm.shortest), rhythm.longest)
+        target = min(max(left * each / (rhythm.shares * slots), rhythm.shortest), rhythm.longest)
         return max(1, min(round(target / each), rhythm.growth * self.runs))
 
 
