@@ -110,7 +110,7 @@ class Simulator:
             if found is None:
                 begin, span = float(times[0]), float(times[-1] - times[0])
                 run = run_hybrid(self.closed, times, start, signals, settings, begin, span)
-                found = self._recorded(times, signals, run.track)
+                found = self._recorded(times, signals, run.track, "numpy")
             columns, observer = self.columns(times, found.shots)
         return Result(
             times,
@@ -121,6 +121,7 @@ class Simulator:
             MappingProxyType(columns),
             observer,
             told_units(self.closed.equations),
+            found.backend,
         )
 
     def _in_c(
@@ -131,13 +132,16 @@ class Simulator:
         if self.engine is not None and settings.method in ("auto", EXACT):
             track = self.engine.run(times, start, signals).track
             if track is not None:
-                return self._recorded(times, signals, track)
+                return self._recorded(times, signals, track, "c")
         if self.located is None or settings.method not in LOCATED_METHODS:
             return None
         return self.located.run(times, states, signals, settings)
 
-    def _recorded(self, times: Array, signals: Sequence[Signal], track: Track) -> Recorded:
-        return Recorded(tuple(track.events), snapshots(self.closed, times, signals, track))
+    def _recorded(
+        self, times: Array, signals: Sequence[Signal], track: Track, backend: str
+    ) -> Recorded:
+        shots = snapshots(self.closed, times, signals, track)
+        return Recorded(tuple(track.events), shots, backend)
 
     def steady(
         self, inputs: Mapping[str, float], initial: Mapping[str, float]

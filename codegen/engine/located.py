@@ -32,10 +32,11 @@ FEW, MANY = 256, 1 << 20
 
 @dataclass(frozen=True)
 class Recorded:
-    """What a run has left: its events, everything at its samples."""
+    """What a run has left: its events, everything at its samples, and what ran it."""
 
     events: tuple[Event, ...]
     shots: Snapshots
+    backend: str
 
 
 class LocatedLibrary:
@@ -99,7 +100,7 @@ class LocatedRuns:
         events = self._called(asked, rows, signal_table(signals, float(times[0]), float(times[-1])))
         if events is None or not np.isfinite(rows).all():
             return None
-        return Recorded(events, self._shots(rows))
+        return Recorded(events, self._shots(rows), "c")
 
     def _called(self, asked: Any, rows: Array, table: SignalTable) -> tuple[Event, ...] | None:
         """Call C, with more room for events if it asks for it; its events if the run is whole."""
@@ -108,7 +109,7 @@ class LocatedRuns:
         instance, run = self._rooms
         status, room = EVENTS_STATUS, FEW
         while status == EVENTS_STATUS and room <= MANY:
-            events = ffi.new("bg_located_event[]", room)
+            events = ffi.new("bg_event[]", room)
             asked.events, asked.capacity = events, room
             status = library.bg_rows_run(
                 ffi.cast("bg_located *", run.ctypes.data),
@@ -175,6 +176,5 @@ def _pointer(ffi: Any, array: Any, kind: str = "double *") -> Any:
 def _declared() -> str:
     """What is called; records that only C looks into have names alone."""
     own = "".join(f"typedef struct {n} {n};\n" for n in ("bg_model", "bg_located", "bg_snapshot"))
-    return own + "".join(
-        declarations(f"model_{name}.h", {}) for name in ("signals", "request", "rows")
-    )
+    headers = ("bg_events.h", "model_signals.h", "model_request.h", "model_rows.h")
+    return own + "".join(declarations(header, {}) for header in headers)

@@ -102,7 +102,7 @@ def sources() -> dict[str, str]:
 def engine(wanted: Sizes, flags: tuple[str, ...] = FLAGS) -> Engine:
     """The engine of these sizes, compiled if need be."""
     library = compiled({**sources(), "config.h": wanted.config}, flags)
-    ffi, opened = loaded(library, declarations("bg_engine.h", wanted.numbers))
+    ffi, opened = loaded(library, engine_declarations(wanted.numbers))
     expected = ffi.new("unsigned long[5]")
     opened.bg_sizes(expected)
     here = [ffi.sizeof(name) for name in ("bg_model", "bg_mode", "bg_chains")]
@@ -123,6 +123,11 @@ def view(engine: Engine, field: Any, *shape: int) -> Array:
     """An array of doubles inside a record, without a copy."""
     array: Array = np.frombuffer(engine.ffi.buffer(field), dtype=np.float64)
     return array.reshape(shape) if shape else array
+
+
+def engine_declarations(numbers: Mapping[str, int]) -> str:
+    """What the engine is asked with, as cffi reads it."""
+    return declarations("bg_events.h", {}) + declarations("bg_engine.h", numbers)
 
 
 def declarations(header: str, numbers: Mapping[str, int], prefix: str = "BG") -> str:

@@ -9,7 +9,7 @@ from bondgraph import SignalError
 from bondgraph.expressions import normal
 from codegen.arrays import Array
 from codegen.inputs.signals import Signal, as_signal
-from codegen.runs.legs import EXACT, METHODS, Settings
+from codegen.runs.legs import CHOICES, Settings
 
 
 def numbers_of(values: ArrayLike, what: str) -> Array:
@@ -79,7 +79,6 @@ def settings_of(method: str, rtol: float, atol: float) -> Settings:
     for tolerance, what in ((rtol, "rtol"), (atol, "atol")):
         if not isinstance(tolerance, int | float | np.number) or not tolerance > 0:
             raise SignalError(f"{what} must be a positive number, not {tolerance!r}")
-    known = (EXACT, *METHODS)
-    if method not in known:
-        raise SignalError(f"unknown method {method!r}; there are {', '.join(known)}")
+    if method not in CHOICES:
+        raise SignalError(f"unknown method {method!r}; there are {', '.join(CHOICES)}")
     return Settings(method, rtol, atol)

@@ -27,6 +27,9 @@ METHODS: dict[str, tuple[Any, Any]] = {
 EXACT = "exact"
 """The method of models that are affine in each friction mode: no integrator, matrix exponentials."""
 
+CHOICES = (EXACT, *METHODS)
+"""What a run's method may be."""
+
 STIFF = 2e5
 """Time span over shortest time constant from which a model is stiff."""
 

@@ -44,7 +44,8 @@ class Result:
 
     ``events``: what happened at friction ports and switches, in order. At a step or an event a sample
     shows the instant just after. ``columns``: the signals that a table of the run holds: states, inputs,
-    outputs and what laws read. ``units``: of those signals of which elements tell it.
+    outputs and what laws read. ``units``: of those signals of which elements tell it. ``backend``: what
+    ran it; what the C of a simulator cannot go on with is run by "numpy" from the start.
     """
 
     time: Array = field(repr=False)
@@ -55,6 +56,7 @@ class Result:
     columns: Mapping[str, Array] = field(repr=False)
     observer: Watcher = field(repr=False, compare=False)
     units: Mapping[str, str] = field(repr=False, default_factory=_no_units)
+    backend: str = "numpy"
 
     def __getitem__(self, name: str) -> Array:
         """The values of one signal; `KeyError` naming what there is."""

@@ -11,6 +11,7 @@
 #ifndef BG_ENGINE_H
 #define BG_ENGINE_H
 
+#include "bg_events.h"
 #include "config.h"
 
 enum {
@@ -32,7 +33,6 @@ enum {
     BG_STRIDE = 4,          /* so many steps are taken from one row */
     BG_BLOCK = 64,          /* rows of scratch, where samples are divided into steps */
     BG_ENTRIES = BG_MODES < 12 ? BG_MODES + 4 : 16, /* exponentials that are kept */
-    BG_STALLED = 60,        /* so many events within a moment are a run that goes nowhere */
     BG_ALIGNMENT = 32       /* of a context in bytes; rows are read faster if they have it, too */
 };
 
@@ -44,8 +44,6 @@ enum bg_status {
     BG_OK, BG_MISSING, BG_UNSUPPORTED, BG_NEGATIVE, BG_UNDECIDED, BG_STALLS, BG_STIFF, BG_FULL,
     BG_WORK, BG_UNUSABLE
 };
-
-enum bg_kind { BG_STICK, BG_SLIP, BG_CROSS };
 
 /* One friction mode: affine maps over (s, w, w', 1), by columns. */
 typedef struct {
@@ -83,11 +81,6 @@ typedef struct {
     const double (*constant)[BG_W], (*start)[BG_G], (*polynomial)[BG_G];
     const double *fastest;            /* the largest rate of a segment */
 } bg_inputs;
-
-typedef struct {
-    double time;
-    int port, kind;
-} bg_event;
 
 /* What a run is given and gives. `grid`: the distance of the samples if all are alike, else 0. */
 typedef struct {

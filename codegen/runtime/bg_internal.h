@@ -3,6 +3,7 @@
 #define BG_INTERNAL_H
 
 #include "bg_engine.h"
+#include "bg_rounds.h"
 
 enum {
     BG_DEGREE = 18,       /* of power series; over |M| h <= 1 what is left out is below rounding */
@@ -77,8 +78,7 @@ struct bg_context {
     signed char mode[BG_PORTS], touched[BG_PORTS];
     bg_peaks peaks;
     bg_stretch stretch;
-    double rounds[BG_STALLED];
-    int round;
+    bg_rounds rounds;
     double work[6][BG_Z][BG_Z];
     double terms[BG_DEGREE + 1][BG_Z], powers[BG_TRIGGERS][BG_DEGREE + 1];
     double scratch[BG_BLOCK + 1][BG_ROW];

@@ -40,33 +40,6 @@ static int come_to_rest(bg_context *c)
     return BG_OK;
 }
 
-/* Notes what has become of the ports. */
-static int note(bg_context *c, const signed char *before)
-{
-    bg_task *task = c->task;
-    for (int i = 0; i < BG_K; i++) {
-        if (c->mode[i] == before[i])
-            continue;
-        if (task->count >= task->capacity)
-            return BG_FULL;
-        const int kind = c->mode[i] == 0 ? BG_STICK : before[i] == 0 ? BG_SLIP : BG_CROSS;
-        task->events[task->count++] = (bg_event){c->t, i, kind};
-    }
-    return BG_OK;
-}
-
-/* Refuses to go on when too many of the latest stretches end in an event within `least`. */
-static int check_progress(bg_context *c, double least)
-{
-    const int full = c->round >= BG_STALLED - 1;
-    c->rounds[c->round % BG_STALLED] = c->t;
-    c->round++;
-    const double oldest = c->rounds[full ? c->round % BG_STALLED : 0];
-    if (c->round >= 2 * BG_STALLED)
-        c->round -= BG_STALLED;
-    return full && c->t - oldest < least ? BG_STALLS : BG_OK;
-}
-
 /* Takes the present instant into account, decides the mode there and removes slips that stick. */
 static int settle(bg_context *c, int started)
 {
@@ -83,9 +56,12 @@ static int settle(bg_context *c, int started)
     status = bg_decide(c, 1.0 / bg_greater(fastest, 100.0 / c->span));
     if (status == BG_OK && started) {
         const double ahead = BG_LOOK_AHEAD * c->peaks.time;
-        status = note(c, before);
-        if (status == BG_OK && touched)
-            status = check_progress(c, bg_greater(1e-9 * c->span, 2 * BG_STALLED * ahead));
+        const double least = bg_greater(1e-9 * c->span, 2 * BG_STALLED * ahead);
+        bg_task *const task = c->task;
+        if (bg_note(task->events, &task->count, task->capacity, c->t, BG_K, before, c->mode))
+            status = BG_FULL;
+        else if (touched && bg_stalls(&c->rounds, c->t, least))
+            status = BG_STALLS;
     }
     return status ? status : come_to_rest(c);
 }
@@ -98,7 +74,7 @@ static void begin(bg_context *c, const bg_model *model, const bg_inputs *inputs,
     c->t = task->times[0];
     c->span = task->times[task->samples - 1] - c->t;
     c->known = 0;
-    c->round = 0;
+    c->rounds.next = c->rounds.full = 0;
     memcpy(c->s, task->start, sizeof c->s);
     memset(&c->peaks, 0, sizeof c->peaks);
     memset(c->touched, 0, sizeof c->touched);

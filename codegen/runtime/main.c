@@ -140,7 +140,7 @@ static int run_located(bg_model *m, const command *asked, const bg_signals *sign
 {
     static const char *const kinds[] = {"stick", "slip", "cross"};
     static bg_located run;
-    static bg_located_event events[EVENTS];
+    static bg_event events[EVENTS];
     const int count = (int)floor(asked->end / asked->sample * (1 + 1e-12)) + 1;
     double *const times = calloc((size_t)count, sizeof *times);
     bg_request request = {times, asked->states, count, BG_AUTO, 1e-10, 1e-11, times, record, events,

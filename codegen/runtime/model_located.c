@@ -39,31 +39,6 @@ int bg_located_rate(bg_located *c, double t, const double *s, double *rate)
     return status == BG_OK && !bg_finite(BG_SIZE, rate) ? BG_NOT_FINITE : status;
 }
 
-/* Notes what has become of the ports. */
-static int note(bg_located *c, const signed char *before)
-{
-    bg_request *const asked = c->asked;
-    for (int i = 0; i < K; i++) {
-        if (c->mode[i] == before[i])
-            continue;
-        if (asked->count >= asked->capacity)
-            return BG_EVENTS;
-        const int kind = c->mode[i] == 0 ? BG_STICK : before[i] == 0 ? BG_SLIP : BG_CROSS;
-        asked->events[asked->count++] = (bg_located_event){c->t, i, kind};
-    }
-    return BG_OK;
-}
-
-/* Refuses to go on when too many of the latest stretches end in an event within `least`. */
-static int check_progress(bg_located *c, double least)
-{
-    const double oldest = c->rounds[c->round % BG_STALLED];
-    const int full = c->round >= BG_STALLED;
-    c->rounds[c->round % BG_STALLED] = c->t;
-    c->round = c->round + 1 < 2 * BG_STALLED ? c->round + 1 : BG_STALLED;
-    return full && c->t - oldest < least ? BG_STALLS : BG_OK;
-}
-
 static int touched(const bg_located *c)
 {
     int any = 0;
@@ -88,12 +63,11 @@ static int settle(bg_located *c, int started)
     status = bg_located_decide(c);
     if (status != BG_OK || !started)
         return status;
-    status = note(c, before);
-    if (status == BG_OK && touched(c)) {
-        const double ahead = BG_LOOK_AHEAD * c->moment;
-        status = check_progress(c, fmax(1e-9 * c->span, 2 * BG_STALLED * ahead));
-    }
-    return status;
+    bg_request *const asked = c->asked;
+    if (bg_note(asked->events, &asked->count, asked->capacity, c->t, K, before, c->mode))
+        return BG_EVENTS;
+    const double least = fmax(1e-9 * c->span, 2 * BG_STALLED * BG_LOOK_AHEAD * c->moment);
+    return touched(c) && bg_stalls(&c->rounds, c->t, least) ? BG_STALLS : BG_OK;
 }
 
 /* Hands the next sample over, which is at s. */
@@ -189,7 +163,7 @@ static int begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_reque
     c->asked = asked;
     c->t = asked->times[0];
     c->span = asked->times[asked->samples - 1] - c->t;
-    c->next = c->round = asked->count = 0;
+    c->next = asked->count = c->rounds.next = c->rounds.full = 0;
     c->moment = 0.0;
     memset(c->touched, 0, sizeof c->touched);
     memset(c->mode, 1, sizeof c->mode);

@@ -4,12 +4,10 @@
 #ifndef BG_MODEL_LOCATED_H
 #define BG_MODEL_LOCATED_H
 
+#include "bg_rounds.h"
 #include "model_request.h"
 
-enum {
-    BG_STALLED = 60,    /* so many events within a moment are a run that goes nowhere */
-    BG_EXPLICIT_STAGES = 16
-};
+enum { BG_EXPLICIT_STAGES = 16 };
 
 /* One step of an integrator, and what its interpolation needs. */
 typedef struct {
@@ -43,10 +41,11 @@ typedef struct {
     const bg_signals *signals;
     bg_request *asked;
     double t, span, s[BG_SIZE], moment;
-    int segment, next, round;
+    int segment, next;
     signed char mode[BG_ROOM(BG_FRICTION)], touched[BG_ROOM(BG_FRICTION)];
     double peak_x[BG_ROOM(BG_STATES)], peak_u[BG_ROOM(BG_INPUTS)];
-    double rounds[BG_STALLED], squares[2][BG_SIZE * BG_SIZE];
+    bg_rounds rounds;
+    double squares[2][BG_SIZE * BG_SIZE];
     bg_watch watch;
     bg_solver solver;
     bg_snapshot shot;

@@ -2,19 +2,12 @@
 #ifndef BG_MODEL_REQUEST_H
 #define BG_MODEL_REQUEST_H
 
+#include "bg_events.h"
 #include "model_signals.h"
 
 /* How to integrate: BG_AUTO takes the implicit method where time constants are much shorter than
  * the run. */
 enum bg_method { BG_AUTO, BG_DOP853, BG_RADAU };
-
-enum bg_happening { BG_STICK, BG_SLIP, BG_CROSS };
-
-/* What happened at a friction port. */
-typedef struct {
-    double time;
-    int port, kind;
-} bg_located_event;
 
 /* What a run is asked. `times`: samples, increasing, the first where the run begins; `states` are
  * those there, law states last. `record` is called for each sample in turn, with the instant just
@@ -26,7 +19,7 @@ typedef struct {
     void *to;
     void (*record)(void *to, int sample, const double *w, const int *mode,
                    const bg_snapshot *shot);
-    bg_located_event *events;
+    bg_event *events;
     int capacity, count;
     double time;
 } bg_request;

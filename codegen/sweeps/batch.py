@@ -14,29 +14,23 @@ from bondgraph import BondGraphError
 from bondgraph.resistances import resistive_loops
 from codegen.arrays import Array
 from codegen.engine.inputs import Packed, segments
-from codegen.engine.runs import KINDS, grid_of, not_affine
+from codegen.engine.runs import grid_of, not_affine
 from codegen.engine.sizes import Engine, sizes
 from codegen.program import Program
 from codegen.runs.arguments import named_numbers, signals_for
 from codegen.sweeps.batch_engine import Room
 from codegen.sweeps.batch_inputs import BatchInputs, each, varied
 from codegen.sweeps.batch_model import Flags, batch_model
+from codegen.sweeps.batch_plan import Plan, plan
 from codegen.sweeps.family import Family
-from codegen.sweeps.measures import READY, Measure
-
-WHATS = (
-    "peak", "largest", "smallest", "final", "integral", "samples", "first_event", "event_count",
-)  # fmt: skip
-"""In the order of ``batch.h``."""
-
-EVENTS = WHATS.index("first_event")
 
 Given = Mapping[str, Any] | Callable[[Mapping[str, float]], Mapping[str, Any]] | None
+"""Initial states or inputs, or a function of a run's numbers that gives them."""
 
 
 @dataclass(frozen=True)
 class Asked:
-    """A sweep as the loop needs it; ``settings`` as of `Simulator.run`."""
+    """A sweep as the loop needs it; ``names``: what each run has numbers for."""
 
     family: Family
     names: tuple[str, ...]
@@ -46,20 +40,11 @@ class Asked:
     inputs: Given
 
 
-@dataclass(frozen=True)
-class Plan:
-    """What to keep of each run: (what, signal, port, kind, place) and the rows of signals."""
-
-    entries: tuple[tuple[int, int, int, int, int], ...]
-    rows: tuple[int, ...]
-    width: int
-
-
 class Batch:
     """The loop for one sweep; calls may come from several threads."""
 
-    def __init__(self, asked: Asked, plan: Plan) -> None:
-        self.asked, self.plan = asked, plan
+    def __init__(self, asked: Asked, kept: Plan) -> None:
+        self.asked, self.plan = asked, kept
         self._model = batch_model(asked.family)
         self._time, self._grid = np.ascontiguousarray(asked.time), grid_of(asked.time)
         self._rooms: dict[int, list[Room]] = {}
@@ -85,7 +70,7 @@ class Batch:
                 kinds, counts = np.unique(status, return_counts=True)
                 self.statuses.update(dict(zip(kinds.tolist(), counts.tolist(), strict=True)))
             found[indices], done[indices] = results, status == 0
-        return self._columns(found), np.flatnonzero(~done).tolist()
+        return self.plan.columns(found), np.flatnonzero(~done).tolist()
 
     def _parameters(self, table: Array) -> tuple[Array, Flags]:
         """The parameters of each run, and which runs' elements have values that can be used."""
@@ -157,15 +142,15 @@ class Batch:
     def _run(
         self, inputs: BatchInputs, parameters: Array, states: Array
     ) -> tuple[Array, NDArray[np.intc]]:
-        engine, plan = inputs.engine, self.plan
+        engine, kept = inputs.engine, self.plan
         ffi, count = engine.ffi, len(inputs.indices)
-        results, status = np.empty((count, plan.width)), np.empty(count, dtype=np.intc)
-        entries = ffi.new("batch_measure[]", list(plan.entries))
-        rows = ffi.new("int[]", list(plan.rows))
+        results, status = np.empty((count, kept.width)), np.empty(count, dtype=np.intc)
+        entries = ffi.new("batch_measure[]", list(kept.entries))
+        rows = ffi.new("int[]", list(kept.rows))
         job, runs = engine.new("batch_job"), engine.new("batch_runs")
         job.times = ffi.cast("double *", self._time.ctypes.data)
-        job.grid, job.samples, job.width = self._grid, len(self._time), plan.width
-        job.signals, job.measures = len(plan.rows), len(plan.entries)
+        job.grid, job.samples, job.width = self._grid, len(self._time), kept.width
+        job.signals, job.measures = len(kept.rows), len(kept.entries)
         job.signal, job.measure = rows, entries
         runs.runs = count
         for name, kind, array in (
@@ -178,17 +163,10 @@ class Batch:
         try:
             room = rooms.pop()
         except IndexError:
-            room = Room(engine, len(self._time), len(plan.rows))
+            room = Room(engine, len(self._time), len(kept.rows))
         engine.library.batch_run(room.record, job, runs)
         rooms.append(room)
         return results, status
-
-    def _columns(self, found: Array) -> tuple[Array, ...]:
-        samples, length = WHATS.index("samples"), len(self._time)
-        return tuple(
-            found[:, at : at + length] if what == samples else found[:, at]
-            for what, _, _, _, at in self.plan.entries
-        )
 
 
 def batch(asked: Asked) -> Batch | None:
@@ -197,8 +175,8 @@ def batch(asked: Asked) -> Batch | None:
         program = asked.family.program
         if not _can(asked.family, program, asked.names):
             return None
-        plan = _plan(asked.measures, program, len(asked.time))
-        return None if plan is None else Batch(asked, plan)
+        kept = plan(asked.measures.values(), program, len(asked.time))
+        return None if kept is None else Batch(asked, kept)
     except BondGraphError:
         return None
 
@@ -214,48 +192,3 @@ def _can(family: Family, program: Program, names: Sequence[str]) -> bool:
     loops = [*reduction.structure.loops, *(rows for _, rows in resistive_loops(reduction))]
     entries = [sp.sympify(entry) for rows in loops for row in rows for entry in row.values()]
     return not any(s.name in names for entry in entries for s in entry.free_symbols)
-
-
-def _plan(
-    measures: Mapping[str, Callable[..., Any]], program: Program, samples: int
-) -> Plan | None:
-    places, ports = _places(program), [port.name for port in program.friction]
-    rows: list[int] = []
-    entries = []
-    width = 0
-    for measure in measures.values():
-        if not isinstance(measure, Measure) or measure.function not in READY:
-            return None
-        name = READY[measure.function]
-        what, signal, port, kind = WHATS.index(name), -1, -1, -1
-        if what >= EVENTS:
-            node, event = measure.arguments
-            port = ports.index(node) if node in ports else -1
-            kind = KINDS.index(event) if event in KINDS else -1
-        else:
-            row = places.get(measure.arguments[0])
-            if row is None:
-                return None
-            if row not in rows:
-                rows.append(row)
-            signal = rows.index(row)
-        entries.append((what, signal, port, kind, width))
-        width += samples if name == "samples" else 1
-    return Plan(tuple(entries), tuple(rows), width)
-
-
-def _places(program: Program) -> dict[str, int]:
-    """Each signal's row in affine maps; -1 - j for the external input j."""
-    states = len(program.states) + len(program.law_states)
-    groups = (
-        (program.states, range(states)),
-        (program.law_states, range(len(program.states), states)),
-        (program.inputs, range(states, states + len(program.inputs))),
-        (program.external, range(-1, -1 - len(program.external), -1)),
-        (program.readings, range(states + 2 * len(program.inputs), 1 << 20)),
-    )
-    places: dict[str, int] = {}
-    for names, rows in groups:
-        for name, row in zip(names, rows, strict=False):
-            places.setdefault(name.name, row)
-    return places

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from bondgraph import SimulationError
 from codegen.c.export import runtime_file
 from codegen.engine.build import FLAGS, compiled, loaded
-from codegen.engine.sizes import Engine, Sizes, aligned, declarations, sources
+from codegen.engine.sizes import Engine, Sizes, aligned, declarations, engine_declarations, sources
 from codegen.program import Program
 
 FILES = (
@@ -35,7 +35,7 @@ def batch_engine(
     files["config.h"] = _config(model["config.h"], program, wanted)
     library = compiled(files, flags)
     numbers = wanted.numbers
-    text = declarations("bg_engine.h", numbers)
+    text = engine_declarations(numbers)
     shared = {"MODES": min(numbers["MODES"], MOST_MODES), "STRIDE": STRIDE}
     text += declarations("batch.h", shared, "BATCH")
     for name in ("MODES", "ROW", "L"):

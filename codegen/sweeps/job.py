@@ -17,14 +17,11 @@ from bondgraph import BondGraphError, SignalError
 from codegen.arrays import Array
 from codegen.runs.legs import EXACT
 from codegen.runs.result import Result
-from codegen.sweeps.batch import Asked, Batch, batch
+from codegen.sweeps.batch import Asked, Batch, Given, batch
 from codegen.sweeps.columns import Columns
 from codegen.sweeps.family import Family
 from codegen.sweeps.measures import Measure
 from codegen.sweeps.packing import packed
-
-Given = Mapping[str, Any] | Callable[[Mapping[str, float]], Mapping[str, Any]] | None
-"""Initial states or inputs, or a function of a run's numbers that gives them."""
 
 
 class Runner(Protocol):

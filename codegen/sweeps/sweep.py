@@ -13,11 +13,12 @@ from bondgraph import SignalError
 from bondgraph.expressions import normal
 from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
 from codegen.runs.result import Result
+from codegen.sweeps.batch import Given
 from codegen.sweeps.cluster import Cluster
 from codegen.sweeps.crews import Crew, Here, Processes, Threads
 from codegen.sweeps.design import Table, design
 from codegen.sweeps.drive import QUICK, STEADY, Pace, Work, drive
-from codegen.sweeps.job import Given, Job, Model, Outcome, batch_of, sent
+from codegen.sweeps.job import Job, Model, Outcome, batch_of, sent
 from codegen.sweeps.measures import Measure
 from codegen.sweeps.result import Collected, Sweep, SweepInterrupted
 from codegen.sweeps.store import Store

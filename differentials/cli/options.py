@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from codegen.simulate import BACKENDS
 from differentials.cli.names import Assigned, OneOf
 from differentials.cli.signals import law, signal
 from differentials.cli.subject import SubjectType
@@ -65,6 +66,10 @@ on = click.option(
 scenario = click.option(
     "--scenario", type=OneOf(tuple(scenarios), "scenario"), metavar="NAME",
     help="A scenario that `bondgraph list` shows; by default the differential's own.",
+)  # fmt: skip
+backend = click.option(
+    "--backend", type=OneOf(BACKENDS, "backend"), default="numpy", show_default=True, metavar="NAME",
+    help="numpy, or c: compiled, faster.",
 )  # fmt: skip
 folder = click.option(
     "--out", type=click.Path(file_okay=False, path_type=Path), default=Path("out"), metavar="DIR",

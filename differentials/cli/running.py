@@ -7,7 +7,7 @@ import click
 
 import differentials.cli.options as options
 from codegen import Result
-from codegen.simulate import BACKENDS
+from codegen.runs.legs import CHOICES
 from differentials.cli.names import FileOf, OneOf
 from differentials.cli.options import Asked
 from differentials.cli.pictures import FORMATS, picture, save, save_all, told
@@ -15,8 +15,6 @@ from differentials.cli.preparing import run
 from differentials.cli.printing import print_json, written
 from differentials.cli.subject import Subject
 from differentials.report import events_text
-
-METHODS = ("auto", "exact", "DOP853", "Radau")
 
 
 @options.command(
@@ -28,21 +26,14 @@ METHODS = ("auto", "exact", "DOP853", "Radau")
 )
 @options.subject
 @options.run_options
-@click.option(
-    "--backend",
-    type=OneOf(BACKENDS, "backend"),
-    default="numpy",
-    show_default=True,
-    metavar="NAME",
-    help="numpy, or c: compiled, faster.",
-)
+@options.backend
 @click.option(
     "--method",
-    type=OneOf(METHODS, "method"),
+    type=OneOf(CHOICES, "method"),
     default="auto",
     show_default=True,
     metavar="NAME",
-    help=f"How to integrate: {', '.join(METHODS)}.",
+    help=f"How to integrate: {', '.join(CHOICES)}.",
 )
 @click.option(
     "-o",

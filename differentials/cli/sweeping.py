@@ -11,9 +11,8 @@ import numpy as np
 import bondgraph as bg
 import codegen
 import differentials.cli.options as options
-from codegen.simulate import BACKENDS
 from differentials.cli.grids import FORM, GRID, measure_options, measures
-from differentials.cli.names import FileOf, OneOf, check_names
+from differentials.cli.names import FileOf, check_names
 from differentials.cli.options import Asked
 from differentials.cli.preparing import prepare
 from differentials.cli.printing import print_json, with_folder, written
@@ -42,14 +41,7 @@ SHOWN = 50
 )
 @measure_options
 @options.run_options
-@click.option(
-    "--backend",
-    type=OneOf(BACKENDS, "backend"),
-    default="numpy",
-    show_default=True,
-    metavar="NAME",
-    help="numpy, or c: compiled, many runs at once.",
-)
+@options.backend
 @click.option(
     "--workers",
     type=click.IntRange(min=0),

@@ -148,6 +148,7 @@ def test_redundant_ports_are_left_to_located_runs() -> None:
     ready = simulator(equations, {"m": 1.0, "L": 1.0})
     assert _outcome(ready, [0, 1], None, {"P": 1.0}).status == Status.UNSUPPORTED
     shared = simulator(equations, {"m": 1.0, "L": 1.0}, backend="c").run([0, 1], None, {"P": 1.5})
+    assert shared.backend == "c"
     assert (shared["f_1"][-1], shared["f_2"][-1]) == pytest.approx((0.5, 1.0))
 
 
@@ -172,6 +173,14 @@ def test_the_engine_is_for_affine_models_alone() -> None:
     assert not_affine(ready.closed.program) == "values of this one change in time"
     with pytest.raises(bg.SimulationError, match="exact"):
         cubic.run([0, 1], method="exact")
+
+
+def test_a_run_tells_what_ran_it() -> None:
+    fast = simulator(bg.derive(oscillator()), {"m": 1.0, "k": 1e4, "F_c": 1.0}, backend="c")
+    found = {
+        m: fast.run([0, 1], {"v": 1.0}, method=m).backend for m in ("exact", "DOP853", "CVODE")
+    }
+    assert found == {"exact": "c", "DOP853": "c", "CVODE": "numpy"}
 
 
 STRICT = ("-O2", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion",

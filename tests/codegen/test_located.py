@@ -70,6 +70,7 @@ def test_the_catalogs_figures_against_exact_steps(name: str, scenario: str) -> N
     fast = simulator(case.equations, case.parameters, case.laws, "c")
     for method in ("DOP853", "Radau"):
         run = fast.run(case.times, case.initial, case.inputs, method=method)
+        assert (run.backend, exact.backend) == ("c", "numpy")
         assert [(e.kind, e.port) for e in run.events] == [(e.kind, e.port) for e in exact.events]
         late = [a.time - b.time for a, b in zip(run.events, exact.events, strict=True)]
         assert np.abs(late).max(initial=0.0) < 1e-9

@@ -12,10 +12,8 @@ from pathlib import Path
 import numpy as np
 
 import codegen
-from codegen.runs.arguments import initial_values, signals_for
+from codegen.runs.arguments import signals_for
 from codegen.runs.events import Event
-from codegen.runs.legs import Settings
-from codegen.runs.snapshots import snapshots
 from differentials.figures import figures
 from differentials.scenarios import SAMPLE, prepared
 from differentials.topologies import catalog
@@ -90,29 +88,13 @@ def _kept(result: codegen.Result) -> Outcome:
     return Outcome(result.columns, result.events)
 
 
-def _by_engine(made: Made) -> Outcome:
-    """The C engine's own run: where it cannot go on, `run` would leave it to the numpy loop."""
+def _in_backend(made: Made, method: str) -> Outcome:
+    """Generated C and nothing else."""
     case = made.case
     ready = codegen.simulator(case.equations, case.parameters, case.laws, "c")
-    signals, times = signals_for(case.inputs, ready.inputs), made.exact.time
-    given = np.array([signal(0.0) for signal in signals])
-    start = ready.vector(0.0, initial_values(case.initial, ready.states), given)
-    found = ready.engine.run(times, start, signals)
-    assert found.track is not None, (found.status, found.time)
-    columns, _ = ready.columns(times, snapshots(ready.closed, times, signals, found.track))
-    return Outcome(columns, tuple(found.track.events))
-
-
-def _by_located(made: Made) -> Outcome:
-    """Generated C with adaptive steps, and nothing else."""
-    case = made.case
-    ready = codegen.simulator(case.equations, case.parameters, case.laws, "c")
-    states, times = initial_values(case.initial, ready.states), made.exact.time
-    signals = signals_for(case.inputs, ready.inputs)
-    found = ready.located.run(times, states, signals, Settings("DOP853", 1e-10, 1e-11))
-    assert found is not None
-    columns, _ = ready.columns(times, found.shots)
-    return Outcome(columns, found.events)
+    found = ready.run(made.exact.time, case.initial, case.inputs, method)
+    assert found.backend == "c"
+    return _kept(found)
 
 
 def _exchanged(made: Made, version: str) -> Outcome:
@@ -178,8 +160,8 @@ def changes(
 
 LOCATED: Mapping[str, Callable[[Made], Outcome]] = {
     "numpy exact": lambda made: _kept(made.exact),
-    "C backend": _by_engine,
-    "C with located events": _by_located,
+    "C backend": lambda made: _in_backend(made, "exact"),
+    "C with located events": lambda made: _in_backend(made, "DOP853"),
     "numpy DOP853": lambda made: _kept(made.case.run(made.samples, "DOP853")),
     "FMI 2.0 exchange": lambda made: _exchanged(made, "2.0"),
     "FMI 3.0 exchange": lambda made: _exchanged(made, "3.0"),
