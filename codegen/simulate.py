@@ -13,7 +13,7 @@ from bondgraph import ParameterError, SignalError, SimulationError, StateEquatio
 from codegen.arrays import Array
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
-from codegen.engine.runs import CRuns, not_affine
+from codegen.engine.runs import CRuns
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signals import Constant, Signal, first_step
 from codegen.model.closed import ClosedModel
@@ -248,7 +248,7 @@ def with_engine(ready: Simulator, backend: str, library: LocatedLibrary | None =
     if backend != "c":
         return ready
     located = LocatedRuns(ready.closed, library)
-    if not_affine(ready.closed.program) is None:
+    if located.library.affine:
         return replace(ready, engine=CRuns(ready.closed), located=located)
     # Written now, so that what C cannot have is refused before there is a run.
     _ = located.library.sources

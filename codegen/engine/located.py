@@ -11,7 +11,7 @@ from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.c.export import runtime_file, texts
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
-from codegen.engine.runs import KINDS
+from codegen.engine.runs import KINDS, not_affine
 from codegen.engine.sizes import aligned, declarations
 from codegen.inputs.signals import Signal
 from codegen.inputs.tables import SignalTable, signal_table
@@ -19,6 +19,12 @@ from codegen.model.closed import ClosedModel
 from codegen.runs.events import Event
 from codegen.runs.legs import Settings
 from codegen.runs.snapshots import Snapshots
+
+FILES = (
+    "model_rows.h", "model_rows.c", "bg_extremes.h", "batch_measure.h", "batch_measure.c",
+    "batch_doubt.h", "batch_located.h", "batch_located.c",
+)  # fmt: skip
+"""What calls a model: once for a table of a run, or once for many runs."""
 
 METHODS = ("auto", "DOP853", "Radau")
 """In the order of ``model_located.h``."""
@@ -53,8 +59,13 @@ class LocatedLibrary:
     def sources(self) -> Mapping[str, str]:
         """Its files; raises what `codegen.to_c` raises for models that C cannot have."""
         zeros = [0.0] * len(self._model.program.parameters)
-        files = {name: runtime_file(name) for name in ("model_rows.h", "model_rows.c")}
+        files = {name: runtime_file(name) for name in FILES}
         return {**texts(self._model, "model", zeros), **files}
+
+    @cached_property
+    def affine(self) -> bool:
+        """Whether the program is affine in each friction mode."""
+        return not_affine(self._model.program) is None
 
     @cached_property
     def opened(self) -> tuple[Any, Any]:
@@ -176,5 +187,8 @@ def _pointer(ffi: Any, array: Any, kind: str = "double *") -> Any:
 def _declared() -> str:
     """What is called; records that only C looks into have names alone."""
     own = "".join(f"typedef struct {n} {n};\n" for n in ("bg_model", "bg_located", "bg_snapshot"))
-    headers = ("bg_events.h", "model_signals.h", "model_request.h", "model_rows.h")
+    headers = (
+        "bg_events.h", "model_signals.h", "model_request.h", "model_rows.h", "batch_measure.h",
+        "batch_located.h",
+    )  # fmt: skip
     return own + "".join(declarations(header, {}) for header in headers)

@@ -83,9 +83,9 @@ class Track:
 class Settings:
     """How to integrate: method, relative and absolute tolerance."""
 
-    method: str
-    rtol: float
-    atol: float
+    method: str = "auto"
+    rtol: float = 1e-10
+    atol: float = 1e-11
 
 
 class Leg:

@@ -62,7 +62,7 @@ static int run(batch_room *room, const batch_numbers *numbers, const bg_inputs *
     if (status)
         return status;
     batch_sample_last(room->context, room);
-    batch_reduce(room, &task, results);
+    batch_reduce(room->job, room->values, room->pitch, task.events, task.count, results);
     return BG_OK;
 }
 

@@ -10,6 +10,8 @@
 
 #include "bg_engine.h"
 
+#include "batch_measure.h"
+
 enum {
     BATCH_MODES = BG_MODES < 27 ? BG_MODES : 27,
     BATCH_STRIDE = 8 /* so many steps are taken from one state */
@@ -17,25 +19,6 @@ enum {
 
 /* Beyond those of the engine: the model refuses these numbers. */
 enum { BATCH_REFUSED = 20 };
-
-enum batch_what {
-    BATCH_PEAK, BATCH_LARGEST, BATCH_SMALLEST, BATCH_FINAL, BATCH_INTEGRAL, BATCH_SAMPLES,
-    BATCH_FIRST, BATCH_COUNT
-};
-
-/* What to keep of a run, from place `at` of its results: of a signal, or of events. */
-typedef struct {
-    int what, signal, port, kind, at;
-} batch_measure;
-
-/* What runs share. `signal`: a row of affine maps, or -1 - j for the external input j. */
-typedef struct {
-    const double *times;
-    double grid;
-    int samples, width, signals, measures;
-    const int *signal;
-    const batch_measure *measure;
-} batch_job;
 
 /* What each run has of its own; `results` has `width` places for each. */
 typedef struct {

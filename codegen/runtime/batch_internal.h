@@ -56,7 +56,5 @@ void batch_leap(batch_leaps *l, int at);
 /* batch_advance.c: to `stop` or the first event. */
 int batch_advance(bg_context *c, int *at, double stop);
 
-/* batch_measure.c: what is kept of a run that is done. */
-void batch_reduce(const batch_room *room, const bg_task *task, double *results);
 
 #endif

@@ -1,7 +1,11 @@
 /* What is kept of a run: numbers from its samples and events. */
-#include "batch_internal.h"
+#include "batch_measure.h"
 
 #include <math.h>
+
+#include "bg_extremes.h"
+
+enum { LANES = 8 };
 
 static double integral(const batch_job *job, const double *values)
 {
@@ -14,12 +18,12 @@ static double integral(const batch_job *job, const double *values)
 /* In lanes, which do not wait for each other. */
 static double extreme(const batch_job *job, const double *values, int what)
 {
-    batch_lanes high, low;
+    double high[LANES], low[LANES];
     int i = 0;
-    for (int r = 0; r < BATCH_STRIDE; r++)
+    for (int r = 0; r < LANES; r++)
         high[r] = low[r] = values[0];
-    for (; i + BATCH_STRIDE <= job->samples; i += BATCH_STRIDE)
-        for (int r = 0; r < BATCH_STRIDE; r++) {
+    for (; i + LANES <= job->samples; i += LANES)
+        for (int r = 0; r < LANES; r++) {
             high[r] = bg_greater(values[i + r], high[r]);
             low[r] = bg_lesser(values[i + r], low[r]);
         }
@@ -27,7 +31,7 @@ static double extreme(const batch_job *job, const double *values, int what)
         high[0] = bg_greater(values[i], high[0]);
         low[0] = bg_lesser(values[i], low[0]);
     }
-    for (int r = 1; r < BATCH_STRIDE; r++) {
+    for (int r = 1; r < LANES; r++) {
         high[0] = bg_greater(high[r], high[0]);
         low[0] = bg_lesser(low[r], low[0]);
     }
@@ -36,17 +40,17 @@ static double extreme(const batch_job *job, const double *values, int what)
     return what == BATCH_LARGEST ? high[0] : low[0];
 }
 
-static double of_events(const bg_task *task, const batch_measure *measure)
+static double of_events(const bg_event *events, int count, const batch_measure *measure)
 {
-    int count = 0;
-    for (int i = 0; i < task->count; i++) {
-        if (task->events[i].port != measure->port || task->events[i].kind != measure->kind)
+    int found = 0;
+    for (int i = 0; i < count; i++) {
+        if (events[i].port != measure->port || events[i].kind != measure->kind)
             continue;
         if (measure->what == BATCH_FIRST)
-            return task->events[i].time;
-        count++;
+            return events[i].time;
+        found++;
     }
-    return measure->what == BATCH_FIRST ? (double)NAN : (double)count;
+    return measure->what == BATCH_FIRST ? (double)NAN : (double)found;
 }
 
 static void keep(const batch_job *job, const double *values, const batch_measure *measure,
@@ -64,14 +68,14 @@ static void keep(const batch_job *job, const double *values, const batch_measure
         *found = extreme(job, values, measure->what);
 }
 
-void batch_reduce(const batch_room *room, const bg_task *task, double *results)
+void batch_reduce(const batch_job *job, const double *values, int pitch, const bg_event *events,
+                  int count, double *results)
 {
-    const batch_job *const job = room->job;
     for (int k = 0; k < job->measures; k++) {
         const batch_measure *const measure = job->measure + k;
         if (measure->what >= BATCH_FIRST)
-            results[measure->at] = of_events(task, measure);
+            results[measure->at] = of_events(events, count, measure);
         else
-            keep(job, room->values + measure->signal * room->pitch, measure, results);
+            keep(job, values + (long)measure->signal * pitch, measure, results);
     }
 }

@@ -6,12 +6,10 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "model_internal.h"
+#include "batch_doubt.h"
 
 enum { K = BG_FRICTION, N = BG_STATES, OWN = BG_LAW_STATES, M = BG_INPUTS, ROWS = BG_READINGS };
 
-/* Pivots of A, whose diagonal is scaled to 1, below which it may well be singular. */
-static const double DOUBTFUL = 1e-9;
 static const double FAR = 1073741824.0; /* 2^30: dividing by it is exact */
 
 typedef double map_row[BG_MAP_COLUMNS];
@@ -48,9 +46,8 @@ int batch_model_begin(void *model, const double *parameters, batch_numbers *foun
     status = bg_finite(BG_PARAMETERS, m->now.p) ? bg_assemble(m) : BG_PARAMETER;
     if (status != BG_OK)
         return status;
-    for (int i = 0; i < BG_STATES; i++)
-        if (!(fabs(a->A[i * BG_STATES + i]) > DOUBTFUL))
-            return BG_SINGULAR;
+    if (batch_doubtful(m))
+        return BG_SINGULAR;
     *found = (batch_numbers){BG_DRIVEN, a->P, a->Q, a->R, a->F, a->D, bg_friction_inputs,
                              bg_friction_readings, bg_beside};
     return BG_OK;

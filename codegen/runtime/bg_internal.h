@@ -3,6 +3,7 @@
 #define BG_INTERNAL_H
 
 #include "bg_engine.h"
+#include "bg_extremes.h"
 #include "bg_rounds.h"
 
 enum {
@@ -85,17 +86,6 @@ struct bg_context {
     int used[BG_ENTRIES];               /* when each was used last; 0 if it is empty */
     bg_entry entries[BG_ENTRIES];
 };
-
-/* Unlike fmin and fmax instructions, not calls. */
-static inline double bg_lesser(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static inline double bg_greater(double a, double b)
-{
-    return a > b ? a : b;
-}
 
 /* bg_inputs.c: the slots at t in a segment; and w and its rate from them. */
 void bg_slots(const bg_inputs *inputs, int segment, double t, double *g);

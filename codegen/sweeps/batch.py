@@ -1,10 +1,10 @@
-"""A sweep's runs in one call of C for many, where the model is affine and the measures are ready ones."""
+"""A sweep's runs in one call of C for many, where the backend is C and the measures are ready ones."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from threading import Lock
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import sympy as sp
@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from bondgraph import BondGraphError
 from bondgraph.resistances import resistive_loops
 from codegen.arrays import Array
-from codegen.engine.inputs import Packed, segments
-from codegen.engine.runs import grid_of, not_affine
-from codegen.engine.sizes import Engine, sizes
+from codegen.engine.located import METHODS as LOCATED_METHODS
+from codegen.inputs.signals import Signal
 from codegen.program import Program
 from codegen.runs.arguments import named_numbers, signals_for
-from codegen.sweeps.batch_engine import Room
-from codegen.sweeps.batch_inputs import BatchInputs, each, varied
-from codegen.sweeps.batch_model import Flags, batch_model
+from codegen.runs.legs import EXACT, Settings
+from codegen.sweeps.batch_exact import ExactLoop
+from codegen.sweeps.batch_located import LocatedLoop
+from codegen.sweeps.batch_model import BatchModel, Flags, batch_model
 from codegen.sweeps.batch_plan import Plan, plan
 from codegen.sweeps.family import Family
 
@@ -38,18 +38,36 @@ class Asked:
     measures: Mapping[str, Callable[..., Any]]
     initial: Given
     inputs: Given
+    settings: Settings
+
+
+class Loop(Protocol):
+    """Many runs in one call of C; ``shared`` and inputs are the loop's own records."""
+
+    def shared(self, signals: Sequence[Signal], /) -> Any:
+        """Inputs of all runs."""
+
+    def alike(
+        self, shared: Any, places: Sequence[int], values: Array, indices: NDArray[np.intp], /
+    ) -> Any:
+        """The same inputs for these runs, but for ``values`` held at ``places``."""
+
+    def different(self, found: Sequence[tuple[int, Sequence[Signal]]], /) -> Sequence[Any]:
+        """The inputs of each run by its index, in groups that are run together."""
+
+    def run(
+        self, inputs: Any, parameters: Array, states: Array, /
+    ) -> tuple[Array, NDArray[np.intc]]:
+        """A row of results for each run, and its status: not 0 where it has to be done another way."""
 
 
 class Batch:
     """The loop for one sweep; calls may come from several threads."""
 
-    def __init__(self, asked: Asked, kept: Plan) -> None:
-        self.asked, self.plan = asked, kept
-        self._model = batch_model(asked.family)
-        self._time, self._grid = np.ascontiguousarray(asked.time), grid_of(asked.time)
-        self._rooms: dict[int, list[Room]] = {}
+    def __init__(self, asked: Asked, kept: Plan, model: BatchModel, loop: Loop) -> None:
+        self.asked, self.plan, self.loop = asked, kept, loop
+        self._model, self._shared = model, None
         self._lock = Lock()
-        self._shared: tuple[Engine, Packed, Array] | None = None
         self.statuses: Counter[int] = Counter()
 
     def __call__(
@@ -65,7 +83,7 @@ class Batch:
             groups = self._inputs(table, np.flatnonzero(usable & settled))
         for inputs in groups:
             indices = inputs.indices
-            results, status = self._run(inputs, parameters[indices], states[indices])
+            results, status = self.loop.run(inputs, parameters[indices], states[indices])
             with self._lock:
                 kinds, counts = np.unique(status, return_counts=True)
                 self.statuses.update(dict(zip(kinds.tolist(), counts.tolist(), strict=True)))
@@ -89,10 +107,9 @@ class Batch:
         asked, names = self.asked, self.asked.family.states
         states, usable = np.zeros((len(table), len(names))), np.ones(len(table), dtype=bool)
         if callable(asked.initial):
-            for k, row in enumerate(table.tolist()):
+            for k, values in enumerate(self._named(table)):
                 try:
-                    given = dict(asked.initial(dict(zip(asked.names, row, strict=True))) or {})
-                    numbers = named_numbers(given, names)
+                    numbers = named_numbers(dict(asked.initial(values) or {}), names)
                 except Exception:  # noqa: BLE001 - told by whoever does the run then
                     usable[k] = False
                     continue
@@ -105,88 +122,57 @@ class Batch:
                 states[:, names.index(name)] = table[:, column]
         return states, usable & np.isfinite(states).all(axis=1)
 
-    def _inputs(self, table: Array, indices: NDArray[np.intp]) -> list[BatchInputs]:
-        """The inputs of these runs, those of one engine together."""
+    def _inputs(self, table: Array, indices: NDArray[np.intp]) -> Sequence[Any]:
+        """The inputs of these runs, in groups that are run together."""
         asked, names = self.asked, self.asked.family.inputs
         swept = {name: at for at, name in enumerate(asked.names) if name in names}
-        begin, end = float(self._time[0]), float(self._time[-1])
         if not callable(asked.inputs):
-            shared = self._shared or self._share(asked.inputs or {}, begin, end)
-            engine, packed, constants = shared
-            places = [names.index(name) for name in swept]
-            held = table[:, [*swept.values()]]
-            return [varied(engine, packed, constants, places, held, indices)]
-        made: dict[int, list[tuple[int, Any]]] = {}
-        for k in indices.tolist():
-            values = dict(zip(asked.names, table[k].tolist(), strict=True))
+            if self._shared is None:
+                given = {**(asked.inputs or {}), **dict.fromkeys(swept, 0.0)}
+                self._shared = self.loop.shared(signals_for(given, names))
+            places, held = [names.index(name) for name in swept], table[:, [*swept.values()]]
+            return [self.loop.alike(self._shared, places, held, indices)]
+        found: list[tuple[int, Sequence[Signal]]] = []
+        for k, values in zip(indices.tolist(), self._named(table[indices]), strict=True):
             try:
-                given = dict(asked.inputs(values) or {})
-                given |= {name: values[name] for name in swept}
-                one = segments(signals_for(given, names), begin, end)
+                given = {**(asked.inputs(values) or {}), **{name: values[name] for name in swept}}
+                found.append((k, signals_for(given, names)))
             except Exception:  # noqa: BLE001 - told by whoever does the run then
                 continue
-            made.setdefault(sizes(self._model.closed, one.slots).G, []).append((k, one))
-        return [each(self._model.engine(slots), found) for slots, found in made.items()]
+        return self.loop.different(found)
 
-    def _share(
-        self, inputs: Mapping[str, Any], begin: float, end: float
-    ) -> tuple[Engine, Packed, Array]:
-        """The inputs that all runs have; swept ones are zero."""
-        asked, names = self.asked, self.asked.family.inputs
-        given = {**inputs, **{n: 0.0 for n in asked.names if n in names}}
-        made = segments(signals_for(given, names), begin, end)
-        engine = self._model.engine(made.slots)
-        self._shared = engine, Packed(engine, made), made.constants
-        return self._shared
-
-    def _run(
-        self, inputs: BatchInputs, parameters: Array, states: Array
-    ) -> tuple[Array, NDArray[np.intc]]:
-        engine, kept = inputs.engine, self.plan
-        ffi, count = engine.ffi, len(inputs.indices)
-        results, status = np.empty((count, kept.width)), np.empty(count, dtype=np.intc)
-        entries = ffi.new("batch_measure[]", list(kept.entries))
-        rows = ffi.new("int[]", list(kept.rows))
-        job, runs = engine.new("batch_job"), engine.new("batch_runs")
-        job.times = ffi.cast("double *", self._time.ctypes.data)
-        job.grid, job.samples, job.width = self._grid, len(self._time), kept.width
-        job.signals, job.measures = len(kept.rows), len(kept.entries)
-        job.signal, job.measure = rows, entries
-        runs.runs = count
-        for name, kind, array in (
-            ("inputs", "bg_inputs **", inputs.pointers),
-            ("parameters", "double *", parameters), ("states", "double *", states),
-            ("results", "double *", results), ("status", "int *", status),
-        ):  # fmt: skip
-            setattr(runs, name, ffi.cast(kind, array.ctypes.data))
-        rooms = self._rooms.setdefault(engine.sizes.G, [])
-        try:
-            room = rooms.pop()
-        except IndexError:
-            room = Room(engine, len(self._time), len(kept.rows))
-        engine.library.batch_run(room.record, job, runs)
-        rooms.append(room)
-        return results, status
+    def _named(self, table: Array) -> list[dict[str, float]]:
+        return [dict(zip(self.asked.names, row, strict=True)) for row in table.tolist()]
 
 
 def batch(asked: Asked) -> Batch | None:
-    """The loop for a sweep; None where the model or a measure is none that it can do."""
+    """The loop for a sweep; None where the model or a measure is none that one can do."""
     try:
-        program = asked.family.program
-        if not _can(asked.family, program, asked.names):
+        family = asked.family
+        if family.backend != "c" or not _can(family, family.program, asked.names):
             return None
-        kept = plan(asked.measures.values(), program, len(asked.time))
-        return None if kept is None else Batch(asked, kept)
+        kept = plan(asked.measures.values(), family.program, len(asked.time))
+        return None if kept is None else _looped(asked, kept)
     except BondGraphError:
         return None
 
 
+def _looped(asked: Asked, kept: Plan) -> Batch | None:
+    family, method = asked.family, asked.settings.method
+    model, time = batch_model(family), np.ascontiguousarray(asked.time)
+    library = family.library
+    if library.affine and method in ("auto", EXACT):
+        return Batch(asked, kept, model, ExactLoop(model, time, kept))
+    if method in LOCATED_METHODS:
+        return Batch(asked, kept, model, LocatedLoop(library, time, kept, asked.settings))
+    return None
+
+
 def _can(family: Family, program: Program, names: Sequence[str]) -> bool:
-    """Whether the model is affine, steps of its inputs show no impulses, and ranks are certain."""
+    """Whether there are states, steps of inputs show no impulses, and ranks are certain."""
     layout = program.layout
-    if family.backend != "c" or not program.states or not_affine(program) is not None:
-        return False
-    if layout["K"].rows or (layout["H"].rows and layout["E"].rows):
+    driven = layout["E"].rows and (layout["H"].rows or program.varying)
+    if not program.states or layout["K"].rows or driven:
         return False
     reduction = family.equations.reduction
     loops = [*reduction.structure.loops, *(rows for _, rows in resistive_loops(reduction))]

@@ -13,7 +13,8 @@ from codegen.engine.sizes import Engine, Sizes, aligned, declarations, engine_de
 from codegen.program import Program
 
 FILES = (
-    "batch.h", "batch_internal.h", "batch.c", "batch_advance.c", "batch_leap.c", "batch_measure.c",
+    "batch.h", "batch_internal.h", "batch.c", "batch_advance.c", "batch_doubt.h", "batch_leap.c",
+    "batch_measure.h", "batch_measure.c",
     "batch_mode.c", "batch_model.h", "batch_model.c", "batch_signal.c", "batch_table.c",
 )  # fmt: skip
 
@@ -37,7 +38,7 @@ def batch_engine(
     numbers = wanted.numbers
     text = engine_declarations(numbers)
     shared = {"MODES": min(numbers["MODES"], MOST_MODES), "STRIDE": STRIDE}
-    text += declarations("batch.h", shared, "BATCH")
+    text += declarations("batch_measure.h", {}) + declarations("batch.h", shared, "BATCH")
     for name in ("MODES", "ROW", "L"):
         text = text.replace(f"[BG_{name}]", f"[{numbers[name]}]")
     ffi, opened = loaded(library, text)

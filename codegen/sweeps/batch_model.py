@@ -1,17 +1,19 @@
-"""What the loop over runs needs of a family, whatever is swept: C sources, libraries, checks of values."""
+"""What loops over runs need of a family, whatever is swept: C sources, libraries, checks of values."""
 
 from collections.abc import Callable
-from functools import reduce
+from functools import cached_property, reduce
 from weakref import WeakKeyDictionary
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from bondgraph import ParameterError, StateEquations
 from bondgraph.elements import Kind
 from codegen.arrays import Array
 from codegen.c.export import stepped, to_c
 from codegen.engine.sizes import Engine, sizes
+from codegen.model.numbers import check_values, exact_parameters
 from codegen.program import Program
 from codegen.sweeps.batch_engine import batch_engine
 from codegen.sweeps.family import Family
@@ -30,12 +32,17 @@ class BatchModel:
         self.closed = family.simulator().closed
         exact = self.closed.parameters
         self.defaults = np.array([float(exact[p.name]) for p in self.program.parameters])
-        self.usable = _checked_values(family, self.program)
-        self._sources = stepped(to_c(family.equations, family.parameters, family.laws))
+        check = _checked_run_by_run if self.program.varying else _checked_values
+        self.usable = check(family.equations, self.program)
+        self._exported = family.equations, family.parameters, family.laws
         self._engines: dict[int, Engine] = {}
 
+    @cached_property
+    def _sources(self) -> dict[str, str]:
+        return stepped(to_c(*self._exported))
+
     def engine(self, slots: int) -> Engine:
-        """The library for inputs whose generators have so many slots."""
+        """The library of an affine model for inputs whose generators have so many slots."""
         wanted = sizes(self.closed, slots)
         if wanted.G not in self._engines:
             self._engines[wanted.G] = batch_engine(self._sources, self.program, wanted)
@@ -52,9 +59,9 @@ def batch_model(family: Family) -> BatchModel:
 _models: WeakKeyDictionary[Family, BatchModel] = WeakKeyDictionary()
 
 
-def _checked_values(family: Family, program: Program) -> Callable[[Array], Flags]:
+def _checked_values(equations: StateEquations, program: Program) -> Callable[[Array], Flags]:
     """Whether storages and moduli are certain not to be zero, for rows of parameters."""
-    elements = [e for e in family.equations.elements.values() if e.kind is not Kind.R]
+    elements = [e for e in equations.elements.values() if e.kind is not Kind.R]
     values = [sp.sympify(e.value) for e in elements if e.value is not None]
     known = {symbol.name for symbol in program.parameters}
     constant = [v for v in values if {s.name for s in v.free_symbols} <= known]
@@ -68,6 +75,21 @@ def _checked_values(family: Family, program: Program) -> Callable[[Array], Flags
         return found
 
     return usable
+
+
+def _checked_run_by_run(equations: StateEquations, program: Program) -> Callable[[Array], Flags]:
+    """Whether what changes in time has values that can be used, by exact rank."""
+    names = [symbol.name for symbol in program.parameters]
+
+    def usable(row: Array) -> bool:
+        try:
+            exact = exact_parameters(dict(zip(names, row.tolist(), strict=True)))
+            check_values(equations, exact)
+        except ParameterError:
+            return False
+        return True
+
+    return lambda parameters: np.array([usable(row) for row in parameters], dtype=bool)
 
 
 def _size(value: sp.Expr) -> sp.Expr:

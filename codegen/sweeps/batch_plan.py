@@ -12,13 +12,13 @@ from codegen.sweeps.measures import READY, Measure
 WHATS = (
     "peak", "largest", "smallest", "final", "integral", "samples", "first_event", "event_count",
 )  # fmt: skip
-"""In the order of ``batch.h``."""
+"""In the order of ``batch_measure.h``."""
 
 SAMPLES, EVENTS = WHATS.index("samples"), WHATS.index("first_event")
 
 
 class Entry(NamedTuple):
-    """A measure as ``batch_measure`` of ``batch.h``: -1 where it has no signal, port or kind.
+    """A measure as ``batch_measure`` of C: -1 where it has no signal, port or kind.
 
     ``at``: its first place in a run's row of results.
     """
@@ -32,7 +32,7 @@ class Entry(NamedTuple):
 
 @dataclass(frozen=True)
 class Plan:
-    """What to keep of each run, from the ``rows`` of affine maps that are followed.
+    """What to keep of each run. ``rows``: places of the signals that are followed.
 
     ``samples``: how many instants there are. ``width``: how many numbers a run gives.
     """
@@ -80,7 +80,7 @@ def _of_events(what: int, measure: Measure, program: Program, at: int) -> Entry:
 
 
 def _places(program: Program) -> dict[str, int]:
-    """Each signal's row in affine maps; -1 - j for the external input j."""
+    """Each signal's place among x, z, u, u' and readings; -1 - j for the external input j."""
     states = len(program.states) + len(program.law_states)
     groups = (
         (program.states, range(states)),

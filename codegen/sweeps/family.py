@@ -82,13 +82,12 @@ class Family:
                 known = ", ".join(self.parameters) or "none"
                 raise ParameterError(f"{name!r} is not a parameter; there are {known}")
         values = {**self.parameters, **changes}
-        return with_engine(bound(self.program, self.equations, values), self.backend, self._library)
+        ready = bound(self.program, self.equations, values)
+        return ready if self.backend != "c" else with_engine(ready, "c", self.library)
 
     @cached_property
-    def _library(self) -> LocatedLibrary | None:
-        """The generated C that all its simulators share."""
-        if self.backend != "c":
-            return None
+    def library(self) -> LocatedLibrary:
+        """The generated C that all its simulators share; `MissingExtraError` without a compiler."""
         return LocatedLibrary(bound(self.program, self.equations, self.parameters).closed)
 
     def fingerprint(self) -> str:

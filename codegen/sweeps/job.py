@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from bondgraph import BondGraphError, SignalError
 from codegen.arrays import Array
-from codegen.runs.legs import EXACT
+from codegen.runs.legs import Settings
 from codegen.runs.result import Result
 from codegen.sweeps.batch import Asked, Batch, Given, batch
 from codegen.sweeps.columns import Columns
@@ -148,10 +148,9 @@ def batch_of(job: Job) -> Batch | None:
     """The loop in C for the runs of a job, made once; None where there is none."""
     with _making:
         if job not in _batches:
-            family, exact = job.model, job.settings.get("method", "auto") in ("auto", EXACT)
-            able = isinstance(family, Family) and family.backend == "c" and exact
-            asked = (job.names, job.time, job.measures, job.initial, job.inputs)
-            _batches[job] = batch(Asked(family, *asked)) if able else None  # type: ignore[arg-type]
+            model, settings = job.model, Settings(**job.settings)
+            asked = (job.names, job.time, job.measures, job.initial, job.inputs, settings)
+            _batches[job] = batch(Asked(model, *asked)) if isinstance(model, Family) else None
         return _batches[job]
 
 

@@ -119,7 +119,7 @@ class Collected:
         if isinstance(outcome.results, Columns) and self._alike(outcome.results):
             return self._add_columns(np.asarray(outcome.indices), outcome.results)
         new = 0
-        for index, result in zip(outcome.indices, outcome.results, strict=True):
+        for index, result in zip(map(int, outcome.indices), outcome.results, strict=True):
             if self.done[index]:
                 continue
             self.done[index] = True

@@ -1,0 +1,31 @@
+/* Many event-located runs of one model, each with its own numbers, reduced to measures. Nothing is
+ * allocated and nothing is global: the caller owns a room for each thread. */
+#ifndef BATCH_LOCATED_H
+#define BATCH_LOCATED_H
+
+#include "batch_measure.h"
+#include "model_located.h"
+
+/* What each run has of its own; `results` has places for each as the job tells. */
+typedef struct {
+    int runs;
+    const double *parameters, *states;
+    const bg_signals *const *inputs;
+    double *results;
+    int *status;
+} located_runs;
+
+/* Where runs are done, one at a time, and how. `values`: the signals times the samples. */
+typedef struct {
+    bg_model *model;
+    bg_located *run;
+    const batch_job *job;
+    bg_event *events;
+    double *values, rtol, atol;
+    int capacity, method;
+} located_room;
+
+/* Does every run; a status for each, nonzero where it has to be done another way. */
+void located_batch(located_room *room, const batch_job *job, const located_runs *runs);
+
+#endif

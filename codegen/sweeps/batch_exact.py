@@ -1,0 +1,76 @@
+"""Runs of an affine model by the loop in C that steps exactly."""
+
+from collections.abc import Sequence
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from codegen.arrays import Array
+from codegen.engine.inputs import Packed, Segments, segments
+from codegen.engine.runs import grid_of
+from codegen.engine.sizes import Engine, sizes
+from codegen.inputs.signals import Signal
+from codegen.sweeps.batch_call import Rooms, job_record, outcome_of
+from codegen.sweeps.batch_engine import Room
+from codegen.sweeps.batch_inputs import BatchInputs, each, varied
+from codegen.sweeps.batch_model import BatchModel
+from codegen.sweeps.batch_plan import Plan
+
+
+class Shared(NamedTuple):
+    """Inputs as the engine's record; ``constants``: what they are but for their chains."""
+
+    engine: Engine
+    packed: Packed
+    constants: Array
+
+
+class ExactLoop:
+    """One sweep's runs; calls of `run` may come from several threads."""
+
+    def __init__(self, model: BatchModel, time: Array, kept: Plan) -> None:
+        self._model, self._plan = model, kept
+        self._time, self._grid = time, grid_of(time)
+        self._rooms: dict[int, Rooms[Room]] = {}
+
+    def shared(self, signals: Sequence[Signal]) -> Shared:
+        """Inputs of all runs."""
+        made = self._segments(signals)
+        engine = self._model.engine(made.slots)
+        return Shared(engine, Packed(engine, made), made.constants)
+
+    def alike(
+        self, shared: Shared, places: Sequence[int], values: Array, indices: NDArray[np.intp]
+    ) -> BatchInputs:
+        """The same inputs for these runs, but for ``values`` held at ``places``."""
+        return varied(shared.engine, shared.packed, shared.constants, places, values, indices)
+
+    def different(self, found: Sequence[tuple[int, Sequence[Signal]]]) -> list[BatchInputs]:
+        """The inputs of each run by its index, those of one engine together."""
+        made: dict[int, list[tuple[int, Segments]]] = {}
+        for k, signals in found:
+            one = self._segments(signals)
+            made.setdefault(sizes(self._model.closed, one.slots).G, []).append((k, one))
+        return [each(self._model.engine(slots), some) for slots, some in made.items()]
+
+    def run(
+        self, inputs: BatchInputs, parameters: Array, states: Array
+    ) -> tuple[Array, NDArray[np.intc]]:
+        """A row of results for each run, and its status: not 0 where it has to be done another way."""
+        engine, kept = inputs.engine, self._plan
+        job, pointed = job_record(engine.ffi, kept, self._time, self._grid)
+        runs = engine.new("batch_runs")
+        found = outcome_of(engine.ffi, runs, inputs.pointers, parameters, states, kept.width)
+        with self._rooms_of(engine).one() as room:
+            engine.library.batch_run(room.record, job, runs)
+        del pointed
+        return found
+
+    def _rooms_of(self, engine: Engine) -> Rooms[Room]:
+        make = partial(Room, engine, self._plan.samples, len(self._plan.rows))
+        return self._rooms.setdefault(engine.sizes.G, Rooms(make))
+
+    def _segments(self, signals: Sequence[Signal]) -> Segments:
+        return segments(signals, float(self._time[0]), float(self._time[-1]))

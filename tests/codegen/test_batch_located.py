@@ -1,0 +1,245 @@
+"""Many event-located runs in one call of C: closed forms, and what each run gives by itself."""
+
+import pickle
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.exported import small_cases
+from oracles.models import oscillator
+from oracles.sanitized import check_clean
+from references.build import bond_graph
+
+import bondgraph as bg
+from codegen import (
+    Family,
+    Lag,
+    Sine,
+    Step,
+    Table,
+    event_count,
+    final,
+    first_event,
+    integral,
+    largest,
+    peak,
+    samples,
+    smallest,
+    sweep,
+)  # fmt: skip
+from codegen.engine.located import LocatedLibrary
+from codegen.sweeps.batch_exact import ExactLoop
+from codegen.sweeps.batch_located import LocatedLoop
+from codegen.sweeps.job import Job, batch_of
+from differentials.laws import magic_formula_tire, stribeck_clutch
+from differentials.scenarios import prepared
+
+TIMES = np.linspace(0.0, 3.0, 61)
+QUIET = {"progress": False}
+
+
+def _braked(law: str, backend: str = "c", **numbers: float) -> Family:
+    nodes = [bg.Se("push", "P"), bg.One("body"), bg.I("m", "m", flow="v"), bg.R("drag", law=law)]
+    return Family(bg.derive(bond_graph(nodes, "push>body>m body>drag")), numbers, backend=backend)
+
+
+def _same(job: Job, rows: Any, near: float = 1e-12) -> None:
+    """The loop does all of these runs itself, and gives what each gives by itself."""
+    loop = batch_of(job)
+    assert loop is not None
+    assert isinstance(loop.loop, LocatedLoop)
+    columns, left = loop(rows)
+    assert not left
+    for at, row in enumerate(rows):
+        found = job.run(row)
+        assert not isinstance(found, str), found
+        for name, column, expected in zip(job.measures, columns, found, strict=True):
+            size = max(float(np.abs(np.nan_to_num(expected)).max()), 1e-6)
+            assert column[at] == pytest.approx(expected, abs=near * size, nan_ok=True), name
+
+
+def test_a_cubic_brake_has_a_closed_form() -> None:
+    """m v' = -c v^3: v = v_0/s with s = sqrt(1 + 2 c v_0^2 t/m); its integral is (s - 1) m/(c v_0).
+
+    Trapezoids give that and h^2/12 of what the slope changes by (Euler, Maclaurin), up to h^4.
+    """
+    family = _braked("c*v**3", m=2.0, c=0.5)
+    grid = {"c": [0.1, 0.5, 2.0, 9.0], "v": [1.0, 4.0, -3.0]}
+    measures = {"end": final("v"), "all": samples("v"), "most": peak("v"), "way": integral("v")}
+    times = np.linspace(0.0, 3.0, 3001)
+    found = sweep(family, grid, times, measures, None, {"P": 0.0}, workers=2, **QUIET)
+    c, v = found["c"][:, None], found["v"][:, None]
+    s = np.sqrt(1 + 2 * c * v**2 * times / 2.0)
+    assert found["all"] == pytest.approx(v / s, rel=1e-8)
+    assert found["end"] == pytest.approx((v / s)[:, -1], rel=1e-8)
+    assert found["most"] == pytest.approx(np.abs(found["v"]))
+    slopes = -c * (v / s) ** 3 / 2.0
+    way = ((s - 1) * 2.0 / (c * v) + 1e-6 / 12 * (slopes - slopes[:, :1]))[:, -1]
+    assert found["way"] == pytest.approx(way, rel=1e-7)
+
+
+CASES = dict(small_cases())
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_models_of_every_kind(name: str) -> None:
+    equations, numbers, laws = CASES[name]
+    family = Family(equations, numbers, laws, "c")
+    program, rng = family.program, np.random.default_rng(5)
+    inputs = {one: Sine(float(rng.uniform(1, 6)), 1.3, offset=0.3) for one in family.inputs}
+    start = {state: float(rng.uniform(-1, 1)) for state in family.states[1:]}
+    signals = [s.name for s in (*program.states, *program.law_states, *program.inputs,
+                                *program.external, *program.readings)]  # fmt: skip
+    measures: dict[str, Any] = {f"last {s}": final(s) for s in dict.fromkeys(signals)}
+    for port in program.friction:
+        measures[f"stick {port.name}"] = first_event(port.name, "stick")
+        measures[f"slips {port.name}"] = event_count(port.name, "slip")
+    settings = {"method": "DOP853", "rtol": 1e-8, "atol": 1e-10}
+    first = next(iter(family.parameters))
+    names = (first, *family.states[:1])
+    rows = [[family.parameters[first], 0.4][: len(names)], [1.1, -0.7][: len(names)]]
+    job = Job(family, names, TIMES, measures, start, inputs, settings)
+    if batch_of(job) is None:
+        # No state; or the rate of an input is shown, or drives what changes: its steps matter then.
+        assert not program.states or program.layout["K"].rows or program.layout["E"].rows
+    else:
+        _same(job, rows)
+
+
+CASE = prepared(
+    "alsd", "fig11", laws={"tire_1": magic_formula_tire(1), "tire_2": magic_formula_tire(2)}
+)
+DIFFERENTIAL = {
+    "peak": peak("tau_k1"), "most": largest("omega_1"), "least": smallest("tau_k2"),
+    "lock": first_event("clutch", "stick"), "slips": event_count("clutch", "slip"),
+}  # fmt: skip
+
+
+def _nonlinear(backend: str) -> Family:
+    laws = {**CASE.laws, "clutch": stribeck_clutch("tau_h", 1.3, 2.0)}
+    return Family(CASE.equations, CASE.parameters, laws, backend)
+
+
+def _demand(values: Mapping[str, float]) -> dict[str, Any]:
+    return {**CASE.inputs, "tau_h": Lag(Step(0.5, values["demand"]), 0.04)}
+
+
+def test_a_nonlinear_differential_against_the_loop_in_python() -> None:
+    times = np.linspace(0.4, 0.7, 151)
+    rows = Table(k=[6000.0, 8600.0], demand=[1000.0, 700.0])
+    one, other = (
+        sweep(_nonlinear(b), rows, times, DIFFERENTIAL, CASE.initial, _demand, workers=0, **QUIET)
+        for b in ("c", "numpy")
+    )
+    for name in DIFFERENTIAL:
+        size = float(np.abs(np.nan_to_num(other[name])).max())
+        assert one[name] == pytest.approx(other[name], abs=1e-6 * size, nan_ok=True), name
+    assert not one.failed
+
+
+def test_inputs_held_beside_others_that_change() -> None:
+    family = _braked("c*v**3", m=2.0, c=0.5)
+    nodes = [bg.Se("push", "P"), bg.Se("pull", "Q"), bg.One("body"), bg.I("m", "m", flow="v"),
+             bg.R("drag", law="c*v**3")]  # fmt: skip
+    both = bg.derive(bond_graph(nodes, "push>body pull>body body>m body>drag"))
+    family = Family(both, family.parameters, backend="c")
+    job = Job(family, ("Q", "v"), TIMES, {"v": samples("v"), "Q": final("Q")}, None,
+              {"P": Lag(Step(1.0, 2.0), 0.1) + Sine(0.5, 2.0)})  # fmt: skip
+    _same(job, [(0.0, 1.0), (-2.0, 1.0), (3.0, -1.0)])
+
+
+def test_affine_models_by_a_method_that_locates() -> None:
+    family = Family(bg.derive(oscillator()), {"m": 1.0, "k": 20.0, "F_c": 1.0}, backend="c")
+    measures = {"speed": samples("v"), "stick": first_event("ground", "stick")}
+    grid, found = {"k": [10.0, 40.0], "v": [1.0, 2.0]}, {}
+    for method, kind in (("auto", ExactLoop), ("exact", ExactLoop), ("DOP853", LocatedLoop),
+                         ("Radau", LocatedLoop)):  # fmt: skip
+        job = Job(family, ("k",), TIMES, measures, None, None, {"method": method})
+        loop = batch_of(job)
+        assert loop is not None
+        assert isinstance(loop.loop, kind)
+        found[method] = sweep(family, grid, TIMES, measures, method=method, workers=0, **QUIET)
+    for method in ("exact", "DOP853", "Radau"):
+        assert found[method]["speed"] == pytest.approx(found["auto"]["speed"], abs=1e-6)
+        assert found[method]["stick"] == pytest.approx(
+            found["auto"]["stick"], abs=1e-6, nan_ok=True
+        )
+    assert batch_of(Job(family, ("k",), TIMES, measures, None, None, {"method": "CVODE"})) is None
+
+
+def test_a_run_that_leaves_where_its_law_has_values_fails_alone() -> None:
+    """v' = -sqrt(v) is at rest at t = 2 sqrt(v_0), beyond which v has no root."""
+    fast, slow = (_braked("sqrt(v)", backend, m=1.0) for backend in ("c", "numpy"))
+    found, expected = (
+        sweep(
+            f,
+            {"v": [9.0, 1.0, 16.0]},
+            TIMES,
+            {"end": final("v")},
+            None,
+            {"P": 0.0},
+            workers=0,
+            **QUIET,
+        )
+        for f in (fast, slow)
+    )
+    assert [failure.run for failure in found.failed] == [1]
+    assert [failure.values for failure in found.failed] == [{"v": 1.0}]
+    assert [f.message for f in found.failed] == [f.message for f in expected.failed]
+    assert found["end"][[0, 2]] == pytest.approx([(3 - 1.5) ** 2, (4 - 1.5) ** 2], rel=1e-8)
+
+
+def _pendulum() -> Family:
+    nodes = [bg.One("turn"), bg.I("J", "m*l**2", flow="omega"), bg.Df("angle", integrate="theta"),
+             bg.TF("arm", "l*cos(theta)"), bg.One("up"), bg.Se("weight", "P")]  # fmt: skip
+    graph = bond_graph(nodes, "turn>J turn>angle turn>arm>up weight>up")
+    return Family(bg.derive(graph), {"m": 0.7, "l": 0.4}, backend="c")
+
+
+def test_values_that_change_are_checked_run_by_run() -> None:
+    family = _pendulum()
+    assert family.program.varying
+    rows = Table(m=[0.7, 0.0, 0.9], theta=[0.1, 0.1, 1.2])
+    given = {"measures": {"end": final("theta")}, "inputs": {"P": 3.0}, "workers": 0, **QUIET}
+    found = sweep(family, rows, TIMES, **given)
+    assert [failure.run for failure in found.failed] == [1]
+    assert "is zero" in found.failed[0].message
+    assert np.isfinite(found["end"][[0, 2]]).all()
+    _same(Job(family, ("m", "theta"), TIMES, {"a": samples("theta")}, None, {"P": 3.0}),
+          [(0.7, 0.1), (0.9, 1.2)])  # fmt: skip
+
+
+def test_a_pickled_job_has_its_loop_again() -> None:
+    job = Job(_braked("c*v**3", m=2.0, c=0.5), ("v",), TIMES, {"v": final("v")}, None, {"P": 1.0})
+    again = pickle.loads(pickle.dumps(job))
+    one, other = (batch_of(each)([(1.0,), (2.0,)])[0][0] for each in (job, again))
+    assert one.tolist() == other.tolist()
+
+
+STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+
+
+@pytest.mark.parametrize("flags", [("-O2", "-Wconversion", "-Wno-sign-conversion"), ("-O3",)])
+def test_the_loop_compiles_without_warnings(
+    flags: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("CFLAGS", raising=False)
+    for family in (_braked("c*v**3", m=2.0, c=0.5), _pendulum()):
+        assert LocatedLibrary(family.simulator().closed, (*flags, *STRICT)).opened
+
+
+SANITIZED = """
+import test_batch_located as cases
+from codegen.engine import located
+from oracles.sanitized import FLAGS
+located.LocatedLibrary.__init__.__defaults__ = (FLAGS,)
+cases.test_inputs_held_beside_others_that_change()
+cases.test_models_of_every_kind("clutches")
+cases.test_values_that_change_are_checked_run_by_run()
+"""
+
+
+@pytest.mark.slow
+def test_the_loop_is_clean_under_sanitizers() -> None:
+    check_clean(SANITIZED)
