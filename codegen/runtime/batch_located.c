@@ -16,8 +16,6 @@ static double value_of(int place, const double *w, const bg_snapshot *shot)
         return shot->z[place - N];
     if (place < N + OWN + M)
         return shot->u[place - N - OWN];
-    if (place < N + OWN + 2 * M)
-        return shot->du[place - N - OWN - M];
     return shot->y[place - N - OWN - 2 * M];
 }
 
@@ -48,8 +46,6 @@ static int run(located_room *room, const double *parameters, const double *state
         status = bg_model_run(room->run, room->model, inputs, &asked);
     if (status != BG_OK)
         return status;
-    if (!bg_finite(job->signals * job->samples, room->values))
-        return BG_NOT_FINITE;
     batch_reduce(job, room->values, job->samples, asked.events, asked.count, results);
     return BG_OK;
 }

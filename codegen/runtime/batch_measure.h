@@ -14,8 +14,8 @@ typedef struct {
     int what, signal, port, kind, at;
 } batch_measure;
 
-/* What runs share. `signal`: which ones are followed, by their place in x, z, u, u', y, or -1 - j for
- * the external input j. `grid`: the distance of the samples if all are alike, else 0. A run's
+/* What runs share. `signal`: which ones are followed, by their place in x, z, u, u' (none is), y, or
+ * -1 - j for the external input j. `grid`: the distance of the samples if all are alike, else 0. A run's
  * results have `width` places. */
 typedef struct {
     const double *times;

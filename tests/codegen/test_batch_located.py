@@ -190,21 +190,38 @@ def test_a_run_that_leaves_where_its_law_has_values_fails_alone() -> None:
     assert found["end"][[0, 2]] == pytest.approx([(3 - 1.5) ** 2, (4 - 1.5) ** 2], rel=1e-8)
 
 
+def test_an_effort_without_a_value_fails_where_no_state_sees_it() -> None:
+    nodes = [bg.Sf("pump", "Q"), bg.One("n"), bg.R("valve", law="log(f)", effort="e", flow="f"),
+             bg.Zero("z"), bg.C("tank", "c"), bg.One("body"), bg.I("m", "m", flow="v"),
+             bg.R("drag", law="v**3")]  # fmt: skip
+    equations = bg.derive(bond_graph(nodes, "pump>n n>valve n>z>body z>tank body>m body>drag"))
+    found, expected = (
+        sweep(Family(equations, {"m": 1.0, "c": 1.0}, backend=b), {"Q": [2.0, -1.0]}, TIMES,
+              {"effort": final("e")}, workers=0, **QUIET)
+        for b in ("c", "numpy")
+    )  # fmt: skip
+    assert [failure.run for failure in found.failed] == [1]
+    assert [f.message for f in found.failed] == [f.message for f in expected.failed]
+    assert found["effort"][0] == pytest.approx(np.log(2.0))
+
+
 def _pendulum() -> Family:
     nodes = [bg.One("turn"), bg.I("J", "m*l**2", flow="omega"), bg.Df("angle", integrate="theta"),
-             bg.TF("arm", "l*cos(theta)"), bg.One("up"), bg.Se("weight", "P")]  # fmt: skip
-    graph = bond_graph(nodes, "turn>J turn>angle turn>arm>up weight>up")
-    return Family(bg.derive(graph), {"m": 0.7, "l": 0.4}, backend="c")
+             bg.TF("arm", "l*cos(theta)"), bg.One("up"), bg.Se("weight", "P"),
+             bg.I("more", "J")]  # fmt: skip
+    graph = bond_graph(nodes, "turn>J turn>angle turn>arm>up weight>up turn>more")
+    return Family(bg.derive(graph), {"m": 0.7, "l": 0.4, "J": 0.1}, backend="c")
 
 
 def test_values_that_change_are_checked_run_by_run() -> None:
     family = _pendulum()
     assert family.program.varying
-    rows = Table(m=[0.7, 0.0, 0.9], theta=[0.1, 0.1, 1.2])
+    rows = Table(m=[0.7, 0.0, 0.9, 0.7], theta=[0.1, 0.1, 1.2, 0.1], J=[0.1, 0.1, 0.1, -0.112])
     given = {"measures": {"end": final("theta")}, "inputs": {"P": 3.0}, "workers": 0, **QUIET}
     found = sweep(family, rows, TIMES, **given)
-    assert [failure.run for failure in found.failed] == [1]
+    assert [failure.run for failure in found.failed] == [1, 3]
     assert "is zero" in found.failed[0].message
+    assert "A is singular" in found.failed[1].message
     assert np.isfinite(found["end"][[0, 2]]).all()
     _same(Job(family, ("m", "theta"), TIMES, {"a": samples("theta")}, None, {"P": 3.0}),
           [(0.7, 0.1), (0.9, 1.2)])  # fmt: skip
