@@ -4,6 +4,7 @@
 rounds in which all take turns, their ratios to the floor's, and what two threads gain. Every run has its
 own stiffness and clutch torque, and gives the peak torque of a halfshaft and the instant of lock. The
 torque is a parameter of the model, or, in the last line, part of an input that a function makes.
+Beside that, the same sweep of a model that is not affine: no floor, events located, steps controlled.
 """
 
 import statistics
@@ -24,9 +25,10 @@ import floor  # noqa: E402
 import bondgraph as bg  # noqa: E402
 import codegen  # noqa: E402
 from codegen.sweeps.job import Job, batch_of  # noqa: E402
+from differentials.laws import magic_formula_tire  # noqa: E402
 from differentials.scenarios import prepared  # noqa: E402
 
-RUNS, BY_INPUT, ROUNDS = 10_000, 2_000, 15
+RUNS, BY_INPUT, LOCATED, ROUNDS = 10_000, 2_000, 100, 15
 TIMES = np.linspace(0.0, 1.0, 1001)
 MEASURES = {"peak": codegen.peak("tau_k1"), "lock": codegen.first_event("clutch", "stick")}
 ENGAGING = codegen.Lag(codegen.Step(0.5, 1.0), 0.04)
@@ -56,6 +58,28 @@ def main() -> None:
         shares = "".join(f"{share(times[n], calls[n], name):>14.3f}" for n in (1, 2))
         gains = median_gain(times, name) / median_gain(times, FLOOR)
         print(f"{name:<22}{shares}{gains:>14.3f}")
+    one, two = (located_rate(threads) for threads in (1, 2))
+    print(
+        f"{'magic formula tires':<22}{one:>14,.0f}{two:>14,.0f}{two / one:>14.3f}   in runs per s"
+    )
+
+
+def located_rate(threads: int) -> float:
+    """Runs per second with tires that are not affine."""
+    case = prepared("alsd", "fig11", laws={f"tire_{i}": magic_formula_tire(i) for i in (1, 2)})
+    laws = {**case.laws, "clutch": bg.DryFriction("torque*s_h")}
+    parameters = {**case.parameters, "torque": 1000.0}
+    family = codegen.Family(case.equations, parameters, laws, backend="c")
+    inputs = {"tau_e": case.inputs["tau_e"], "s_h": ENGAGING}
+    stiffness, torque = floor.grid(LOCATED)
+    table, seconds = codegen.Table(k=stiffness, torque=torque), []
+    for _ in range(4):
+        start = time.perf_counter()
+        codegen.sweep(
+            family, table, TIMES, MEASURES, case.initial, inputs, workers=threads, progress=False
+        )
+        seconds.append(time.perf_counter() - start)
+    return LOCATED / statistics.median(seconds[1:])
 
 
 def measured(calls: dict[int, dict[str, Call]]) -> dict[int, dict[str, list[float]]]:

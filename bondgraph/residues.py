@@ -10,6 +10,7 @@ roots of small integers, and functions keep their identities: with ``u = exp(i x
 
 import random
 from collections.abc import Callable, Iterator
+from functools import cached_property
 
 import sympy as sp
 from sympy.ntheory import factorint, sqrt_mod
@@ -42,8 +43,12 @@ def residues(seed: int = 0) -> Callable[[sp.Expr], int]:
 class _Residues:
     def __init__(self, seed: int) -> None:
         self._seed = seed
-        self._imaginary = int(sqrt_mod(PRIME - 1, PRIME))
         self._known: dict[sp.Expr, int] = {}
+
+    @cached_property
+    def _imaginary(self) -> int:
+        """A root of -1."""
+        return int(sqrt_mod(PRIME - 1, PRIME))
 
     def __call__(self, expr: sp.Expr) -> int:
         if expr.is_Rational:
