@@ -3,7 +3,7 @@
 ``python benchmarks/sweeps.py``: runs per second on one and on two threads, each the median of some
 rounds in which all take turns, their ratios to the floor's, and what two threads gain. Every run has its
 own stiffness and clutch torque, and gives the peak torque of a halfshaft and the instant of lock. The
-torque is a parameter of the model, or, in the last line, part of an input that a function makes.
+torque is a parameter of the model, or the size of an input, or part of an input that a function makes.
 Beside that, the same sweep of a model that is not affine: no floor, events located, steps controlled.
 """
 
@@ -127,6 +127,11 @@ def sweep_calls(library: floor.ctypes.CDLL, threads: int) -> dict[str, Call]:
     parts = np.array_split(np.column_stack([stiffness, torque]), threads)
     pool = ThreadPoolExecutor(threads)
 
+    sized = {
+        "tau_e": engine["tau_e"],
+        "tau_h": codegen.Swept("torque", codegen.Lag(codegen.Step(0.5, 1.0), 0.04)),
+    }
+
     def demand(values: Mapping[str, float]) -> dict[str, codegen.Signal]:
         return {
             "tau_e": engine["tau_e"],
@@ -138,6 +143,9 @@ def sweep_calls(library: floor.ctypes.CDLL, threads: int) -> dict[str, Call]:
         FLOOR: (lambda: floor.sweep(library, stiffness, torque, threads), RUNS),
         "loop in C": (lambda: list(pool.map(loop, parts)), RUNS),
         "sweep": (lambda: codegen.sweep(model[0], table, *given, engine, **quiet), RUNS),
+        "sweep, inputs sized": (
+            lambda: codegen.sweep(by_input[0], table, *given, sized, **quiet), RUNS,
+        ),
         "sweep, inputs by run": (
             lambda: codegen.sweep(by_input[0], few, *given, demand, **quiet), BY_INPUT,
         ),

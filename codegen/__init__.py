@@ -4,7 +4,9 @@ from codegen.analysis.comparison import Comparison, compare
 from codegen.analysis.spectrum import Spectrum, spectrum
 from codegen.c.export import to_c
 from codegen.fmu.export import write_fmu
-from codegen.inputs.signals import Constant, Lag, Ramp, Sampled, Signal, Sine, Step
+from codegen.inputs.sampled import Sampled
+from codegen.inputs.signal import Signal
+from codegen.inputs.signals import Constant, Lag, Ramp, Sine, Step
 from codegen.pictures.bode import bode
 from codegen.pictures.panels import panels
 from codegen.pictures.poles import pole_map
@@ -31,6 +33,7 @@ from codegen.sweeps.measures import (
 )
 from codegen.sweeps.result import Failure, Sweep, SweepInterrupted
 from codegen.sweeps.sweep import sweep
+from codegen.sweeps.swept import Swept
 from codegen.switched.simulator import SwitchedSimulator, switched_simulator
 from codegen.trim import trim
 
@@ -56,6 +59,7 @@ __all__ = [
     "Step",
     "Sweep",
     "SweepInterrupted",
+    "Swept",
     "SwitchedSimulator",
     "Table",
     "bode",

@@ -15,7 +15,8 @@ from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
 from codegen.engine.runs import CRuns
 from codegen.inputs.pieces import Piece, constant_piece
-from codegen.inputs.signals import Constant, Signal, first_step
+from codegen.inputs.signal import Signal, first_step
+from codegen.inputs.signals import Constant
 from codegen.model.closed import ClosedModel
 from codegen.model.modes import LOOK_AHEAD, Peaks, decide
 from codegen.program import Program, lower

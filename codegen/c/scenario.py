@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from codegen.c.text import array, comment, doubles, integers
-from codegen.inputs.signals import Signal
+from codegen.inputs.signal import Signal
 from codegen.inputs.tables import Row, SignalTable, signal_table
 
 

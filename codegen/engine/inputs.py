@@ -9,7 +9,7 @@ import numpy as np
 from codegen.arrays import Array
 from codegen.engine.sizes import Engine
 from codegen.inputs.pieces import Piece, collected
-from codegen.inputs.signals import Signal
+from codegen.inputs.signal import Signal
 
 Chain = tuple[int, complex, int]
 """An input, a rate [1/s] and how many coefficients the polynomial at that rate has."""
@@ -101,7 +101,11 @@ def _over(row: Sequence[Piece], chain: Chain) -> tuple[float, tuple[complex, ...
 
 
 class Packed:
-    """Segments as the engine's record."""
+    """Segments as the engine's record, whose arrays have a row for each segment.
+
+    ``constant``: what each input is but for its chains. ``polynomial``: coefficients of the chains by
+    slot; ``owner``: the input of a slot, -1 where there is none.
+    """
 
     def __init__(self, engine: Engine, made: Segments) -> None:
         self.record = engine.new("bg_inputs")
@@ -110,12 +114,15 @@ class Packed:
         self._structures(engine, made)
         count, G = len(made.chains), sizes.G
         starts, polynomials = np.zeros((count, G)), np.zeros((count, G))
+        self.constant, self.polynomial = made.constants, polynomials
+        self.owner = np.full((count, G), -1)
         for at, chains in enumerate(made.polynomials):
             first = 0
             for i, (start, polynomial) in enumerate(chains):
                 chain = made.structures[made.chains[at]][i]
                 width = 2 if chain[1].imag else 1
                 starts[at, i] = start
+                self.owner[at, first : first + _slots(chain)] = chain[0]
                 for k, c in enumerate(polynomial):
                     polynomials[at, first + width * k] = c.real
                     if width == 2:

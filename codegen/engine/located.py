@@ -13,7 +13,7 @@ from codegen.c.export import runtime_file, texts
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
 from codegen.engine.runs import KINDS, not_affine
 from codegen.engine.sizes import aligned, declarations
-from codegen.inputs.signals import Signal
+from codegen.inputs.signal import Signal
 from codegen.inputs.tables import SignalTable, signal_table
 from codegen.model.closed import ClosedModel
 from codegen.runs.events import Event

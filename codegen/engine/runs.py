@@ -13,7 +13,7 @@ from codegen.engine.build import FLAGS, check_tools
 from codegen.engine.inputs import Packed, Segments, segments
 from codegen.engine.modes import Tables, mode_of
 from codegen.engine.sizes import MOST_PORTS, Engine, aligned, engine, sizes
-from codegen.inputs.signals import Signal
+from codegen.inputs.signal import Signal
 from codegen.model.affine import is_affine
 from codegen.model.closed import ClosedModel
 from codegen.program import Block, Program

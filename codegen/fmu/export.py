@@ -20,7 +20,8 @@ from codegen.fmu.switches import switching
 from codegen.fmu.variables import Starts, variables
 from codegen.fmu.xml import build_description, description
 from codegen.identifiers import identifiers
-from codegen.inputs.signals import Constant, Signal, as_signal
+from codegen.inputs.signal import Signal
+from codegen.inputs.signals import Constant, as_signal
 from codegen.program import Program
 from codegen.runs.arguments import initial_values
 from codegen.runs.legs import Leg, Settings

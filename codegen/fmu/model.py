@@ -10,7 +10,7 @@ from codegen.c.blocks import function, places
 from codegen.c.scenario import signal_lines
 from codegen.c.text import array, comment, doubles, integers, quoted
 from codegen.fmu.variables import Starts, Variable
-from codegen.inputs.signals import Signal
+from codegen.inputs.signal import Signal
 from codegen.inputs.tables import signal_table
 from codegen.program import Program, block
 

@@ -1,51 +1,15 @@
-"""Inputs over time: each a chain of smooth pieces between breakpoints that it knows.
-
-A piece is a sum of polynomials times exponentials, ``sum_j p_j(tau) exp(rate_j tau)`` with
-``tau = t - start``: the solutions of linear generators. Lags of such pieces are such pieces again,
-so every signal is evaluated exactly.
-"""
+"""Inputs over time: constants, steps, ramps, sines and lags."""
 
 import cmath
 import math
-from abc import ABC, abstractmethod
-from bisect import bisect_right
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from bondgraph import SignalError
 from codegen.inputs.pieces import Piece, collected, constant_piece, lagged_terms, moved
-
-
-class Signal(ABC):
-    """A function of time, continuous from the right, smooth between its breakpoints."""
-
-    @property
-    @abstractmethod
-    def breakpoints(self) -> tuple[float, ...]:
-        """Times [s] at which one piece ends and the next begins, increasing."""
-
-    @property
-    @abstractmethod
-    def pieces(self) -> tuple[Piece, ...]:
-        """One piece more than there are breakpoints; the first reaches back for ever."""
-
-    def piece(self, t: float) -> Piece:
-        """The piece that holds at t and just after."""
-        return self.pieces[bisect_right(self.breakpoints, t)]
-
-    def __call__(self, t: float) -> float:
-        """The value at one time [s]; at a breakpoint that of the piece that begins."""
-        return self.piece(t)(t)
-
-    def __add__(self, other: "Signal") -> "Signal":
-        """The sum of two signals."""
-        if not isinstance(other, Signal):
-            return NotImplemented
-        return _Sum((*_summands(self), *_summands(other)))
+from codegen.inputs.signal import Signal
 
 
 @dataclass(frozen=True)
@@ -140,53 +104,6 @@ class Sine(Signal):
         return (Piece(0.0, ((0, (self.offset,)), (rate, (turning,)))),)
 
 
-@dataclass(frozen=True, init=False)
-class Sampled(Signal):
-    """Straight lines between samples; the first and last values are held outside.
-
-    ``times`` [s] must increase; both arrays have the same length, two or more.
-    """
-
-    times: tuple[float, ...]
-    values: tuple[float, ...]
-
-    def __init__(self, times: ArrayLike, values: ArrayLike) -> None:
-        try:
-            t, v = (np.asarray(array, dtype=float) for array in (times, values))
-        except (TypeError, ValueError) as error:
-            raise SignalError(f"samples: times and values must be numbers: {error}") from None
-        if t.ndim != 1 or t.shape != v.shape or len(t) < 2:
-            raise SignalError(
-                f"samples need times and values of one length, two or more, not {t.shape} "
-                f"and {v.shape}"
-            )
-        if not (np.isfinite(t).all() and np.isfinite(v).all()):
-            raise SignalError("samples: a time or a value is not finite")
-        if not (np.diff(t) > 0).all():
-            raise SignalError("samples: the times must increase")
-        object.__setattr__(self, "times", tuple(t.tolist()))
-        object.__setattr__(self, "values", tuple(v.tolist()))
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """The sample times."""
-        return self.times
-
-    @cached_property
-    def pieces(self) -> tuple[Piece, ...]:
-        """A level, the lines, a level."""
-        slopes = np.diff(self.values) / np.diff(self.times)
-        lines = [
-            Piece(t, ((0, (v, float(slope))),))
-            for t, v, slope in zip(self.times, self.values, slopes, strict=False)
-        ]
-        first, last = (
-            constant_piece(self.times[0], self.values[0]),
-            constant_piece(self.times[-1], self.values[-1]),
-        )
-        return (first, *lines, last)
-
-
 @dataclass(frozen=True)
 class Lag(Signal):
     """A first-order lag: ``time_constant * y' + y = signal``, in steady state before the first break.
@@ -223,40 +140,6 @@ class Lag(Signal):
         return tuple(answers)
 
 
-@dataclass(frozen=True)
-class _Sum(Signal):
-    parts: tuple[Signal, ...]
-
-    @cached_property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Those of all parts."""
-        return tuple(sorted({time for part in self.parts for time in part.breakpoints}))
-
-    @cached_property
-    def pieces(self) -> tuple[Piece, ...]:
-        """The pieces of all parts, side by side."""
-        times = self.breakpoints
-        starts = (times[0] - 1.0 if times else 0.0, *times)
-        return tuple(
-            Piece(at, collected([term for part in self.parts
-                                 for term in moved(part.piece(at), at).terms]))
-            for at in starts
-        )  # fmt: skip
-
-
-def _summands(signal: Signal) -> tuple[Signal, ...]:
-    return signal.parts if isinstance(signal, _Sum) else (signal,)
-
-
-def first_step(signal: Signal, begin: float, end: float) -> float | None:
-    """The first time after ``begin``, up to ``end``, at which a signal jumps; None if it never does."""
-    for b, one, other in zip(signal.breakpoints, signal.pieces, signal.pieces[1:], strict=False):
-        jump = abs(one(b) - other(b))
-        if begin < b <= end and jump > 1e-12 * (abs(one(b)) + abs(other(b))):
-            return b
-    return None
-
-
 def as_signal(value: object, name: str) -> Signal:
     """A signal as it is, a number as a constant; anything else is refused, naming the input."""
     if isinstance(value, Signal):
@@ -269,27 +152,6 @@ def as_signal(value: object, name: str) -> Signal:
         f"input {name!r}: {value!r} is neither a signal nor a number; use Constant, Step, Ramp, "
         "Sine, Sampled or Lag"
     )
-
-
-def sampled_values(signal: Signal, times: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The signal's values at many times."""
-    return _sampled(signal.pieces, signal, times)
-
-
-def sampled_rates(signal: Signal, times: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How fast the signal changes at many times; at a breakpoint just after it."""
-    return _sampled([piece.derivative for piece in signal.pieces], signal, times)
-
-
-def _sampled(
-    pieces: Sequence[Piece], signal: Signal, times: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    which = np.searchsorted(np.array(signal.breakpoints, dtype=float), times, side="right")
-    result = np.zeros(len(times))
-    for at in np.unique(which).tolist():
-        here = which == at
-        result[here] = pieces[at].values(times[here])
-    return result
 
 
 def _check_finite(signal: Signal, *numbers: float) -> None:

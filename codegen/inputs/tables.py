@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from codegen.inputs.signals import Signal
+from codegen.inputs.signal import Signal
 
 Row = tuple[int, int, int, float, complex]
 """An input, the place of its first coefficient, how many there are, their start [s], their rate [1/s]."""

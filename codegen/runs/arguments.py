@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike
 from bondgraph import SignalError
 from bondgraph.expressions import normal
 from codegen.arrays import Array
-from codegen.inputs.signals import Signal, as_signal
+from codegen.inputs.signal import Signal
+from codegen.inputs.signals import as_signal
 from codegen.runs.legs import CHOICES, Settings
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
-from codegen.inputs.signals import Signal
+from codegen.inputs.signal import Signal
 from codegen.model.closed import ClosedModel, Mode
 from codegen.model.guards import fallen_guards
 from codegen.model.modes import LOOK_AHEAD, Peaks, decide, scales

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from codegen.arrays import Array
-from codegen.inputs.signals import Signal, sampled_rates, sampled_values
+from codegen.inputs.signal import Signal, sampled_rates, sampled_values
 from codegen.model.closed import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, ClosedModel
 from codegen.runs.legs import Track
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from bondgraph import SignalError, SimulationError
 from codegen.arrays import Array
-from codegen.inputs.signals import Signal, first_step
+from codegen.inputs.signal import Signal, first_step
 from codegen.runs.arguments import checked_times, initial_values, settings_of, signals_for
 from codegen.runs.legs import EXACT
 from codegen.runs.result import Result

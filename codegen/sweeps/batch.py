@@ -11,10 +11,11 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from bondgraph import BondGraphError
+from bondgraph.expressions import normal
 from bondgraph.resistances import resistive_loops
 from codegen.arrays import Array
 from codegen.engine.located import METHODS as LOCATED_METHODS
-from codegen.inputs.signals import Signal
+from codegen.inputs.signal import Signal
 from codegen.program import Program
 from codegen.runs.arguments import named_numbers, signals_for
 from codegen.runs.legs import EXACT, Settings
@@ -23,6 +24,7 @@ from codegen.sweeps.batch_located import LocatedLoop
 from codegen.sweeps.batch_model import BatchModel, Flags, batch_model
 from codegen.sweeps.batch_plan import Plan, plan
 from codegen.sweeps.family import Family
+from codegen.sweeps.swept import Swept, settled
 
 Given = Mapping[str, Any] | Callable[[Mapping[str, float]], Mapping[str, Any]] | None
 """Initial states or inputs, or a function of a run's numbers that gives them."""
@@ -48,9 +50,9 @@ class Loop(Protocol):
         """Inputs of all runs."""
 
     def alike(
-        self, shared: Any, places: Sequence[int], values: Array, indices: NDArray[np.intp], /
+        self, shared: Any, places: Sequence[int], factors: Array, indices: NDArray[np.intp], /
     ) -> Any:
-        """The same inputs for these runs, but for ``values`` held at ``places``."""
+        """The same inputs for these runs, but those at ``places`` times ``factors``."""
 
     def different(self, found: Sequence[tuple[int, Sequence[Signal]]], /) -> Sequence[Any]:
         """The inputs of each run by its index, in groups that are run together."""
@@ -125,17 +127,22 @@ class Batch:
     def _inputs(self, table: Array, indices: NDArray[np.intp]) -> Sequence[Any]:
         """The inputs of these runs, in groups that are run together."""
         asked, names = self.asked, self.asked.family.inputs
-        swept = {name: at for at, name in enumerate(asked.names) if name in names}
+        swept = [name for name in asked.names if name in names]
         if not callable(asked.inputs):
+            given = {**(asked.inputs or {}), **{name: Swept(name) for name in swept}}
+            sized = {name: one for name, one in given.items() if isinstance(one, Swept)}
             if self._shared is None:
-                given = {**(asked.inputs or {}), **dict.fromkeys(swept, 0.0)}
-                self._shared = self.loop.shared(signals_for(given, names))
-            places, held = [names.index(name) for name in swept], table[:, [*swept.values()]]
-            return [self.loop.alike(self._shared, places, held, indices)]
+                units = {name: one.signal for name, one in sized.items()}
+                self._shared = self.loop.shared(signals_for({**given, **units}, names))
+            factors = table[:, [asked.names.index(one.name) for one in sized.values()]]
+            places = [names.index(str(normal(name))) for name in sized]
+            indices = indices[np.isfinite(factors[indices]).all(axis=1)]
+            return [self.loop.alike(self._shared, places, factors, indices)]
         found: list[tuple[int, Sequence[Signal]]] = []
         for k, values in zip(indices.tolist(), self._named(table[indices]), strict=True):
             try:
-                given = {**(asked.inputs(values) or {}), **{name: values[name] for name in swept}}
+                given = settled(asked.inputs(values) or {}, values)
+                given |= {name: values[name] for name in swept}
                 found.append((k, signals_for(given, names)))
             except Exception:  # noqa: BLE001 - told by whoever does the run then
                 continue

@@ -11,7 +11,7 @@ from codegen.arrays import Array
 from codegen.engine.inputs import Packed, Segments, segments
 from codegen.engine.runs import grid_of
 from codegen.engine.sizes import Engine, sizes
-from codegen.inputs.signals import Signal
+from codegen.inputs.signal import Signal
 from codegen.sweeps.batch_call import Rooms, job_record, outcome_of
 from codegen.sweeps.batch_engine import Room
 from codegen.sweeps.batch_inputs import BatchInputs, each, varied
@@ -20,11 +20,10 @@ from codegen.sweeps.batch_plan import Plan
 
 
 class Shared(NamedTuple):
-    """Inputs as the engine's record; ``constants``: what they are but for their chains."""
+    """Inputs, and the engine's record of them."""
 
     engine: Engine
     packed: Packed
-    constants: Array
 
 
 class ExactLoop:
@@ -39,13 +38,13 @@ class ExactLoop:
         """Inputs of all runs."""
         made = self._segments(signals)
         engine = self._model.engine(made.slots)
-        return Shared(engine, Packed(engine, made), made.constants)
+        return Shared(engine, Packed(engine, made))
 
     def alike(
-        self, shared: Shared, places: Sequence[int], values: Array, indices: NDArray[np.intp]
+        self, shared: Shared, places: Sequence[int], factors: Array, indices: NDArray[np.intp]
     ) -> BatchInputs:
-        """The same inputs for these runs, but for ``values`` held at ``places``."""
-        return varied(shared.engine, shared.packed, shared.constants, places, values, indices)
+        """The same inputs for these runs, but those at ``places`` times ``factors``."""
+        return varied(shared.engine, shared.packed, places, factors, indices)
 
     def different(self, found: Sequence[tuple[int, Sequence[Signal]]]) -> list[BatchInputs]:
         """The inputs of each run by its index, those of one engine together."""

@@ -23,28 +23,33 @@ class BatchInputs:
 
 
 def varied(
-    engine: Engine,
-    packed: Packed,
-    constants: Array,
-    places: Sequence[int],
-    values: Array,
-    indices: NDArray[np.intp],
+    engine: Engine, packed: Packed, places: Sequence[int], factors: Array, indices: NDArray[np.intp]
 ) -> BatchInputs:
-    """One record for all runs, or the same with other ``constants`` at ``places`` for each of them."""
+    """The same record for all runs; or for each of them one whose inputs at ``places`` are multiplied.
+
+    ``factors``: a row for each run of the sweep's part, a column for each place.
+    """
     count = len(indices)
     pointers = np.empty(count, dtype=np.uintp)
     if not places:
         pointers[:] = _address(engine, packed.record)
         return BatchInputs(engine, indices, pointers, packed)
-    constants = np.tile(constants, (count, 1, 1))
-    constants[:, :, list(places)] = values[indices][:, None, :]
+    scale = np.ones((count, packed.constant.shape[1] + 1))
+    scale[:, list(places)] = factors[indices]
     record = np.frombuffer(engine.ffi.buffer(packed.record), dtype=np.uint8)
     records = np.tile(record, (count, 1))
-    at = engine.ffi.offsetof("bg_inputs", "constant")
-    own = constants.ctypes.data + constants[0].nbytes * np.arange(count, dtype=np.uintp)
-    records[:, at : at + own.itemsize] = own[:, None].view(np.uint8)
+    own = {"constant": packed.constant * scale[:, None, :-1]}
+    if np.isin(packed.owner, places).any():
+        # Slots without an owner have the last column's one.
+        own["polynomial"] = packed.polynomial * scale[:, packed.owner]
+    # Results of indexing need not lie in memory run by run.
+    own = {name: np.ascontiguousarray(array) for name, array in own.items()}
+    for name, array in own.items():
+        at = engine.ffi.offsetof("bg_inputs", name)
+        addresses = array.ctypes.data + array[0].nbytes * np.arange(count, dtype=np.uintp)
+        records[:, at : at + addresses.itemsize] = addresses[:, None].view(np.uint8)
     pointers[:] = records.ctypes.data + len(record) * np.arange(count, dtype=np.uintp)
-    return BatchInputs(engine, indices, pointers, (packed, constants, records))
+    return BatchInputs(engine, indices, pointers, (packed, own, records))
 
 
 def each(engine: Engine, found: Sequence[tuple[int, Segments]]) -> BatchInputs:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from codegen.arrays import Array
 from codegen.engine.located import METHODS, LocatedLibrary, packed_signals
 from codegen.engine.sizes import aligned
-from codegen.inputs.signals import Signal
+from codegen.inputs.signal import Signal
 from codegen.inputs.tables import SignalTable, signal_table
 from codegen.runs.legs import Settings
 from codegen.sweeps.batch_call import Rooms, job_record, outcome_of
@@ -74,9 +74,9 @@ class LocatedLoop:
         return Shared(table, *packed_signals(self._ffi, table))
 
     def alike(
-        self, shared: Shared, places: Sequence[int], values: Array, indices: NDArray[np.intp]
+        self, shared: Shared, places: Sequence[int], factors: Array, indices: NDArray[np.intp]
     ) -> LocatedInputs:
-        """The same inputs for these runs, but for ``values`` held at ``places``."""
+        """The same inputs for these runs, but those at ``places`` times ``factors``."""
         count, ffi = len(indices), self._ffi
         pointers = np.empty(count, dtype=np.uintp)
         if not places:
@@ -84,9 +84,10 @@ class LocatedLoop:
             return LocatedInputs(indices, pointers, shared)
         own = np.zeros((count, len(shared.table.coefficients), 2))
         own[:] = [(c.real, c.imag) for c in shared.table.coefficients]
-        for at, first, *_ in shared.table.terms:
+        for at, first, length, *_ in shared.table.terms:
             if at in places:
-                own[:, first, 0] = values[indices, list(places).index(at)]
+                factor = factors[indices, list(places).index(at)]
+                own[:, first : first + length] *= factor[:, None, None]
         records = ffi.new("bg_signals[]", count)
         for k in range(count):
             records[k] = shared.record[0]

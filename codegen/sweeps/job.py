@@ -22,6 +22,7 @@ from codegen.sweeps.columns import Columns
 from codegen.sweeps.family import Family
 from codegen.sweeps.measures import Measure
 from codegen.sweeps.packing import packed
+from codegen.sweeps.swept import settled
 
 
 class Runner(Protocol):
@@ -111,7 +112,7 @@ class Job:
     def _result(self, values: Mapping[str, float]) -> Result:
         model = self.model
         changes = {name: v for name, v in values.items() if name in model.parameters}
-        initial, inputs = _given(self.initial, values), _given(self.inputs, values)
+        initial, inputs = _given(self.initial, values), settled(_given(self.inputs, values), values)
         initial |= {name: v for name, v in values.items() if name in model.states}
         inputs |= {name: v for name, v in values.items() if name in model.inputs}
         runner = model.simulator(**changes)

@@ -22,6 +22,7 @@ from codegen.sweeps.job import Job, Model, Outcome, batch_of, sent
 from codegen.sweeps.measures import Measure
 from codegen.sweeps.result import Collected, Sweep, SweepInterrupted
 from codegen.sweeps.store import Store
+from codegen.sweeps.swept import Swept, settled
 
 RESERVED = ("run", "time")
 """Names of axes."""
@@ -47,13 +48,15 @@ def sweep(
     """Run a model once for each set of numbers and keep the measures of each run.
 
     ``model``: a `Family`. ``parameters``: a `Grid` (or a mapping of names to numbers), a `Table` (or a
-    list of rows) or `Samples`. A name is a parameter, a state (its value at the start) or an input (held
-    constant). ``measures``: name to a function of the `Result` that gives a number or an array.
-    ``time``, ``initial``, ``inputs``, ``method``, ``rtol``, ``atol``: as of `Simulator.run`; ``initial``
-    and ``inputs`` may be functions of a run's numbers by name, which then may have names of their own.
+    list of rows) or `Samples`. A name is a parameter, a state (its value at the start), an input (held
+    constant) or the size of an input, which is given as `Swept`. ``measures``: name to a function of the
+    `Result` that gives a number or an array. ``time``, ``initial``, ``inputs``, ``method``, ``rtol``,
+    ``atol``: as of `Simulator.run`; ``initial`` and ``inputs`` may be functions of a run's numbers by name,
+    which then may have names of their own.
 
     ``workers``: processes to run in, by default one for each core; 0: in this process. A family with
-    backend "c" and measures of this package is run by threads instead, many runs in one call of C.
+    backend "c" and measures of this package is run by threads instead, many runs in one call of C. That is
+    fastest without functions of a run's numbers, which Python calls run by run.
     What is sent to processes must be picklable, and a script needs the line
     ``if __name__ == "__main__":``. ``client``: a `distributed.Client` to run on instead. ``chunk``: how
     many runs are done together, by default some half a second to ten. None of these changes a number.
@@ -157,7 +160,7 @@ def _check(job: Job) -> None:
         )
     _check_measures(job)
     free = callable(job.initial) or callable(job.inputs)
-    known = (*model.parameters, *model.states, *model.inputs)
+    known = (*model.parameters, *model.states, *model.inputs, *_sizes(job))
     for name in job.names:
         if name not in known and not free:
             raise SignalError(
@@ -171,8 +174,21 @@ def _check(job: Job) -> None:
         named_numbers({} if job.initial is None else job.initial, model.states)
     if not callable(job.inputs):
         swept = {name: 0.0 for name in job.names if name in model.inputs}
-        signals_for({**(job.inputs or {}), **swept}, model.inputs)
+        given = settled(job.inputs or {}, dict.fromkeys(_sizes(job), 0.0))
+        signals_for({**given, **swept}, model.inputs)
     settings_of(**job.settings)
+
+
+def _sizes(job: Job) -> list[str]:
+    """The swept numbers that are sizes of inputs; refuses those that are not swept."""
+    if not isinstance(job.inputs, Mapping):
+        return []
+    for name, given in job.inputs.items():
+        if isinstance(given, Swept) and given.name not in job.names:
+            raise SignalError(
+                f"input {name!r}: {given.name!r} is not swept; swept are {', '.join(job.names)}"
+            )
+    return [given.name for given in job.inputs.values() if isinstance(given, Swept)]
 
 
 def _check_measures(job: Job) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from bondgraph import SimulationError, StructureError, validate
 from bondgraph.switching import checked_modes
 from codegen.arrays import Array
-from codegen.inputs.signals import Signal
+from codegen.inputs.signal import Signal
 from codegen.model.closed import Snapshot
 from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
 from codegen.runs.events import Event

@@ -10,9 +10,12 @@ from oracles.sweeping import LOCKING, locking, spring_mass
 from codegen import (
     Family,
     Lag,
+    Ramp,
     Result,
+    Sine,
     Step,
     Sweep,
+    Swept,
     Table,
     event_count,
     final,
@@ -43,7 +46,7 @@ def _family(backend: str, **changes: object) -> Family:
 
 
 def _demand(values: Mapping[str, float]) -> dict[str, Any]:
-    return {**CASE.inputs, "tau_h": Lag(Step(0.5, values["demand"]), 0.04)}
+    return {**CASE.inputs, **_only_demand(values)}
 
 
 def _both(parameters: Any, measures: Any = MEASURES, **given: Any) -> tuple[Sweep, Sweep]:
@@ -81,6 +84,26 @@ def test_the_loop_does_these_runs_itself() -> None:
 def test_demands_by_a_function_of_a_runs_numbers() -> None:
     grid = {"k": [4300.0, 8600.0, 17200.0], "demand": np.linspace(0.0, 1400.0, 5)}
     _agree(*_both(grid, inputs=_demand))
+
+
+def test_inputs_whose_sizes_are_swept() -> None:
+    """Chains of every kind: a lag, an oscillation, a polynomial; one signal beside what is held."""
+    grid = {"k": [4300.0, 8600.0], "demand": [0.0, 700.0, 1400.0], "drive": [-1.0, 2.5]}
+    swing = Sine(40.0, 3.0, phase=0.4, offset=10.0) + Ramp(0.2, 30.0)
+    inputs = {"tau_e": Swept("drive", swing), "tau_h": Swept("demand", Lag(Step(0.5, 1.0), 0.04))}
+
+    def by_run(values: Mapping[str, float]) -> dict[str, Any]:
+        slow = Sine(values["drive"] * 40.0, 3.0, 0.4, values["drive"] * 10.0)
+        return {"tau_e": slow + Ramp(0.2, values["drive"] * 30.0), **_only_demand(values)}
+
+    one, other = _both(grid, inputs=inputs)
+    _agree(one, other)
+    _agree(one, sweep(_family("c"), grid, TIMES, MEASURES, CASE.initial, by_run, progress=False))
+    assert len(set(one["peak"].round(6))) == 12
+
+
+def _only_demand(values: Mapping[str, float]) -> dict[str, Any]:
+    return {"tau_h": Lag(Step(0.5, values["demand"]), 0.04)}
 
 
 def test_initial_values_by_a_function() -> None:

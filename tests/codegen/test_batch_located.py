@@ -17,6 +17,7 @@ from codegen import (
     Lag,
     Sine,
     Step,
+    Swept,
     Table,
     event_count,
     final,
@@ -147,6 +148,23 @@ def test_inputs_held_beside_others_that_change() -> None:
     job = Job(family, ("Q", "v"), TIMES, {"v": samples("v"), "Q": final("Q")}, None,
               {"P": Lag(Step(1.0, 2.0), 0.1) + Sine(0.5, 2.0)})  # fmt: skip
     _same(job, [(0.0, 1.0), (-2.0, 1.0), (3.0, -1.0)])
+    sizes = {"P": Swept("size", Lag(Step(1.0, 2.0), 0.1) + Sine(0.5, 2.0)), "Q": Swept("other")}
+    job = Job(family, ("size", "other", "c"), TIMES, {"v": samples("v"), "P": samples("P")},
+              {"v": 1.0}, sizes)  # fmt: skip
+    _same(job, [(0.0, 1.0, 0.5), (-2.0, 1.0, 2.0), (3.0, -1.0, 0.7)])
+
+
+@pytest.mark.parametrize("method", ["auto", "DOP853"])
+def test_sizes_that_are_not_finite_fail_alone(method: str) -> None:
+    affine = Family(bg.derive(oscillator()), {"m": 1.0, "k": 20.0, "F_c": 1.0}, backend="c")
+    equations = affine.equations
+    family = Family(equations, affine.parameters, {"ground": bg.DryFriction("L")}, "c")
+    rows = Table(size=[1.0, np.nan, np.inf, 2.0])
+    given = {"initial": {"v": 3.0}, "inputs": {"L": Swept("size", Step(1.0, 2.0, 1.0))}, **QUIET}
+    found = sweep(family, rows, TIMES, {"end": final("F")}, method=method, workers=0, **given)
+    assert [failure.run for failure in found.failed] == [1, 2]
+    assert all("the factor is not finite" in failure.message for failure in found.failed)
+    assert np.isfinite(found["end"][[0, 3]]).all()
 
 
 def test_affine_models_by_a_method_that_locates() -> None:

@@ -23,6 +23,8 @@ VALUES = [
     (Sine(2.0, 1.3), lambda t: 2.0 * np.sin(2 * np.pi * 1.3 * t)),
     (Sine(2.0, 0.7, 0.4, -1.0), lambda t: 2.0 * np.sin(2 * np.pi * 0.7 * t + 0.4) - 1.0),
     (Sine(2.0, 0.0, 0.4, 1.0), lambda t: 2.0 * np.sin(0.4) + 1.0),
+    (-2.5 * Ramp(0.2, 3.0), lambda t: -7.5 * max(t - 0.2, 0.0)),
+    (Sine(2.0, 1.3) * 3, lambda t: 6.0 * np.sin(2 * np.pi * 1.3 * t)),
     (Sampled([0, 1, 1.5], [2, -1, 4]), lambda t: _line([0, 1, 1.5], [2, -1, 4], t)),
 ]
 SIGNALS = [signal for signal, _ in VALUES]

@@ -34,6 +34,18 @@ def test_numbers_must_be_numbers(kind: str, make, value: object) -> None:
         make(value)
 
 
+@pytest.mark.parametrize("value", NOT_FINITE)
+def test_a_factor_must_be_finite(value: float) -> None:
+    with pytest.raises(SignalError, match=f"times {value!r}: the factor is not finite"):
+        value * Step(0.0, 1.0)
+
+
+@pytest.mark.parametrize("value", ["1", True, Step(0.0, 1.0)])
+def test_a_factor_must_be_a_number(value: object) -> None:
+    with pytest.raises(TypeError, match=r"multiply|unsupported operand"):
+        Constant(2.0) * value
+
+
 def test_numpy_numbers_are_numbers() -> None:
     assert Step(np.float64(0.1), np.int64(3))(0.1) == 3.0
 

@@ -147,6 +147,19 @@ def test_memory_grows_with_the_measures_only() -> None:
     assert (many - few) / 10000 < 3 * 8
 
 
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_an_input_whose_size_is_swept_is_the_signal_times_the_number(backend: str) -> None:
+    plain = spring_mass()
+    family = codegen.Family(plain.equations, plain.parameters, plain.laws, backend)
+    push = codegen.Ramp(0.1, 2.0) + codegen.Sine(0.5, 1.0)
+    grid, measures = {"m": [1.0, 3.0], "size": [-2.0, 0.5]}, {"end": codegen.final("v")}
+    found = sweep(family, grid, TIMES, measures, None, {"P": codegen.Swept("size", push)}, **HERE)
+    for m, size, end in zip(found["m"], found["size"], found["end"], strict=True):
+        alone = codegen.Ramp(0.1, 2.0 * size) + codegen.Sine(0.5 * size, 1.0)
+        run = plain.simulator(m=m).run(TIMES, None, {"P": alone})
+        assert end == pytest.approx(run["v"][-1], rel=1e-9)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -159,6 +172,7 @@ def test_memory_grows_with_the_measures_only() -> None:
         ({"parameters": {"P": [1.0]}}, "inputs: 'P' is swept, too"),
         ({"initial": {"x": 1.0}}, "'x' is not a state"),
         ({"inputs": {}}, "missing input"),
+        ({"inputs": {"P": codegen.Swept("size")}}, "input 'P': 'size' is not swept; swept are k"),
         ({"inputs": {"P": "x"}}, "neither a signal nor a number"),
         ({"time": [0.0]}, "two or more points"),
         ({"method": "Euler"}, "unknown method 'Euler'"),
