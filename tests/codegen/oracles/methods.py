@@ -161,7 +161,7 @@ def changes(
 LOCATED: Mapping[str, Callable[[Made], Outcome]] = {
     "numpy exact": lambda made: _kept(made.exact),
     "C backend": lambda made: _in_backend(made, "exact"),
-    "C with located events": lambda made: _in_backend(made, "DOP853"),
+    "C, events located": lambda made: _in_backend(made, "DOP853"),
     "numpy DOP853": lambda made: _kept(made.case.run(made.samples, "DOP853")),
     "FMI 2.0 exchange": lambda made: _exchanged(made, "2.0"),
     "FMI 3.0 exchange": lambda made: _exchanged(made, "3.0"),
