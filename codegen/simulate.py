@@ -9,13 +9,13 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from bondgraph import ParameterError, SignalError, SimulationError, StateEquations
+from bondgraph import ParameterError, SignalError, StateEquations
 from codegen.arrays import Array
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
 from codegen.engine.runs import CRuns
 from codegen.inputs.pieces import Piece, constant_piece
-from codegen.inputs.signal import Signal, first_step
+from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
 from codegen.model.closed import ClosedModel
 from codegen.model.modes import LOOK_AHEAD, Peaks, decide
@@ -27,11 +27,12 @@ from codegen.runs.arguments import (
     settings_of,
     signals_for,
 )
+from codegen.runs.columns import named_columns
 from codegen.runs.hybrid import run_hybrid
+from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import EXACT, Settings, Track
-from codegen.runs.observer import Observer
 from codegen.runs.result import Result
-from codegen.runs.snapshots import Snapshots, snapshots
+from codegen.runs.snapshots import snapshots
 from codegen.units import told_units
 
 BACKENDS = ("numpy", "c")
@@ -102,7 +103,7 @@ class Simulator:
         times = checked_times(time)
         signals = signals_for({} if inputs is None else inputs, self.inputs)
         settings = settings_of(method, rtol, atol)
-        self.check_steps(signals, times)
+        refuse_impulses(self.closed, signals, times)
         at_start = np.array([signal(times[0]) for signal in signals])
         states = initial_values({} if initial is None else initial, self.states)
         start = self.vector(float(times[0]), states, at_start)
@@ -112,7 +113,7 @@ class Simulator:
                 begin, span = float(times[0]), float(times[-1] - times[0])
                 run = run_hybrid(self.closed, times, start, signals, settings, begin, span)
                 found = self._recorded(times, signals, run.track, "numpy")
-            columns, observer = self.columns(times, found.shots)
+            columns, observer = named_columns(self.closed, times, found.shots)
         return Result(
             times,
             self.states,
@@ -165,62 +166,6 @@ class Simulator:
             known = self.closed.evaluate(t, s, given, zeros, self._all_slipping())
             s[: len(program.states)] -= known.numbers.R @ known.u
         return s
-
-    def check_steps(self, signals: Sequence[Signal], times: Array) -> None:
-        """Refuse steps of inputs whose rate an output shows: it would be an impulse.
-
-        So are steps of inputs that drive a dependent storage by way of a ratio that changes.
-        """
-        program = self.closed.program
-        shown = self._shown_rates()
-        for at, (name, signal) in enumerate(zip(self.inputs, signals, strict=True)):
-            columns = [j for j, symbol in enumerate(program.inputs) if symbol.name == name]
-            known = zip(program.known.inputs, program.known_uses, strict=True)
-            columns += [j for j, used in known if at in used]
-            rows = [i for i in program.read if any(shown[i, j] for j in columns)]
-            driven = program.varying and any(j in program.layout["E"].columns for j in columns)
-            if not rows and not driven:
-                continue
-            where = (
-                f"{program.readings[rows[0]]} shows" if rows else "a dependent storage would see"
-            )
-            step = first_step(signal, float(times[0]), float(times[-1]))
-            if step is not None:
-                raise SimulationError(
-                    f"input {name!r} steps at t = {step:g}, where {where} its rate and would be an "
-                    "impulse; smooth it with Lag or Ramp"
-                )
-
-    def _shown_rates(self) -> Array:
-        """Nonzero where a reading shows the rate of an input; where values change, where it may."""
-        program = self.closed.program
-        if not program.varying:
-            return self.closed.constant.G
-        rates, driven = program.layout["K"], program.layout["E"]
-        shown = np.zeros(rates.shape)
-        shown[list(rates.rows), list(rates.columns)] = 1.0
-        for i in set(program.layout["H"].rows):
-            shown[i, list(driven.columns)] = 1.0
-        return shown
-
-    def columns(self, times: Array, found: Snapshots) -> tuple[dict[str, Array], Observer]:
-        """The recorded samples as columns by name, and what works out all other signals."""
-        program = self.closed.program
-        groups = (
-            (program.states, found.x),
-            (program.law_states, found.z),
-            (program.inputs, found.u),
-            (program.external, found.external),
-            (program.readings, found.y),
-        )
-        columns: dict[str, Array] = {}
-        for names, table in groups:
-            for at, name in enumerate(names):
-                columns.setdefault(name.name, table[:, at].copy())
-        dx = found.rate[:, : len(program.states)]
-        if not program.varying:
-            dx = dx + found.du @ self.closed.constant.R.T
-        return columns, Observer(times, self.closed, columns, found.x, dx, found.u, found.du)
 
 
 def simulator(

@@ -32,20 +32,21 @@ ORDER = {
         "renaming", "composition", "declarations", "restored", "nodelink", "safexml", "graphml", "files",
     ],
     "codegen": [
-        "arrays", *_room("inputs", "pieces generators polynomials signals tables"),
+        "arrays", *_room("inputs", "pieces generators polynomials signal signals sampled tables"),
         "model.affine", "closing", "records", "sections", "program", "identifiers", "printing", "units",
         *_room("model", "numpy_backend numbers snapshot sharing friction instant loops rubbing closed "
                "sizes modes guards"),
-        *_room("runs", "events sundials legs exact hybrid arguments observer tables summary"),
+        *_room("runs", "events sundials legs exact hybrid arguments impulses observer tables "
+               "summary"),
         *_room("pictures", "style canvas labels flags marks stacked"),
-        *_room("runs", "result snapshots"),
+        *_room("runs", "result snapshots columns"),
         *_room("pictures", "panels poles bode shapes"), *_room("analysis", "spectrum comparison"),
         *_room("c", "text structure constants rhs blocks rates tables prefix scenario export"),
         *_room("engine", "build sizes modes inputs runs located"),
         "simulate", "trim",
-        *_room("sweeps", "packing family measures design columns batch_inputs batch_engine batch_model batch "
-               "job crews "
-               "cluster drive result store sweep"),
+        *_room("sweeps", "packing family measures design columns swept batch_inputs batch_engine batch_model "
+               "batch_plan batch_call batch_exact batch_located batch job crews cluster drive result store "
+               "sweep"),
         *_room("python", "sticking text blocks tables export"),
         *_room("switched", "handover phases spliced simulator"),
         *_room("sparse", "valued signal_rows model steps run"),

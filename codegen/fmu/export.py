@@ -24,6 +24,7 @@ from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, as_signal
 from codegen.program import Program
 from codegen.runs.arguments import initial_values
+from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import Leg, Settings
 from codegen.simulate import Simulator, simulator
 
@@ -109,7 +110,7 @@ def _model(
     signals = _signals(ready, inputs)
     inside = {at: one for at, one in enumerate(signals) if not isinstance(one, float)}
     every = [Constant(one) if isinstance(one, float) else one for one in signals]
-    ready.check_steps(every, np.array([0.0, math.inf]))
+    refuse_impulses(ready.closed, every, np.array([0.0, math.inf]))
     start = initial_values(initial, ready.states)
     shortest = _shortest(ready, start.tolist(), every)
     switches = switching(program)

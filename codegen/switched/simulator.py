@@ -16,8 +16,10 @@ from codegen.arrays import Array
 from codegen.inputs.signal import Signal
 from codegen.model.closed import Snapshot
 from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
+from codegen.runs.columns import named_columns
 from codegen.runs.events import Event
 from codegen.runs.hybrid import APART, STALLED, run_hybrid
+from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import Settings
 from codegen.runs.result import Result
 from codegen.runs.snapshots import snapshots
@@ -133,7 +135,7 @@ class _Journey:
         model, signals = phase.simulator.closed, self._given(phase)
         done = sum(len(part.time) for part in self._parts)
         rest = self._times[done:]
-        phase.simulator.check_steps(signals, rest)
+        refuse_impulses(model, signals, rest)
         stretch = run_hybrid(model, rest, vector, signals, self._settings, t, self._span)
         track = stretch.track
         self._events += track.events
@@ -142,7 +144,7 @@ class _Journey:
             track.vectors = track.vectors[own]
             simulator = phase.simulator
             shots = snapshots(model, rest[own], signals, track)
-            columns, observer = simulator.columns(rest[own], shots)
+            columns, observer = named_columns(model, rest[own], shots)
             self._parts.append(
                 Result(rest[own], simulator.states, simulator.inputs, simulator.outputs, (),
                        MappingProxyType(columns), observer,

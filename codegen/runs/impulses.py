@@ -1,0 +1,48 @@
+"""Steps of inputs that a model cannot take: where their rate counts they are impulses."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from bondgraph import SimulationError
+from codegen.arrays import Array
+from codegen.inputs.signal import Signal, first_step
+from codegen.model.closed import ClosedModel
+
+
+def refuse_impulses(model: ClosedModel, signals: Sequence[Signal], times: Array) -> None:
+    """Refuse steps of inputs, a signal for each external one, whose rate an output shows.
+
+    So are steps of inputs that drive a dependent storage by way of a ratio that changes. Raises
+    `SimulationError` naming the input, the time and what would see the impulse.
+    """
+    program = model.program
+    shown = _shown_rates(model)
+    for at, (symbol, signal) in enumerate(zip(program.external, signals, strict=True)):
+        columns = [j for j, name in enumerate(program.inputs) if name.name == symbol.name]
+        known = zip(program.known.inputs, program.known_uses, strict=True)
+        columns += [j for j, used in known if at in used]
+        rows = [i for i in program.read if any(shown[i, j] for j in columns)]
+        driven = program.varying and any(j in program.layout["E"].columns for j in columns)
+        if not rows and not driven:
+            continue
+        where = f"{program.readings[rows[0]]} shows" if rows else "a dependent storage would see"
+        step = first_step(signal, float(times[0]), float(times[-1]))
+        if step is not None:
+            raise SimulationError(
+                f"input {symbol.name!r} steps at t = {step:g}, where {where} its rate and would be an "
+                "impulse; smooth it with Lag or Ramp"
+            )
+
+
+def _shown_rates(model: ClosedModel) -> Array:
+    """Nonzero where a reading shows the rate of an input; where values change, where it may."""
+    program = model.program
+    if not program.varying:
+        return model.constant.G
+    rates, driven = program.layout["K"], program.layout["E"]
+    shown = np.zeros(rates.shape)
+    shown[list(rates.rows), list(rates.columns)] = 1.0
+    for i in set(program.layout["H"].rows):
+        shown[i, list(driven.columns)] = 1.0
+    return shown
