@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bondgraph import SignalError
+from bondgraph.expressions import normal
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
 
@@ -30,6 +31,7 @@ class Swept:
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not isinstance(self.signal, Signal):
             raise SignalError(f"{self}: a swept input has the name of a swept number and a signal")
+        object.__setattr__(self, "name", str(normal(self.name)))
 
     def of(self, values: Mapping[str, float]) -> Signal:
         """The signal of a run with these numbers."""

@@ -209,3 +209,10 @@ def test_samples_lie_within_their_limits_and_do_not_depend_on_each_other() -> No
     assert (one.column("a") == more.column("a")[:50]).all()
     assert (Samples(50, seed=4, a=(2.0, 3.0)).column("a") != one.column("a")).all()
     assert abs(np.corrcoef(more.column("a"), more.column("b"))[0, 1]) < 0.2
+
+
+def test_a_size_has_its_name_as_swept_names_have() -> None:
+    """The micro sign and the Greek letter are one name."""
+    grid, push = {"\u03bc": [1.0, 2.0]}, codegen.Swept("\u00b5")
+    found = sweep(spring_mass(), grid, TIMES, MEASURES, None, {"P": push}, **HERE)
+    assert not found.failed
