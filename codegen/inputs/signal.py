@@ -55,9 +55,13 @@ class Signal(ABC):
         """
         if isinstance(factor, bool) or not isinstance(factor, int | float | np.number):
             return NotImplemented
-        if not math.isfinite(factor):
+        try:
+            number = float(factor)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number):
             raise SignalError(f"a signal times {factor!r}: the factor is not finite")
-        return _Scaled(self, float(factor))
+        return _Scaled(self, number)
 
     __rmul__ = __mul__
 

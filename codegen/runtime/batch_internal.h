@@ -56,5 +56,4 @@ void batch_leap(batch_leaps *l, int at);
 /* batch_advance.c: to `stop` or the first event. */
 int batch_advance(bg_context *c, int *at, double stop);
 
-
 #endif

@@ -128,6 +128,8 @@ class Batch:
         """The inputs of these runs, in groups that are run together."""
         asked, names = self.asked, self.asked.family.inputs
         swept = [name for name in asked.names if name in names]
+        if not len(indices):
+            return []
         if not callable(asked.inputs):
             given = {**(asked.inputs or {}), **{name: Swept(name) for name in swept}}
             sized = {name: one for name, one in given.items() if isinstance(one, Swept)}
@@ -137,7 +139,7 @@ class Batch:
             factors = table[:, [asked.names.index(one.name) for one in sized.values()]]
             places = [names.index(str(normal(name))) for name in sized]
             indices = indices[np.isfinite(factors[indices]).all(axis=1)]
-            return [self.loop.alike(self._shared, places, factors, indices)]
+            return [self.loop.alike(self._shared, places, factors, indices)] if len(indices) else []
         found: list[tuple[int, Sequence[Signal]]] = []
         for k, values in zip(indices.tolist(), self._named(table[indices]), strict=True):
             try:

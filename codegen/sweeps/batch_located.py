@@ -15,10 +15,8 @@ from codegen.inputs.signal import Signal
 from codegen.inputs.tables import SignalTable, signal_table
 from codegen.runs.legs import Settings
 from codegen.sweeps.batch_call import Rooms, job_record, outcome_of
+from codegen.sweeps.batch_engine import CAPACITY
 from codegen.sweeps.batch_plan import Plan
-
-CAPACITY = 256
-"""Events of a run; one with more is done without the loop."""
 
 
 class Shared(NamedTuple):

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import cached_property, reduce
+from threading import Lock
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -36,6 +37,7 @@ class BatchModel:
         self.usable = check(family.equations, self.program)
         self._exported = family.equations, family.parameters, family.laws
         self._engines: dict[int, Engine] = {}
+        self._lock = Lock()
 
     @cached_property
     def _sources(self) -> dict[str, str]:
@@ -44,9 +46,10 @@ class BatchModel:
     def engine(self, slots: int) -> Engine:
         """The library of an affine model for inputs whose generators have so many slots."""
         wanted = sizes(self.closed, slots)
-        if wanted.G not in self._engines:
-            self._engines[wanted.G] = batch_engine(self._sources, self.program, wanted)
-        return self._engines[wanted.G]
+        with self._lock:
+            if wanted.G not in self._engines:
+                self._engines[wanted.G] = batch_engine(self._sources, self.program, wanted)
+            return self._engines[wanted.G]
 
 
 def batch_model(family: Family) -> BatchModel:

@@ -5,7 +5,7 @@ import pickle
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import lru_cache, partial
 from threading import Lock
 from typing import Any, NamedTuple, Protocol
 from weakref import WeakKeyDictionary
@@ -20,7 +20,6 @@ from codegen.runs.result import Result
 from codegen.sweeps.batch import Asked, Batch, Given, batch
 from codegen.sweeps.columns import Columns
 from codegen.sweeps.family import Family
-from codegen.sweeps.measures import Measure
 from codegen.sweeps.packing import packed
 from codegen.sweeps.swept import settled
 
@@ -189,10 +188,17 @@ def _given(given: Given, values: Mapping[str, float]) -> dict[str, Any]:
 
 
 def _described(value: object) -> str:
-    """Text that stands for an argument in every process: a function is told by its name."""
+    """Text that stands for an argument in every process.
+
+    Functions are told by their names, objects without a text of their own by their classes.
+    """
     if isinstance(value, Mapping):
         return repr(sorted((str(name), _described(part)) for name, part in value.items()))
-    if callable(value) and not isinstance(value, Measure):
-        names = (getattr(value, name, "") for name in ("__module__", "__qualname__"))
-        return ".".join(map(str, names))
+    if isinstance(value, partial):
+        parts = (value.func, *value.args, value.keywords)
+        return f"partial({', '.join(map(_described, parts))})"
+    named: Any = value if hasattr(value, "__qualname__") else type(value)
+    plain: Any = object
+    if named is value or named.__repr__ is plain.__repr__:
+        return f"{named.__module__}.{named.__qualname__}"
     return repr(value)

@@ -1,4 +1,4 @@
-"""`sweep`: many runs of one model over its parameters, initial values and constant inputs."""
+"""`sweep`: many runs of one model over its parameters, initial values and sizes of its inputs."""
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -167,7 +167,7 @@ def _check(job: Job) -> None:
                 f"{name!r} is no parameter, state or input; there are {', '.join(known)}"
             )
     for given, what in ((job.initial, "initial"), (job.inputs, "inputs")):
-        twice = [] if callable(given) else [n for n in given or {} if normal(n) in job.names]
+        twice = [] if callable(given) else [n for n in given or {} if str(normal(n)) in job.names]
         if twice:
             raise SignalError(f"{what}: {twice[0]!r} is swept, too; leave it out here")
     if not callable(job.initial):

@@ -34,12 +34,16 @@ class Swept:
         object.__setattr__(self, "name", str(normal(self.name)))
 
     def of(self, values: Mapping[str, float]) -> Signal:
-        """The signal of a run with these numbers."""
+        """The signal of a run with these numbers; `SignalError` where there is none of this name."""
+        if self.name not in values:
+            raise SignalError(f"{self.name!r} is not swept; swept are {', '.join(values)}")
         return values[self.name] * self.signal
 
 
 def settled(inputs: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
-    """Inputs of the run with these numbers."""
+    """Inputs of the run with these numbers; `SignalError` for what is no mapping."""
+    if not isinstance(inputs, Mapping):
+        raise SignalError(f"inputs must map names to values, not be {inputs!r}")
     return {
         name: given.of(values) if isinstance(given, Swept) else given
         for name, given in inputs.items()

@@ -155,6 +155,21 @@ def test_inputs_held_beside_others_that_change() -> None:
 
 
 @pytest.mark.parametrize("method", ["auto", "DOP853"])
+@pytest.mark.parametrize("inputs", [{"P": Swept("size")}, None], ids=["sized", "held"])
+def test_chunks_without_a_run_that_can_be_done(method: str, inputs: Any) -> None:
+    nodes = [bg.Se("push", "P"), bg.One("body"), bg.I("m", "m", flow="v"), bg.R("drag", "b")]
+    equations = bg.derive(bond_graph(nodes, "push>body>m body>drag"))
+    family = Family(equations, {"m": 1.0, "b": 0.5}, backend="c")
+    rows = [{"m": m, "size" if inputs else "P": 1.0} for m in (1.0, 0.0, 2.0)]
+    found = sweep(family, rows, TIMES, {"end": final("v")}, None, inputs, method=method, chunk=1,
+                  workers=2, **QUIET)  # fmt: skip
+    assert [failure.run for failure in found.failed] == [1]
+    assert found["end"][[0, 2]] == pytest.approx(
+        2.0 * (1 - np.exp(-0.5 * 3.0 / np.array([1.0, 2.0])))
+    )
+
+
+@pytest.mark.parametrize("method", ["auto", "DOP853"])
 def test_sizes_that_are_not_finite_fail_alone(method: str) -> None:
     affine = Family(bg.derive(oscillator()), {"m": 1.0, "k": 20.0, "F_c": 1.0}, backend="c")
     equations = affine.equations

@@ -34,7 +34,7 @@ def test_numbers_must_be_numbers(kind: str, make, value: object) -> None:
         make(value)
 
 
-@pytest.mark.parametrize("value", NOT_FINITE)
+@pytest.mark.parametrize("value", [*NOT_FINITE, pytest.param(10**400, id="huge")])
 def test_a_factor_must_be_finite(value: float) -> None:
     with pytest.raises(SignalError, match=f"times {value!r}: the factor is not finite"):
         value * Step(0.0, 1.0)

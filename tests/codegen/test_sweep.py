@@ -6,6 +6,7 @@ import tracemalloc
 
 import numpy as np
 import pytest
+import sympy as sp
 from oracles.sweeping import LOCKING, MEASURES, TIMES, Plain, answer, locking, spring_mass, twice
 
 import bondgraph as bg
@@ -173,6 +174,8 @@ def test_an_input_whose_size_is_swept_is_the_signal_times_the_number(backend: st
         ({"initial": {"x": 1.0}}, "'x' is not a state"),
         ({"inputs": {}}, "missing input"),
         ({"inputs": {"P": codegen.Swept("size")}}, "input 'P': 'size' is not swept; swept are k"),
+        ({"inputs": [1]}, r"inputs must map names to values, not be \[1\]"),
+        ({"parameters": {"P": [1.0]}, "inputs": {sp.Symbol("P"): 0.0}}, "inputs: P is swept, too"),
         ({"inputs": {"P": "x"}}, "neither a signal nor a number"),
         ({"time": [0.0]}, "two or more points"),
         ({"method": "Euler"}, "unknown method 'Euler'"),
@@ -209,6 +212,18 @@ def test_samples_lie_within_their_limits_and_do_not_depend_on_each_other() -> No
     assert (one.column("a") == more.column("a")[:50]).all()
     assert (Samples(50, seed=4, a=(2.0, 3.0)).column("a") != one.column("a")).all()
     assert abs(np.corrcoef(more.column("a"), more.column("b"))[0, 1]) < 0.2
+
+
+def test_a_function_of_a_runs_numbers_may_size_inputs() -> None:
+    measures = {"end": codegen.final("v")}
+    grid, found = {"size": [1.0, 2.0]}, []
+    for inputs in ({"P": codegen.Swept("size")}, lambda values: {"P": codegen.Swept("size")}):
+        found.append(sweep(spring_mass(), grid, TIMES, measures, None, inputs, **HERE)["end"])
+    assert found[0].tolist() == found[1].tolist()
+    wrong = sweep(spring_mass(), grid, TIMES, measures, None,
+                  lambda values: {"P": codegen.Swept("sise")}, **HERE)  # fmt: skip
+    messages = {failure.message for failure in wrong.failed}
+    assert messages == {"'sise' is not swept; swept are size"}
 
 
 def test_a_size_has_its_name_as_swept_names_have() -> None:

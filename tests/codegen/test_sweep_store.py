@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -131,6 +132,36 @@ def test_the_folder_of_another_sweep_is_refused(tmp_path, change, what: str) -> 
     _swept(tmp_path)
     with pytest.raises(bg.StoreError, match=f"another sweep, which differs in {what};"):
         _swept(tmp_path, **change)
+
+
+STEP = codegen.Step(0.1, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (STEP, codegen.Step(0.1, 3.0)), (STEP, 2 * STEP), (2 * STEP, 3 * STEP), (STEP, STEP + STEP),
+        (codegen.Lag(STEP, 0.1), codegen.Lag(STEP, 0.2)),
+        (codegen.Sampled([0, 1], [0, 1]), codegen.Sampled([0, 1], [0, 2])),
+    ],
+)  # fmt: skip
+def test_inputs_are_told_by_all_that_they_are(tmp_path, one, other) -> None:
+    _swept(tmp_path, inputs={"P": one})
+    with pytest.raises(bg.StoreError, match="another sweep, which differs in inputs;"):
+        _swept(tmp_path, inputs={"P": other})
+    assert _swept(tmp_path, inputs={"P": one}).complete
+
+
+def scaled(factor: float, result: codegen.Result) -> float:
+    """A measure with a number of its own."""
+    return factor * float(result["v"][-1])
+
+
+def test_measures_with_arguments_are_told_by_them(tmp_path) -> None:
+    _swept(tmp_path, measures={"end": partial(scaled, 2.0)})
+    with pytest.raises(bg.StoreError, match="another sweep, which differs in measures;"):
+        _swept(tmp_path, measures={"end": partial(scaled, 3.0)})
+    assert _swept(tmp_path, measures={"end": partial(scaled, 2.0)}).complete
 
 
 def test_the_folder_of_another_model_is_refused(tmp_path) -> None:
