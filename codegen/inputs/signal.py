@@ -53,7 +53,8 @@ class Signal(ABC):
         >>> (2 * Step(0.1, 350))(0.1)
         700.0
         """
-        if isinstance(factor, bool) or not isinstance(factor, int | float | np.number):
+        real = int | float | np.integer | np.floating
+        if isinstance(factor, bool) or not isinstance(factor, real):
             return NotImplemented
         try:
             number = float(factor)

@@ -139,7 +139,10 @@ class Batch:
             factors = table[:, [asked.names.index(one.name) for one in sized.values()]]
             places = [names.index(str(normal(name))) for name in sized]
             indices = indices[np.isfinite(factors[indices]).all(axis=1)]
-            return [self.loop.alike(self._shared, places, factors, indices)] if len(indices) else []
+            if not len(indices):
+                return []
+            with np.errstate(all="ignore"):
+                return [self.loop.alike(self._shared, places, factors, indices)]
         found: list[tuple[int, Sequence[Signal]]] = []
         for k, values in zip(indices.tolist(), self._named(table[indices]), strict=True):
             try:

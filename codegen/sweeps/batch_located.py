@@ -81,7 +81,7 @@ class LocatedLoop:
             pointers[:] = _address(ffi, shared.record)
             return LocatedInputs(indices, pointers, shared)
         own = np.zeros((count, len(shared.table.coefficients), 2))
-        own[:] = [(c.real, c.imag) for c in shared.table.coefficients]
+        own[:] = np.reshape([(c.real, c.imag) for c in shared.table.coefficients], (-1, 2))
         for at, first, length, *_ in shared.table.terms:
             if at in places:
                 factor = factors[indices, list(places).index(at)]

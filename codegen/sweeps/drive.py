@@ -31,8 +31,8 @@ class Rhythm(NamedTuple):
 
 STEADY = Rhythm(shortest=0.5, longest=10.0, shares=4, first=1, growth=4)
 
-QUICK = Rhythm(shortest=0.01, longest=1.0, shares=2, first=32, growth=16)
-"""For runs by a loop in C: those of a chunk cost little and cannot be interrupted."""
+QUICK = Rhythm(shortest=0.01, longest=1.0, shares=2, first=1, growth=16)
+"""For runs by a loop in C, where a chunk costs little beside its runs and cannot be interrupted."""
 
 ENDED = "the process that did it ended: killed, out of memory, or by an exit in a measure"
 
@@ -56,6 +56,8 @@ class Pace:
 
         >>> Pace(None).size(1000, 2), Pace(None, runs=1000, seconds=1.0).size(10000, 2)
         (1, 1250)
+        >>> Pace(None, QUICK).size(10000, 2), Pace(None, QUICK, runs=2, seconds=20.0).size(10000, 2)
+        (1, 1)
         """
         if self.fixed is not None:
             return self.fixed

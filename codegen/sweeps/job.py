@@ -194,11 +194,15 @@ def _described(value: object) -> str:
     """
     if isinstance(value, Mapping):
         return repr(sorted((str(name), _described(part)) for name, part in value.items()))
+    if isinstance(value, np.ndarray):
+        return f"{value.dtype}{value.shape} {hashlib.sha256(value.tobytes()).hexdigest()}"
+    if isinstance(value, list | tuple):
+        return f"({', '.join(map(_described, value))})"
     if isinstance(value, partial):
         parts = (value.func, *value.args, value.keywords)
         return f"partial({', '.join(map(_described, parts))})"
     named: Any = value if hasattr(value, "__qualname__") else type(value)
     plain: Any = object
     if named is value or named.__repr__ is plain.__repr__:
-        return f"{named.__module__}.{named.__qualname__}"
+        return f"{getattr(named, '__module__', '')}.{named.__qualname__}"
     return repr(value)

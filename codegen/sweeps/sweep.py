@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from bondgraph import SignalError
 from bondgraph.expressions import normal
+from codegen.inputs.signal import Signal
 from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
 from codegen.runs.result import Result
 from codegen.sweeps.batch import Given
@@ -55,11 +56,13 @@ def sweep(
     which then may have names of their own.
 
     ``workers``: processes to run in, by default one for each core; 0: in this process. A family with
-    backend "c" and measures of this package is run by threads instead, many runs in one call of C. That is
-    fastest without functions of a run's numbers, which Python calls run by run.
+    backend "c" and ready measures (all of this package but `work`) is run by threads instead, many runs in
+    one call of C, where none of the model's outputs shows the rate of an input. That is fastest without
+    functions of a run's numbers, which Python calls run by run.
     What is sent to processes must be picklable, and a script needs the line
     ``if __name__ == "__main__":``. ``client``: a `distributed.Client` to run on instead. ``chunk``: how
-    many runs are done together, by default some half a second to ten. None of these changes a number.
+    many runs are done together, by default what takes some seconds, in C one at most. None of these
+    changes a number.
 
     ``store``: a folder to keep finished runs in; the same call continues there. ``progress``: a bar, where
     tqdm is installed.
@@ -167,6 +170,8 @@ def _check(job: Job) -> None:
                 f"{name!r} is no parameter, state or input; there are {', '.join(known)}"
             )
     for given, what in ((job.initial, "initial"), (job.inputs, "inputs")):
+        if isinstance(given, Signal) or not (callable(given) or isinstance(given, Mapping | None)):
+            raise SignalError(f"{what} must map names to values, not be {given!r}")
         twice = [] if callable(given) else [n for n in given or {} if str(normal(n)) in job.names]
         if twice:
             raise SignalError(f"{what}: {twice[0]!r} is swept, too; leave it out here")

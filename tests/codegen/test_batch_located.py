@@ -15,6 +15,7 @@ import bondgraph as bg
 from codegen import (
     Family,
     Lag,
+    Signal,
     Sine,
     Step,
     Swept,
@@ -30,6 +31,7 @@ from codegen import (
     sweep,
 )  # fmt: skip
 from codegen.engine.located import LocatedLibrary
+from codegen.inputs.pieces import Piece
 from codegen.sweeps.batch_exact import ExactLoop
 from codegen.sweeps.batch_located import LocatedLoop
 from codegen.sweeps.job import Job, batch_of
@@ -167,6 +169,25 @@ def test_chunks_without_a_run_that_can_be_done(method: str, inputs: Any) -> None
     assert found["end"][[0, 2]] == pytest.approx(
         2.0 * (1 - np.exp(-0.5 * 3.0 / np.array([1.0, 2.0])))
     )
+
+
+class _Nothing(Signal):
+    """A signal of the caller's own, whose one piece has no terms."""
+
+    breakpoints = ()
+    pieces = (Piece(0.0, ()),)
+
+
+def test_sizes_of_a_signal_without_terms_and_sizes_that_overflow() -> None:
+    family, measures = _braked("c*v**3", m=2.0, c=0.5), {"end": final("v")}
+    none = {"P": Swept("size", _Nothing())}
+    found = sweep(
+        family, {"size": [1.0, 2.0]}, TIMES, measures, {"v": 1.0}, none, workers=0, **QUIET
+    )
+    assert found["end"] == pytest.approx(1 / np.sqrt(1 + 0.5 * 3.0), rel=1e-8)
+    large = {"P": Swept("size", Step(1.0, 1e10))}
+    found = sweep(family, {"size": [1e308]}, TIMES, measures, {"v": 1.0}, large, workers=0, **QUIET)
+    assert [failure.run for failure in found.failed] == [0]
 
 
 @pytest.mark.parametrize("method", ["auto", "DOP853"])

@@ -40,7 +40,7 @@ def test_a_factor_must_be_finite(value: float) -> None:
         value * Step(0.0, 1.0)
 
 
-@pytest.mark.parametrize("value", ["1", True, Step(0.0, 1.0)])
+@pytest.mark.parametrize("value", ["1", True, 2j, np.complex128(2j), Step(0.0, 1.0)])
 def test_a_factor_must_be_a_number(value: object) -> None:
     with pytest.raises(TypeError, match=r"multiply|unsupported operand"):
         Constant(2.0) * value

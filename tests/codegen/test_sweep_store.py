@@ -164,6 +164,20 @@ def test_measures_with_arguments_are_told_by_them(tmp_path) -> None:
     assert _swept(tmp_path, measures={"end": partial(scaled, 2.0)}).complete
 
 
+def longest(numbers: np.ndarray, result: codegen.Result) -> float:
+    """A measure with many numbers of its own."""
+    return float(numbers.max())
+
+
+def test_arrays_are_told_by_every_number(tmp_path) -> None:
+    one, other = np.zeros(3000), np.zeros(3000)
+    other[1500] = 1e-12
+    _swept(tmp_path, measures={"end": partial(longest, one)})
+    with pytest.raises(bg.StoreError, match="another sweep, which differs in measures;"):
+        _swept(tmp_path, measures={"end": partial(longest, other)})
+    assert _swept(tmp_path, measures={"end": partial(longest, np.zeros(3000))}).complete
+
+
 def test_the_folder_of_another_model_is_refused(tmp_path) -> None:
     _swept(tmp_path)
     other = Family(spring_mass().equations, {"m": 2.0, "k": 8.5})
