@@ -128,8 +128,6 @@ class Batch:
         """The inputs of these runs, in groups that are run together."""
         asked, names = self.asked, self.asked.family.inputs
         swept = [name for name in asked.names if name in names]
-        if not len(indices):
-            return []
         if not callable(asked.inputs):
             given = {**(asked.inputs or {}), **{name: Swept(name) for name in swept}}
             sized = {name: one for name, one in given.items() if isinstance(one, Swept)}
