@@ -5,22 +5,24 @@ currents of diodes, and a rotating pair for each source. The limits of Wong's se
 subspace of the pencil and the projector along its impulses; matrix exponentials lead from event to event;
 of all modes that one begins whose impulses, values and derivatives have the right signs (linear
 complementarity, by enumeration).
+
+Assumed: ideal switches, on while current flows their way, off while voltage lies against it; constant values;
+sources are sines behind resistances; charges and currents are zero at first; no two diodes are at rest for
+ever, so that one mode begins at each event. Networks and numbers in, voltages, currents and events out:
+nothing of a bond graph is here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
 
-import networkx as nx
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 from scipy.optimize import brentq
-
-import bondgraph as bg
 
 Array = NDArray[np.float64]
 Mode = tuple[bool, ...]
@@ -51,34 +53,6 @@ class Network:
     def of(self, kind: str) -> list[Branch]:
         """The branches of one kind: C, L, R, D or S, a sine source with a resistance."""
         return [branch for branch in self.branches if branch.kind == kind]
-
-    def graph(self) -> nx.DiGraph[Hashable]:
-        """As a bond graph: a 0-junction a node, a 1-junction a branch."""
-        graph: nx.DiGraph[Hashable] = nx.DiGraph()
-        graph.add_nodes_from(bg.Zero(f"n{k}") for k in range(1, self.nodes + 1))
-        for b in self.branches:
-            graph.add_nodes_from([bg.One(f"{b.name}_way"), _element(b)])
-            # A diode's bond points into it, a source's out of it: from ground by way of it to its head.
-            ends = (b.name, f"{b.name}_way")
-            graph.add_edge(*(ends if b.kind == "S" else ends[::-1]))
-            if b.more:
-                graph.add_nodes_from([bg.R(f"{b.name}_r", b.more)])
-                graph.add_edge(f"{b.name}_way", f"{b.name}_r")
-            if b.tail:
-                graph.add_edge(f"n{b.tail}", f"{b.name}_way")
-            if b.head:
-                graph.add_edge(f"{b.name}_way", f"n{b.head}")
-        return graph
-
-
-def _element(b: Branch) -> bg.elements.Node:
-    if b.kind == "S":
-        return bg.Se(b.name, f"u_{b.name}")
-    if b.kind == "D":
-        return bg.Sw(b.name, on=f"e_{b.name}", off=f"-f_{b.name}")
-    if b.kind == "C":
-        return bg.C(b.name, b.value, effort=f"u_{b.name}")
-    return bg.I(b.name, b.value, flow=f"i_{b.name}") if b.kind == "L" else bg.R(b.name, b.value)
 
 
 def random_network(rng: np.random.Generator, ideal: bool) -> Network:
