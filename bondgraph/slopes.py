@@ -70,6 +70,8 @@ def slopes(
     derivatives = [sp.diff(given.xreplace(real), real[name]).xreplace(plain) for name in read]
     if _switches([given]):
         _at(given, port, signals, point, "value")
+    for turn in sorted(given.atoms(sp.atan2), key=str):
+        _check_turn(turn, port, signals, point)
     found = {
         name: _at(slope, port, signals, point, "slope")
         for name, slope in zip(read, derivatives, strict=True)
@@ -108,12 +110,7 @@ def _switches(expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
 
 def _at(expr: sp.Expr, port: Hashable, signals: set[sp.Symbol], point: Point, what: str) -> sp.Expr:
     """An expression at the point; where a branch changes there, the same on either side of it."""
-    missing = sorted((expr.free_symbols & (signals | {TIME})) - point.keys(), key=str)
-    if missing:
-        raise SignalError(
-            f"the {what} of the law at {port!r} depends on {', '.join(map(str, missing))}; "
-            "give it a value in at"
-        )
+    _check_given(expr, port, signals, point, what)
     sides = {switch: _sides(switch, port, point) for switch in _switches([expr])}
     away = [part for part in expr.atoms(sp.DiracDelta) if len(sides[part.args[0]]) == 1]
     expr = expr.xreplace(dict.fromkeys(away, sp.Integer(0)))
@@ -131,6 +128,29 @@ def _at(expr: sp.Expr, port: Hashable, signals: set[sp.Symbol], point: Point, wh
             "linearise on one side of it"
         )
     return values[0]
+
+
+def _check_given(
+    expr: sp.Expr, port: Hashable, signals: set[sp.Symbol], point: Point, what: str
+) -> None:
+    """Refuse a point that lacks what an expression depends on."""
+    missing = sorted((expr.free_symbols & (signals | {TIME})) - point.keys(), key=str)
+    if missing:
+        raise SignalError(
+            f"the {what} of the law at {port!r} depends on {', '.join(map(str, missing))}; "
+            "give it a value in at"
+        )
+
+
+def _check_turn(turn: sp.Expr, port: Hashable, signals: set[sp.Symbol], point: Point) -> None:
+    """Refuse a point at which ``atan2(y, x)`` jumps by a turn, which no slope shows."""
+    _check_given(turn, port, signals, point, "value")
+    y, x = (part.subs(point) for part in turn.args)
+    if is_zero(y) and x.is_number and x <= 0:
+        raise SignalError(
+            f"the law at {port!r} jumps at the operating point, where {turn.args[0]} = 0; "
+            "linearise on one side of it"
+        )
 
 
 def _sides(switch: sp.Expr, port: Hashable, point: Point) -> tuple[int, ...]:

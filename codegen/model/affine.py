@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 import sympy as sp
 
+from bondgraph import SimulationError
 from bondgraph.expressions import TIME
 from codegen.arrays import Array
 
@@ -16,20 +17,37 @@ FAR = 2.0**30
 def is_affine(expressions: Iterable[sp.Expr], parameters: set[str]) -> bool:
     """Whether every expression is a constant plus constants times signals, and free of time.
 
+    Told by what it is made of, once it is multiplied out: a slope without signals is no proof, since that
+    of a step is zero and that of ``log(exp(x))`` is one.
+
     >>> k, x, y = sp.symbols("k x y")
     >>> is_affine([k*x + y - 1], {"k"}), is_affine([x*y], set()), is_affine([abs(x)], set())
     (True, False, False)
     """
     for expr in expressions:
         signals = {name for name in expr.free_symbols if name.name not in parameters}
-        if TIME in signals:
-            return False
-        for name in sorted(signals, key=str):
-            if sp.diff(expr, name).free_symbols & signals:
-                return False
-        if signals and expr.atoms(sp.Abs, sp.sign, sp.Min, sp.Max, sp.Piecewise):
+        degree = _degree(expr, signals)
+        if degree is not None and degree > 1:
+            plain = sp.expand(expr, power_base=False, power_exp=False, log=False)
+            degree = _degree(plain, signals)
+        if TIME in signals or degree is None or degree > 1:
             return False
     return True
+
+
+def _degree(expr: sp.Expr, signals: set[sp.Symbol]) -> int | None:
+    """The degree in the signals as the expression stands; None where it is no polynomial in them."""
+    if expr in signals:
+        return 1
+    if not expr.free_symbols & signals:
+        return 0
+    degrees = [_degree(part, signals) for part in expr.args]
+    if expr.is_Pow and expr.exp.is_Integer and expr.exp.is_positive and degrees[0] is not None:
+        return degrees[0] * int(expr.exp)
+    if not (expr.is_Add or expr.is_Mul) or None in degrees:
+        return None
+    known = [degree for degree in degrees if degree is not None]
+    return max(known) if expr.is_Add else sum(known)
 
 
 class AffineMap:
@@ -63,3 +81,14 @@ def probed(point: Callable[[Array], list[Array]], length: int, rate: int) -> Aff
     # Far out the constant part of a law no longer swallows digits of its slope.
     columns = [(np.concatenate(point(FAR * e)) - origin) / FAR for e in np.eye(length)]
     return AffineMap([len(part) for part in parts], np.column_stack([*columns, origin]), rate)
+
+
+def check_finite(given: Array, matrix: Array, inputs: Sequence[sp.Symbol]) -> None:
+    """Refuse a map that is not finite, naming the inputs of whose rows, ``given``, that is so."""
+    if np.isfinite(matrix).all():
+        return
+    wrong = ~np.isfinite(given).all(axis=1)
+    names = ", ".join(str(name) for name, bad in zip(inputs, wrong, strict=True) if bad)
+    raise SimulationError(
+        f"what gives {names or 'the rates'} has no finite factors at these parameters"
+    )

@@ -11,7 +11,7 @@ import numpy as np
 from bondgraph import SimulationError, StateEquations
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
-from codegen.model.affine import AffineMap, probed
+from codegen.model.affine import AffineMap, check_finite, probed
 from codegen.model.friction import Hold
 from codegen.model.instant import Binding, Evaluation, Instant
 from codegen.model.loops import solve_loop
@@ -190,6 +190,7 @@ class ClosedModel:
             return [now.x, now.z, now.u, now.du, now.y, now.rate, now.caps]
 
         affine = probed(point, self.size + 2 * inputs, RATE)
+        check_finite(affine.rows(INPUTS), affine.matrix, self.program.inputs)
         rate, du = affine.rows(RATE), affine.rows(RATES_OF_INPUTS)
         rate += self._rubbing.correction(mode, rate, du, self.constant)
         return affine

@@ -48,6 +48,9 @@ def test_slope_beside_and_at_a_change_of_branch(
     [
         ("c*abs(v)", {"v": 0}, "has a corner at the operating point, where v = 0"),
         ("c*sign(v)", {"v": 0}, "has a corner"),
+        ("atan2(v, 0)", {"v": 0}, "jumps at the operating point, where v = 0"),
+        ("atan2(v, 0)", {}, "the value of the law at 'p' depends on v"),
+        ("atan2(q, -v)", {"v": 2, "q": 0}, "jumps at the operating point, where q = 0"),
         ("max(0, v)", {"v": 0}, "has a corner"),
         ("max(v, q)", {"v": 1, "q": 1}, "has a corner"),
         (below, {"v": 0}, "has a corner"),
