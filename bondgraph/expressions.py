@@ -147,6 +147,8 @@ def _check_parts(expr: sp.Expr, where: str) -> None:
             )
         if isinstance(part, sp.Symbol):
             symbol(part.name, where)
+        elif isinstance(part, sp.Expr) and not _may_be_real(part):
+            raise ExpressionError(f"{where}: {_short(str(part))} is not a real number")
         if part.is_Pow and part.exp.is_Rational and abs(part.exp) > MAX_EXPONENT:
             raise ExpressionError(f"{where}: an exponent of more than {MAX_EXPONENT}")
         if part.is_Rational and max(abs(part.p), part.q).bit_length() > 4 * MAX_DIGITS:
@@ -157,6 +159,17 @@ def _check_parts(expr: sp.Expr, where: str) -> None:
         residues()(expr)
     except ZeroDivisionError:
         raise ExpressionError(f"{where}: a denominator of {_short(str(expr))} vanishes") from None
+
+
+def _may_be_real(part: sp.Expr) -> bool:
+    """False for a constant that is complex or has no value, such as a root of -1 inside a cosine."""
+    if part.is_number is False or part.is_real:
+        return True
+    value = part.evalf() if part.is_real is None else sp.I
+    if not value.is_number or value.has(*_NOT_REAL[:4]):
+        return False
+    real, imaginary = value.as_real_imag()
+    return bool(abs(imaginary) <= 1e-9 * abs(real))
 
 
 def number(value: object, where: str) -> sp.Rational:

@@ -130,6 +130,10 @@ class StateSpace:
 
     def frequency_response(self, frequencies: ArrayLike) -> ComplexArray:
         """The transfer matrix at frequencies in Hz: an array frequencies x outputs x inputs."""
+        if np.iscomplexobj(frequencies):
+            raise ParameterError(
+                "frequencies are real numbers in Hz; transfer takes complex ones in 1/s"
+            )
         hertz = np.atleast_1d(np.asarray(frequencies, dtype=float))
         return np.array([self.transfer(2j * np.pi * f) for f in hertz]).reshape(
             len(hertz), len(self.outputs), len(self.inputs)

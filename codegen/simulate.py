@@ -10,7 +10,7 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from bondgraph import ParameterError, SignalError, StateEquations
-from codegen.arrays import Array
+from codegen.arrays import Array, is_finite, is_number
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
 from codegen.engine.runs import CRuns
@@ -66,6 +66,10 @@ class Simulator:
                 raise SignalError(
                     f"{what} must have shape ({len(names)},), not {array.shape}: {names}"
                 )
+            if not np.isfinite(array).all():
+                raise SignalError(f"{what} must be finite, not {array.tolist()}: {names}")
+        if not is_number(t) or not is_finite(t):
+            raise SignalError(f"the time must be a finite number, not {t!r}")
         pieces = [Constant(float(value)).pieces[0] for value in given]
         s = self.vector(t, state, given)
         slipping, peaks = self._all_slipping(), Peaks.none(self.closed)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bondgraph import SignalError
+from codegen.arrays import real_array
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signal import Signal
 
@@ -23,7 +24,7 @@ class Sampled(Signal):
 
     def __init__(self, times: ArrayLike, values: ArrayLike) -> None:
         try:
-            t, v = (np.asarray(array, dtype=float) for array in (times, values))
+            t, v = (real_array(array) for array in (times, values))
         except (TypeError, ValueError) as error:
             raise SignalError(f"samples: times and values must be numbers: {error}") from None
         if t.ndim != 1 or t.shape != v.shape or len(t) < 2:

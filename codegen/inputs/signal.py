@@ -5,7 +5,6 @@ A piece is a sum of polynomials times exponentials, ``sum_j p_j(tau) exp(rate_j 
 pieces again, so every signal is evaluated exactly.
 """
 
-import math
 from abc import ABC, abstractmethod
 from bisect import bisect_right
 from collections.abc import Sequence
@@ -16,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bondgraph import SignalError
+from codegen.arrays import is_finite, is_number
 from codegen.inputs.pieces import Piece, collected, moved
 
 
@@ -53,16 +53,11 @@ class Signal(ABC):
         >>> (2 * Step(0.1, 350))(0.1)
         700.0
         """
-        real = int | float | np.integer | np.floating
-        if isinstance(factor, bool) or not isinstance(factor, real):
+        if not is_number(factor):
             return NotImplemented
-        try:
-            number = float(factor)
-        except OverflowError:
-            number = math.inf
-        if not math.isfinite(number):
+        if not is_finite(factor):
             raise SignalError(f"a signal times {factor!r}: the factor is not finite")
-        return _Scaled(self, number)
+        return _Scaled(self, float(factor))
 
     __rmul__ = __mul__
 

@@ -5,9 +5,8 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
 from bondgraph import SignalError
+from codegen.arrays import is_finite, is_number
 from codegen.inputs.pieces import Piece, collected, constant_piece, lagged_terms, moved
 from codegen.inputs.signal import Signal
 
@@ -144,8 +143,8 @@ def as_signal(value: object, name: str) -> Signal:
     """A signal as it is, a number as a constant; anything else is refused, naming the input."""
     if isinstance(value, Signal):
         return value
-    if isinstance(value, int | float | np.number) and not isinstance(value, bool):
-        if not math.isfinite(value):
+    if is_number(value):
+        if not is_finite(value):
             raise SignalError(f"input {name!r}: {value!r} is not a finite number")
         return Constant(float(value))
     raise SignalError(
@@ -156,7 +155,7 @@ def as_signal(value: object, name: str) -> Signal:
 
 def _check_finite(signal: Signal, *numbers: float) -> None:
     for number in numbers:
-        if isinstance(number, bool) or not isinstance(number, int | float | np.number):
+        if not is_number(number):
             raise SignalError(f"{type(signal).__name__}: {number!r} is not a number")
-        if not math.isfinite(number):
+        if not is_finite(number):
             raise SignalError(f"{type(signal).__name__}: {number!r} is not finite")

@@ -87,8 +87,8 @@ def check_finite(given: Array, matrix: Array, inputs: Sequence[sp.Symbol]) -> No
     """Refuse a map that is not finite, naming the inputs of whose rows, ``given``, that is so."""
     if np.isfinite(matrix).all():
         return
-    wrong = ~np.isfinite(given).all(axis=1)
-    names = ", ".join(str(name) for name, bad in zip(inputs, wrong, strict=True) if bad)
+    wrong = np.flatnonzero(~np.isfinite(given).all(axis=1)).tolist()
+    names = ", ".join(str(inputs[at]) for at in wrong)
     raise SimulationError(
         f"what gives {names or 'the rates'} has no finite factors at these parameters"
     )

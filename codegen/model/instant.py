@@ -2,14 +2,13 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import sympy as sp
 
 from bondgraph import SimulationError
 from bondgraph.expressions import TIME
-from codegen.arrays import Array
+from codegen.arrays import Array, real_values
 from codegen.model.numbers import Numbers
 from codegen.model.numpy_backend import compiled
 from codegen.program import Block, Program
@@ -64,16 +63,11 @@ class Binding:
                 ((now.t,), now.x, now.z, now.y, now.u, now.w, now.dw, self._constants)
             )
             try:
-                return _real(run(*pool[indices].tolist()))
+                return real_values(run(*pool[indices].tolist()))
             except (ArithmeticError, TypeError) as error:
                 raise SimulationError(f"at t = {now.t:g} a law has no value: {error}") from None
 
         return evaluate
-
-
-def _real(values: list[Any]) -> Array:
-    """Results as an array; `TypeError` for a complex one."""
-    return np.array([float(value) for value in values])
 
 
 def _places(program: Program) -> dict[sp.Symbol, int]:

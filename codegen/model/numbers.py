@@ -13,7 +13,7 @@ from bondgraph.exact import Row, rows_of
 from bondgraph.expressions import normal, number
 from bondgraph.residues import residues
 from bondgraph.resistances import resistive_loops
-from codegen.arrays import Array
+from codegen.arrays import Array, real_values
 from codegen.model.numpy_backend import compiled
 from codegen.program import Program
 
@@ -103,7 +103,7 @@ def _values(
     arguments = [float(parameters[name.name]) for name in code.arguments]
     try:
         with np.errstate(all="ignore"):
-            values = np.array([float(value) for value in compiled(code)(*arguments)])
+            values = real_values(compiled(code)(*arguments))
         finite = bool(np.isfinite(values).all())
     except (ArithmeticError, TypeError):
         finite = False

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from bondgraph import SignalError
 from bondgraph.expressions import normal
-from codegen.arrays import Array
+from codegen.arrays import Array, is_finite, is_number, real_array
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import as_signal
 from codegen.runs.legs import CHOICES, Settings
@@ -16,7 +16,7 @@ from codegen.runs.legs import CHOICES, Settings
 def numbers_of(values: ArrayLike, what: str) -> Array:
     """A fresh array of floats; `SignalError` for what makes none."""
     try:
-        return np.array(values, dtype=float)
+        return real_array(values)
     except (TypeError, ValueError) as error:
         raise SignalError(f"{what} must be numbers: {error}") from None
 
@@ -49,9 +49,9 @@ def named_numbers(initial: Mapping[str, float], states: Sequence[str]) -> dict[s
         name = str(normal(given))
         if name not in states:
             raise SignalError(f"{name!r} is not a state; there are {', '.join(states)}")
-        if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+        if not is_number(value):
             raise SignalError(f"initial {name}: {value!r} is not a number")
-        if not np.isfinite(value):
+        if not is_finite(value):
             raise SignalError(f"initial {name}: {value!r} is not finite")
         result[name] = float(value)
     return result
@@ -78,7 +78,7 @@ def signals_for(inputs: Mapping[str, object], names: Sequence[str]) -> list[Sign
 def settings_of(method: str, rtol: float, atol: float) -> Settings:
     """How to integrate, checked."""
     for tolerance, what in ((rtol, "rtol"), (atol, "atol")):
-        if not isinstance(tolerance, int | float | np.number) or not tolerance > 0:
+        if not is_number(tolerance) or not 0 < tolerance < np.inf:
             raise SignalError(f"{what} must be a positive number, not {tolerance!r}")
     if method not in CHOICES:
         raise SignalError(f"unknown method {method!r}; there are {', '.join(CHOICES)}")

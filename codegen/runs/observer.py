@@ -11,7 +11,7 @@ from bondgraph.elements import SOURCES, STORAGES, Element, Kind
 from bondgraph.expressions import TIME
 from bondgraph.laws import ExpressionLaw
 from bondgraph.modulation import Reading
-from codegen.arrays import Array
+from codegen.arrays import Array, real_array, real_values
 from codegen.model.closed import ClosedModel
 from codegen.model.numbers import at_parameters
 
@@ -109,7 +109,7 @@ class Observer:
                 f"{element.name!r}: no closed form of the energy; integrate its power"
             )
         energy = sp.lambdify(real, integral, modules="numpy")
-        return np.array([float(energy(value)) for value in self.columns[state.name]])
+        return real_values([energy(value) for value in self.columns[state.name]])
 
     def _values(self, reading: Reading) -> Array:
         """A reading at every sample."""
@@ -126,7 +126,7 @@ class Observer:
         names = sorted(exact.free_symbols, key=str)
         if names:
             given = [self.time if name == TIME else self.columns[name.name] for name in names]
-            return np.asarray(sp.lambdify(names, exact, modules="numpy")(*given), dtype=float)
+            return real_array(sp.lambdify(names, exact, modules="numpy")(*given))
         value = sp.N(exact)
         if not value.is_real:
             raise ParameterError(f"{entry} has no real value at these parameters")

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bondgraph import SignalError
 from bondgraph.expressions import normal
-from codegen.arrays import Array
+from codegen.arrays import Array, real_array
 
 Draw = Callable[[np.random.Generator], float]
 """Draws one number from a random generator."""
@@ -119,7 +119,7 @@ class Samples(Table):
         for name, draw in draws.items():
             generator = np.random.default_rng([seed, *str(normal(name)).encode()])
             if callable(draw):
-                columns[name] = [float(draw(generator)) for _ in range(runs)]
+                columns[name] = [draw(generator) for _ in range(runs)]
                 continue
             if len(draw) != 2:
                 raise SignalError(f"samples of {name} need two limits or a function, not {draw!r}")
@@ -159,7 +159,7 @@ def _numbers(columns: Mapping[str, ArrayLike]) -> dict[str, Array]:
     result: dict[str, Array] = {}
     for name, values in columns.items():
         try:
-            column = np.array(values, dtype=float)
+            column = real_array(values)
         except (TypeError, ValueError) as error:
             raise SignalError(f"the values of {name} must be numbers: {error}") from None
         if column.ndim != 1:

@@ -103,7 +103,7 @@ class Job:
         found = []
         for name, measure in self.measures.items():
             try:
-                found.append(np.array(measure(result), dtype=float))
+                found.append(_measured(measure(result)))
             except Exception as error:  # noqa: BLE001 - the caller's code
                 return f"measure {name!r}: {type(error).__name__}: {error}"
         return tuple(found)
@@ -128,6 +128,13 @@ class Job:
             "names": list(self.names),
             "measures": [[name, _described(measure)] for name, measure in self.measures.items()],
         }
+
+
+def _measured(value: Any) -> Array:
+    """What a measure gives as floats, truth values as 0 and 1; `TypeError` for what is complex."""
+    if np.iscomplexobj(value):
+        raise TypeError(f"{value!r} is complex")
+    return np.array(value, dtype=float)
 
 
 def measured(job: Job, chunk: Chunk) -> Outcome:

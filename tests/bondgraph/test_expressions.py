@@ -43,6 +43,33 @@ def test_text_is_read_exactly(text: str, expected: sp.Expr) -> None:
     assert bg.expression(text, "here") == expected
 
 
+ROOT = sp.Pow(-1, sp.Rational(1, 3))
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        "cos((-1)**(1/3))", "x*(-8)**(1/3)", "x + cos(y*(-1)**(2/3))", "asin(2)*x", "x*acos(-3/2)",
+        "cos(3)**(1/3)", "x*log(cos(3))", "max(x, cos((-1)**(1/3)))", sp.cos(ROOT), x + sp.acos(2),
+        sp.exp(sp.I) + sp.exp(-sp.I), sp.Piecewise((ROOT, x > 0), (1, True)),
+        sp.Piecewise((1, x > sp.cos(ROOT)), (2, True)),
+    ],
+)  # fmt: skip
+def test_complex_constants_are_refused_wherever_they_stand(value: object) -> None:
+    """Also inside what is real again by other means, such as ``exp(i) + exp(-i)``."""
+    with pytest.raises(
+        bg.ExpressionError, match=r"here: .*is not (a real number|a finite real|comparable|allowed)"
+    ):
+        bg.expression(value, "here")
+
+
+@pytest.mark.parametrize("text", ["acos(1/2)*x", "sqrt(sqrt(2) - 1)", "cos(1)**(1/3)", "(-2)**x", "log(2)*x",
+                                  "abs((-1)**(1/3))", "((-1)**(1/3))**3", "tan(2)"])  # fmt: skip
+def test_real_constants_stay(text: str) -> None:
+    value = bg.expression(text, "here").subs(x, 2)
+    assert complex(value).imag == 0.0
+
+
 @pytest.mark.parametrize("name", ["E", "I", "N", "O", "Q", "S", "pi", "oo", "nan", "beta", "gamma"])
 def test_names_are_plain_symbols_whatever_sympy_calls_so(name: str) -> None:
     result = bg.expression(name, "here")

@@ -245,6 +245,11 @@ def test_other_numbers_at_run_time_and_what_is_refused() -> None:
         module.Model({"K": 7.0})
     with pytest.raises(ValueError, match="no state is called"):
         module.simulate([0, 1], {"w": 1.0}, {})
+    for wrong in (1j, np.complex128(1 + 5j), "7", np.nan, np.inf):
+        with pytest.raises(ValueError, match="parameter k must be a finite real number, not"):
+            module.Model({"k": wrong})
+        with pytest.raises(ValueError, match=r"state \w+ must be a finite real number, not"):
+            module.simulate([0, 1], {module.STATES[0]: wrong}, {})
     with pytest.raises(bg.ParameterError, match="missing parameter"):
         to_python(equations, {"k": 1.0, "F_c": 1.0})
 

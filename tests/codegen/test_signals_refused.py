@@ -28,7 +28,7 @@ def test_numbers_must_be_finite(kind: str, make, value: float) -> None:
 
 
 @pytest.mark.parametrize(("kind", "make"), MAKERS)
-@pytest.mark.parametrize("value", ["1", True, 1j, [1.0]])
+@pytest.mark.parametrize("value", ["1", True, 1j, np.complex128(1 + 5j), [1.0]])
 def test_numbers_must_be_numbers(kind: str, make, value: object) -> None:
     with pytest.raises(SignalError, match=f"{kind}: .* is not a number"):
         make(value)
@@ -81,6 +81,8 @@ def test_ramp_must_end_after_it_begins(end: float) -> None:
         ([0, 1], [1, math.inf], "a time or a value is not finite"),
         (["zero", "one"], [1, 2], "samples.*must be numbers"),
         ([0, 1], [1, 2j], "samples.*must be numbers"),
+        ([0, 1], np.array([1, 2j]), "samples.*must be numbers: these are complex128"),
+        ([0, 1], ["1", "2"], "samples.*must be numbers"),
         ([0, [1, 2]], [1, 2], "samples"),
     ],
 )

@@ -31,6 +31,11 @@ TIMES = [0.0, 0.5, 1.0]
         ("0, 1", "time must be numbers"),
         (["a", "b"], "time must be numbers"),
         ([0.0, 1j], "time must be numbers"),
+        (np.array([0.0, 1j]), "time must be numbers: these are complex128"),
+        ([0.0, np.complex128(1)], "time must be numbers"),
+        (["0", "1"], "time must be numbers"),
+        ([False, True], "time must be numbers: these are bool"),
+        ([0.0, 10**400], "time must be numbers"),
     ],
 )
 def test_time_must_be_increasing_finite_points(time, message: str) -> None:
@@ -48,6 +53,10 @@ def test_time_must_be_increasing_finite_points(time, message: str) -> None:
         ({"V": "1"}, "input 'V': '1' is neither a signal nor a number"),
         ({"V": None}, "input 'V': None is neither a signal nor a number"),
         ({"V": math.nan}, "input 'V': nan is not a finite number"),
+        ({"V": 10**400}, "input 'V': 10+ is not a finite number"),
+        ({"V": 1 + 5j}, r"input 'V': \(1\+5j\) is neither a signal nor a number"),
+        ({"V": np.complex128(1 + 5j)}, r"input 'V': .*5j.* is neither a signal nor a number"),
+        ({"V": np.bool_(True)}, "input 'V': .*True.* is neither a signal nor a number"),
         ({"V": math.sin}, "input 'V': .* is neither a signal nor a number"),
         ([("V", 1.0)], "inputs must map names to values"),
         (5.0, "inputs must map names to values"),
@@ -73,6 +82,8 @@ def test_a_model_without_inputs_says_so() -> None:
         ({"v": True}, "initial v: True is not a number"),
         ({"v": None}, "initial v: None is not a number"),
         ({"v": 1j}, "initial v: 1j is not a number"),
+        ({"v": np.complex128(1 + 5j)}, "initial v: .*5j.* is not a number"),
+        ({"v": 10**400}, "initial v: 10+ is not finite"),
         ({"v": [1.0]}, r"initial v: \[1.0\] is not a number"),
         ({"v": math.nan}, "initial v: nan is not finite"),
         ({"v": -math.inf}, "initial v: -inf is not finite"),
@@ -93,7 +104,8 @@ def test_methods_are_a_closed_list(method) -> None:
 
 
 @pytest.mark.parametrize("tolerances", [{"rtol": 0.0}, {"rtol": -1e-6}, {"rtol": math.nan}, {"atol": -1.0},
-                                        {"atol": math.nan}, {"rtol": "1e-6"}])  # fmt: skip
+                                        {"atol": math.nan}, {"rtol": "1e-6"}, {"rtol": math.inf},
+                                        {"atol": np.complex128(1e-9)}, {"rtol": True}])  # fmt: skip
 def test_tolerances_must_be_positive_numbers(tolerances) -> None:
     with pytest.raises(bg.SignalError, match="tol"):
         RUN.run(TIMES, inputs={"V": 1.0}, **tolerances)
@@ -102,6 +114,28 @@ def test_tolerances_must_be_positive_numbers(tolerances) -> None:
 def test_backends_are_a_closed_list() -> None:
     with pytest.raises(bg.SignalError, match="unknown backend 'fortran'; there is numpy"):
         simulator(CIRCUIT, GOOD, backend="fortran")
+
+
+@pytest.mark.parametrize("value", [1j, np.complex128(2 + 1j), "2", True, math.nan, math.inf, None])
+def test_parameters_must_be_finite_real_numbers(value) -> None:
+    with pytest.raises(bg.ParameterError, match=r"parameter 'R': .* is not a"):
+        simulator(CIRCUIT, GOOD | {"R": value})
+
+
+@pytest.mark.parametrize(
+    ("t", "x", "u", "message"),
+    [
+        (math.nan, [0.0, 0.0], [1.0], "the time must be a finite number, not nan"),
+        (1j, [0.0, 0.0], [1.0], "the time must be a finite number, not 1j"),
+        (0.0, [0.0, math.inf], [1.0], r"states must be finite, not \[0.0, inf\]: \('i', 'v'\)"),
+        (0.0, np.array([0.0, 1j]), [1.0], "x must be numbers: these are complex128"),
+        (0.0, [0.0, 0.0], [math.nan], r"inputs must be finite, not \[nan\]"),
+        (0.0, [0.0, 0.0], [np.complex128(1j)], "u must be numbers: these are complex128"),
+    ],
+)
+def test_rates_are_asked_at_finite_real_numbers(t, x, u, message: str) -> None:
+    with pytest.raises(bg.SignalError, match=message):
+        RUN.rhs(t, x, u)
 
 
 @pytest.mark.parametrize("missing", ["R", "L", "C"])

@@ -72,6 +72,8 @@ def test_sets_that_fail_are_told_and_the_others_go_on() -> None:
 def test_measures_that_fail_are_told_by_name_and_run() -> None:
     found = _swept({"v": [2.0]}, {"odd": lambda result: "text"})
     assert "measure 'odd': ValueError" in found.failed[0].message
+    found = _swept({"v": [2.0]}, {"odd": lambda result: np.complex128(1 + 5j)})
+    assert "measure 'odd': TypeError" in found.failed[0].message
     found = _swept({"v": [1.0]}, {"odd": codegen.peak("nothing")})
     assert (
         "measure 'odd': KeyError: \"no signal 'nothing'; there are v, F" in found.failed[0].message
@@ -167,6 +169,9 @@ def test_an_input_whose_size_is_swept_is_the_signal_times_the_number(backend: st
         ({"parameters": {"c": [1]}}, "'c' is no parameter, state or input; there are m, k, v, F, P"),
         ({"parameters": {"k": []}}, "no runs"),
         ({"parameters": {"k": ["a"]}}, "the values of k must be numbers"),
+        ({"parameters": {"k": np.array([1 + 5j])}}, "the values of k must be numbers: these are complex128"),
+        ({"parameters": {"k": [1.0, np.complex128(1)]}}, "the values of k must be numbers"),
+        ({"parameters": {"k": ["1", "2"]}}, "the values of k must be numbers"),
         ({"parameters": {"k": 1.0}}, r"the values of k must be a list, not of shape \(\)"),
         ({"parameters": 5}, "parameters must be a Grid"),
         ({"parameters": [{"k": 1}, {"m": 1}]}, r"row 1 has the names \['m'\]"),
