@@ -80,8 +80,8 @@ class StateEquations:
 
     @property
     def parameters(self) -> tuple[sp.Symbol, ...]:
-        """The names that the matrices need numbers for, sorted."""
-        return tuple(sorted(self._names - self._moving, key=str))
+        """The names that the matrices, and all signals and bonds, need numbers for, sorted."""
+        return tuple(sorted((self._names | self._read) - self._moving, key=str))
 
     @property
     def varying(self) -> tuple[sp.Symbol, ...]:
@@ -102,6 +102,20 @@ class StateEquations:
         for reading in self.readings.values():
             for row in (reading.F, reading.D, reading.H, reading.K):
                 used.update(*(entry.free_symbols for entry in row.values()))
+        return used
+
+    @property
+    def _read(self) -> set[sp.Symbol]:
+        """Every name in what signals and bonds are made of: a modulus beside a detector is in no matrix."""
+        reduction = self.reduction
+        rows = [
+            *self.signals.values(),
+            *(r for pair in reduction.structure.bonds.values() for r in pair),
+        ]
+        used = {name for row in rows for entry in row.values() for name in entry.free_symbols}
+        for port in {port for row in rows for port in row}:
+            parts = reduction.columns[port].parts
+            used.update(*(entry.free_symbols for part in parts for entry in part.values()))
         return used
 
     @property

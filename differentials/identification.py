@@ -2,10 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
-from scipy.optimize import brentq
-
 import bondgraph as bg
 from bondgraph.response import StateSpace
+from codegen.roots import root
 from differentials.model import Model, model
 from differentials.parameters import checked
 
@@ -53,7 +52,7 @@ def identified_inertia(
             f"{name}: no inertia {', '.join(symbols)} from {LEAST:g} to {MOST:g} kg m^2 gives that mode "
             f"{frequency:g} Hz"
         )
-    return float(brentq(distance, LEAST, MOST, xtol=1e-12, rtol=1e-10))
+    return root(distance, LEAST, MOST)
 
 
 def _linear(full: Model) -> bg.LinearModel:

@@ -32,7 +32,7 @@ ORDER = {
         "renaming", "composition", "declarations", "restored", "nodelink", "safexml", "graphml", "files",
     ],
     "codegen": [
-        "arrays", *_room("inputs", "pieces generators polynomials signal signals sampled tables"),
+        "arrays", "roots", *_room("inputs", "pieces generators polynomials signal signals sampled tables"),
         "model.affine", "closing", "records", "sections", "program", "identifiers", "printing", "units",
         *_room("model", "numpy_backend numbers snapshot sharing friction instant loops rubbing closed "
                "sizes modes guards"),

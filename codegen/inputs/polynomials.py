@@ -4,9 +4,9 @@ from functools import cache
 from math import comb
 
 import numpy as np
-from scipy.optimize import brentq
 
 from codegen.arrays import Array
+from codegen.roots import root
 
 NARROW = 2.0**-44
 """Intervals are not divided further."""
@@ -66,8 +66,7 @@ def _crossing(powers: Array, low: float, high: float) -> float:
         return low
     if value(powers, high) > 0:
         return high
-    found: float = brentq(lambda tau: value(powers, tau), low, high, xtol=1e-300, rtol=8.9e-16)
-    return found
+    return root(lambda tau: value(powers, tau), low, high)
 
 
 def _restricted(powers: Array, low: float, high: float) -> Array:

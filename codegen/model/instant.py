@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from bondgraph import SimulationError
+from bondgraph import ParameterError, SimulationError
 from bondgraph.expressions import TIME
 from codegen.arrays import Array, real_values
 from codegen.model.numbers import Numbers
@@ -56,6 +56,9 @@ class Binding:
         if not code.results:
             return lambda now: np.zeros(0)
         run = compiled(code)
+        unknown = [name.name for name in code.arguments if name not in self._places]
+        if unknown:
+            raise ParameterError(f"{', '.join(unknown)} need a number in parameters")
         indices = [self._places[name] for name in code.arguments]
 
         def evaluate(now: Instant) -> Array:

@@ -8,6 +8,7 @@ import scipy.optimize
 from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.model.instant import Instant
+from codegen.roots import root
 
 RESIDUAL = 1e-9
 """A solution must satisfy its laws to this fraction of their magnitude."""
@@ -74,8 +75,7 @@ def _bracketed(left: Residual, end: float) -> Iterator[Array]:
         return float(left(np.array([value]))[0])
 
     if one(0.0) * one(end) <= 0 and end:
-        found = scipy.optimize.brentq(one, 0.0, end, xtol=1e-300, rtol=4 * np.finfo(float).eps)
-        yield np.array([found])
+        yield np.array([root(one, 0.0, end)])
 
 
 def _newton(left: Residual, values: Array) -> Array:

@@ -4,13 +4,14 @@ from collections.abc import Callable, Hashable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import minimize_scalar
 
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import CAPS, INPUTS, READINGS, ClosedModel, Mode, Snapshot
 from codegen.model.guards import guard_rounding
 from codegen.model.modes import LOOK_AHEAD, Peaks, scales
+from codegen.roots import root
 
 CHECKS = 6
 """Points inside each step at which events are looked for."""
@@ -150,7 +151,7 @@ class Watch:
             return t_a
         if above(t_b) >= 0:
             return t_b
-        return float(brentq(above, t_a, t_b, xtol=1e-15, rtol=4 * np.finfo(float).eps))
+        return root(above, t_a, t_b)
 
     def _dip(
         self, i: int, grid: Sequence[float], values: Sequence[float], dense: Dense

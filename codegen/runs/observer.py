@@ -124,6 +124,11 @@ class Observer:
         """A coefficient: a number, or a value for every sample where it changes in time."""
         exact = at_parameters(entry, self.model.parameters)
         names = sorted(exact.free_symbols, key=str)
+        unknown = [name.name for name in names if name != TIME and name.name not in self.columns]
+        if unknown:
+            raise ParameterError(
+                f"{entry} needs a number for {', '.join(unknown)}; give it in parameters"
+            )
         if names:
             given = [self.time if name == TIME else self.columns[name.name] for name in names]
             return real_array(sp.lambdify(names, exact, modules="numpy")(*given))

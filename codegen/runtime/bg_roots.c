@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BG_MOST_PARTS = 4000, BG_DEEP = 64 };
+enum { BG_MOST_PARTS = 4000, BG_DEEP = 64, BG_TRIES = 160 };
 
 #define BG_NARROW (1.0 / 17592186044416.0) /* 2^-44: intervals are not divided further */
 
@@ -51,14 +51,15 @@ static double polish(const double *p, double low, double high)
     if (bg_value(p, high) > 0)
         return high;
     double t = 0.5 * (low + high);
-    for (int tries = 0; tries < 100; tries++) {
+    for (int tries = 0; tries < BG_TRIES; tries++) {
         const double at = bg_value(p, t);
         if (at > 0)
             low = t;
         else
             high = t;
         double next = t - at / slope(p, t);
-        if (!(next >= low && next <= high))
+        /* Newton crawls along a root of many folds: halves in turn with it end there, too. */
+        if (!(next >= low && next <= high) || (tries > 8 && tries % 2))
             next = 0.5 * (low + high);
         if (fabs(next - t) <= 1e-16 * t || high - low <= 4e-16 * high)
             return next;

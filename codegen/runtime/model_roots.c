@@ -1,62 +1,51 @@
-/* Brent's method: R. P. Brent, Algorithms for Minimization without Derivatives, 1973, chapter 4. */
+/* A root of a function between two points of different sign, however flat the function is there:
+ * inverse quadratic interpolation where three points promise it, else halves (T. R. Chandrupatla, A
+ * new hybrid quadratic/bisection algorithm, Advances in Engineering Software 28 (1997) 145-149).
+ * Halving is enforced where interpolation crawls, as along a root of many folds: it always ends. */
 #include <float.h>
 #include <math.h>
 
 #include "model_internal.h"
 
-enum { MOST = 200 };
+enum { SLOW = 3 };                /* after so many steps that did not halve the interval, it is */
+static const double LEAST = 1e-30; /* of the first interval: where a root is at 0 */
 
-/* The way to a point between by the secant or inverse quadratic interpolation; 0 if halving is
- * better. */
-static double interpolated(double a, double b, double c, double fa, double fb, double fc,
-                           double before)
+/* How far from a to b interpolation leads, where it is sure to; else a half. */
+static double share_of(double a, double b, double c, double fa, double fb, double fc)
 {
-    const double middle = 0.5 * (c - b), s = fb / fa;
-    double p, q, r;
-    if (a == c) {
-        p = 2 * middle * s;
-        q = 1 - s;
-    } else {
-        q = fa / fc;
-        r = fb / fc;
-        p = s * (2 * middle * q * (q - r) - (b - a) * (r - 1));
-        q = (q - 1) * (r - 1) * (s - 1);
-    }
-    if (p > 0)
-        q = -q;
-    p = fabs(p);
-    if (2 * p < 3 * middle * q - fabs(DBL_EPSILON * b * q) && 2 * p < fabs(before * q))
-        return p / q;
-    return 0.0;
+    if (fc == fa || fc == fb || fa == fb)
+        return 0.5;
+    const double xi = (a - b) / (c - b), phi = (fa - fb) / (fc - fb);
+    if (!(phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi))
+        return 0.5;
+    return fa / (fb - fa) * fc / (fb - fc)
+        + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb);
 }
 
 int bg_root(double (*f)(void *self, double at), void *self, double a, double b, double *found)
 {
-    double fa = f(self, a), fb = f(self, b), c = a, fc = fa, step = b - a, before = step;
+    double fa = f(self, a), fb = f(self, b), share = 0.5;
+    const double floor = LEAST * fabs(b - a) + DBL_MIN;
+    int slow = 0;
     if ((fa > 0 && fb > 0) || (fa < 0 && fb < 0))
         return 0;
-    for (int k = 0; k < MOST && fb != 0; k++) {
-        double middle, next, tolerance;
-        if (fabs(fc) < fabs(fb)) {
-            a = b, b = c, c = a;
-            fa = fb, fb = fc, fc = fa;
+    *found = fa == 0 ? a : b;
+    while (fa != 0 && fb != 0) {
+        const double width = fabs(b - a), t = a + share * (b - a), ft = f(self, t);
+        double c = a, fc = fa;
+        if ((ft > 0) != (fa > 0)) {
+            c = b, fc = fb;
+            b = a, fb = fa;
         }
-        tolerance = 2 * DBL_EPSILON * fabs(b) + DBL_MIN;
-        middle = 0.5 * (c - b);
-        if (fabs(middle) <= tolerance)
+        a = t, fa = ft;
+        *found = fabs(fa) <= fabs(fb) ? a : b;
+        const double least = a != b ? (DBL_EPSILON * fabs(*found) + floor) / fabs(b - a) : 1.0;
+        if (least > 0.5)
             break;
-        next = fabs(before) >= tolerance && fabs(fa) > fabs(fb)
-            ? interpolated(a, b, c, fa, fb, fc, before) : 0.0;
-        before = next != 0 ? step : middle;
-        step = next != 0 ? next : middle;
-        a = b, fa = fb;
-        b += fabs(step) > tolerance ? step : copysign(tolerance, middle);
-        fb = f(self, b);
-        if ((fb > 0) == (fc > 0)) {
-            c = a, fc = fa;
-            step = before = b - a;
-        }
+        slow = fabs(b - a) > 0.5 * width ? slow + 1 : 0;
+        share = slow >= SLOW ? 0.5 : share_of(a, b, c, fa, fb, fc);
+        slow = slow >= SLOW ? 0 : slow;
+        share = fmin(fmax(share, least), 1 - least);
     }
-    *found = b;
     return 1;
 }

@@ -4,6 +4,7 @@ import random
 
 import numpy as np
 import pytest
+import sympy as sp
 from references.build import bond_graph
 from references.random_graphs import random_graph
 
@@ -127,3 +128,39 @@ def test_power_balances_in_random_graphs_at_every_bond_and_port(seed: int) -> No
             into += run.power(node)
             size += abs(run.power(node)).max()
     assert abs(supplied - absorbed).max() < 1e-9 * size
+
+
+def _measured_coils() -> bg.StateEquations:
+    """A primary coil with a resistance; the voltage of the open secondary is read, and levered."""
+    nodes = [bg.Se("u", "u"), bg.One("primary"), bg.R("R", "R"), bg.One("secondary"), bg.TF("lever", "n"),
+             bg.I("coils", [["L1", "M"], ["M", "L2"]], ports=["p", "s"]), bg.One("end"),
+             bg.De("probe", effort="e_probe")]  # fmt: skip
+    graph = bond_graph(nodes, "u>primary>R secondary>lever>end>probe")
+    graph.add_edge("primary", "coils", port="p")
+    graph.add_edge("secondary", "coils", port="s")
+    return bg.derive(graph)
+
+
+def test_parameters_of_what_can_only_be_read_are_named() -> None:
+    """``e_s = -M i'``, ``i' = (u - R i)/L1``: with R = L1 = u = 1 the rate is ``exp(-t)``; M and the lever
+    are in no matrix."""
+    equations = _measured_coils()
+    assert equations.parameters == sp.symbols("L1 M R n")
+    numbers = {"L1": 1.0, "M": 0.5, "R": 1.0, "n": 4.0}
+    result = simulator(equations, numbers).run([0.0, 1.0], inputs={"u": 1.0})
+    assert result["e_probe"] == pytest.approx(-0.5 * np.exp([0.0, -1.0]) / 4, abs=1e-10)
+    for missing in ("M", "n"):
+        fewer = {name: value for name, value in numbers.items() if name != missing}
+        with pytest.raises(bg.ParameterError, match=rf"missing parameter\(s\) {missing}; give"):
+            simulator(equations, fewer)
+
+
+def test_an_energy_that_needs_more_says_so() -> None:
+    """Nothing flows in the secondary: L2 rules nothing but the sum that its field's energy is."""
+    numbers = {"L1": 1.0, "M": 0.5, "R": 1.0, "n": 4.0}
+    result = simulator(_measured_coils(), numbers).run([0.0, 1.0], inputs={"u": 1.0})
+    with pytest.raises(bg.ParameterError, match="L2 needs a number for L2; give it in parameters"):
+        result.energy("coils")
+    result = simulator(_measured_coils(), {**numbers, "L2": 3.0}).run([0.0, 1.0], inputs={"u": 1.0})
+    current = 1 - np.exp(-1.0)
+    assert result.energy("coils")[1] == pytest.approx(0.5 * current**2, abs=1e-10)
