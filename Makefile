@@ -2,13 +2,15 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+MINUTES ?= 30
 READY := $(VENV)/ready
 
-.PHONY: demo test lint types unit docs bench bench-agreement bench-peers bench-speed clean help
+.PHONY: demo test lint types unit soak docs bench bench-agreement bench-peers bench-speed clean help
 
 help:
 	@echo "make demo   derive and simulate differentials; tables and pictures in out/"
 	@echo "make test   format, lint, types, tests, documentation and doctests"
+	@echo "make soak MINUTES=30  random families beyond what every test run takes; totals in tests/soak/README.md"
 	@echo "make docs   README's guides and the API as pages in site/"
 	@echo "make bench  how time and memory to derive grow with the size of a graph"
 	@echo "make bench-speed  how fast and how exact runs are: generated C, numpy, scipy and SUNDIALS beside C by hand"
@@ -36,6 +38,9 @@ types: $(READY)
 
 unit: $(READY)
 	$(BIN)/python -m pytest -n 2
+
+soak: $(READY)
+	PYTHONPATH=tests $(BIN)/python -m soak $(MINUTES) $(if $(FAMILY),--family $(FAMILY)) $(if $(AGAIN),--again)
 
 docs: $(READY)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet

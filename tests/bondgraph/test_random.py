@@ -1,6 +1,5 @@
 """Random graphs against brute force: acceptance, transfer functions, the choice of causality."""
 
-import os
 import random
 from fractions import Fraction
 
@@ -19,13 +18,11 @@ from references.brute_force import (
 from references.build import Graph
 from references.matrices import leading_minors, numbers, rationals
 from references.random_graphs import random_graph
+from soak.families import seeds
 
 import bondgraph as bg
 
 REFUSALS = (bg.CausalityError, bg.AlgebraicLoopError)
-GRAPHS = int(os.environ.get("BONDGRAPH_RANDOM_GRAPHS", "400"))
-"""How many small random graphs; a night has time for 10,000, and as many larger ones in proportion."""
-
 TOLERANCE = 1e-9
 """Of a response, or of 1 where responses are small: double precision loses up to 1e-12 here."""
 
@@ -87,7 +84,7 @@ def _column(graph: Graph, equations: bg.StateEquations, node: str) -> int:
     return equations.inputs.index(sp.Symbol(name))
 
 
-@pytest.mark.parametrize("seed", range(GRAPHS))
+@pytest.mark.parametrize("seed", seeds("graphs"))
 def test_small_graph_is_derived_as_brute_force_solves_it(seed: int) -> None:
     graph = _small(seed)
     before = nx.DiGraph(graph)
@@ -100,9 +97,9 @@ def test_small_graph_is_derived_as_brute_force_solves_it(seed: int) -> None:
         assert regular_port_choices(graph) == []
 
 
-@pytest.mark.parametrize("seed", range(100_000, 100_000 + GRAPHS * 15 // 100))
+@pytest.mark.parametrize("seed", seeds("larger-graphs"))
 def test_larger_graph_is_derived_as_brute_force_solves_it(seed: int) -> None:
-    rng = random.Random(seed)
+    rng = random.Random(100_000 + seed)
     graph = random_graph(rng, rng.randint(15, 60), mesh=0.25, symbols=rng.random() < 0.3)
     equations = _derived(graph)
     assert (equations is not None) == regular(graph)

@@ -1,15 +1,13 @@
 """Random networks with diodes against an oracle that knows nothing of bond graphs."""
 
-import os
-
 import numpy as np
 import pytest
 from oracles.circuits import as_graph, complaints, judged
 from references.diode_networks import Network, random_network
+from soak.families import seeds
 
 from codegen import Result, Sine, switched_simulator
 
-COUNT = int(os.environ.get("BONDGRAPH_RANDOM_DIODES", "20"))
 TIMES = np.linspace(0.0, 3.0, 61)
 
 
@@ -22,11 +20,11 @@ def _check(network: Network) -> None:
     assert complaints(judged(network, TIMES), _run(network)) == []
 
 
-@pytest.mark.parametrize("seed", range(COUNT))
+@pytest.mark.parametrize("seed", seeds("diodes"))
 def test_diodes_with_resistances(seed: int) -> None:
     _check(random_network(np.random.default_rng(seed), ideal=False))
 
 
-@pytest.mark.parametrize("seed", range(COUNT))
+@pytest.mark.parametrize("seed", seeds("ideal-diodes"))
 def test_ideal_diodes(seed: int) -> None:
     _check(random_network(np.random.default_rng(10_000 + seed), ideal=True))

@@ -1,17 +1,15 @@
 """Random scenarios of the active differentials: against exact integration, and against Coulomb's law."""
 
-import os
 from itertools import product
 
 import numpy as np
 import pytest
 from references.paper_runs import Reference, run
+from soak.families import seeds
 
 import differentials
 from codegen import Result
 from differentials import Scenario
-
-RUNS = int(os.environ.get("BONDGRAPH_RANDOM_RUNS", "40"))  # 2,000 for a night
 
 ASSUMED = dict.fromkeys(("I_1", "I_2", "I_3", "I_4"), 0.008)
 ASSUMED |= {"I_c1": 0.026, "I_c2": 0.026, "I_s1": 0.0094, "I_s2": 0.0094}
@@ -109,7 +107,7 @@ def check(name: str, s: Scenario) -> Result:
     return found
 
 
-@pytest.mark.parametrize("seed", range(RUNS))
+@pytest.mark.parametrize("seed", seeds("scenarios"))
 def test_random_scenarios_agree(seed: int) -> None:
     check(*random_case(seed))
 

@@ -1,0 +1,58 @@
+"""Every family of random models: which test it is of, its slice of every run, what a soak promises.
+
+A test takes its seeds from here, `seeds("graphs")`; what it draws follows from the seed alone. A new family
+is one more line of `FAMILIES`. `BONDGRAPH_SOAK_GRAPHS=500` makes it 500 seeds, `=1000:1500` those from 1000
+on; `make soak` sets these.
+"""
+
+import os
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Family:
+    """Random models, one for each seed from 0 on.
+
+    ``name``: words joined by hyphens. ``test``: the file that takes its seeds, and ``::`` the test where
+    the file has several families. ``slice``: how many seeds every run of the tests takes. ``promised``:
+    how many a soak has to pass.
+    """
+
+    name: str
+    test: str
+    slice: int
+    promised: int
+
+    @property
+    def variable(self) -> str:
+        """The name in the environment that chooses other seeds."""
+        return "BONDGRAPH_SOAK_" + self.name.upper().replace("-", "_")
+
+    @property
+    def seeds(self) -> range:
+        """The slice, or what the environment says instead: a count, or ``first:stop``."""
+        first, _, stop = os.environ.get(self.variable, str(self.slice)).rpartition(":")
+        return range(int(first or 0), int(stop))
+
+
+def seeds(name: str) -> range:
+    """The seeds of a family in this run."""
+    return family(name).seeds
+
+
+def family(name: str) -> Family:
+    """A family by its name; `KeyError` for a name that is not in the table."""
+    return {one.name: one for one in FAMILIES}[name]
+
+
+FAMILIES = (
+    # Derivation.
+    Family("graphs", "bondgraph/test_random.py::test_small_graph_is_derived_as_brute_force_solves_it",
+           400, 10_000),
+    Family("larger-graphs",
+           "bondgraph/test_random.py::test_larger_graph_is_derived_as_brute_force_solves_it", 60, 1_500),
+    # Runs.
+    Family("scenarios", "differentials/test_random_scenarios.py::test_random_scenarios_agree", 40, 2_000),
+    Family("diodes", "codegen/test_switched_networks.py::test_diodes_with_resistances", 20, 1_000),
+    Family("ideal-diodes", "codegen/test_switched_networks.py::test_ideal_diodes", 20, 1_000),
+)  # fmt: skip
