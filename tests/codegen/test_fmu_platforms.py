@@ -1,6 +1,5 @@
 """Binaries for other platforms: each in that platform's own format."""
 
-import os
 import signal
 import struct
 import zipfile
@@ -8,13 +7,14 @@ from pathlib import Path
 
 import pytest
 from oracles.units import belt
+from soak.families import whole
 
 from codegen.fmu.binaries import PLATFORMS, this_platform
 
 pytest.importorskip("ziglang")
 
-SLOWEST = frozenset() if os.environ.get("BONDGRAPH_ALL_PLATFORMS") else {"x86_64-windows"}
-"""The first time, building Windows' C library takes minutes; set BONDGRAPH_ALL_PLATFORMS to have it, too."""
+SLOWEST = frozenset() if whole("platforms") else {"x86_64-windows"}
+"""The first time, building Windows' C library takes minutes; BONDGRAPH_SOAK_PLATFORMS=1 has it, too."""
 
 OTHERS = [name for name in PLATFORMS if name != this_platform() and name not in SLOWEST]
 

@@ -1,10 +1,9 @@
 """Whatever is generated says the same: simulators, exported Python and C, functional mock-up units.
 
 Every differential in its own scenario; every scenario of the paper's figures for the simulator's backends,
-and for all the rest, too, with BONDGRAPH_ALL_AGREEMENTS set. `make bench-agreement` prints the figures.
+and for all the rest, too, with BONDGRAPH_SOAK_AGREEMENTS=1. `make bench-agreement` prints the figures.
 """
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,12 +11,13 @@ import numpy as np
 import pytest
 from oracles.apart import Apart, apart, order
 from oracles.methods import EVERY, LOCATED, OWN, STEPPED, Made, Outcome, changes
+from soak.families import whole
 
 from codegen.fmu import binaries
 from codegen.runs.events import Event
 from differentials.scenarios import SAMPLE
 
-CHOSEN = EVERY if os.environ.get("BONDGRAPH_ALL_AGREEMENTS") else tuple(OWN.items())
+CHOSEN = EVERY if whole("agreements") else tuple(OWN.items())
 
 SAME, ALIKE = 1e-9, 1e-6
 """Of a signal's range, and s for events: where the method is the same, and where it is another one."""

@@ -2,7 +2,8 @@
 
 A test takes its seeds from here, `seeds("graphs")`; what it draws follows from the seed alone. A new family
 is one more line of `FAMILIES`. `BONDGRAPH_SOAK_GRAPHS=500` makes it 500 seeds, `=1000:1500` those from 1000
-on; `make soak` sets these.
+on; `make soak` sets these. A fixed set of cases that takes too long for every run is a family of one seed,
+which stands for the whole set: `whole("platforms")` says whether it is asked for.
 """
 
 import os
@@ -40,6 +41,13 @@ def seeds(name: str) -> range:
     return family(name).seeds
 
 
+def whole(name: str) -> bool:
+    """Whether this run takes all of a fixed set of cases rather than a part of it."""
+    one = family(name)
+    assert (one.slice, one.promised) == (0, 1), f"{name} is a family of seeds"
+    return bool(one.seeds)
+
+
 def family(name: str) -> Family:
     """A family by its name; `KeyError` for a name that is not in the table."""
     return {one.name: one for one in FAMILIES}[name]
@@ -52,6 +60,9 @@ FAMILIES = (
     Family("larger-graphs",
            "bondgraph/test_random.py::test_larger_graph_is_derived_as_brute_force_solves_it", 60, 1_500),
     # Runs.
+    Family("flat", "codegen/test_roots.py", 0, 1),
+    Family("agreements", "differentials/test_agreement.py", 0, 1),
+    Family("platforms", "codegen/test_fmu_platforms.py", 0, 1),
     Family("scenarios", "differentials/test_random_scenarios.py::test_random_scenarios_agree", 40, 2_000),
     Family("diodes", "codegen/test_switched_networks.py::test_diodes_with_resistances", 20, 1_000),
     Family("ideal-diodes", "codegen/test_switched_networks.py::test_ideal_diodes", 20, 1_000),
