@@ -32,12 +32,13 @@ ORDER = {
         "renaming", "composition", "declarations", "restored", "nodelink", "safexml", "graphml", "files",
     ],
     "codegen": [
-        "arrays", "roots", *_room("inputs", "pieces generators polynomials signal signals sampled tables"),
+        "arrays", "pairs", "roots", *_room("inputs", "pieces generators polynomials signal signals sampled "
+                                            "tables"),
         "model.affine", "closing", "records", "sections", "program", "identifiers", "printing", "units",
-        *_room("model", "numpy_backend numbers snapshot sharing friction instant loops rubbing closed "
+        *_room("model", "numpy_backend numbers sharp snapshot sharing friction instant loops rubbing closed "
                "sizes modes guards"),
-        *_room("runs", "events sundials legs exact hybrid arguments impulses observer tables "
-               "summary"),
+        *_room("runs", "events sundials legs watched exact ladder free hybrid arguments impulses observer "
+               "tables summary"),
         *_room("pictures", "style canvas labels flags marks stacked"),
         *_room("runs", "result snapshots columns"),
         *_room("pictures", "panels poles bode shapes"), *_room("analysis", "spectrum comparison"),

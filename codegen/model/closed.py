@@ -5,6 +5,7 @@ drives a dependent storage steps; z are the states that laws own.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -17,7 +18,9 @@ from codegen.model.instant import Binding, Evaluation, Instant
 from codegen.model.loops import solve_loop
 from codegen.model.numbers import Numbers, assembled, check_values, exact_parameters, numbers
 from codegen.model.rubbing import Rubbing
+from codegen.model.sharp import NotAffineError, sharp_rates
 from codegen.model.snapshot import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, Mode, Snapshot
+from codegen.pairs import Pair, pair
 from codegen.program import Group, Program
 
 __all__ = [
@@ -182,6 +185,17 @@ class ClosedModel:
             redundant = 0 in mode and len(self.hold(mode, self.constant).share) > 0
             self._maps[mode] = None if redundant else self._affine_map(mode, inputs)
         return self._maps[mode]
+
+    @cached_property
+    def sharp_rates(self) -> Pair | None:
+        """The rates of s over [s, w, dw, 1] of an affine model without friction, with 32 digits."""
+        affine = None if self.program.friction else self.affine_map((), len(self.program.external))
+        if affine is None:
+            return None
+        try:
+            return sharp_rates(self.program, self.parameters)
+        except NotAffineError:
+            return pair(affine.rows(RATE))
 
     def _affine_map(self, mode: Mode, inputs: int) -> AffineMap:
         def point(v: Array) -> list[Array]:

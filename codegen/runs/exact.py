@@ -2,46 +2,34 @@
 by matrix exponentials, and its events are roots of power series that no step can hide."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.linalg
 
+from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.inputs.generators import generator
 from codegen.inputs.pieces import Piece
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.model.affine import AffineMap
-from codegen.model.closed import CAPS, INPUTS, RATE, READINGS, ClosedModel, Mode
+from codegen.model.closed import ClosedModel, Mode
 from codegen.model.modes import LOOK_AHEAD, Peaks, scales
 from codegen.runs.legs import Ended, Track
-
-DEGREE = 18
-"""Of the power series; over a step of ``|M| h <= 1`` what is left out is below rounding."""
-
-MOST_STEPS = 300_000
-"""Steps are so short that ``|M| h <= 1``; stretches that would need more of them are left to step control."""
+from codegen.runs.watched import DEGREE, Steps, exponential, lasting, series, watched
 
 MOST_LENGTHS = 8
 """So many different steps between samples each get an exponential of their own."""
 
+MANY = 300_000
+"""So many steps are always taken."""
+
+LEAST_PART = 0.01
+"""Of more steps at least this part has to follow what goes on all the time."""
+
+MOST_STEPS = 1e9
+"""Some half an hour's; more are refused."""
+
 BLOCK = 256
 """So many steps are taken before events are looked for."""
-
-
-@dataclass(frozen=True)
-class Affine:
-    """``z' = M z`` with z = [s, g], and the rows over z of triggers; ``ports``: whose trigger each row is.
-
-    A sticking port has two: the distances of its effort to both breakaway efforts.
-    """
-
-    M: Array
-    triggers: Array
-    caps: Array
-    ports: tuple[int, ...]
-    #: A bound on |M| in a norm in which M is balanced.
-    norm: float
 
 
 class ExactLeg:
@@ -60,7 +48,7 @@ class ExactLeg:
         made = generator(pieces, t)
         self._n, self._mode, self._t = len(s), mode, t
         self._model, self._pieces = model, pieces
-        self._system = _system(model, affine, made.G, made.C, mode, len(s))
+        self._system = watched(model, affine, made, mode, len(s))
         self._z = np.concatenate([s, made.start])
         self._blind = LOOK_AHEAD * peaks.time
         now = model.at(t, s, pieces, mode)
@@ -69,9 +57,24 @@ class ExactLeg:
         self._limits = limits[list(self._system.ports)] if mode else np.zeros(0)
         self._armed = np.zeros(len(self._limits), dtype=bool)
 
-    def steppable(self, stop: float) -> bool:
-        """Whether the stretch takes a bearable number of steps."""
-        return self._system.norm * (stop - self._t) <= MOST_STEPS
+    def steps(self, stop: float) -> float:
+        """How many steps the stretch takes, of ``|M| h <= 1`` each."""
+        return self._system.norm * (stop - self._t)
+
+    def decays(self, stop: float) -> bool:
+        """Whether most of so many steps would follow what has decayed: step control is quicker there."""
+        steps = self.steps(stop)
+        return steps > MANY and lasting(self._system.M, stop - self._t) < LEAST_PART * steps
+
+    def check(self, stop: float) -> None:
+        """Refuse a stretch whose events could not be looked for in bearable time."""
+        steps = self.steps(stop)
+        if not steps <= MOST_STEPS:
+            raise SimulationError(
+                f"at t = {self._t:.9g} rates of the model or of its inputs reach "
+                f"{self._system.norm:.3g} 1/s: to look for events until {stop:.9g} s takes {steps:.3g} "
+                "steps; run it for a shorter time, or with method Radau where what is fast decays"
+            )
 
     def run(self, stop: float, times: Array, track: Track) -> Ended:
         """Step to ``stop`` or the first event, recording the samples before it."""
@@ -87,75 +90,78 @@ class ExactLeg:
         while at < len(points):
             count = _alike(lengths, at)
             h = float(lengths[at]) if count == 1 else float(points[at + count - 1] - t) / count
-            ended, rows = self._steps(t, z, h, count)
-            track.see(rows[:, : self._n])
-            recorded = min(len(rows), last - first - at)
-            self._check_levels(rows, np.asarray(t + h * np.arange(1, len(rows) + 1), dtype=float))
-            self._record(track, rows[:recorded])
+            ended, z = self._steps(t, z, h, count, track, last)
             if ended is not None:
                 return ended
-            at, t, z = at + count, float(points[at + count - 1]), rows[-1]
+            at, t = at + count, float(points[at + count - 1])
         return stop, z[: self._n], frozenset()
 
     def _run_ragged(self, stop: float, times: Array, track: Track) -> Ended:
         """The same where samples lie anywhere: steps of one length, and samples by the series inside them."""
-        t, z, system = self._t, self._z, self._system
+        t, system = self._t, self._system
         count = max(1, int(np.ceil(system.norm * (stop - t))))
         step = (stop - t) / count
-        leap, series = scipy.linalg.expm(system.M * step), _series(system, step)
-        inside = _series(replace(system, triggers=np.eye(len(z))), step)
+        powers = series(system.M, system.triggers, step)
+        inside = series(system.M, np.eye(len(self._z)), step)
+        steps, until = Steps(system.M, step, self._z), t
         for begin in range(0, count, BLOCK):
-            states = powers_of(leap, z, min(BLOCK, count - begin))
+            states = steps.take(min(BLOCK, count - begin))
             start = t + begin * step
-            found = self._first_event(states[:-1], series, start, step)
+            found = self._first_event(states[:-1], powers, start, step)
             track.see(states[:, : self._n])
             until = start + step * (len(states) - 1 if found is None else found[0] + found[1])
             now = times[(times >= start) & (times < until)]
-            rows = _between(states, inside, (now - start) / step)
-            self._check_levels(rows, now)
-            self._record(track, rows)
+            self._record(track, _between(states, inside, (now - start) / step), now)
             if found is not None:
                 whole, tau, ports = found
-                end = scipy.linalg.expm(system.M * (tau * step)) @ states[whole]
-                return until, end[: self._n], ports
-            z = states[-1]
-        self._record(track, np.repeat(z[None], np.count_nonzero(times >= until), axis=0))
-        return stop, z[: self._n], frozenset()
+                return until, self._inside(states[whole], tau * step), ports
+        self._record(
+            track, states[-1:].repeat(np.count_nonzero(times >= until), axis=0), np.zeros(0)
+        )
+        return stop, states[-1, : self._n], frozenset()
 
-    def _record(self, track: Track, rows: Array) -> None:
+    def _inside(self, z: Array, length: float) -> Array:
+        """s a part of a step later."""
+        _, gather = exponential(self._system.M, length)
+        later: Array = z + gather @ (self._system.M @ z)
+        return later[: self._n]
+
+    def _record(self, track: Track, rows: Array, times: Array) -> None:
+        """Samples; where a friction level is below zero, let the model refuse it with its time."""
+        for at in np.flatnonzero((rows @ self._system.caps.T < 0).any(axis=1)).tolist():
+            if at < len(times):
+                self._model.at(float(times[at]), rows[at, : self._n], self._pieces, self._mode)
         a, b = track.recorded, track.recorded + len(rows)
         track.vectors[a:b] = rows[:, : self._n]
         track.modes += [self._mode] * len(rows)
         track.recorded = b
 
-    def _check_levels(self, rows: Array, times: Array) -> None:
-        """Where a friction level is below zero, let the model refuse it with its time."""
-        for at in np.flatnonzero((rows @ self._system.caps.T < 0).any(axis=1)).tolist():
-            self._model.at(float(times[at]), rows[at, : self._n], self._pieces, self._mode)
-
-    def _steps(self, t: float, z: Array, h: float, count: int) -> tuple[Ended | None, Array]:
-        """``count`` steps of h from t: what ended them, and z at the end of each step that was whole."""
-        if h <= 0:
-            return None, np.repeat(z[None], count, axis=0)
+    def _steps(
+        self, t: float, z: Array, h: float, count: int, track: Track, last: int
+    ) -> tuple[Ended | None, Array]:
+        """``count`` steps of h from t, at whose ends samples are up to ``last``: what ended them, and z."""
         parts = max(1, int(np.ceil(self._system.norm * h)))
         step = h / parts
-        leap = scipy.linalg.expm(_beyond(self._system.M, z, self._n) * step)
-        moved = np.eye(1, len(z), self._n)[0]
-        series = _series(self._system, step)
-        rows = np.empty((0, len(z)))
+        powers = series(self._system.M, self._system.triggers, step)
+        steps = Steps(self._system.M, step, z)
         for begin in range(0, count * parts, BLOCK):
-            further = powers_of(leap, moved, min(BLOCK, count * parts - begin))
-            states, moved = z + further, further[-1]
-            states[:, self._n] = z[self._n]
-            found = self._first_event(states[:-1], series, t + begin * step, step)
+            states = steps.take(min(BLOCK, count * parts - begin))
+            found = None
+            if h > 0:
+                found = self._first_event(states[:-1], powers, t + begin * step, step)
+            done = len(states) - 1 if found is None else found[0]
+            rows = states[parts - begin % parts : done + 1 : parts]
+            track.see(rows[:, : self._n])
+            rows = rows[: last - track.recorded]
+            first = begin // parts + 1
+            self._record(
+                track, rows, np.asarray(t + h * np.arange(first, first + len(rows)), dtype=float)
+            )
             if found is not None:
                 whole, tau, ports = found
-                end = scipy.linalg.expm(self._system.M * (tau * step)) @ states[whole]
-                rows = np.vstack([rows, states[1 : whole + 1]])[parts - 1 :: parts]
-                time = t + (begin + whole + tau) * step
-                return (time, end[: self._n], ports), rows
-            rows = np.vstack([rows, states[1:]])
-        return None, rows[parts - 1 :: parts]
+                end = self._inside(states[whole], tau * step)
+                return (t + (begin + whole + tau) * step, end, ports), z
+        return None, states[-1]
 
     def _first_event(
         self, states: Array, series: Array, t: float, step: float
@@ -207,64 +213,6 @@ class ExactLeg:
             below[0] += self._limits[row]
             return root if first_fall(below, root) is not None else None
         return root
-
-
-def _beyond(M: Array, z: Array, one: int) -> Array:
-    """The same system told from z on, so that nothing large is rounded in every step.
-
-    Component ``one``, which is 1 for ever, brings the rate that there is at z.
-    """
-    further = M.copy()
-    further[:, one] = M @ z
-    return further
-
-
-def powers_of(leap: Array, z: Array, count: int) -> Array:
-    """z, P z, P^2 z, ... up to P^count z, as rows; by doubling."""
-    rows = np.empty((count + 1, len(z)))
-    rows[0] = z
-    done, power = 1, leap.T
-    while done <= count:
-        more = min(done, count + 1 - done)
-        rows[done : done + more] = rows[:more] @ power
-        done += more
-        power = power @ power
-    return rows
-
-
-def _system(
-    model: ClosedModel, affine: AffineMap, G: Array, C: Array, mode: Mode, n: int
-) -> Affine:
-    """An affine mode over z: inputs and their rates are rows over g, whose first component is 1."""
-    m = len(C)
-    fed = np.vstack([C, C @ G, np.eye(1, len(G))])
-
-    def over_z(rows: Array) -> Array:
-        return np.hstack([rows[:, :n], rows[:, n : n + 2 * m + 1] @ fed])
-
-    rate = over_z(affine.rows(RATE))
-    M = np.vstack([rate, np.hstack([np.zeros((len(G), n)), G])])
-    efforts = over_z(affine.rows(INPUTS)[model.friction_inputs])
-    slips = over_z(affine.rows(READINGS)[model.friction_readings])
-    caps = over_z(affine.rows(CAPS))
-    triggers, ports = [np.zeros((0, len(M)))], []
-    for i, sign in enumerate(mode):
-        rows = [sign * slips[i]] if sign else [caps[i] - efforts[i], caps[i] + efforts[i]]
-        triggers.append(np.array(rows))
-        ports += [i] * len(rows)
-    balanced = scipy.linalg.matrix_balance(M, permute=False)[0]
-    norm = float(min(np.linalg.norm(balanced, 1), np.linalg.norm(balanced, np.inf)))
-    return Affine(M, np.vstack(triggers), caps, tuple(ports), norm)
-
-
-def _series(system: Affine, step: float) -> Array:
-    """``W (M step)^k / k!`` for each k: the coefficients of the triggers' power series over a step."""
-    rows = system.triggers
-    series = [rows]
-    for k in range(1, DEGREE + 1):
-        rows = rows @ system.M * (step / k)
-        series.append(rows)
-    return np.array(series)
 
 
 def _between(states: Array, series: Array, places: Array) -> Array:

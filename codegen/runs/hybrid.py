@@ -15,10 +15,14 @@ from codegen.model.guards import fallen_guards
 from codegen.model.modes import LOOK_AHEAD, Peaks, decide, scales
 from codegen.runs.events import Event
 from codegen.runs.exact import ExactLeg
+from codegen.runs.free import FreeLeg
 from codegen.runs.legs import EXACT, Leg, Settings, Track
 
 STALLED = 60
 """So many events in a row are a run that goes nowhere, if they are hardly apart."""
+
+ROUNDED = 1e4
+"""So many steps in double precision leave all digits that count, of slow motions beside fast ones, too."""
 
 APART = 1e-9
 """Hardly apart: closer than this fraction of the run, or than what decides ties."""
@@ -131,7 +135,7 @@ class _Course:
     def _leg(self, pieces: Sequence[Piece]) -> Leg:
         return Leg(self._model, pieces, self.mode, self._settings, self._span, self._peaks)
 
-    def _exact(self, pieces: Sequence[Piece], stop: float) -> ExactLeg | None:
+    def _exact(self, pieces: Sequence[Piece], stop: float) -> ExactLeg | FreeLeg | None:
         """The stretch ahead as an exact one, where the mode is affine and exact steps are asked for."""
         model, method = self._model, self._settings.method
         if method not in ("auto", EXACT):
@@ -142,9 +146,12 @@ class _Course:
             affine = model.affine_map(self.mode, len(pieces))
             if affine is not None:
                 leg = ExactLeg(model, affine, pieces, self.mode, self.t, self.s, self._peaks)
-                if leg.steppable(stop):
-                    return leg
-                reason = "rates of the model or of its inputs are too fast"
+                if not self.mode and leg.steps(stop) > ROUNDED and model.sharp_rates is not None:
+                    return FreeLeg(model.sharp_rates, pieces, self.t, self.s)
+                if method == "auto" and leg.decays(stop):
+                    return None
+                leg.check(stop)
+                return leg
         if method == EXACT:
             raise SimulationError(
                 f"at t = {self.t:.9g} {reason} for exact steps; let method be auto"

@@ -9,7 +9,7 @@ import scipy.linalg
 
 import bondgraph as bg
 from codegen import Lag, Ramp, Simulator, Sine, Step, simulator
-from codegen.runs.exact import powers_of
+from codegen.runs.watched import powers_of
 
 
 def _oscillator(level: object = "N") -> "nx.DiGraph[str]":

@@ -1,0 +1,124 @@
+"""An affine mode with its inputs' generator as one linear system, and what is watched in it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+
+from codegen.arrays import Array
+from codegen.inputs.generators import Generator
+from codegen.model.affine import AffineMap
+from codegen.model.closed import CAPS, INPUTS, RATE, READINGS, ClosedModel, Mode
+
+DEGREE = 18
+"""Of power series; over a step of ``|M| h <= 1`` what is left out is below rounding."""
+
+
+GONE = 40.0
+"""After so many of its time constants a motion is below rounding."""
+
+
+@dataclass(frozen=True)
+class Watched:
+    """``z' = M z`` with z = [s, g], and the rows over z of triggers; ``ports``: whose trigger each row is.
+
+    A sticking port has two: the distances of its effort to both breakaway efforts.
+    """
+
+    M: Array
+    triggers: Array
+    caps: Array
+    ports: tuple[int, ...]
+    #: A bound on |M| in a norm in which M is balanced.
+    norm: float
+
+
+def over_z(rows: Array, made: Generator, n: int) -> Array:
+    """Rows over [s, w, dw, 1] as rows over [s, g]: the first component of g is 1."""
+    m = len(made.C)
+    fed = np.vstack([made.C, made.C @ made.G, np.eye(1, len(made.G))])
+    return np.hstack([rows[:, :n], rows[:, n : n + 2 * m + 1] @ fed])
+
+
+def watched(model: ClosedModel, affine: AffineMap, made: Generator, mode: Mode, n: int) -> Watched:
+    """An affine mode over z, whose first n components are s."""
+    G = made.G
+    rate = over_z(affine.rows(RATE), made, n)
+    M = np.vstack([rate, np.hstack([np.zeros((len(G), n)), G])])
+    efforts = over_z(affine.rows(INPUTS)[model.friction_inputs], made, n)
+    slips = over_z(affine.rows(READINGS)[model.friction_readings], made, n)
+    caps = over_z(affine.rows(CAPS), made, n)
+    triggers, ports = [np.zeros((0, len(M)))], []
+    for i, sign in enumerate(mode):
+        rows = [sign * slips[i]] if sign else [caps[i] - efforts[i], caps[i] + efforts[i]]
+        triggers.append(np.array(rows))
+        ports += [i] * len(rows)
+    return Watched(M, np.vstack(triggers), caps, tuple(ports), balanced_norm(M))
+
+
+def balanced_norm(M: Array) -> float:
+    """A bound on |M|, and so on its rates, in a norm in which M is balanced."""
+    balanced = scipy.linalg.matrix_balance(M, permute=False)[0]
+    return float(min(np.linalg.norm(balanced, 1), np.linalg.norm(balanced, np.inf)))
+
+
+def lasting(M: Array, span: float) -> float:
+    """How many radians or time constants of ``z' = M z`` have to be followed over a span [s].
+
+    A motion that decays is over after some of its time constants, one that turns on goes on for ever.
+    """
+    rates = np.linalg.eigvals(scipy.linalg.matrix_balance(M, permute=False)[0])
+    ends = np.minimum(span, GONE / np.maximum(-rates.real, GONE / span))
+    return float((np.abs(rates) * ends).max(initial=0.0))
+
+
+def series(M: Array, rows: Array, step: float) -> Array:
+    """``rows (M step)^k / k!`` for each k: the coefficients of their power series over a step."""
+    found = [rows]
+    for k in range(1, DEGREE + 1):
+        rows = rows @ M * (step / k)
+        found.append(rows)
+    return np.array(found)
+
+
+def exponential(M: Array, step: float) -> tuple[Array, Array]:
+    """``exp(M step)`` and its integral over the step, which has ``|M| step <= 1``."""
+    size = len(M)
+    total = term = np.eye(size)
+    for k in range(2, DEGREE + 2):
+        term = M @ term * (step / k)
+        total = total + term
+    gather = total * step
+    return np.eye(size) + M @ gather, gather
+
+
+class Steps:
+    """States at the ends of steps of one length.
+
+    They are told from the first, so that nothing large is rounded again in every step.
+    """
+
+    def __init__(self, M: Array, step: float, z: Array) -> None:
+        self._leap, gather = exponential(M, step)
+        self._start, self._beyond = z, np.zeros_like(z)
+        self._change = gather @ (M @ z)
+
+    def take(self, count: int) -> Array:
+        """The state that was come to, and those after 1, 2, .. ``count`` more steps."""
+        changes = powers_of(self._leap, self._change, count)
+        beyond = np.cumsum(np.vstack([self._beyond, changes[:-1]]), axis=0)
+        self._beyond, self._change = beyond[-1], changes[-1]
+        return np.asarray(self._start + beyond, dtype=float)
+
+
+def powers_of(leap: Array, z: Array, count: int) -> Array:
+    """z, P z, P^2 z, ... up to P^count z, as rows; by doubling."""
+    rows = np.empty((count + 1, len(z)))
+    rows[0] = z
+    done, power = 1, leap.T
+    while done <= count:
+        more = min(done, count + 1 - done)
+        rows[done : done + more] = rows[:more] @ power
+        done += more
+        power = power @ power
+    return rows
