@@ -23,7 +23,7 @@ MANY = 300_000
 """So many steps are always taken."""
 
 LEAST_PART = 0.01
-"""Of more steps at least this part has to follow what goes on all the time."""
+"""Of more steps: where a smaller part follows what has not decayed, step control is quicker."""
 
 MOST_STEPS = 1e9
 """Some half an hour's; more are refused."""
@@ -61,20 +61,23 @@ class ExactLeg:
         """How many steps the stretch takes, of ``|M| h <= 1`` each."""
         return self._system.norm * (stop - self._t)
 
-    def decays(self, stop: float) -> bool:
-        """Whether most of so many steps would follow what has decayed: step control is quicker there."""
-        steps = self.steps(stop)
-        return steps > MANY and lasting(self._system.M, stop - self._t) < LEAST_PART * steps
+    def quick(self, stop: float, exact: bool) -> bool:
+        """Whether to take the steps: unless ``exact`` is asked for, what mostly has decayed is left out.
 
-    def check(self, stop: float) -> None:
-        """Refuse a stretch whose events could not be looked for in bearable time."""
-        steps = self.steps(stop)
-        if not steps <= MOST_STEPS:
-            raise SimulationError(
-                f"at t = {self._t:.9g} rates of the model or of its inputs reach "
-                f"{self._system.norm:.3g} 1/s: to look for events until {stop:.9g} s takes {steps:.3g} "
-                "steps; run it for a shorter time, or with method Radau where what is fast decays"
-            )
+        Raises `SimulationError` where there would be no end, of steps or of what step control has to follow.
+        """
+        steps = work = self.steps(stop)
+        if steps <= MANY:
+            return True
+        if not exact:
+            work = min(steps, lasting(self._system.M, stop - self._t) / LEAST_PART)
+        if work <= MOST_STEPS:
+            return work == steps
+        raise SimulationError(
+            f"at t = {self._t:.9g} rates of the model or of its inputs reach "
+            f"{self._system.norm:.3g} 1/s: to look for events until {stop:.9g} s takes {steps:.3g} "
+            "steps; run it for a shorter time, or leave the fastest out of the model"
+        )
 
     def run(self, stop: float, times: Array, track: Track) -> Ended:
         """Step to ``stop`` or the first event, recording the samples before it."""

@@ -89,12 +89,18 @@ class _Course:
     @property
     def unfinished(self) -> bool:
         """Whether there is anything left to decide or to integrate."""
-        undecided = self.t in self._breaks and self.t != self._settled
-        return self._settled is None or self.t < self.end or bool(self._touched) or undecided
+        undecided = self.t != self._settled
+        return undecided or self.t < self.end or bool(self._touched)
 
     @property
     def _pieces(self) -> list[Piece]:
         return [signal.piece(self.t) for signal in self._signals]
+
+    @property
+    def _slipping(self) -> frozenset[int]:
+        """Ports that slip, but for those whose slip efforts change at once."""
+        coupled = self._model.coupled_directly
+        return frozenset(i for i, sign in enumerate(self.mode) if sign and not coupled(i))
 
     def settle(self) -> frozenset[int]:
         """Decide the mode just after t and bring sticking ports to rest; the guards that have fallen."""
@@ -104,6 +110,9 @@ class _Course:
             fastest = self._leg(pieces).fastest(t, self.s)
             peaks.time = 1 / max(fastest, 100.0 / self._span)
         self.ahead = LOOK_AHEAD * peaks.time
+        if t >= self.end and self._settled is not None:
+            # The search may have missed an event at the very end by a rounding.
+            self._touched |= _still(model, t, self.s, pieces, self.mode, self._slipping, peaks)
         # A breakpoint may set the slips anew, so sticking ports are decided again with the others.
         loose = self._touched | {i for i, sign in enumerate(self.mode) if sign == 0}
         at_zero = _still(model, t, self.s, pieces, self.mode, loose, peaks)
@@ -148,10 +157,7 @@ class _Course:
                 leg = ExactLeg(model, affine, pieces, self.mode, self.t, self.s, self._peaks)
                 if not self.mode and leg.steps(stop) > ROUNDED and model.sharp_rates is not None:
                     return FreeLeg(model.sharp_rates, pieces, self.t, self.s)
-                if method == "auto" and leg.decays(stop):
-                    return None
-                leg.check(stop)
-                return leg
+                return leg if leg.quick(stop, method == EXACT) else None
         if method == EXACT:
             raise SimulationError(
                 f"at t = {self.t:.9g} {reason} for exact steps; let method be auto"

@@ -151,7 +151,7 @@ class Leg:
         steps, short = 0, 0
         tiny = min(TINY_STEP * self._span, TINY_PART / max(fastest, 1 / self._span))
         while solver.status == "running":
-            message = solver.step()
+            message = _stepped(solver)
             if solver.status == "failed":
                 raise SimulationError(f"at t = {solver.t:.9g} the integrator failed: {message}")
             dense = solver.dense_output()
@@ -198,3 +198,11 @@ class Leg:
         if not np.isfinite(rate).all():
             raise SimulationError(f"at t = {t:.9g} the rates are not finite; state {s.tolist()}")
         return rate
+
+
+def _stepped(solver: Any) -> Any:
+    """One step; what an integrator says that fails. Implicit ones refuse numbers that are not finite."""
+    try:
+        return solver.step()
+    except ValueError as error:
+        raise SimulationError(f"at t = {solver.t:.9g} the integrator failed: {error}") from None

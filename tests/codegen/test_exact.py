@@ -123,3 +123,51 @@ def test_thousands_of_ragged_samples_are_those_of_step_control() -> None:
     other = _made().run(time, {"v": 0.4}, INPUTS, method="DOP853", rtol=1e-12, atol=1e-13)
     for name in exact.columns:
         assert np.abs(exact[name] - other[name]).max() <= 1e-8 * (1 + np.ptp(other[name])), name
+
+
+@pytest.mark.parametrize("size", [1.0, 1e60, 1e142, 1e300])
+@pytest.mark.parametrize("span", [1.0, 1e3])
+def test_states_of_any_size_move_alike(size: float, span: float) -> None:
+    """The model is linear: the motion over its start is the same, in steps and by long exponentials."""
+    graph = _oscillator()
+    graph.remove_nodes_from(["contact", "rub", "belt"])
+    ready = simulator(bg.derive(graph), {"m": 2.0, "k": 800.0, "b": 1e-3})
+    run = ready.run(np.linspace(0, span, 101), {"v": size}, {"F": 0.0}, method="exact")
+    M = np.array([[-1e-3 / 2, -1 / 2], [800.0, 0.0]])
+    for k in (1, 50, 100):
+        expected = scipy.linalg.expm(M * run.time[k])[:, 0]
+        assert run["v"][k] / size == pytest.approx(expected[0], abs=2e-11)
+        assert run["F_k"][k] / size == pytest.approx(expected[1], abs=1e-9)
+
+
+@pytest.mark.parametrize("method", ["exact", "DOP853", "Radau"])
+def test_an_event_at_the_last_instant_is_one(method: str) -> None:
+    """v = 1 - t/2 comes to rest at 2 s, where the run ends; then a force grows to the breakaway at 1 s."""
+    graph: nx.DiGraph[str] = nx.DiGraph()
+    graph.add_nodes_from([
+        bg.Se("push", "F"), bg.One("block"), bg.I("m", "m", flow="v"),
+        bg.R("ground", law=bg.DryFriction("N"), flow="w"),
+    ])  # fmt: skip
+    graph.add_edges_from([("push", "block"), ("block", "m"), ("block", "ground")])
+    ready = simulator(bg.derive(graph), {"m": 1.0, "N": 1.0})
+    run = ready.run(np.linspace(0, 2, 21), {"v": 1.0}, {"F": 0.5}, method=method)
+    assert [(e.kind, round(e.time, 9)) for e in run.events] == [("stick", 2.0)]
+    run = ready.run(np.linspace(0, 1, 21), {}, {"F": Ramp(0.0, 1.0)}, method=method)
+    assert [(e.kind, round(e.time, 9)) for e in run.events] == [("slip", 1.0)]
+
+
+def test_numbers_past_the_largest_are_refused_with_their_time() -> None:
+    graph = _oscillator()
+    graph.remove_nodes_from(["contact", "rub", "belt"])
+    for rate in (10.0, 1e6):  # in steps, and by long exponentials
+        ready = simulator(bg.derive(graph), {"m": 1.0, "k": 1.0, "b": -rate})
+        with pytest.raises(bg.SimulationError, match=r"at t = \S+ \w+ is not finite"):
+            ready.run(np.linspace(0, 100, 101), {"v": 1.0}, {"F": 0.0})
+
+
+def test_a_search_for_events_without_end_is_refused() -> None:
+    ready = _made(k=1e16)  # 7e7 rad/s for a minute
+    with pytest.raises(
+        bg.SimulationError, match=r"to look for events until 1000000 s takes .* steps"
+    ):
+        ready.run([0.0, 1e6], {"v": 0.4}, {"F": 0.0, "v_b": 1.0})

@@ -65,5 +65,6 @@ FAMILIES = (
     Family("platforms", "codegen/test_fmu_platforms.py", 0, 1),
     Family("scenarios", "differentials/test_random_scenarios.py::test_random_scenarios_agree", 40, 2_000),
     Family("diodes", "codegen/test_switched_networks.py::test_diodes_with_resistances", 20, 1_000),
+    Family("stiff-linear", "codegen/test_stiff_linear.py::test_states_are_the_exponential", 24, 500),
     Family("ideal-diodes", "codegen/test_switched_networks.py::test_ideal_diodes", 20, 1_000),
 )  # fmt: skip
