@@ -34,11 +34,11 @@ def straight_rates(program: Program, fast: Straight) -> list[str]:
         *comment(f"Rates of slipping friction: {operations(fast.code)} operations."),
         *_SIGNATURE,
     ]  # fmt: skip
-    code = body(fast.code, _rate_places(program, fast), "rate")
     found = _rate_places(program, fast)
+    # s has room for one where nothing is integrated, and whoever asks reads all of its rate.
+    code = body(fast.code, found, "rate") if fast.code.results else ["    rate[0] = 0.0;"]
     used = {re.split(r"\W", found[name])[0] for name in fast.code.arguments}
-    used |= {"rate"} if fast.code.results else set()
-    names = ("m", "time", "s", "w", "signs", "rate")
+    names = ("m", "time", "s", "w", "signs")
     unused = [f"    (void){name};" for name in names if name not in used]
     return [*lines, *unused, *code, "    return BG_OK;", "}"]
 

@@ -168,10 +168,12 @@ int bg_located_fastest(bg_located *c, double t, const double *s, double *fastest
 {
     double *power = c->squares[0], *next = c->squares[1], logarithm = 0.0, share = 1.0;
     const int status = bg_located_jacobian(c, t, s, power);
-    double size = largest(power);
     *fastest = c->signals->fastest[c->segment];
-    if (status != BG_OK || !isfinite(size))
-        return status != BG_OK ? status : BG_NOT_FINITE;
+    if (status != BG_OK)
+        return status;
+    double size = largest(power);
+    if (!isfinite(size))
+        return BG_NOT_FINITE;
     for (int k = 0; k < SQUARINGS && size > 0.0; k++) {
         double *const done = power;
         logarithm += share * log(size);
