@@ -3,6 +3,7 @@
 from codegen.analysis.comparison import Comparison, compare
 from codegen.analysis.spectrum import Spectrum, spectrum
 from codegen.c.export import to_c
+from codegen.energy.audit import Audit
 from codegen.fmu.export import write_fmu
 from codegen.inputs.sampled import Sampled
 from codegen.inputs.signal import Signal
@@ -38,6 +39,7 @@ from codegen.switched.simulator import SwitchedSimulator, switched_simulator
 from codegen.trim import trim
 
 __all__ = [
+    "Audit",
     "Block",
     "Comparison",
     "Constant",

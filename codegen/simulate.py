@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike
 
 from bondgraph import ParameterError, SignalError, StateEquations
 from codegen.arrays import Array, is_finite, is_number
+from codegen.energy.ledger import Ledger
+from codegen.energy.replay import Run
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
 from codegen.engine.runs import CRuns
@@ -44,14 +46,16 @@ class Simulator:
     """A model with numbers for its parameters; every call returns fresh arrays.
 
     ``states``: names in the order of ``x``, states that laws own last. ``inputs``: names in the order
-    of ``u``, what the model must be given. ``signals``: every name a `Result` holds. ``engine`` and
-    ``located``: the C that runs it, exactly where it is affine, and with step control.
+    of ``u``, what the model must be given. ``signals``: every name a `Result` holds. ``laws``: over
+    those declared. ``engine`` and ``located``: the C that runs it, exactly where it is affine, and with
+    step control.
     """
 
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     closed: ClosedModel
+    laws: Mapping[Any, object] | None = field(default=None, repr=False, compare=False)
     engine: CRuns | None = field(default=None, repr=False, compare=False)
     located: LocatedRuns | None = field(default=None, repr=False, compare=False)
 
@@ -126,9 +130,15 @@ class Simulator:
             found.events,
             MappingProxyType(columns),
             observer,
+            self._ledger(Run(self.laws, self.closed.parameters, times, start, signals, settings)),
             told_units(self.closed.equations),
             found.backend,
         )
+
+    def _ledger(self, run: Run) -> Ledger:
+        program = self.closed.program
+        names = (*program.states, *program.law_states, *program.inputs, *program.external)
+        return Ledger(self.closed.equations, tuple(name.name for name in names), run.again)
 
     def _in_c(
         self, times: Array, states: Array, start: Array, signals: Sequence[Signal],
@@ -214,17 +224,19 @@ def guarded_simulator(
     """A simulator whose model has guards: conditions that end a stretch where one falls below zero."""
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
-    return bound(lower(equations, laws, parameters, guards), equations, parameters)
+    return bound(lower(equations, laws, parameters, guards), equations, parameters, laws)
 
 
 def bound(
-    program: Program, equations: StateEquations, parameters: Mapping[str, object]
-) -> Simulator:
-    """A simulator of a program that was lowered for parameters of these names."""
+    program: Program, equations: StateEquations, parameters: Mapping[str, object],
+    laws: Mapping[Any, object] | None = None,
+) -> Simulator:  # fmt: skip
+    """A simulator of a program that was lowered for parameters of these names, with these laws."""
     closed = ClosedModel(program, equations, parameters)
     return Simulator(
         tuple(name.name for name in (*program.states, *program.law_states)),
         tuple(name.name for name in program.external),
         tuple(name.name for name in program.outputs),
         closed,
+        laws,
     )

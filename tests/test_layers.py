@@ -36,11 +36,12 @@ ORDER = {
                                             "tables"),
         "model.affine", "closing", "records", "sections", "program", "identifiers", "printing", "units",
         *_room("model", "numpy_backend numbers sharp snapshot sharing friction instant loops rubbing closed "
-               "sizes modes guards"),
+               "sizes modes guards places"),
+        *_room("energy", "stored quadrature accounts tally"),
         *_room("runs", "events sundials legs watched exact ladder free hybrid arguments impulses observer "
                "tables summary"),
-        *_room("pictures", "style canvas labels flags marks stacked"),
-        *_room("runs", "result snapshots columns"),
+        *_room("energy", "audit ledger"), *_room("pictures", "style canvas labels flags marks stacked"),
+        *_room("runs", "result snapshots columns"), "energy.replay",
         *_room("pictures", "panels poles bode shapes"), *_room("analysis", "spectrum comparison"),
         *_room("c", "text structure constants rhs blocks rates tables prefix scenario export"),
         *_room("engine", "build sizes modes inputs runs located"),

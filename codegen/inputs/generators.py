@@ -3,11 +3,20 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece, moved
+
+
+class Chain(NamedTuple):
+    """The components of one rate: where they begin and how many there are."""
+
+    first: int
+    rate: complex
+    depth: int
 
 
 @dataclass(frozen=True)
@@ -17,6 +26,21 @@ class Generator:
     G: Array
     C: Array
     start: Array
+    chains: tuple[Chain, ...]
+
+    def at(self, elapsed: Array) -> Array:
+        """g at times after the start, a row each."""
+        found = np.zeros((len(elapsed), len(self.start)))
+        for first, rate, depth in self.chains:
+            width = 2 if rate.imag else 1
+            value = np.exp(rate * elapsed)
+            for k in range(depth):
+                at = first + k * width
+                found[:, at] = value.real
+                if width == 2:
+                    found[:, at + 1] = value.imag
+                value = value * elapsed / (k + 1)
+        return found
 
 
 def generator(pieces: Sequence[Piece], t: float) -> Generator:
@@ -51,7 +75,8 @@ def generator(pieces: Sequence[Piece], t: float) -> Generator:
                 C[row, at] += value.real
                 if width == 2:
                     C[row, at + 1] -= value.imag
-    return Generator(G, C, start)
+    chains = tuple(Chain(place[rate], rate, count) for rate, count in depth.items())
+    return Generator(G, C, start, chains)
 
 
 def _add_chain(G: Array, first: int, rate: complex, count: int) -> None:

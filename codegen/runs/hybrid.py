@@ -16,7 +16,7 @@ from codegen.model.modes import LOOK_AHEAD, Peaks, decide, scales
 from codegen.runs.events import Event
 from codegen.runs.exact import ExactLeg
 from codegen.runs.free import FreeLeg
-from codegen.runs.legs import EXACT, Leg, Settings, Track
+from codegen.runs.legs import EXACT, Accumulating, Leg, Settings, Track
 
 STALLED = 60
 """So many events in a row are a run that goes nowhere, if they are hardly apart."""
@@ -51,13 +51,16 @@ def run_hybrid(
     settings: Settings,
     begin: float,
     span: float,
+    tally: Accumulating | None = None,
 ) -> Stretch:
     """Integrate from ``begin`` to the last of ``times`` [s], recording the vector at each of them.
 
     At a breakpoint or an event a sample shows the instant just after. ``span`` [s]: the length of the
-    whole run, of which this may be the rest. Ends where a guard falls below zero.
+    whole run, of which this may be the rest. ``tally``: what is integrated on the way. Ends where a guard
+    falls below zero.
     """
     course = _Course(model, times, start, signals, settings, begin, span)
+    course.track.tally = tally
     fallen = frozenset[int]()
     while course.unfinished and not fallen:
         fallen = course.settle()
@@ -65,6 +68,8 @@ def run_hybrid(
             fallen = course.advance()
     if not fallen:
         course.track.record(course.s, course.mode)
+        if tally is not None:
+            tally.record()
     return Stretch(course.track, course.t, course.s, course.mode, fallen, course.ahead)
 
 
@@ -84,6 +89,7 @@ class _Course:
         self._breaks = sorted(points)
         self._touched = frozenset[int]()
         self._settled: float | None = None
+        self._before: list[Piece] | None = None
         self._peaks, self._rounds = Peaks.none(model), deque[float](maxlen=STALLED)
 
     @property
@@ -123,10 +129,18 @@ class _Course:
                 least = max(APART * self._span, 2 * STALLED * self.ahead)
                 _check_progress(self._rounds, t, least, self.track.events)
         self.mode, self._touched = new, frozenset()
-        self.s = _at_rest(model, t, self.s, pieces, new)
+        self._come_to_rest(pieces, new)
         # Where a run or a phase begins, whoever began it has looked at the guards.
         first, self._settled = self._settled is None, t
         return frozenset() if first else fallen_guards(model, t, self.s, pieces, new, peaks)
+
+    def _come_to_rest(self, pieces: list[Piece], mode: Mode) -> None:
+        before, tally = self.s, self.track.tally
+        self.s = _at_rest(self._model, self.t, before, pieces, mode)
+        if tally is not None and self._before is not None:
+            tally.step(self.t, self._before, pieces, before, mode)
+            tally.rest(self.t, pieces, mode, before, self.s)
+        self._before = pieces
 
     def advance(self) -> frozenset[int]:
         """Integrate to the next breakpoint or event; the guards that fell."""
@@ -134,12 +148,22 @@ class _Course:
         stop = next((b for b in self._breaks if b > self.t), self.end)
         exact = self._exact(pieces, stop)
         if exact is not None:
+            begin, s, first = self.t, self.s, self.track.recorded
             self.t, self.s, ended = exact.run(stop, self._times, self.track)
+            self._integrate(pieces, begin, s, first)
         else:
             leg = self._leg(pieces)
             self.t, self.s, ended = leg.run(self.t, self.s, stop, self._times, self.track)
         self._touched = frozenset(i for i in ended if i < ports)
         return frozenset(i - ports for i in ended if i >= ports)
+
+    def _integrate(self, pieces: list[Piece], begin: float, s: Array, first: int) -> None:
+        """An exact stretch is integrated from sample to sample, however it was stepped."""
+        tally, own = self.track.tally, slice(first, self.track.recorded)
+        if tally is not None:
+            points = np.concatenate([[begin], self._times[own], [self.t]])
+            vectors = np.vstack([s, self.track.vectors[own], self.s])
+            tally.exact(pieces, self.mode, points, vectors)
 
     def _leg(self, pieces: Sequence[Piece]) -> Leg:
         return Leg(self._model, pieces, self.mode, self._settings, self._span, self._peaks)

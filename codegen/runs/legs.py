@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from scipy.integrate import DOP853, Radau
@@ -54,11 +54,37 @@ Ended = tuple[float, Array, frozenset[int]]
 """How a stretch ended: time, integrated vector, and the ports and guards whose event it was."""
 
 
+class Accumulating(Protocol):
+    """What is integrated with a run, such as work; see `codegen.energy.tally.Tally`."""
+
+    def smooth(
+        self, begin: float, end: float, dense: Dense, pieces: Sequence[Piece], mode: Mode
+    ) -> None:
+        """A step of an integrator, with its interpolant."""
+
+    def exact(self, pieces: Sequence[Piece], mode: Mode, points: Array, vectors: Array) -> None:
+        """A stretch of an affine mode: its begin, samples and end, with the vector at each."""
+
+    def step(
+        self, t: float, before: Sequence[Piece], after: Sequence[Piece], s: Array, mode: Mode
+    ) -> None:
+        """Inputs that may step at t."""
+
+    def rest(
+        self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, after: Array
+    ) -> None:
+        """Ports that may have come to rest at t."""
+
+    def record(self) -> None:
+        """The next sample."""
+
+
 @dataclass
 class Track:
     """What a run has recorded: the integrated vector and the mode at each sample, and the events.
 
     ``largest``: the magnitudes that the vector's components have reached, between samples, too.
+    ``tally``: what is integrated on the way, if anything is.
     """
 
     vectors: Array
@@ -66,6 +92,7 @@ class Track:
     largest: Array
     events: list[Event] = field(default_factory=list)
     recorded: int = 0
+    tally: Accumulating | None = None
 
     def see(self, vectors: Array) -> None:
         """Take the magnitudes of some vectors, the rows, into account."""
@@ -139,6 +166,8 @@ class Leg:
         if stop - t <= 8 * np.spacing(max(abs(t), abs(stop))):
             while track.recorded < len(times) and times[track.recorded] < stop:
                 track.record(s, self._mode)
+                if track.tally is not None:
+                    track.tally.record()
             return stop, s, frozenset()
         fastest = self.fastest(t, s)
         integrator = self._integrator(fastest)
@@ -159,6 +188,8 @@ class Leg:
             until = solver.t if found is None else found[0]
             track.see(solver.y[None])
             self._sample(times, track, until, dense)
+            if track.tally is not None:
+                track.tally.smooth(solver.t_old, until, dense, self._pieces, self._mode)
             if found is not None:
                 return until, dense(until), found[1]
             steps += 1

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from bondgraph import ParameterError, SignalError, StateEquations, StructureError
-from bondgraph.elements import SOURCES, STORAGES, Element, Kind
+from bondgraph import ParameterError, StateEquations, StructureError
+from bondgraph.elements import SOURCES
 from bondgraph.expressions import TIME
-from bondgraph.laws import ExpressionLaw
 from bondgraph.modulation import Reading
-from codegen.arrays import Array, real_array, real_values
+from codegen.arrays import Array, real_array
+from codegen.energy.stored import stored_energy
 from codegen.model.closed import ClosedModel
 from codegen.model.numbers import at_parameters
 
@@ -66,50 +66,23 @@ class Observer:
 
     def energy(self, node: Hashable) -> Array:
         """The energy in an I or C or a field of them: of its co-energy variables, or its energy function."""
-        elements = self._settled(node)
-        if not elements or elements[0].kind not in STORAGES:
-            raise StructureError(f"{node!r} is not an I or a C; only storages have an energy")
-        first = elements[0]
-        if first.row and first.name == node:
-            raise StructureError(
-                f"{node!r} is one port of {first.owner!r}; the whole field has an energy"
+        energy = stored_energy(self._equations, node, self.model.parameters)
+        names = sorted(energy.free_symbols, key=str)
+        unknown = [name for name in names if not self._knows(name)]
+        if unknown:
+            raise ParameterError(
+                f"the energy of {node!r} needs a number for {unknown[0]} in parameters, which the run did not"
             )
-        if isinstance(first.law, ExpressionLaw):
-            return self._stored(first, first.law)
-        ruling = {
-            e.name: self.signal(str(e.flow if e.kind is Kind.I else e.effort)) for e in elements
-        }
-        energy = np.zeros(len(self.time))
-        for element in elements:
-            for other, entry in element.row or ((element.name, element.constant),):
-                energy += 0.5 * self._number(entry) * ruling[element.name] * ruling[other]
-        return energy
+        given = [self.time if name == TIME else self._named(name.name) for name in names]
+        values = sp.lambdify(names, energy, modules="numpy")(*given)
+        result: Array = np.zeros(len(self.time)) + real_array(values)
+        return result
 
-    def _settled(self, node: Hashable) -> list[Element]:
-        """The element, or a field's, values over states, integrals, inputs and time."""
-        ports = self._equations.reduction.structure.ports
-        return [p.element for p in ports if node in (p.element.name, p.element.owner)]
+    def _knows(self, name: sp.Symbol) -> bool:
+        return name == TIME or name.name in self.columns or name in self._equations.signals
 
-    def _stored(self, element: Element, law: ExpressionLaw) -> Array:
-        """The energy function, or the integral of a law over its own state from 0."""
-        if element.energy is not None:
-            return np.zeros(len(self.time)) + self._number(element.energy)
-        state = law.state
-        if state is None or law.free_symbols & {*self._equations.signals, TIME}:
-            raise SignalError(
-                f"{element.name!r}: its law reads other signals, so it has no energy of its own; "
-                "integrate its power"
-            )
-        exact = at_parameters(law.expression, self.model.parameters)
-        real = sp.Dummy("q", real=True)
-        shape = exact.xreplace({state: real}).rewrite(sp.Piecewise)
-        integral = sp.integrate(shape, (real, 0, real))
-        if integral.has(sp.Integral):
-            raise SignalError(
-                f"{element.name!r}: no closed form of the energy; integrate its power"
-            )
-        energy = sp.lambdify(real, integral, modules="numpy")
-        return real_values([energy(value) for value in self.columns[state.name]])
+    def _named(self, name: str) -> Array:
+        return np.asarray(self.columns[name]) if name in self.columns else self.signal(name)
 
     def _values(self, reading: Reading) -> Array:
         """A reading at every sample."""

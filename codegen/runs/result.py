@@ -10,12 +10,26 @@ import numpy as np
 
 from bondgraph import SignalError
 from codegen.arrays import Array
+from codegen.energy.audit import Audit
 from codegen.pictures.labels import common, measured, pretty
 from codegen.pictures.marks import Marks, stuck_spans
 from codegen.pictures.stacked import Line, Panel, along, fill, stacked
 from codegen.runs.events import Event
 from codegen.runs.summary import summary
 from codegen.runs.tables import dataset, frame, write_netcdf
+
+
+class Accountant(Protocol):
+    """What integrates a run's powers and signals."""
+
+    def work(self, node: Hashable) -> Array:
+        """What a one-port absorbs, or a source supplies, up to each sample."""
+
+    def integral(self, name: str) -> Array:
+        """A signal integrated up to each sample."""
+
+    def audit(self) -> Audit:
+        """The power balance of the run."""
 
 
 class Watcher(Protocol):
@@ -55,6 +69,7 @@ class Result:
     events: tuple[Event, ...]
     columns: Mapping[str, Array] = field(repr=False)
     observer: Watcher = field(repr=False, compare=False)
+    ledger: Accountant = field(repr=False, compare=False)
     units: Mapping[str, str] = field(repr=False, default_factory=_no_units)
     backend: str = "numpy"
 
@@ -81,10 +96,23 @@ class Result:
         return self.observer.energy(node)
 
     def work(self, node: Hashable) -> Array:
-        """Power integrated over the samples by trapezoids, 0 at the first; no impulses are in it."""
-        power = self.power(node)
-        steps = np.diff(self.time) * (power[1:] + power[:-1]) / 2
-        return np.concatenate([[0.0], np.cumsum(steps)])
+        """Energy that an I, C or R has absorbed, or a source has supplied, up to each sample.
+
+        Integrated with the run, however few the samples: when first asked for, the same run is done again
+        for that. Impulses are in it.
+        """
+        return self.ledger.work(node)
+
+    def integral(self, name: str) -> Array:
+        """A signal integrated up to each sample, as `work` is; `SignalError` for one that there is not."""
+        return self.ledger.integral(name)
+
+    def audit(self) -> Audit:
+        """What sources gave, storages took, resistances and laws lost, and jumps took; see `Audit`.
+
+        It closes to the run's tolerance, and to 1e-9 of the energy turned over at the default one.
+        """
+        return self.ledger.audit()
 
     def write_csv(self, path: str | PathLike[str]) -> None:
         """Write time and every column as comma-separated columns with one line of names."""

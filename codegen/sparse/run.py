@@ -9,12 +9,15 @@ from numpy.typing import ArrayLike
 
 from bondgraph import SignalError, SimulationError
 from codegen.arrays import Array
+from codegen.energy.audit import Audit
 from codegen.inputs.signal import Signal, first_step
 from codegen.runs.arguments import checked_times, initial_values, settings_of, signals_for
 from codegen.runs.legs import EXACT
 from codegen.runs.result import Result
 from codegen.sparse.model import SparseModel
 from codegen.sparse.steps import SparseSystem, integrate
+
+NO_POWERS = "a sparse run knows no powers; derive the graph and run a simulator for them"
 
 
 @dataclass(frozen=True)
@@ -36,6 +39,18 @@ class Recorded:
     def energy(self, node: Hashable) -> Array:
         """Refuses, as `signal`."""
         raise KeyError(f"the energy of {node!r} was not recorded; its state was")
+
+    def work(self, node: Hashable) -> Array:
+        """Refuses: powers are not recorded."""
+        raise SignalError(f"the work at {node!r} was not recorded: {NO_POWERS}")
+
+    def integral(self, name: str) -> Array:
+        """Refuses, as `work`."""
+        raise SignalError(f"the integral of {name!r} was not recorded: {NO_POWERS}")
+
+    def audit(self) -> Audit:
+        """Refuses, as `work`."""
+        raise SignalError(f"the power balance was not recorded: {NO_POWERS}")
 
 
 def run_sparse(
@@ -80,7 +95,7 @@ def run_sparse(
         columns = _columns(model, system, driven, times, vectors, signals)
     return Result(
         times, model.states, asked, model.outputs, (), MappingProxyType(columns),
-        Recorded(),
+        Recorded(), Recorded(),
     )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from codegen.arrays import Array
 from codegen.engine.runs import KINDS
+from codegen.model.places import places
 from codegen.program import Program
 from codegen.sweeps.measures import READY, Measure
 
@@ -52,7 +53,7 @@ class Plan:
 
 def plan(measures: Iterable[object], program: Program, samples: int) -> Plan | None:
     """How the loop gets these measures; None where one is none that it can do."""
-    places, rows = _places(program), list[int]()
+    known, rows = places(program), list[int]()
     entries, at = list[Entry](), 0
     for measure in measures:
         if not isinstance(measure, Measure) or measure.function not in READY:
@@ -60,8 +61,8 @@ def plan(measures: Iterable[object], program: Program, samples: int) -> Plan | N
         what = WHATS.index(READY[measure.function])
         if what >= EVENTS:
             entries.append(_of_events(what, measure, program, at))
-        elif measure.arguments[0] in places:
-            row = places[measure.arguments[0]]
+        elif measure.arguments[0] in known:
+            row = known[measure.arguments[0]]
             if row not in rows:
                 rows.append(row)
             entries.append(Entry(what, rows.index(row), -1, -1, at))
@@ -77,20 +78,3 @@ def _of_events(what: int, measure: Measure, program: Program, at: int) -> Entry:
     port = ports.index(node) if node in ports else -1
     kind = KINDS.index(event) if event in KINDS else -1
     return Entry(what, -1, port, kind, at)
-
-
-def _places(program: Program) -> dict[str, int]:
-    """Each signal's place among x, z, u, u' and readings; -1 - j for the external input j."""
-    states = len(program.states) + len(program.law_states)
-    groups = (
-        (program.states, range(states)),
-        (program.law_states, range(len(program.states), states)),
-        (program.inputs, range(states, states + len(program.inputs))),
-        (program.external, range(-1, -1 - len(program.external), -1)),
-        (program.readings, range(states + 2 * len(program.inputs), 1 << 20)),
-    )
-    places: dict[str, int] = {}
-    for names, rows in groups:
-        for name, row in zip(names, rows, strict=False):
-            places.setdefault(name.name, row)
-    return places

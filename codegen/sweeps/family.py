@@ -82,7 +82,7 @@ class Family:
                 known = ", ".join(self.parameters) or "none"
                 raise ParameterError(f"{name!r} is not a parameter; there are {known}")
         values = {**self.parameters, **changes}
-        ready = bound(self.program, self.equations, values)
+        ready = bound(self.program, self.equations, values, self.laws)
         return ready if self.backend != "c" else with_engine(ready, "c", self.library)
 
     @cached_property

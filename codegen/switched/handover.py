@@ -114,10 +114,20 @@ class Handover:
         s[:n] += before.numbers.R @ before.u
         return s
 
+    def impulses(self, t: float, now: Snapshot, change: Array) -> Array:
+        """The impulses in the readings as momenta change by so much."""
+        return np.asarray(self._shown(_instant(t, now)) @ change, dtype=float)
+
+    def taken(self, t: float, now: Snapshot, before: Array, after: Array) -> float:
+        """What an impact takes that changes momenta so: the energy of the lost velocities (Carnot)."""
+        change = after - before
+        lost = np.linalg.solve(self._values(_instant(t, now)), change)
+        return float(0.5 * change @ lost)
+
     def falling(self, t: float, now: Snapshot, change: Array) -> Array:
         """How the guards change with the impulses that change the momenta, per unit of the largest."""
         values = self._model.guards(t, now)
-        impulses = self._shown(_instant(t, now)) @ change
+        impulses = self.impulses(t, now, change)
         size = float(np.abs(impulses).max(initial=0.0))
         if size == 0.0:
             return np.zeros_like(values)

@@ -9,7 +9,14 @@ from typing import Any
 import networkx as nx
 import numpy as np
 
-from bondgraph import BondGraphError, SimulationError, derive, in_mode, switches
+from bondgraph import (
+    BondGraphError,
+    SimulationError,
+    StateEquations,
+    derive,
+    in_mode,
+    switches,
+)
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import Mode
@@ -68,9 +75,10 @@ class Phases:
         parameters: Mapping[str, object],
         laws: Mapping[Any, object] | None,
         outputs: Sequence[Hashable] | None,
+        told: Callable[[StateEquations], StateEquations] | None = None,
     ) -> None:
         self._graph, self._parameters, self._laws = graph, parameters, laws
-        self._outputs = outputs
+        self._outputs, self._told = outputs, told
         self.switches = switches(graph)
         self._known: dict[On, Phase | BondGraphError] = {}
 
@@ -91,6 +99,10 @@ class Phases:
             raise found
         return found
 
+    def telling(self, told: Callable[[StateEquations], StateEquations]) -> "Phases":
+        """The same phases with more signals: ``told`` makes of each one's equations those that know them."""
+        return Phases(self._graph, self._parameters, self._laws, self._outputs, told)
+
     def any(self) -> Phase:
         """The mode with the fewest switches on that has equations; else raises what the first lacks."""
         refused: BondGraphError | None = None
@@ -103,6 +115,8 @@ class Phases:
 
     def _phase(self, on: On) -> Phase:
         equations = derive(in_mode(self._graph, on), self._outputs)
+        if self._told is not None:
+            equations = self._told(equations)
         guards = [-(s.off if s.name in on else s.on) for s in self.switches]
         simulator = guarded_simulator(equations, self._parameters, self._laws, guards)
         return Phase(on, simulator, Handover(simulator.closed))

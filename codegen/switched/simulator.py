@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from types import MappingProxyType
 from typing import Any
@@ -10,9 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bondgraph import SimulationError, StructureError, validate
+from bondgraph import SimulationError, StateEquations, StructureError, validate
+from bondgraph.elements import STORAGES
 from bondgraph.switching import checked_modes
 from codegen.arrays import Array
+from codegen.energy.accounts import Account, accounts, with_signals
+from codegen.energy.ledger import Integrated, Ledger
+from codegen.energy.replay import shares, tally_of
+from codegen.energy.tally import Tally
 from codegen.inputs.signal import Signal
 from codegen.model.closed import Snapshot
 from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
@@ -67,20 +72,56 @@ class SwitchedSimulator:
         values = named_numbers({} if initial is None else initial, self.states)
         settings = settings_of(method, rtol, atol)
         first = checked_modes(self.switches, initially_on)
+        start = _Start(times, signals, settings, first, values)
         with np.errstate(all="ignore"):
-            return _Journey(self, times, signals, settings).run(first, values)
+            return _Journey(self, start, self._ledger(start)).run()
+
+    def _ledger(self, start: "_Start") -> Ledger:
+        """What the run is asked about energy; every phase has the same one-ports."""
+        model = self.phases.any().simulator.closed
+        own = tuple(name.name for name in model.program.law_states)
+        return Ledger(model.equations, (*own, *self.inputs), partial(self._again, start))
+
+    def _again(self, start: "_Start", _: StateEquations, whole: Sequence[Account]) -> Integrated:
+        """The run once more, with accounts integrated."""
+        names = {name for account in whole for p in account for name in (p.one, p.other)}
+
+        def told(equations: StateEquations) -> StateEquations:
+            return with_signals(accounts(equations), names).equations
+
+        simulator = replace(self, phases=self.phases.telling(told))
+        with np.errstate(all="ignore"):
+            journey = _Journey(simulator, start, self._ledger(start), whole)
+            result = journey.run()
+        rows = np.array(journey.rows)
+        return Integrated(rows[:, :-1] @ shares(whole), rows[:, -1], result.observer)
+
+
+@dataclass(frozen=True)
+class _Start:
+    """What a run is given: samples, inputs by name, settings, the switches that are on, states by name."""
+
+    times: Array
+    signals: Mapping[str, Signal]
+    settings: Settings
+    on: On
+    initial: Mapping[str, float]
 
 
 class _Journey:
-    """One run: the phases that it passes through, its results so far, and its events."""
+    """One run: the phases that it passes through, its results so far, and its events.
+
+    ``rows``: of accounts that are integrated on the way, at each sample.
+    """
 
     def __init__(
-        self,
-        simulator: SwitchedSimulator,
-        times: Array,
-        signals: Mapping[str, Signal],
-        settings: Settings,
-    ) -> None:
+        self, simulator: SwitchedSimulator, start: _Start, ledger: Ledger,
+        whole: Sequence[Account] | None = None,
+    ) -> None:  # fmt: skip
+        times, signals, settings = start.times, start.signals, start.settings
+        self._start, self._ledger, self._whole = start, ledger, whole
+        self.rows: list[Array] = []
+        self._ended: tuple[Tally, tuple[Array, Array], Array] | None = None
         self._simulator, self._times = simulator, times
         self._signals, self._settings = signals, settings
         self._parts: list[Result] = []
@@ -89,10 +130,10 @@ class _Journey:
         self._span = float(times[-1] - times[0])
         self._peaks: dict[Hashable, float] = {}
 
-    def run(self, on: On, initial: Mapping[str, float]) -> Result:
+    def run(self) -> Result:
         """From phase to phase to the end."""
-        phases, t = self._simulator.phases, float(self._times[0])
-        held: Keeping = partial(self._started, t, initial)
+        phases, t, on = self._simulator.phases, float(self._times[0]), self._start.on
+        held: Keeping = partial(self._started, t, self._start.initial)
         changed, rounds = On(), deque[float](maxlen=STALLED)
         while True:
             pieces = {name: signal.piece(t) for name, signal in self._signals.items()}
@@ -136,7 +177,8 @@ class _Journey:
         done = sum(len(part.time) for part in self._parts)
         rest = self._times[done:]
         refuse_impulses(model, signals, rest)
-        stretch = run_hybrid(model, rest, vector, signals, self._settings, t, self._span)
+        tally = self._tally(phase, rest, t, vector, signals)
+        stretch = run_hybrid(model, rest, vector, signals, self._settings, t, self._span, tally)
         track = stretch.track
         self._events += track.events
         if track.recorded:
@@ -147,7 +189,7 @@ class _Journey:
             columns, observer = named_columns(model, rest[own], shots)
             self._parts.append(
                 Result(rest[own], simulator.states, simulator.inputs, simulator.outputs, (),
-                       MappingProxyType(columns), observer,
+                       MappingProxyType(columns), observer, self._ledger,
                        told_units(model.equations))
             )  # fmt: skip
             self._modes += [phase.on] * track.recorded
@@ -159,7 +201,34 @@ class _Journey:
         for name, size in zip(phase.handover.storages, sizes, strict=True):
             self._peaks[name] = max(size, self._peaks.get(name, 0.0))
         held = _held(phase, stretch.t, now, {}, self._peaks)
+        if tally is not None:
+            self.rows += tally.rows
+            self._ended = tally, tally.pair(now), phase.handover.momenta(stretch.t, now)
         return stretch.t, held, On(names[k] for k in stretch.fallen), stretch.ahead
+
+    def _tally(
+        self, phase: Phase, rest: Array, t: float, vector: Array, signals: Sequence[Signal]
+    ) -> Tally | None:
+        """What is integrated in a phase, from what the phases before it left and the impact between."""
+        if self._whole is None:
+            return None
+        model, handover = phase.simulator.closed, phase.handover
+        tally = tally_of(model, self._whole, rest)
+        if self._ended is None:
+            return tally
+        before, pair, momenta = self._ended
+        tally.total, tally.taken = before.total, before.taken
+        slipping = tuple(1 for _ in model.program.friction)
+        now = model.at(t, vector, [signal.piece(t) for signal in signals], slipping)
+        after = handover.momenta(t, now)
+        ports = model.equations.reduction.structure.ports
+        names = {p.given.name for p in ports if p.element.kind in STORAGES}
+        names |= {p.received.name for p in ports if p.element.kind in STORAGES}
+        stored = [p.one in names and p.other in names for account in self._whole for p in account]
+        taken = handover.taken(t, now, momenta, after)
+        impulses = handover.impulses(t, now, after - momenta)
+        tally.impact(pair, now, impulses, np.array(stored), taken)
+        return tally
 
     def _note(self, t: float, old: On, new: On) -> None:
         for name in self._simulator.switches:
@@ -180,7 +249,7 @@ class _Journey:
             columns[str(name)] = np.array([float(name in mode) for mode in self._modes])
         return Result(
             self._times, simulator.states, simulator.inputs, self._parts[0].outputs,
-            tuple(self._events), MappingProxyType(columns), spliced,
+            tuple(self._events), MappingProxyType(columns), spliced, self._ledger,
             MappingProxyType({name: unit for part in self._parts for name, unit in part.units.items()}),
         )  # fmt: skip
 

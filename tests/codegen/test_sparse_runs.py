@@ -243,9 +243,12 @@ def test_what_was_not_recorded_is_refused() -> None:
     assert set(result) == {"v1", "F", "v3", "u", "f_m2"}
     for ask in (
         lambda: result["e_m1"], lambda: result.bond("a", "m1"), lambda: result.power("m1"),
-        lambda: result.energy("m1"), lambda: result.work("m1"),
+        lambda: result.energy("m1"),
     ):  # fmt: skip
         with pytest.raises(KeyError, match="not recorded"):
+            ask()
+    for ask in (lambda: result.work("m1"), lambda: result.integral("v1"), result.audit):
+        with pytest.raises(bg.SignalError, match="not recorded: a sparse run knows no powers"):
             ask()
 
 

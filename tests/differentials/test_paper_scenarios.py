@@ -99,3 +99,10 @@ def test_events_agree(runs: Runs) -> None:
     assert found == [(port, kind) for _, port, kind in runs.expected.events]
     times = [time for time, *_ in runs.expected.events]
     assert [event.time for event in runs.found.events] == pytest.approx(times, rel=0, abs=1e-6)
+
+
+def test_the_power_balance_closes(runs: Runs) -> None:
+    audit = runs.found.audit()
+    assert abs(audit.residual) < 1e-9 * audit.turned_over
+    for clutch in [node for node in audit.lost if str(node).startswith("clutch")]:
+        assert audit.lost[clutch] >= -1e-9 * audit.turned_over

@@ -102,3 +102,5 @@ def test_the_input_clutch_slips_by_eq_7_and_holds_by_eq_8() -> None:
     torque = (run["tau_e"][held] + share * tires) / (1 + i * share)
     assert run["tau_f"][held] == pytest.approx(torque, rel=1e-9)
     assert abs(run["omega_f"][held]).max() < 1e-9
+    audit = run.audit()
+    assert abs(audit.residual) < 1e-9 * audit.turned_over

@@ -1,0 +1,56 @@
+"""`Audit`: the power balance of a run."""
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, field
+
+from codegen.runs.summary import aligned
+
+
+@dataclass(frozen=True)
+class Audit:
+    """Where the energy of a run came from and where it went; every node of the graph is in it once.
+
+    ``gave``: of each source. ``took``: of each storage what it holds at the end less what it held at the
+    start, and what it took from whatever moves its value. ``lost``: of each resistance, law, friction port
+    and open port. ``conserving``: transformers, gyrators, junctions and detectors, which take nothing.
+    ``impacts``: what jumps took at which ports came to rest or switches changed over. ``turned_over``: the
+    magnitudes of all these and of what storages hold at both ends, beside which ``residual`` is small.
+
+    Energies are in J where efforts and flows are in units of SI.
+    """
+
+    gave: Mapping[Hashable, float]
+    took: Mapping[Hashable, float]
+    lost: Mapping[Hashable, float]
+    conserving: tuple[Hashable, ...] = field(repr=False)
+    impacts: float
+    turned_over: float
+
+    @property
+    def residual(self) -> float:
+        """What sources gave less all that was taken and lost: zero but for the run's tolerance."""
+        taken = sum(self.took.values()) + sum(self.lost.values()) + self.impacts
+        return sum(self.gave.values()) - taken
+
+    def __str__(self) -> str:
+        """A table."""
+        rows: list[tuple[str, ...]] = []
+        for title, part in (("gave", self.gave), ("took", self.took), ("lost", self.lost)):
+            rows += [(f"{node} {title}", f"{value:.6g}") for node, value in part.items()]
+            rows.append((f"{title} in all", f"{sum(part.values()):.6g}"))
+        rows += [
+            ("impacts took", f"{self.impacts:.6g}"), ("residual", f"{self.residual:.2g}"),
+            ("energy turned over", f"{self.turned_over:.6g}"),
+        ]  # fmt: skip
+        lines = aligned(rows)
+        if self.conserving:
+            lines.append(f"  conserve power: {', '.join(map(str, self.conserving))}")
+        return "\n".join(lines)
+
+
+def turned_over(
+    audited: tuple[Mapping[Hashable, float], ...], impacts: float, held: Mapping[Hashable, float]
+) -> float:
+    """The magnitudes of what was gained and lost, and of what storages hold at both ends together."""
+    parts = [abs(value) for part in audited for value in part.values()]
+    return sum(parts) + abs(impacts) + sum(held.values())

@@ -1,0 +1,110 @@
+"""Work, integrals and the power balance of a run that is over, from the same run done again."""
+
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from bondgraph import SignalError, StateEquations
+from bondgraph.elements import DETECTORS, SOURCES, STORAGES
+from codegen.arrays import Array
+from codegen.energy.accounts import Account, Accounts, Product, accounts, with_signals
+from codegen.energy.audit import Audit, turned_over
+
+
+class Energetic(Protocol):
+    """What tells energies at the samples of a run."""
+
+    def energy(self, node: Hashable) -> Array:
+        """What a storage holds."""
+
+
+class Integrated(NamedTuple):
+    """A run with accounts integrated: S x K, what jumps took, and what storages hold, at the samples."""
+
+    totals: Array
+    impacts: Array
+    observer: Energetic
+
+
+Again = Callable[[StateEquations, Sequence[Account]], Integrated]
+"""Does a run again, with equations that know all signals of the accounts."""
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """What a run is asked about energy; nothing is integrated before it is asked.
+
+    ``names``: the signals that a program has beside those of its graph.
+    """
+
+    equations: StateEquations
+    names: tuple[str, ...]
+    again: Again
+    _integrals: dict[str, Array] = field(default_factory=dict)
+
+    def work(self, node: Hashable) -> Array:
+        """What a one-port absorbs, or a source supplies, up to each sample."""
+        products = self._accounts.of(node)
+        whole, found = self._balance
+        columns = [whole.index((product,)) for product in products]
+        return np.asarray(found.totals[:, columns].sum(axis=1), dtype=float)
+
+    def integral(self, name: str) -> Array:
+        """A signal integrated up to each sample; `SignalError` for one that there is not."""
+        if name not in self._integrals:
+            known = {*self.names, *map(str, self.equations.signals)}
+            if name not in known:
+                raise SignalError(f"no signal {name!r}; there are {', '.join(sorted(known))}")
+            made = with_signals(self._accounts, [name])
+            found = self.again(made.equations, [(Product(1.0, name, ""),)])
+            self._integrals[name] = found.totals[:, 0]
+        return self._integrals[name].copy()
+
+    def audit(self) -> Audit:
+        """The power balance from the first sample to the last."""
+        ports = self.equations.reduction.structure.ports
+        parts = {port.element.owner or port.element.name: port.element.kind for port in ports}
+        gave, took, lost = dict[Hashable, float](), dict[Hashable, float](), dict[Hashable, float]()
+        held = dict[Hashable, float]()
+        for node, kind in parts.items():
+            if kind in STORAGES:
+                took[node], held[node] = self._taken(node)
+            elif kind in SOURCES:
+                gave[node] = float(self.work(node)[-1])
+            elif kind not in DETECTORS:
+                lost[node] = float(self.work(node)[-1])
+        owners = {p.element.name: p.element.owner for p in ports if p.element.owner}
+        nodes = [owners.get(node, node) for node in self.equations.elements]
+        rest = [
+            n for n in dict.fromkeys(nodes) if not any(n in part for part in (gave, took, lost))
+        ]
+        impacts = float(self._balance[1].impacts[-1])
+        return Audit(
+            gave, took, lost, tuple(rest), impacts, turned_over((gave, took, lost), impacts, held)
+        )
+
+    def _taken(self, node: Hashable) -> tuple[float, float]:
+        """What a storage took, and the magnitudes of what it holds at both ends."""
+        whole, found = self._balance
+        try:
+            energy = found.observer.energy(node)
+        except SignalError:
+            # A law that reads other signals has no energy of its own; what it took it took by its power.
+            return float(self.work(node)[-1]), 0.0
+        own = [part for part, owner in self._accounts.owners.items() if owner == node] or [node]
+        moved = [self._accounts.moved[part] for part in own if part in self._accounts.moved]
+        gained = sum(float(found.totals[-1, whole.index(account)]) for account in moved)
+        return float(energy[-1] - energy[0]) + gained, float(abs(energy[0]) + abs(energy[-1]))
+
+    @cached_property
+    def _accounts(self) -> Accounts:
+        return accounts(self.equations)
+
+    @cached_property
+    def _balance(self) -> tuple[list[Account], Integrated]:
+        made = self._accounts
+        whole = [*made.power.values(), *made.moved.values()]
+        return whole, self.again(made.equations, whole)

@@ -1,0 +1,167 @@
+"""What is accumulated during a run: integrals of products of signals, and what jumps took."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from codegen.arrays import Array
+from codegen.energy.quadrature import NODES, exact_integrals, gauss_sum, rows_over
+from codegen.inputs.generators import generator
+from codegen.inputs.pieces import Piece
+from codegen.model.closed import RATE, ClosedModel, Mode, Snapshot
+
+Dense = Callable[[float | Array], Array]
+
+
+@dataclass
+class Tally:
+    """Integrals of pairs of signals through one run of a model, by their places in a snapshot.
+
+    ``other``: the second signal of each product, None for a product with nothing. ``held``: the energies
+    of storages as a function of time and snapshot. ``total``: the integrals so far; ``taken``: what
+    ports that came to rest and impacts took from the storages. ``rows``: both at each sample, at a step or
+    an event just after it.
+    """
+
+    model: ClosedModel
+    one: Sequence[int]
+    other: Sequence[int | None]
+    held: Callable[[float, Snapshot], float]
+    times: Array
+    total: Array = field(init=False)
+    taken: float = 0.0
+    rows: list[Array] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.total = np.zeros(len(self.one))
+
+    def smooth(
+        self, begin: float, end: float, dense: Dense, pieces: Sequence[Piece], mode: Mode
+    ) -> None:
+        """A step of an integrator, with its interpolant."""
+        while self._next < end:
+            cut = self._next
+            self._gauss(begin, cut, dense, pieces, mode)
+            self.record()
+            begin = max(begin, cut)
+        self._gauss(begin, end, dense, pieces, mode)
+
+    def exact(self, pieces: Sequence[Piece], mode: Mode, points: Array, vectors: Array) -> None:
+        """A stretch of an affine mode: from the first point by way of samples to the last, with s at each."""
+        made = generator(pieces, float(points[0]))
+        affine = self.model.affine_map(mode, len(pieces))
+        assert affine is not None
+        n, fed = vectors.shape[1], np.vstack([made.C, made.C @ made.G, np.eye(1, len(made.G))])
+
+        def over_z(rows: Array) -> Array:
+            return np.hstack([rows[:, :n], rows[:, n:] @ fed])
+
+        ends = np.maximum.accumulate(points)
+        M = np.vstack([
+            over_z(affine.rows(RATE)), np.hstack([np.zeros((len(made.G), n)), made.G])
+        ])  # fmt: skip
+        shown = np.vstack([affine.matrix, np.eye(len(pieces), affine.matrix.shape[1], n)])
+        nothing = np.eye(1, affine.matrix.shape[1], affine.matrix.shape[1] - 1)
+        shown, last = np.vstack([shown, nothing]), len(affine.matrix)
+        places = [p if p >= 0 else last - 1 - p for p in self.one]
+        others = [-1 if p is None else p if p >= 0 else last - 1 - p for p in self.other]
+        rows = rows_over(M, over_z(shown[places]), over_z(shown[others]))
+        z = np.hstack([vectors, made.at(ends - points[0])])
+        found = exact_integrals(rows, z[:-1], np.diff(ends))
+        for k, part in enumerate(found):
+            self.total = self.total + part
+            if k < len(found) - 1:
+                self.record()
+
+    def step(
+        self, t: float, before: Sequence[Piece], after: Sequence[Piece], s: Array, mode: Mode
+    ) -> None:
+        """Inputs that step at t: the impulses by which sources set dependent storages in motion.
+
+        An impulse works on the mean of what it acts on before and after, as a short ramp would.
+        """
+        slipping = tuple(sign or 1 for sign in mode)
+        a, b = (self.model.at(t, s, pieces, slipping) for pieces in (before, after))
+        impulses = np.zeros(_length(b))
+        readings = len(b.x) + len(b.z) + 2 * len(b.u)
+        impulses[readings : readings + len(b.y)] = b.numbers.G @ (b.u - a.u)
+        if not impulses.any():
+            return
+        one, other = self._pair(0.5 * (vector_of(a) + vector_of(b)))
+        pushed, turned = self._pair(impulses)
+        self.total = self.total + one * turned * self._double + pushed * other
+
+    def pair(self, now: Snapshot) -> tuple[Array, Array]:
+        """Both signals of each product at an instant."""
+        return self._pair(vector_of(now))
+
+    def impact(
+        self, before: tuple[Array, Array], after: Snapshot, impulses: Array, stored: Array,
+        taken: float,
+    ) -> None:  # fmt: skip
+        """Switches that change over: impulses in the readings, and what the impact took.
+
+        An impulse works on what there is after it; in storages, whose products are ``stored``, on the mean
+        of before and after.
+        """
+        jump = np.zeros(_length(after))
+        first = len(after.x) + len(after.z) + 2 * len(after.u)
+        jump[first : first + len(after.y)] = impulses
+        one, other = (
+            np.where(stored, (past + now) / 2, now)
+            for past, now in zip(before, self.pair(after), strict=True)
+        )
+        pushed, turned = self._pair(jump)
+        self.total = self.total + one * turned * self._double + pushed * other
+        self.taken += taken
+
+    def rest(
+        self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, after: Array
+    ) -> None:
+        """Ports that came to rest at t, which takes their slips' energy."""
+        if before is after:
+            return
+        slipping = tuple(sign or 1 for sign in mode)
+        a, b = (self.held(t, self.model.at(t, s, pieces, slipping)) for s in (before, after))
+        self.taken += a - b
+
+    def record(self) -> None:
+        """The next sample."""
+        self.rows.append(np.append(self.total, self.taken))
+
+    @property
+    def _next(self) -> float:
+        return float(self.times[len(self.rows)]) if len(self.rows) < len(self.times) else np.inf
+
+    @property
+    def _double(self) -> Array:
+        return np.array([p is not None for p in self.other], dtype=float)
+
+    def _gauss(
+        self, begin: float, end: float, dense: Dense, pieces: Sequence[Piece], mode: Mode
+    ) -> None:
+        if end <= begin:
+            return
+        times = begin + (end - begin) * NODES
+        states = dense(times)
+        pairs = [
+            self._pair(vector_of(self.model.at(t, s, pieces, mode)))
+            for t, s in zip(times.tolist(), states.T, strict=True)
+        ]
+        values = np.array([one * other for one, other in pairs]).T
+        self.total = self.total + gauss_sum(values, end - begin)
+
+    def _pair(self, vector: Array) -> tuple[Array, Array]:
+        """The factors of each product; external inputs stand last, from the end."""
+        others = [1.0 if p is None else vector[p] for p in self.other]
+        return vector[list(self.one)], np.array(others)
+
+
+def vector_of(now: Snapshot) -> Array:
+    """A snapshot in the order of `places`; the external inputs from the end backwards."""
+    return np.concatenate((now.x, now.z, now.u, now.du, now.y, now.external[::-1]))
+
+
+def _length(now: Snapshot) -> int:
+    return sum(map(len, (now.x, now.z, now.u, now.du, now.y, now.external)))
