@@ -1,6 +1,5 @@
 """Binaries for other platforms: each in that platform's own format."""
 
-import signal
 import struct
 import zipfile
 from pathlib import Path
@@ -33,11 +32,8 @@ def _format(data: bytes) -> str:
     return {0x01000007: "x86_64", 0x0100000C: "aarch64"}[kind] + "-darwin"
 
 
-@pytest.fixture(autouse=True)
-def _patience(_no_endless_run: None) -> None:
-    """The first time, ziglang builds a platform's own C library: minutes for Windows."""
-    if hasattr(signal, "SIGALRM"):
-        signal.alarm(900)
+#: The first time, ziglang builds a platform's own C library: minutes for Windows.
+pytestmark = pytest.mark.most(900)
 
 
 @pytest.mark.slow

@@ -3,7 +3,7 @@
 import os
 import subprocess
 import sys
-from concurrent.futures import BrokenExecutor
+from concurrent.futures import BrokenExecutor, Executor
 from pathlib import Path
 
 import numpy as np
@@ -150,6 +150,11 @@ def test_chunks_take_half_a_second_or_more_once_runs_are_timed() -> None:
     assert Pace(7, runs=10, seconds=100.0).size(10**6, 4) == 7
 
 
+def _submit_for_ever(executor: Executor) -> None:
+    while True:
+        executor.submit(os.getpid)
+
+
 def test_an_idle_process_that_was_killed_is_replaced() -> None:
     job = Job(spring_mass(), ("v",), TIMES, {"F": codegen.final("F")}, None, {"P": 0.0})
     crew = Processes(sent(job), 1)
@@ -161,8 +166,7 @@ def test_an_idle_process_that_was_killed_is_replaced() -> None:
         lane._processes[0].join()
         # The crew notices at its own pace.
         with pytest.raises(BrokenExecutor, match="terminated abruptly"):
-            while True:
-                lane._executor.submit(os.getpid)
+            _submit_for_ever(lane._executor)
         crew.start(Chunk((1,), ((2.0,),)))
         assert crew.finished()[0][1].results[0]
     finally:
