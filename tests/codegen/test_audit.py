@@ -1,18 +1,16 @@
-"""Textbook cases and random runs close their power balance to 1e-9 of the energy turned over.
-
-The suite takes a slice; ``BONDGRAPH_SOAK_AUDITS`` runs so many of each family.
-"""
-
-import os
+"""Textbook cases and random runs close their power balance to 1e-9 of the energy turned over."""
 
 import numpy as np
 import pytest
 from oracles.audited import CLOSED, FAMILIES, open_part, textbook
 from references.cases import CASES as TEXTBOOKS
+from soak.families import seeds
 
-COUNTS = {"linear": 12, "rubbing": 6, "turning": 4, "rectifying": 4}
-ASKED = os.environ.get("BONDGRAPH_SOAK_AUDITS")
-RANDOM = [(family, seed) for family, few in COUNTS.items() for seed in range(int(ASKED or few))]
+SEEDS = {
+    "linear": seeds("audits-linear"), "rubbing": seeds("audits-rubbing"),
+    "turning": seeds("audits-turning"), "rectifying": seeds("audits-rectifying"),
+}  # fmt: skip
+RANDOM = [(family, seed) for family, row in SEEDS.items() for seed in row]
 
 
 @pytest.mark.parametrize(("family", "seed"), RANDOM)

@@ -1,7 +1,5 @@
 """Compiled code reads nothing that was not set and nothing beside its rooms, whatever size is zero."""
 
-import os
-import signal
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,13 +10,14 @@ from oracles.c_model import compiled, written
 from oracles.edge_runs import check_runs, check_sweeps
 from oracles.edges import EDGES, every
 from oracles.memcheck import check_program, check_script, complaints
+from soak.families import whole
 
 from codegen import to_c
 from codegen.c.export import runtime_file
 from codegen.engine import located, runs, sizes
 from codegen.sweeps import batch_engine, batch_located
 
-ALL = bool(os.environ.get("BONDGRAPH_SOAK_MEMORY"))
+ALL = whole("memory")
 """Whether every small model and textbook case is run, not the few that have sizes of zero."""
 
 CASES = every()
@@ -104,10 +103,10 @@ print("run")
 """
 
 
+@pytest.mark.most(40_000)
 @pytest.mark.skipif(not ALL, reason="takes an hour: BONDGRAPH_SOAK_MEMORY=1 asks for it")
 def test_engines_are_clean_under_valgrind(tmp_path: Path) -> None:
     """The whole C core as Python calls it, over every small model and textbook case."""
-    signal.alarm(0)
     assert check_script(SCRIPT, tmp_path).endswith("run\n")
 
 

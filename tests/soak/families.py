@@ -60,6 +60,11 @@ FAMILIES = (
     Family("larger-graphs",
            "bondgraph/test_random.py::test_larger_graph_is_derived_as_brute_force_solves_it", 60, 1_500),
     # Runs.
+    Family("audits-linear", "codegen/test_audit.py", 12, 200),
+    Family("audits-rubbing", "codegen/test_audit.py", 6, 200),
+    Family("audits-turning", "codegen/test_audit.py", 4, 200),
+    Family("audits-rectifying", "codegen/test_audit.py", 4, 200),
+    Family("memory", "codegen/test_memory.py", 0, 1),
     Family("flat", "codegen/test_roots.py", 0, 1),
     Family("agreements", "differentials/test_agreement.py", 0, 1),
     Family("platforms", "codegen/test_fmu_platforms.py", 0, 1),

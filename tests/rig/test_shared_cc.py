@@ -1,0 +1,100 @@
+"""Compilers that share: an object is taken again only where the compiler would make the same."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from rig import shared_cc
+
+COMPILER = shutil.which("cc", path="/usr/local/bin:/usr/bin:/bin")
+pytestmark = pytest.mark.skipif(COMPILER is None, reason="no compiler")
+
+FILES = {
+    "one.c": '#include "sizes.h"\nint one(void) { return ONE; }\n',
+    "main.c": "int one(void);\nint main(void) { return one(); }\n",
+    "sizes.h": "/* Of a model. */\n#define ONE 7\n",
+}
+
+
+def _status(folder: Path, *flags: str, **changed: str) -> tuple[int, list[str]]:
+    """What the program returns, and what was compiled or shared for it."""
+    place = folder / f"place{len(list(folder.iterdir()))}"
+    place.mkdir()
+    for name, text in FILES.items():
+        (place / name).write_text(changed.get(name.replace(".", "_"), text))
+    (folder / "log").write_text("")
+    to = str(place / "run")
+    units = [str(place / "main.c"), str(place / "one.c")]
+    assert COMPILER
+    arguments = [*flags, "-I", str(place), *units, "-o", to, "-lm"]
+    assert shared_cc.main(str(folder), COMPILER, arguments) == 0
+    return subprocess.run([to], check=False).returncode, (folder / "log").read_text().split()
+
+
+def test_units_are_compiled_once(tmp_path: Path) -> None:
+    assert _status(tmp_path) == (7, ["compiled"] * 2)
+    assert _status(tmp_path) == (7, ["shared"] * 2)
+
+
+def test_other_headers_flags_and_texts_make_other_objects(tmp_path: Path) -> None:
+    _status(tmp_path)
+    assert _status(tmp_path, sizes_h="#define ONE 5\n") == (5, ["shared", "compiled"])
+    assert _status(tmp_path, "-O2") == (7, ["compiled"] * 2)
+    assert _status(tmp_path, "-UX", "-D", "Y") == (7, ["compiled"] * 2)
+    text = FILES["one.c"].replace("ONE;", "ONE + 1;")
+    assert _status(tmp_path, one_c=text) == (8, ["shared", "compiled"])
+
+
+def test_only_comments_do_not_count(tmp_path: Path) -> None:
+    _status(tmp_path)
+    assert _status(tmp_path, sizes_h="/* Of another. */\n#define ONE 7\n")[1] == ["shared"] * 2
+    quoted = FILES["one.c"] + 'const char *said(void) { return "%s"; }\n'
+    _status(tmp_path, one_c=quoted % "/* a */")
+    assert _status(tmp_path, one_c=quoted % "/* b */")[1] == ["shared", "compiled"]
+
+
+def test_units_with_warnings_are_not_kept(tmp_path: Path, capfd) -> None:
+    text = FILES["one.c"] + "static int unused(void) { return 0; }\n"
+    for _ in range(2):
+        assert _status(tmp_path, "-Wall", one_c=text)[0] == 7
+        assert "unused" in capfd.readouterr().err
+
+
+def test_what_is_refused_has_the_compilers_status(tmp_path: Path, capfd) -> None:
+    (tmp_path / "bad.c").write_text("int bad(void) { return }\n")
+    assert COMPILER
+    arguments = [str(tmp_path / "bad.c"), "-o", str(tmp_path / "bad")]
+    assert shared_cc.main(str(tmp_path), COMPILER, arguments) == 1
+    assert "bad.c:1" in capfd.readouterr().err
+    assert not (tmp_path / "bad").exists()
+
+
+@pytest.mark.parametrize(
+    "arguments", [["--version"], ["-c", "one.c", "-o", "one.o"], ["one.c"], ["-E", "one.c", "-o", "x"],
+                  ["-print-file-name=libasan.so"], ["one.o", "-o", "run"]]
+)  # fmt: skip
+def test_other_calls_are_the_compilers_own(arguments: list[str]) -> None:
+    assert shared_cc.split(arguments) is None
+
+
+def test_arguments_of_a_build_are_told_apart() -> None:
+    said = [
+        "-O1",
+        "-shared",
+        "-fPIC",
+        "-I.",
+        "-D",
+        "X=1",
+        "-o",
+        "a.so",
+        "one.c",
+        "two.c",
+        "-L",
+        "lib",
+        "-lm",
+    ]
+    flags = ["-O1", "-shared", "-fPIC", "-D", "X=1"]
+    rest = ["-o", "a.so", "one.c", "two.c", "-L", "lib", "-lm"]
+    assert shared_cc.split(said) == (["one.c", "two.c"], flags, ["."], rest)
