@@ -51,15 +51,17 @@ def run_hybrid(
     settings: Settings,
     begin: float,
     span: float,
+    before: Mode | None = None,
     tally: Accumulating | None = None,
 ) -> Stretch:
     """Integrate from ``begin`` to the last of ``times`` [s], recording the vector at each of them.
 
     At a breakpoint or an event a sample shows the instant just after. ``span`` [s]: the length of the
-    whole run, of which this may be the rest. ``tally``: what is integrated on the way. Ends where a guard
-    falls below zero.
+    whole run, of which this may be the rest, and ``before`` the friction mode in which it was: what changes
+    at ``begin`` is an event, too. ``tally``: what is integrated on the way. Ends where a guard falls below
+    zero.
     """
-    course = _Course(model, times, start, signals, settings, begin, span)
+    course = _Course(model, times, start, signals, settings, begin, span, before)
     course.track.tally = tally
     fallen = frozenset[int]()
     while course.unfinished and not fallen:
@@ -78,10 +80,11 @@ class _Course:
 
     def __init__(
         self, model: ClosedModel, times: Array, start: Array, signals: Sequence[Signal],
-        settings: Settings, begin: float, span: float,
+        settings: Settings, begin: float, span: float, before: Mode | None,
     ) -> None:  # fmt: skip
         self.t, self.s, self.end, self.ahead = begin, start, float(times[-1]), 0.0
-        self.mode: Mode = tuple(1 for _ in model.friction_inputs)
+        self.mode: Mode = tuple(1 for _ in model.friction_inputs) if before is None else before
+        self._continued = before is not None
         self.track = Track(np.zeros((len(times), model.size)), [], np.abs(start))
         self._model, self._times, self._signals = model, times, signals
         self._settings, self._span = settings, span
@@ -123,7 +126,7 @@ class _Course:
         loose = self._touched | {i for i, sign in enumerate(self.mode) if sign == 0}
         at_zero = _still(model, t, self.s, pieces, self.mode, loose, peaks)
         new = decide(model, t, self.s, pieces, self.mode, at_zero, self.ahead, peaks, self._touched)
-        if self._settled is not None:
+        if self._settled is not None or self._continued:
             _note(model, self.track.events, t, self.mode, new)
             if self._touched:
                 least = max(APART * self._span, 2 * STALLED * self.ahead)

@@ -129,6 +129,8 @@ class _Journey:
         self._events: list[Event] = []
         self._span = float(times[-1] - times[0])
         self._peaks: dict[Hashable, float] = {}
+        #: How each friction port slips as a phase ends; none before the first.
+        self._slips: dict[Hashable, int] = {}
 
     def run(self) -> Result:
         """From phase to phase to the end."""
@@ -178,7 +180,12 @@ class _Journey:
         rest = self._times[done:]
         refuse_impulses(model, signals, rest)
         tally = self._tally(phase, rest, t, vector, signals)
-        stretch = run_hybrid(model, rest, vector, signals, self._settings, t, self._span, tally)
+        ports = [port.name for port in model.program.friction]
+        before = tuple(self._slips[name] for name in ports) if self._slips else None
+        stretch = run_hybrid(
+            model, rest, vector, signals, self._settings, t, self._span, before, tally
+        )
+        self._slips = dict(zip(ports, stretch.mode, strict=True))
         track = stretch.track
         self._events += track.events
         if track.recorded:

@@ -398,3 +398,36 @@ def test_endless_switching_ends_with_an_error() -> None:
     run = switched_simulator(_heated("1 - T"), {})
     with pytest.raises(bg.SimulationError, match="needs a hysteresis"):
         run.run([0.0, 2.0], inputs={"E": 3.0})
+
+
+@pytest.mark.parametrize(
+    ("w_2", "level", "times", "kinds"),
+    [
+        # Joined at 1 s with opposite momenta: both stand, and the brake sticks at once.
+        (-5.0, 1.0, [1.0, 1.0], ["on", "stick"]),
+        # (4 - 1)/2 = 1.5 rad/s, the other way round than before; it stops after 3 s.
+        (-2.0, 1.0, [1.0, 1.0, 4.0], ["on", "cross", "stick"]),
+        # (4 + 1)/2 = 2.5 rad/s the same way: nothing changes at the brake but when it sticks.
+        (2.0, 1.0, [1.0, 6.0], ["on", "stick"]),
+        # It stood until it is torn away with 2 rad/s.
+        (0.0, 4.0, [1.0, 1.0, 2.0], ["on", "slip", "stick"]),
+    ],
+    ids=["sticks", "turns", "goes on", "is torn away"],
+)
+def test_what_friction_does_as_a_switch_changes_over(w_2, level, times, kinds) -> None:
+    """A dog joins two inertias of 1, one at 4 rad/s, the other with a brake, at 1 s."""
+    nodes = [bg.One("a"), bg.I("J1", 1, flow="w1"), bg.One("b"), bg.I("J2", 1, flow="w2"), bg.Zero("z"),
+             bg.R("br", law=bg.DryFriction(level)), bg.Sw("dog", on="1 - t", off="t - 1")]  # fmt: skip
+    graph = bond_graph(nodes, "a>J1 b>J2 b>br a>z z>dog z>b")
+    samples = np.array([0.0, 0.5, 1.0, 3.0, 7.0])
+    run = switched_simulator(graph, {}).run(samples, {"w1": 4.0, "w2": w_2}, initially_on=["dog"])
+    kinds = ["off" if kind == "on" else kind for kind in kinds]
+    assert [(event.port, event.kind) for event in run.events] == [
+        ("dog" if kind == "off" else "br", kind) for kind in kinds
+    ]
+    assert [event.time for event in run.events] == pytest.approx(times, abs=1e-9)
+    # Every sample once; at the switching it shows the instant after.
+    before = np.sign(w_2) * np.maximum(abs(w_2) - level * samples, 0.0)
+    joined = (4.0 + np.sign(w_2) * max(abs(w_2) - level, 0.0)) / 2
+    after = np.maximum(joined - level / 2 * (samples - 1), 0.0)
+    assert run["w2"] == pytest.approx(np.where(samples < 1, before, after), abs=1e-9)
