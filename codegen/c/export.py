@@ -27,7 +27,7 @@ STEPPED = (
 
 LOCATED = (
     "model_request.h", "model_located.h", "model_located_internal.h", "model_located.c",
-    "model_rounding.c", "model_decide.c", "bg_choose.h", "bg_choose.c",
+    "model_rounding.c", "model_progress.c", "model_decide.c", "bg_choose.h", "bg_choose.c",
     "bg_events.h", "bg_events.c", "bg_rounds.h", "bg_rounds.c",
     "model_watch.c", "model_solver.c", "model_explicit_table.h", "model_explicit.c",
     "model_implicit.c",

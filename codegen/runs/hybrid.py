@@ -51,8 +51,8 @@ def run_hybrid(
     settings: Settings,
     begin: float,
     span: float,
-    before: Mode | None = None,
     tally: Accumulating | None = None,
+    before: Mode | None = None,
 ) -> Stretch:
     """Integrate from ``begin`` to the last of ``times`` [s], recording the vector at each of them.
 

@@ -14,6 +14,7 @@ from codegen.inputs.pieces import Piece
 from codegen.model.closed import ClosedModel, Mode
 from codegen.model.modes import Peaks
 from codegen.runs.events import Dense, Event, Watch
+from codegen.runs.progress import Progress, difference, no_progress
 from codegen.runs.sundials import Cvode
 
 METHODS: dict[str, tuple[Any, Any]] = {
@@ -42,9 +43,6 @@ FOLLOWED = 0.1
 LEAST_STEPS = 200
 """Steps are never longer than the span of the run divided by this."""
 
-
-TINY_STEP, TINY_PART, MANY_STEPS = 1e-9, 1e-3, 500
-"""So many steps in a row below these fractions of run and time constant are a run that goes nowhere."""
 
 REFRESH = 50
 """Steps after which a nonlinear model's time constants are looked at again."""
@@ -141,22 +139,8 @@ class Leg:
         base = self._rate(t, s)
         jacobian = np.empty((len(s), len(s)))
         for j in range(len(s)):
-            jacobian[:, j] = self._slope(t, s, j, base)
+            jacobian[:, j] = difference(self._rates, t, s, j, base, self._span)
         return float(np.abs(np.linalg.eigvals(jacobian)).max(initial=0.0))
-
-    def _slope(self, t: float, s: Array, j: int, base: Array) -> Array:
-        """How the rates change with one component, by a difference that stays where laws have values."""
-        step = 1e-6 * abs(s[j]) + 1e-9 * abs(base[j]) * self._span + 1e-9
-        for _ in range(12):
-            moved = s.copy()
-            moved[j] += step
-            slope = (self._rates(t, moved) - base) / step
-            if np.isfinite(slope).all():
-                return np.asarray(slope, dtype=float)
-            step *= 1e-2
-        raise SimulationError(
-            f"at t = {t:g} the rates are not finite beside the state {s.tolist()}"
-        )
 
     def run(self, t: float, s: Array, stop: float, times: Array, track: Track) -> Ended:
         """Integrate to ``stop`` or the first event; the ports whose event it was come third.
@@ -177,12 +161,11 @@ class Leg:
             max_step=self._bound(explicit, fastest),
         )  # fmt: skip
         watch = Watch(self._model, self._pieces, self._mode, t, s, self._peaks)
-        steps, short = 0, 0
-        tiny = min(TINY_STEP * self._span, TINY_PART / max(fastest, 1 / self._span))
+        steps, progress = 0, self._progress(t)
         while solver.status == "running":
             message = _stepped(solver)
             if solver.status == "failed":
-                raise SimulationError(f"at t = {solver.t:.9g} the integrator failed: {message}")
+                raise _failed(solver, message)
             dense = solver.dense_output()
             found = watch.first_event(solver.t_old, solver.t, dense)
             until = solver.t if found is None else found[0]
@@ -193,15 +176,15 @@ class Leg:
             if found is not None:
                 return until, dense(until), found[1]
             steps += 1
-            short = short + 1 if solver.t - solver.t_old < tiny else 0
-            if short > MANY_STEPS:
-                raise SimulationError(
-                    f"at t = {solver.t:.9g} the integrator no longer advances: the rates jump there; "
-                    "friction that changes sign is a DryFriction, a switch a step of an input"
-                )
+            progress.check(solver.t, solver.y)
             if explicit and steps % REFRESH == 0 and not self._model.program.affine:
                 solver.max_step = self._bound(explicit, self.fastest(solver.t, solver.y))
         return stop, solver.y, frozenset()
+
+    def _progress(self, t: float) -> Progress:
+        driven = max((piece.fastest for piece in self._pieces), default=0.0)
+        settings = self._settings
+        return Progress(self._rates, self._span, driven, settings.rtol, settings.atol, t)
 
     def _integrator(self, fastest: float) -> Any:
         method = self._settings.method
@@ -229,6 +212,13 @@ class Leg:
         if not np.isfinite(rate).all():
             raise SimulationError(f"at t = {t:.9g} the rates are not finite; state {s.tolist()}")
         return rate
+
+
+def _failed(solver: Any, message: str | None) -> SimulationError:
+    """Why an integrator gives up: scipy's do where a step no longer changes the time."""
+    if isinstance(solver, DOP853 | Radau):
+        return no_progress(solver.t, "jump there, or grow without bound")
+    return SimulationError(f"at t = {solver.t:.9g} the integrator failed: {message}")
 
 
 def _stepped(solver: Any) -> Any:

@@ -4,11 +4,9 @@
 
 #include "model_located_internal.h"
 
-enum { K = BG_FRICTION, FINEST = 200, REFRESH = 50, MANY = 500 };
+enum { K = BG_FRICTION, FINEST = 200, REFRESH = 50 };
 static const double STIFF = 2e5;     /* run over time constant: from here on implicit steps */
 static const double FOLLOWED = 0.1;  /* an implicit step in time constants of the inputs */
-static const double TINY = 1e-9;     /* so many steps below this part of a run go nowhere, .. */
-static const double PART = 1e-3;     /* .. if they are less than this of a time constant, too */
 
 int bg_located_look(bg_located *c, double t, const double *s, const signed char *mode)
 {
@@ -132,7 +130,7 @@ static int step(bg_located *c, double stop, int *ended)
 static int advance(bg_located *c, double stop)
 {
     double fastest;
-    int status = bg_located_fastest(c, c->t, c->s, &fastest), ended = 0, short_steps = 0;
+    int status = bg_located_fastest(c, c->t, c->s, &fastest), ended = 0;
     int method = c->asked->method;
     if (method == BG_AUTO)
         method = fastest * c->span > STIFF ? BG_RADAU : BG_DOP853;
@@ -140,13 +138,11 @@ static int advance(bg_located *c, double stop)
         status = bg_solver_begin(c, method, longest(c, method, fastest));
     if (status == BG_OK)
         status = bg_watch_begin(c);
+    bg_progress_begin(c);
     for (long count = 1; status == BG_OK && c->t < stop && !ended; count++) {
-        const double before = c->t;
         status = step(c, stop, &ended);
-        const double tiny = fmin(TINY * c->span, PART / fmax(fastest, 1.0 / c->span));
-        short_steps = c->t - before < tiny ? short_steps + 1 : 0;
-        if (status == BG_OK && short_steps > MANY)
-            return BG_STEPS;
+        if (status == BG_OK && !ended)
+            status = bg_progress_check(c);
         if (status == BG_OK && !BG_AFFINE && count % REFRESH == 0) {
             status = bg_located_fastest(c, c->t, c->s, &fastest);
             c->solver.longest = longest(c, method, fastest);

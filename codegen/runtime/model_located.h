@@ -28,6 +28,14 @@ typedef struct {
     int armed[BG_ROOM(BG_FRICTION)];
 } bg_watch;
 
+/* The steps of a stretch: when the latest lot of them began, and whether the one before went
+ * nowhere. */
+typedef struct {
+    double begin;
+    long steps;
+    int idle;
+} bg_progress;
+
 /* Below these slips, margins and accelerations of slips count as zero. */
 typedef struct {
     double slip[BG_ROOM(BG_FRICTION)], effort[BG_ROOM(BG_FRICTION)];
@@ -47,6 +55,7 @@ typedef struct {
     bg_rounds rounds;
     double squares[2][BG_SIZE * BG_SIZE];
     bg_watch watch;
+    bg_progress progress;
     bg_solver solver;
     bg_snapshot shot;
 } bg_located;

@@ -18,6 +18,12 @@ int bg_located_see(bg_located *c);
 int bg_located_jacobian(bg_located *c, double t, const double *s, double *jacobian);
 int bg_located_fastest(bg_located *c, double t, const double *s, double *fastest);
 
+int bg_located_calm(bg_located *c, double *fastest);
+
+/* model_progress.c: BG_STEPS where lots of steps go nowhere, at a jump of the rates. */
+void bg_progress_begin(bg_located *c);
+int bg_progress_check(bg_located *c);
+
 /* model_decide.c: the mode just after c->t, sticking slips removed. */
 int bg_located_decide(bg_located *c);
 

@@ -122,14 +122,15 @@ int bg_located_see(bg_located *c)
     return status;
 }
 
-/* How rates change with the states, by rows, from differences that stay where laws have values. */
-int bg_located_jacobian(bg_located *c, double t, const double *s, double *jacobian)
+/* How rates change with the states, by rows, from differences that stay where laws have values;
+ * downwards where `side` is -1. */
+static int slopes(bg_located *c, double t, const double *s, double side, double *jacobian)
 {
     double base[BG_SIZE], rate[BG_SIZE], moved[BG_SIZE];
     int status = bg_located_rate(c, t, s, base);
     memcpy(moved, s, sizeof moved);
     for (int j = 0; j < BG_SIZE && status == BG_OK; j++) {
-        double step = 1e-6 * fabs(s[j]) + 1e-9 * fabs(base[j]) * c->span + 1e-9;
+        double step = side * (1e-6 * fabs(s[j]) + 1e-9 * fabs(base[j]) * c->span + 1e-9);
         for (int tries = 0; tries < 12; tries++, step *= 1e-2) {
             moved[j] = s[j] + step;
             status = bg_located_rate(c, t, moved, rate);
@@ -141,6 +142,11 @@ int bg_located_jacobian(bg_located *c, double t, const double *s, double *jacobi
         moved[j] = s[j];
     }
     return status;
+}
+
+int bg_located_jacobian(bg_located *c, double t, const double *s, double *jacobian)
+{
+    return slopes(c, t, s, 1.0, jacobian);
 }
 
 static double largest(const double *a)
@@ -162,16 +168,13 @@ static void square(const double *a, double *product)
         }
 }
 
-/* The largest rate [1/s] of the linearised model and of the inputs: of the model from a high power
- * of the matrix, scaled as it grows. */
-int bg_located_fastest(bg_located *c, double t, const double *s, double *fastest)
+/* The largest rate [1/s] of the model linearised in squares[0] and of the inputs: of the model from
+ * a high power of the matrix, scaled as it grows. */
+static int largest_rate(bg_located *c, double *fastest)
 {
     double *power = c->squares[0], *next = c->squares[1], logarithm = 0.0, share = 1.0;
-    const int status = bg_located_jacobian(c, t, s, power);
-    *fastest = c->signals->fastest[c->segment];
-    if (status != BG_OK)
-        return status;
     double size = largest(power);
+    *fastest = c->signals->fastest[c->segment];
     if (!isfinite(size))
         return BG_NOT_FINITE;
     for (int k = 0; k < SQUARINGS && size > 0.0; k++) {
@@ -188,4 +191,23 @@ int bg_located_fastest(bg_located *c, double t, const double *s, double *fastest
     if (size > 0.0)
         *fastest = fmax(*fastest, exp(logarithm + share * log(size)));
     return BG_OK;
+}
+
+int bg_located_fastest(bg_located *c, double t, const double *s, double *fastest)
+{
+    const int status = bg_located_jacobian(c, t, s, c->squares[0]);
+    *fastest = 0.0;
+    return status == BG_OK ? largest_rate(c, fastest) : status;
+}
+
+/* At the present instant, a jump beside it left aside: from the smaller slope of both sides. */
+int bg_located_calm(bg_located *c, double *fastest)
+{
+    double *const ahead = c->squares[0], *const behind = c->squares[1];
+    int status = slopes(c, c->t, c->s, 1.0, ahead);
+    if (status == BG_OK)
+        status = slopes(c, c->t, c->s, -1.0, behind);
+    for (int i = 0; i < BG_SIZE * BG_SIZE; i++)
+        ahead[i] = fabs(ahead[i]) < fabs(behind[i]) ? ahead[i] : behind[i];
+    return status == BG_OK ? largest_rate(c, fastest) : status;
 }

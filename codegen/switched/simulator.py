@@ -183,7 +183,7 @@ class _Journey:
         ports = [port.name for port in model.program.friction]
         before = tuple(self._slips[name] for name in ports) if self._slips else None
         stretch = run_hybrid(
-            model, rest, vector, signals, self._settings, t, self._span, before, tally
+            model, rest, vector, signals, self._settings, t, self._span, tally, before
         )
         self._slips = dict(zip(ports, stretch.mode, strict=True))
         track = stretch.track

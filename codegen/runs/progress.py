@@ -1,0 +1,129 @@
+"""Whether an integrator still advances, told by its work: steps far shorter than anything in the model
+asks for, in front of rates that jump. ``model_progress.c`` decides the same way with the same numbers."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from bondgraph import SimulationError
+from codegen.arrays import Array
+
+MANY = 200
+"""Steps that are looked at together."""
+
+SHORT = 1e-2
+"""Of what the model allows as a step: shorter steps, on the average, go nowhere where the state slides."""
+
+TINY = 1e-4
+"""Of the same: so short steps go nowhere at any jump, such as one where crossings accumulate."""
+
+FINEST = 200
+"""What a run's span allows as a step, whatever the model is."""
+
+REACH = 32
+"""So many such steps ahead a jump is looked for: integrators end in front of it, too."""
+
+BACK = 2.0**-10
+"""This part of the reach beyond a jump, the state has crossed it again if the rates push it back."""
+
+HALVES = 24
+"""A change of the rates that stays whole as its interval is halved so often is a jump."""
+
+WHOLE, FELT = 0.1, 1e-3
+"""The part of a change that is left of a jump; the least that it changes in tolerances."""
+
+Rates = Callable[[float, Array], Array]
+
+
+@dataclass
+class Progress:
+    """Counts the steps of a stretch; ``driven`` [1/s]: the fastest rate of its inputs."""
+
+    rates: Rates
+    span: float
+    driven: float
+    rtol: float
+    atol: float
+    begin: float
+    steps: int = 0
+    idle: bool = False
+
+    def check(self, t: float, s: Array) -> None:
+        """Take a step that ended here into account.
+
+        Raises `SimulationError` where two lots of `MANY` steps in a row went nowhere, at a jump.
+        """
+        self.steps += 1
+        if self.steps % MANY:
+            return
+        mean, self.begin = (t - self.begin) / MANY, t
+        part = mean * FINEST / self.span
+        if part < SHORT:
+            part = max(part, mean * self._fastest(t, s))
+        idle = part < SHORT
+        if idle and self.idle and self._jumps(mean, t, s, slides=part >= TINY):
+            raise no_progress(t)
+        self.idle = idle
+
+    def _fastest(self, t: float, s: Array) -> float:
+        """The largest rate [1/s] of the model and its inputs at s, a jump beside it left aside."""
+        base = self.rates(t, s)
+        ahead, behind = (
+            np.column_stack([
+                difference(self.rates, t, s, j, base, side * self.span) for j in range(len(s))
+            ])
+            for side in (1.0, -1.0)
+        )  # fmt: skip
+        calm = np.where(np.abs(ahead) < np.abs(behind), ahead, behind)
+        return max(float(np.abs(np.linalg.eigvals(calm)).max(initial=0.0)), self.driven)
+
+    def _jumps(self, mean: float, t: float, s: Array, slides: bool) -> bool:
+        """Whether the rates jump just ahead, along their own direction; ``slides``: and push back beyond."""
+        reach = REACH * mean
+        base = self.rates(t, s)
+        size = reach / (self.atol + self.rtol * np.abs(s))
+
+        def changed(one: Array, other: Array) -> float:
+            return float(np.nan_to_num(np.abs(one - other) * size).max(initial=0.0))
+
+        def ahead(part: float) -> Array:
+            return self.rates(t + part * reach, s + part * reach * base)
+
+        low, high, at_low, at_high = 0.0, 1.0, base, ahead(1.0)
+        first = changed(at_low, at_high)
+        for _ in range(HALVES):
+            middle = 0.5 * (low + high)
+            at_middle = ahead(middle)
+            if changed(at_low, at_middle) > changed(at_middle, at_high):
+                high, at_high = middle, at_middle
+            else:
+                low, at_low = middle, at_middle
+        if not changed(at_low, at_high) > max(WHOLE * first, FELT):
+            return False
+        beyond = self.rates(t + (high + BACK) * reach, s + reach * (high * base + BACK * at_high))
+        return not slides or changed(beyond, at_low) < changed(beyond, at_high)
+
+
+def no_progress(t: float, what: str = "jump there") -> SimulationError:
+    """The refusal of a run whose integrator goes nowhere; ``what`` the rates do."""
+    return SimulationError(
+        f"at t = {t:.9g} the integrator no longer advances: the rates {what}; friction that changes sign "
+        "is a DryFriction, a switch a step of an input"
+    )
+
+
+def difference(rates: Rates, t: float, s: Array, j: int, base: Array, span: float) -> Array:
+    """How the rates change with one component, by a difference that stays where laws have values.
+
+    ``span`` [s] is that of the run; below zero the difference is taken downwards.
+    """
+    step = np.copysign(1e-6 * abs(s[j]) + 1e-9 * abs(base[j] * span) + 1e-9, span)
+    for _ in range(12):
+        moved = s.copy()
+        moved[j] += step
+        slope = (rates(t, moved) - base) / step
+        if np.isfinite(slope).all():
+            return np.asarray(slope, dtype=float)
+        step *= 1e-2
+    raise SimulationError(f"at t = {t:g} the rates are not finite beside the state {s.tolist()}")
