@@ -173,13 +173,7 @@ class Simulator:
 
     def vector(self, t: float, state: Array, given: Array) -> Array:
         """The integrated vector at a state: x less what inputs that drive dependent storages add."""
-        s = np.zeros(self.closed.size)
-        s[: len(state)] = state
-        program, zeros = self.closed.program, np.zeros(len(given))
-        if program.layout["E"].rows and not program.varying:
-            known = self.closed.evaluate(t, s, given, zeros, self._all_slipping())
-            s[: len(program.states)] -= known.numbers.R @ known.u
-        return s
+        return self.closed.vector(t, state, given)
 
 
 def simulator(

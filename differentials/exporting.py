@@ -57,7 +57,7 @@ def write(
             *arguments, name=name, main=True, initial=ready.initial, inputs=ready.inputs
         )
         return [_written(out / name / file, text) for file, text in texts.items()]
-    module = codegen.to_python(*arguments, name)
+    module = codegen.to_python(*arguments, name, initial=ready.initial, inputs=ready.inputs)
     run = script(name, ready)
     return [_written(out / f"{name}.py", module), _written(out / f"run_{name}.py", run)]
 

@@ -53,7 +53,7 @@ inputs = {{
 initial = {{
 {initial}}}
 times = np.linspace({begin!r}, {end!r}, {len(ready.times)})
-result = simulate(times, initial, inputs, step=1e-4)
+result = simulate(times, initial, inputs)
 table = np.column_stack([*result.values()])
 header = ",".join(result)
 np.savetxt("{name}.csv", table, delimiter=",", header=header, comments="")

@@ -36,9 +36,9 @@ ORDER = {
                                             "tables"),
         "model.affine", "closing", "records", "sections", "program", "identifiers", "printing", "units",
         *_room("model", "numpy_backend numbers sharp snapshot sharing friction instant loops rubbing closed "
-               "sizes modes guards places"),
+               "stability sizes modes guards places"),
         *_room("energy", "stored quadrature accounts tally"),
-        *_room("runs", "events sundials progress legs watched exact ladder free hybrid arguments impulses "
+        *_room("runs", "events sundials progress legs watched exact ladder free hybrid arguments steps impulses "
                "observer tables summary"),
         *_room("energy", "audit ledger"), *_room("pictures", "style canvas labels flags marks stacked"),
         *_room("runs", "result snapshots columns"), "energy.replay",

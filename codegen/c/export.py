@@ -17,11 +17,13 @@ from codegen.c.text import comment
 from codegen.model.closed import ClosedModel
 from codegen.program import Block, Program, lower
 from codegen.runs.arguments import initial_values, signals_for
+from codegen.runs.steps import step_at_start
 
 STEPPED = (
     "model_runtime.h", "model_internal.h", "model_linear.c", "model_numbers.c", "model_hold.c",
     "model_share.c", "model_roots.c", "model_loops.c", "model_evaluate.c", "model_instance.c",
-    "model_step.c", "model_signals.h", "model_signals.c",
+    "model_region.c", "model_slope.c", "model_fastest.c", "model_step.c", "model_signals.h",
+    "model_signals.c",
 )  # fmt: skip
 """What is the same for every model."""
 
@@ -91,9 +93,9 @@ def to_c(
     ``parameters``: name to number, the defaults of `bg_model_init`. ``laws``: as `simulator` takes them.
     ``name``: what the model calls itself. ``main``: with a main program that prints a run as CSV, from
     ``initial`` (states by name, others start at 0) under ``inputs`` (signals or numbers, others are 0)
-    unless it is told otherwise. ``prefix``: what every external symbol begins with, such as "front_";
-    models with different ones link into one program. The same arguments give the same text; `model.c`
-    tells how it is used.
+    unless it is told otherwise; `BG_LONGEST_STEP` of config.h is found there, too. ``prefix``: what every
+    external symbol begins with, such as "front_"; models with different ones link into one program. The
+    same arguments give the same text; `model.c` tells how it is used.
 
     Which sticking ports are redundant is decided exactly, at these parameters; others at which that
     changes are refused when the model is run.
@@ -106,22 +108,28 @@ def to_c(
     program = lower(equations, laws, parameters)
     closed = ClosedModel(program, equations, parameters)
     defaults = [float(closed.parameters[symbol.name]) for symbol in program.parameters]
-    files = texts(closed, name, defaults, prefix)
-    if not main:
-        return files
     states = [symbol.name for symbol in (*program.states, *program.law_states)]
     external = [symbol.name for symbol in program.external]
     signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)
-    scenario = scenario_text(signals, initial_values(initial or {}, states).tolist())
+    start = initial_values(initial or {}, states)
+    longest = step_at_start(closed, start, signals)
+    files = texts(closed, name, defaults, prefix, longest)
+    if not main:
+        return files
+    scenario = scenario_text(signals, start.tolist())
     return {**files, "main.c": runtime_file("main.c"), "scenario.h": scenario}
 
 
 def texts(
-    closed: ClosedModel, name: str, defaults: Sequence[float], prefix: str = ""
+    closed: ClosedModel,
+    name: str,
+    defaults: Sequence[float],
+    prefix: str = "",
+    longest: float | None = None,
 ) -> dict[str, str]:
-    """The files of a model without a main program.
+    """The files of a model without a main program; ``longest``: its longest stable step, if that is told.
 
-    Its parameters are in ``defaults`` alone, and in which sticking ports are redundant.
+    Its parameters are in ``defaults`` and ``longest`` alone, and in which sticking ports are redundant.
     """
     runtime = {file: runtime_file(file) for file in STEPPED + LOCATED}
     headers = [text for file, text in runtime.items() if file.endswith(".h")]
@@ -140,7 +148,7 @@ def texts(
         *group_tables(program),
         *(straight_rates(program, fast) if fast else plain_rates()),
     ]
-    sizes = config(program, fast, name, macros)
+    sizes = config(program, fast, name, macros, longest)
     return {"config.h": sizes, "model.c": "\n".join(lines) + "\n", **runtime}
 
 

@@ -9,19 +9,51 @@ from codegen.c.rhs import Straight
 from codegen.c.structure import Structure
 from codegen.c.text import array, comment, doubles, integers, quoted, strings
 from codegen.program import Group, Program
+from codegen.runs.steps import told_step
 from codegen.units import units
 
 MOST_HOLDS = 4
 """Holding equations of all sets of so many friction ports are kept once they are found."""
 
 
-def config(program: Program, fast: Straight | None, name: str, macros: Sequence[str] = ()) -> str:
-    """config.h: the sizes of everything, and macros that rename external symbols."""
+def config(
+    program: Program,
+    fast: Straight | None,
+    name: str,
+    macros: Sequence[str] = (),
+    longest: float | None = None,
+) -> str:
+    """config.h: the sizes of everything, and macros that rename external symbols.
+
+    ``longest``: the longest stable step at the default point [s], None for no word on it.
+    """
     lines = [*comment(f"Sizes of {name}; written by bondgraph-toolkit."), "#ifndef BG_CONFIG_H"]
     lines += ["#define BG_CONFIG_H", ""]
     lines += [f"#define BG_{key} {value}" for key, value in _sizes(program, fast).items()]
+    lines += ["", *_steps(longest)]
     lines += ["", *macros] if macros else []
     return "\n".join([*lines, "", "#endif", ""])
+
+
+def _steps(longest: float | None) -> list[str]:
+    """What there is to say of fixed steps."""
+    told = []
+    if longest is not None:
+        told = [
+            *comment(
+                "The longest step [s] that is stable at the default start, parameters and inputs, in "
+                "every friction mode; 1e300 if nothing bounds it."
+            ),
+            f"#define BG_LONGEST_STEP {told_step(longest)!r}",
+            "",
+        ]
+    return [
+        *told,
+        *comment("Whether each step is checked for stability, at two evaluations more."),
+        "#ifndef BG_CHECK_STEP",
+        "#define BG_CHECK_STEP 1",
+        "#endif",
+    ]
 
 
 def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:

@@ -26,6 +26,7 @@ from codegen.program import Program
 from codegen.runs.arguments import initial_values
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import Leg, Settings
+from codegen.runs.steps import round_step, step_at_start
 from codegen.simulate import Simulator, simulator
 
 _COMMON = (
@@ -119,7 +120,7 @@ def _model(
         start.tolist(),
         [one if isinstance(one, float) else 0.0 for one in signals],
         frozenset(inside),
-        _internal_step(shortest),
+        _internal_step(shortest, step_at_start(ready.closed, start, every)),
     )
     return FmuModel(
         name,
@@ -169,12 +170,9 @@ def _shortest(ready: Simulator, start: list[float], signals: list[Signal]) -> fl
     return 1 / max(fastest, 100.0)
 
 
-def _internal_step(shortest: float) -> float:
-    """A round length, a fifth of the shortest time constant or less, a millisecond at most."""
-    longest = min(1e-3, shortest / 5)
-    power = 10.0 ** math.floor(math.log10(longest))
-    digit = max(one for one in (1, 2, 5) if one * power <= longest * (1 + 1e-9))
-    return float(f"{digit}e{round(math.log10(power))}")
+def _internal_step(shortest: float, longest: float) -> float:
+    """A round length: a fifth of the shortest time constant or less, half the longest stable one at most."""
+    return round_step(min(1e-3, shortest / 5, longest / 2))
 
 
 def _identifier(name: str) -> str:

@@ -102,6 +102,16 @@ class ClosedModel:
                     return now
         return self.evaluate(t, s, w, dw, mode)
 
+    def vector(self, t: float, state: Array, given: Array) -> Array:
+        """The integrated vector at a state: x less what inputs that drive dependent storages add."""
+        s = np.zeros(self.size)
+        s[: len(state)] = state
+        if self.program.layout["E"].rows and not self.program.varying:
+            slipping = tuple(1 for _ in self.friction_inputs)
+            known = self.evaluate(t, s, given, np.zeros(len(given)), slipping)
+            s[: len(self.program.states)] -= known.numbers.R @ known.u
+        return s
+
     def guards(self, t: float, now: Snapshot) -> Array:
         """The conditions at an instant: one below zero ends the run."""
         zeros = np.zeros(len(now.external))

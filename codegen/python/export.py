@@ -6,7 +6,8 @@ from importlib.resources import files
 from typing import Any
 
 from bondgraph import ParameterError, StateEquations
-from codegen.model.numbers import check_values, exact_parameters, numbers
+from codegen.model.closed import ClosedModel
+from codegen.model.numbers import exact_parameters
 from codegen.program import Program, lower
 from codegen.python.blocks import (
     Names,
@@ -18,8 +19,10 @@ from codegen.python.blocks import (
     values_function,
 )
 from codegen.python.sticking import sticking_ranks
-from codegen.python.tables import flags, friction_tables, places, public, units
+from codegen.python.tables import flags, friction_tables, places, public, step_settings, units
 from codegen.python.text import chosen, filled, listing, plain, quoted, table
+from codegen.runs.arguments import initial_values, signals_for
+from codegen.runs.steps import step_at_start
 
 TEMPLATE = "templates/standalone.py.txt"
 """What is the same for every model; lines between ``#% if`` and ``#% end`` where they apply."""
@@ -40,6 +43,7 @@ Written by bondgraph-toolkit {version}; change the graph rather than this file. 
 
 import itertools
 import math
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -51,15 +55,19 @@ def to_python(
     parameters: Mapping[str, object],
     laws: Mapping[Any, object] | None = None,
     name: str = "model",
+    initial: Mapping[str, float] | None = None,
+    inputs: Mapping[str, object] | None = None,
 ) -> str:
     """The equations, closed by laws, as the text of a Python module that needs only numpy.
 
     ``parameters``: name to number, the module's defaults. ``laws``: as `simulator` takes them.
-    ``name``: what the module calls itself. The same arguments give the same text.
+    ``name``: what the module calls itself. ``initial`` (states by name, others at 0) under ``inputs``
+    (signals or numbers, others are 0): where a run starts, at which the longest stable step is found. The
+    same arguments give the same text.
 
-    The module has ``PARAMETERS``, ``STATES``, ``INPUTS``, ``OUTPUTS``; ``Model`` with ``rhs`` and
-    ``outputs``; and ``simulate``, which takes fixed Runge-Kutta steps and lets friction ports stick inside a
-    dead band.
+    The module has ``PARAMETERS``, ``STATES``, ``INPUTS``, ``OUTPUTS``, ``LONGEST_STEP``; ``Model`` with
+    ``rhs`` and ``outputs``; and ``simulate``, which takes fixed Runge-Kutta steps, lets friction ports stick
+    inside a dead band and raises the module's ``UnstableStep`` for steps beyond the method's stability.
 
     Raises what `simulator` raises; `StructureError` or `ParameterError`, naming the ports, where what holds
     sticking ports differs with other numbers; `ExpressionError` for functions Python lacks.
@@ -68,10 +76,11 @@ def to_python(
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
     program = lower(equations, laws, parameters)
     exact = exact_parameters(parameters)
-    if program.varying:
-        check_values(equations, exact)
-    else:
-        numbers(program, equations, exact)
+    closed = ClosedModel(program, equations, parameters)
+    states = [symbol.name for symbol in (*program.states, *program.law_states)]
+    external = [symbol.name for symbol in program.external]
+    signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)
+    longest = step_at_start(closed, initial_values(initial or {}, states), signals)
     held = sticking_ranks(program, equations, exact) if program.friction else {}
     names = names_of(program)
     used = {symbol.name: float(exact[symbol.name]) for symbol in program.parameters}
@@ -82,6 +91,7 @@ def to_python(
         *("", *public(program)),
         *("", *places(program)),
         *friction_tables(program, equations, held),
+        *step_settings(longest),
         *body,
     ]
     return "\n".join(lines) + "\n\n\n" + fixed

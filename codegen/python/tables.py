@@ -4,9 +4,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from bondgraph import StateEquations
+from codegen.model.stability import FARTHEST, IMAGINARY_LIMIT, NEAREST, REAL_LIMIT
 from codegen.program import Program
 from codegen.python.sticking import beside_resistance
 from codegen.python.text import listing, names_tuple
+from codegen.runs.steps import round_step, told_step
 
 Held = Mapping[tuple[int, ...], tuple[int, int]]
 """Ranks of sets of sticking ports, as `sticking_ranks` gives them."""
@@ -110,3 +112,23 @@ def friction_tables(program: Program, equations: StateEquations, held: Held) -> 
             "LOOP_BRACKETS = 200",
         ]
     return lines
+
+
+def step_settings(longest: float) -> list[str]:
+    """What there is to say of fixed steps; ``longest``: the longest stable one at the start [s]."""
+    usual = round_step(min(1e-4, longest / 2))
+    return [
+        "",
+        "# The longest step [s] that is stable at the start, in every friction mode; the usual one.",
+        f"LONGEST_STEP = {told_step(longest)!r}",
+        f"STEP = {usual!r}",
+        "# Whether each step is checked for stability, at two evaluations more; rounds of two before",
+        "# the first, and before a refusal.",
+        "CHECK_STEP = True",
+        "FIRST_ROUNDS, REFUSED_ROUNDS = 4, 16",
+        "# Where the method is stable: |step * rate| on the negative and on the imaginary axis, the",
+        "# least and the largest. Differences in magnitudes of the states; rounds in the mean growth.",
+        f"REAL_LIMIT, IMAGINARY_LIMIT = {abs(REAL_LIMIT)!r}, {IMAGINARY_LIMIT!r}",
+        f"NEAREST, FARTHEST = {NEAREST}, {FARTHEST}",
+        "DIFFERENCE, AVERAGED = 1e-7, 8",
+    ]

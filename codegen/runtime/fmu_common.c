@@ -31,6 +31,7 @@ fmu_error fmu_apply(fmu_instance *f)
     status = bg_model_init(&f->model, f->at.parameters);
     memcpy(f->model.mode, f->at.mode, sizeof f->model.mode);
     f->model.started = f->at.stepped;
+    f->model.fastest = f->at.fastest;
     f->changed = status != BG_OK;
     return message(status);
 }

@@ -37,6 +37,7 @@ typedef struct {
     double switch_peak[BG_ROOM(FMU_SWITCHES)], switch_rest[BG_ROOM(FMU_SWITCHES)];
     int side[BG_ROOM(FMU_SWITCHES)], mode[BG_ROOM(BG_FRICTION)], segment;
     int phase, decided, exchange, stepped;
+    bg_fastest fastest;
 } fmu_memory;
 
 typedef struct fmu_instance {
@@ -47,6 +48,7 @@ typedef struct fmu_instance {
     double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)], point[2][BG_SIZE];
     double magnitude_x[BG_ROOM(BG_STATES)], magnitude_u[BG_ROOM(BG_INPUTS)];
     double flow[BG_ROOM(BG_STATES)], switches[BG_ROOM(FMU_SWITCHES)], steps[3 * BG_ROOM(BG_EXTERNAL)];
+    char text[256]; /* of a failure that has numbers */
 } fmu_instance;
 
 /* What is generated: the variables by value reference, sources, start values, switching expressions. */

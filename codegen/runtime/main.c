@@ -122,7 +122,11 @@ static int run_stepped(bg_model *m, const command *asked, const bg_signals *sign
                 return 1;
             print_row(t, &shot);
         }
-        if (failed(bg_model_advance(m, t, h, s, w)))
+        const int status = bg_model_advance(m, t, h, s, w);
+        if (status == BG_UNSTABLE)
+            fprintf(stderr, "%s: at t = %.9g step=%.6g; the longest stable one is %.4g\n",
+                    bg_model_name, t, h, m->fastest.step);
+        if (failed(status))
             return 1;
     }
     return 0;

@@ -147,6 +147,8 @@ const char *bg_model_message(int status)
         "events follow one another and time makes no progress",
         "the integrator no longer advances: the rates jump there",
         "more events than there is room for",
+        "the step is too long: beyond the stability of its method at the model's fastest rates",
+        "a step must be a positive finite number",
     };
     const int count = (int)(sizeof messages / sizeof *messages);
     return status >= 0 && status < count ? messages[status] : "unknown status";

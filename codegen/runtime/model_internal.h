@@ -96,6 +96,27 @@ typedef struct {
 } bg_loop;
 int bg_solve_loop(bg_model *m, const bg_loop *loop);
 
+/* model_region.c: where the method is stable, as |h l|: on the negative axis, on the imaginary one,
+ * and the least and the largest in the left half plane; the longest stable step where the roots of
+ * l^2 = a l + b are the rates. */
+#define BG_REAL_LIMIT 2.785293563405282
+#define BG_IMAGINARY_LIMIT 2.8284271247461903
+#define BG_NEAREST 2.6156
+#define BG_FARTHEST 2.9603
+double bg_stable_step(double a, double b);
+
+/* model_slope.c: weights and magnitudes of the states at a step's start; image = J from, both
+ * times the weights, by a difference of so many magnitudes. The first stage must be known. */
+void bg_weigh(bg_model *m, double h);
+void bg_reach(bg_model *m, double h, const double *s);
+int bg_slope(bg_model *m, double t, const double *s, const double *w, double amount,
+             const double *from, double *image);
+
+/* model_fastest.c: BG_UNSTABLE if a step of h from t, s is beyond that. What the stages of a step
+ * tell of the next. */
+int bg_check_step(bg_model *m, double t, double h, const double *s, const double *w);
+void bg_note_stages(bg_model *m);
+
 /* model_evaluate.c */
 void bg_give(bg_model *m, int count, const int *columns, const double *values);
 int bg_residual(bg_model *m, const bg_loop *loop, double *left);

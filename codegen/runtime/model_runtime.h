@@ -35,7 +35,9 @@ enum bg_status {
     BG_UNDECIDED,    /* no way of sticking and slipping is consistent */
     BG_STALLS,       /* events follow one another and time makes no progress */
     BG_STEPS,        /* the integrator no longer advances: the rates jump there */
-    BG_EVENTS        /* more events than there is room for */
+    BG_EVENTS,       /* more events than there is room for */
+    BG_UNSTABLE,     /* a step is beyond the stability of its method */
+    BG_BAD_STEP      /* a step is no positive number */
 };
 
 /* One instant: time, states, law states, readings, inputs, external inputs and their rates. */
@@ -84,11 +86,20 @@ typedef struct {
     double law[BG_ROOM(BG_LARGEST)];
     double u[BG_ROOM(BG_INPUTS)], y[BG_ROOM(BG_READINGS)];
     double stage[4][BG_SIZE], point[BG_SIZE];
+    double weight[BG_SIZE], reach[BG_SIZE], image[BG_SIZE], next[BG_SIZE];
     double given[3][BG_ROOM(BG_EXTERNAL)], rates[3][BG_ROOM(BG_EXTERNAL)];
     double origin[BG_MAP_ROWS], external[2][BG_ROOM(BG_EXTERNAL)];
     double loop[BG_ROOM(BG_LOOP)][6], slopes[BG_TABLE(BG_LOOP, BG_LOOP)];
     int pivots[BG_ROOM(BG_LOOP)];
 } bg_work;
+
+/* What a step knows of the model's fastest rates: a direction in which the rates move fast, and how
+ * fast. `step`: after BG_UNSTABLE the longest step [s] that is stable there. */
+typedef struct {
+    double direction[BG_SIZE], growth, step;
+    unsigned noise;
+    int rounds;
+} bg_fastest;
 
 /* One instance. `band` [unit of each slip]: the dead band inside which a step lets a port stick;
  * `mode`: 0 sticking, 1 or -1 the sign of the slip, as the last step left it (`started`: there
@@ -97,6 +108,7 @@ typedef struct {
 typedef struct {
     double band[BG_ROOM(BG_FRICTION)];
     int mode[BG_ROOM(BG_FRICTION)], started, where;
+    bg_fastest fastest;
     bg_values now;
     double du[BG_ROOM(BG_INPUTS)], caps[BG_ROOM(BG_FRICTION)], constants[BG_ROOM(BG_CONSTANTS)];
     bg_numbers numbers;
@@ -141,7 +153,12 @@ int bg_model_rhs(bg_model *m, double t, const double *s, const double *w, const 
 /* One step of h from t, s in place; w: the external inputs at t, t + h/2 and t + h, one after the
  * other. Time is bounded: which ports stick is decided once, at the start, by Karnopp's dead band
  * (`bg_model_settle`: sets `mode` and takes the slips of sticking ports away); then the step is one
- * of Runge's and Kutta's fourth order (`bg_model_advance`). */
+ * of Runge's and Kutta's fourth order (`bg_model_advance`).
+ *
+ * A step beyond the method's stability gives BG_UNSTABLE before anything is changed, so a shorter
+ * one may follow; `fastest.step` is the longest that would be stable. Two evaluations a step find
+ * that out, eight more in the first step, two more where rates may jump, 32 more in a refusal;
+ * BG_CHECK_STEP 0 leaves them out. */
 int bg_model_step(bg_model *m, double t, double h, double *s, const double *w);
 int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w);
 int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w);

@@ -141,6 +141,8 @@ static int decide(bg_model *m, double t, double h, const double *s, const double
 int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w)
 {
     int status;
+    if (!(h > 0) || !isfinite(h))
+        return BG_BAD_STEP;
     if (K == 0)
         return BG_OK;
     if (BG_RATED)
@@ -157,6 +159,8 @@ int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w
     static const double along[4] = {0.0, 0.5, 0.5, 1.0};
     static const int instant[4] = {0, 1, 1, 2};
     bg_work *const work = &m->work;
+    if (!(h > 0) || !isfinite(h))
+        return BG_BAD_STEP;
     if (BG_RATED)
         external_rates(h, w, work->rates);
     for (int k = 0; k < 4; k++) {
@@ -169,7 +173,13 @@ int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w
         if (status != BG_OK)
             return status;
         memcpy(work->stage[k], m->shot.rate, sizeof work->stage[k]);
+        if (BG_CHECK_STEP && k == 0)
+            status = bg_check_step(m, t, h, s, w);
+        if (status != BG_OK)
+            return status;
     }
+    if (BG_CHECK_STEP)
+        bg_note_stages(m);
     for (int i = 0; i < BG_SIZE; i++)
         s[i] += h / 6 * (work->stage[0][i] + 2 * work->stage[1][i] + 2 * work->stage[2][i]
                          + work->stage[3][i]);

@@ -125,6 +125,11 @@ class CModel:
     def band(self, width: float) -> None:
         self.library.harness_band(self.instance, ctypes.c_double(width))
 
+    def longest(self) -> float:
+        """The longest stable step, after a step was refused."""
+        self.library.harness_longest.restype = ctypes.c_double
+        return float(self.library.harness_longest(self.instance))
+
     def mode(self) -> tuple[int, ...]:
         room = self._mode([0] * len(self.program.friction))
         self.library.harness_mode(self.instance, room)

@@ -31,6 +31,11 @@ void harness_band(bg_model *m, double band)
         m->band[i] = band;
 }
 
+double harness_longest(const bg_model *m)
+{
+    return m->fastest.step;
+}
+
 void harness_mode(const bg_model *m, int *mode)
 {
     for (int i = 0; i < BG_FRICTION; i++)

@@ -24,4 +24,13 @@
 #define BG_RATED 0
 #define BG_STRAIGHT 1
 
+/* The longest step [s] that is stable at the default start, parameters and inputs, in every
+ * friction mode; 1e300 if nothing bounds it. */
+#define BG_LONGEST_STEP 0.00272547
+
+/* Whether each step is checked for stability, at two evaluations more. */
+#ifndef BG_CHECK_STEP
+#define BG_CHECK_STEP 1
+#endif
+
 #endif
