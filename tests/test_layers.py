@@ -38,8 +38,8 @@ ORDER = {
         *_room("model", "numpy_backend numbers sharp snapshot sharing friction instant loops rubbing closed "
                "stability sizes modes guards places"),
         *_room("energy", "stored quadrature accounts tally"),
-        *_room("runs", "events sundials progress legs watched exact ladder free hybrid arguments steps impulses "
-               "observer tables summary"),
+        *_room("runs", "events sundials progress legs watched exact ladder free hybrid arguments steps "
+               "impulses observer tables summary"),
         *_room("energy", "audit ledger"), *_room("pictures", "style canvas labels flags marks stacked"),
         *_room("runs", "result snapshots columns"), "energy.replay",
         *_room("pictures", "panels poles bode shapes"), *_room("analysis", "spectrum comparison"),

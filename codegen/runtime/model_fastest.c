@@ -26,17 +26,9 @@ typedef struct {
     double a, b, left, doubt, growth;
 } fit;
 
-static double product(const double *a, const double *b)
+static double normalised(const bg_model *m, double *a)
 {
-    double sum = 0.0;
-    for (int i = 0; i < ALL; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
-
-static double normalised(double *a)
-{
-    const double size = sqrt(product(a, a));
+    const double squared = bg_energy(m, a, a), size = squared > 0 ? sqrt(squared) : 0.0;
     for (int i = 0; i < ALL && size > 0; i++)
         a[i] /= size;
     return size;
@@ -47,28 +39,26 @@ static int look(bg_model *m, double t, const double *s, const double *w, double 
                 const double *from, double *next, fit *found)
 {
     double *const once = m->work.image;
-    double first, second, c, along, back, sine, root, left = 0.0;
+    double apart[BG_SIZE] = {0}, first, second, c, along, back, sine, root;
     int status = bg_slope(m, t, s, w, amount, from, once);
     memset(found, 0, sizeof *found);
     memcpy(next, from, sizeof(double) * BG_SIZE);
-    first = status == BG_OK ? normalised(once) : 0.0;
+    first = status == BG_OK ? normalised(m, once) : 0.0;
     if (status == BG_OK)
         status = bg_slope(m, t, s, w, amount, once, next);
-    second = status == BG_OK ? normalised(next) : 0.0;
+    second = status == BG_OK ? normalised(m, next) : 0.0;
     if (!(first > 0) || !(second > 0))
         return status;
-    c = product(once, from);
-    along = product(next, once);
-    back = product(next, from);
+    c = bg_energy(m, once, from);
+    along = bg_energy(m, next, once);
+    back = bg_energy(m, next, from);
     sine = 1 - c * c;
     found->growth = sqrt(first * second);
     found->a = sine > SINE * SINE ? (along - c * back) / sine : along;
     found->b = sine > SINE * SINE ? (back - c * along) / sine : 0.0;
-    for (int i = 0; i < ALL; i++) {
-        const double apart = next[i] - found->a * once[i] - found->b * from[i];
-        left += apart * apart;
-    }
-    found->left = sqrt(left);
+    for (int i = 0; i < ALL; i++)
+        apart[i] = next[i] - found->a * once[i] - found->b * from[i];
+    found->left = normalised(m, apart);
     found->a *= second;
     found->b *= second * first;
     /* Roots move by the error over their distance; double ones by its square root. */
@@ -96,17 +86,18 @@ static double longest(const bg_fastest *f, const fit *found, double h)
 }
 
 /* The kept vector goes on, and a little of every direction with it, so that none is ever lost. */
-static void keep(bg_fastest *f, const fit *found, const double *next)
+static void keep(bg_model *m, const fit *found, const double *next)
 {
-    double stir[BG_SIZE], size = 0.0;
+    bg_fastest *const f = &m->fastest;
+    double stir[BG_SIZE] = {0};
     for (int i = 0; i < ALL; i++) {
         f->noise = (1664525u * f->noise + 1013904223u) & 0xffffffffu;
         stir[i] = f->noise / 2147483648.0 - 1.0;
-        size += stir[i] * stir[i];
     }
+    normalised(m, stir);
     for (int i = 0; i < ALL; i++)
-        f->direction[i] = next[i] + STIRRED * stir[i] / sqrt(size);
-    normalised(f->direction);
+        f->direction[i] = next[i] + STIRRED * stir[i];
+    normalised(m, f->direction);
     if (found->growth > 0) {
         f->rounds += f->rounds < AVERAGED;
         f->growth += (log(found->growth) - f->growth) / f->rounds;
@@ -128,7 +119,7 @@ static int go_on(bg_model *m, double t, const double *s, const double *w, int ro
     for (int k = 0; k < rounds; k++) {
         if (look(m, t, s, w, AMOUNT, m->fastest.direction, m->work.next, found) != BG_OK)
             return 0;
-        keep(&m->fastest, found, m->work.next);
+        keep(m, found, m->work.next);
     }
     return 1;
 }
@@ -138,7 +129,7 @@ static void begin(bg_model *m, fit *found)
 {
     memset(found, 0, sizeof *found);
     memset(m->work.next, 0, sizeof m->work.next);
-    keep(&m->fastest, found, m->work.next);
+    keep(m, found, m->work.next);
 }
 
 /* Looks a second time, to the other side and farther: a jump has other slopes there. The longest
@@ -178,7 +169,7 @@ int bg_check_step(bg_model *m, double t, double h, const double *s, const double
     if (seen && sided && longest(f, &found, h) < h)
         step = confirmed(m, t, h, s, w, &found);
     else if (seen)
-        keep(f, &found, m->work.next);
+        keep(m, &found, m->work.next);
     m->where = -1;
     if (!(step < h))
         return BG_OK;
@@ -191,17 +182,17 @@ int bg_check_step(bg_model *m, double t, double h, const double *s, const double
 void bg_note_stages(bg_model *m)
 {
     const bg_work *const work = &m->work;
-    double seed[BG_SIZE], before = 0.0, after = 0.0, part;
+    double seed[BG_SIZE] = {0}, moved[BG_SIZE] = {0}, before, after, part;
     for (int i = 0; i < ALL; i++) {
-        const double d = (work->stage[1][i] - work->stage[0][i]) * work->weight[i];
+        moved[i] = (work->stage[1][i] - work->stage[0][i]) * work->weight[i];
         seed[i] = (work->stage[2][i] - work->stage[1][i]) * work->weight[i];
-        before += d * d;
-        after += seed[i] * seed[i];
     }
+    before = normalised(m, moved);
+    after = normalised(m, seed);
     if (!(after > 0) || !(before > 0) || !isfinite(after) || !isfinite(before))
         return;
-    part = 4 * after > BG_NEAREST * BG_NEAREST * before ? 0.0 : 1 / SEEDED;
+    part = 2 * after > BG_NEAREST * before ? 0.0 : 1 / SEEDED;
     for (int i = 0; i < ALL; i++)
-        m->fastest.direction[i] = part * m->fastest.direction[i] + seed[i] / sqrt(after);
-    normalised(m->fastest.direction);
+        m->fastest.direction[i] = part * m->fastest.direction[i] + seed[i];
+    normalised(m, m->fastest.direction);
 }

@@ -105,10 +105,12 @@ int bg_solve_loop(bg_model *m, const bg_loop *loop);
 #define BG_FARTHEST 2.9603
 double bg_stable_step(double a, double b);
 
-/* model_slope.c: weights and magnitudes of the states at a step's start; image = J from, both
- * times the weights, by a difference of so many magnitudes. The first stage must be known. */
+/* model_slope.c: weights and magnitudes of the states at a step's start; the product of changes
+ * whose square is twice their energy; image = J from, both times the weights, by a difference of so
+ * many magnitudes. The first stage must be known. */
 void bg_weigh(bg_model *m, double h);
 void bg_reach(bg_model *m, double h, const double *s);
+double bg_energy(const bg_model *m, const double *a, const double *b);
 int bg_slope(bg_model *m, double t, const double *s, const double *w, double amount,
              const double *from, double *image);
 

@@ -1,26 +1,49 @@
 /* Products of the rates' slopes J with a direction, by differences inside the mode of a step. */
 #include <math.h>
+#include <string.h>
 
 #include "model_internal.h"
 
 enum { N = BG_STATES, OWN = BG_LAW_STATES, ALL = BG_STATES + BG_LAW_STATES };
 
-/* Weights in which the square of a change is twice its energy, so that what conserves energy turns
- * vectors and does not stretch them; a law's state is weighed by what drives it, at the limit's
- * rate. */
+/* Weights near those of energy, by which states of any unit compare. A law's state is weighed by
+ * the most that energy can drive it, at the limit's rate. */
 void bg_weigh(bg_model *m, double h)
 {
     const bg_numbers *const a = &m->numbers;
     bg_work *const work = &m->work;
+    double *const moved = work->moved;
     for (int i = 0; i < N; i++)
         work->weight[i] = 1 / a->scale[i];
     for (int i = 0; i < OWN; i++) {
         const double *const row = a->F + bg_law_rates[i] * N;
         double driven = 0.0;
+        memcpy(moved, row, sizeof(double) * N);
+        bg_solve_storages(a, 1, moved);
         for (int j = 0; j < N; j++)
-            driven += row[j] * a->scale[j] * row[j] * a->scale[j];
+            driven += row[j] * moved[j];
         work->weight[N + i] = driven > 0 ? BG_REAL_LIMIT / (h * sqrt(driven)) : 1.0;
     }
+}
+
+/* a^T A b, A of the storages, of changes times their weights: in this product what conserves energy
+ * turns vectors and does not stretch them. Where a storage is negative A is no measure. */
+double bg_energy(const bg_model *m, const double *a, const double *b)
+{
+    const bg_pattern *const stored = &bg_layout[BG_A];
+    const double *const scale = m->numbers.scale, *const entries = m->work.entries;
+    double sum = 0.0;
+    int positive = 1;
+    for (int k = 0; k < stored->count; k++) {
+        const int i = stored->rows[k], j = stored->columns[k];
+        positive &= i != j || entries[k] > 0;
+        sum += entries[k] * scale[i] * scale[j] * a[i] * b[j];
+    }
+    if (!positive)
+        sum = 0.0;
+    for (int i = positive ? N : 0; i < ALL; i++)
+        sum += a[i] * b[i];
+    return sum;
 }
 
 /* The magnitudes that differences are small against: of the states, and of what moves them. */
