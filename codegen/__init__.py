@@ -4,6 +4,7 @@ from codegen.analysis.comparison import Comparison, compare
 from codegen.analysis.spectrum import Spectrum, spectrum
 from codegen.c.export import to_c
 from codegen.energy.audit import Audit
+from codegen.engine.fallback import BackendWarning
 from codegen.fmu.export import write_fmu
 from codegen.inputs.sampled import Sampled
 from codegen.inputs.signal import Signal
@@ -40,6 +41,7 @@ from codegen.trim import trim
 
 __all__ = [
     "Audit",
+    "BackendWarning",
     "Block",
     "Comparison",
     "Constant",

@@ -1,6 +1,6 @@
 """`simulator` and what it returns: a model with numbers, ready to run, and the record of a run."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
@@ -13,6 +13,7 @@ from bondgraph import ParameterError, SignalError, StateEquations
 from codegen.arrays import Array, is_finite, is_number
 from codegen.energy.ledger import Ledger
 from codegen.energy.replay import Run
+from codegen.engine.fallback import Stopped, tell
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
 from codegen.engine.runs import CRuns
@@ -105,8 +106,26 @@ class Simulator:
         mode), "DOP853", "Radau" (stiff models), "auto" of these, or "CVODE" (SUNDIALS; the extra
         ``sundae``): backward differences, Adams's formulas where a mode is affine and not stiff.
 
+        What backend "c" cannot go on with is run by numpy, and a `BackendWarning` tells why.
+
         Raises `SignalError` for unusable arguments, `SimulationError` if the run can't go on,
         `MissingExtraError` for what the method needs.
+        """
+        return self.run_telling(tell, time, initial, inputs, method, rtol, atol)
+
+    def run_telling(
+        self,
+        tell: Callable[[Stopped], None],
+        time: ArrayLike,
+        initial: Mapping[str, float] | None = None,
+        inputs: Mapping[str, object] | None = None,
+        method: str = "auto",
+        rtol: float = 1e-10,
+        atol: float = 1e-11,
+    ) -> Result:
+        """As `run`; ``tell`` is called where numpy runs what C was asked to.
+
+        Of a limit of C's own it is called before numpy starts, else once numpy has not refused it, too.
         """
         times = checked_times(time)
         signals = signals_for({} if inputs is None else inputs, self.inputs)
@@ -117,10 +136,15 @@ class Simulator:
         start = self.vector(float(times[0]), states, at_start)
         with np.errstate(all="ignore"):
             found = self._in_c(times, states, start, signals, settings)
-            if found is None:
+            if not isinstance(found, Recorded):
+                stopped = found
+                if stopped is not None and stopped.limit:
+                    tell(stopped)
                 begin, span = float(times[0]), float(times[-1] - times[0])
                 run = run_hybrid(self.closed, times, start, signals, settings, begin, span)
                 found = self._recorded(times, signals, run.track, "numpy")
+                if stopped is not None and not stopped.limit:
+                    tell(stopped)
             columns, observer = named_columns(self.closed, times, found.shots)
         return Result(
             times,
@@ -143,14 +167,18 @@ class Simulator:
     def _in_c(
         self, times: Array, states: Array, start: Array, signals: Sequence[Signal],
         settings: Settings,
-    ) -> Recorded | None:  # fmt: skip
-        """The run in C; None where it cannot go on, and the loop in Python can or tells why."""
-        if self.engine is not None and settings.method in ("auto", EXACT):
-            track = self.engine.run(times, start, signals).track
-            if track is not None:
-                return self._recorded(times, signals, track, "c")
-        if self.located is None or settings.method not in LOCATED_METHODS:
+    ) -> Recorded | Stopped | None:  # fmt: skip
+        """The run in C, or why it cannot go on there; None where it was not asked for."""
+        if self.located is None:
             return None
+        stopped = Stopped(f"C has no method {settings.method!r}", limit=settings.method != EXACT)
+        if self.engine is not None and settings.method in ("auto", EXACT):
+            found = self.engine.run(times, start, signals)
+            if found.track is not None:
+                return self._recorded(times, signals, found.track, "c")
+            stopped = found.stopped
+        if settings.method not in LOCATED_METHODS:
+            return stopped
         return self.located.run(times, states, signals, settings)
 
     def _recorded(

@@ -11,6 +11,7 @@ from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.c.export import runtime_file, texts
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
+from codegen.engine.fallback import Stopped
 from codegen.engine.runs import KINDS, not_affine
 from codegen.engine.sizes import aligned, declarations
 from codegen.inputs.signal import Signal
@@ -99,8 +100,8 @@ class LocatedRuns:
 
     def run(
         self, times: Array, states: Array, signals: Sequence[Signal], settings: Settings
-    ) -> Recorded | None:
-        """Run and record; None where it could not go on."""
+    ) -> Recorded | Stopped:
+        """Run and record, or why it could not go on."""
         ffi, _ = self.library.opened
         rows = np.empty((len(times), sum(_widths(self.model))))
         start = np.append(states, 0.0)
@@ -109,11 +110,13 @@ class LocatedRuns:
         asked.samples, asked.method = len(times), METHODS.index(settings.method)
         asked.rtol, asked.atol = settings.rtol, settings.atol
         events = self._called(asked, rows, signal_table(signals, float(times[0]), float(times[-1])))
-        if events is None or not np.isfinite(rows).all():
-            return None
+        if isinstance(events, Stopped):
+            return events
+        if not np.isfinite(rows).all():
+            return Stopped("a number of the run is not finite")
         return Recorded(events, self._shots(rows), "c")
 
-    def _called(self, asked: Any, rows: Array, table: SignalTable) -> tuple[Event, ...] | None:
+    def _called(self, asked: Any, rows: Array, table: SignalTable) -> tuple[Event, ...] | Stopped:
         """Call C, with more room for events if it asks for it; its events if the run is whole."""
         ffi, library = self.library.opened
         inputs, kept = packed_signals(ffi, table)
@@ -130,7 +133,8 @@ class LocatedRuns:
             room *= 16
         del kept
         if status != 0:
-            return None
+            reason = ffi.string(library.bg_model_message(status)).decode()
+            return Stopped(reason, float(asked.time), status == EVENTS_STATUS)
         names = [port.name for port in self.model.program.friction]
         return tuple(Event(e.time, names[e.port], KINDS[e.kind]) for e in events[0 : asked.count])
 
@@ -191,4 +195,5 @@ def _declared() -> str:
         "bg_events.h", "model_signals.h", "model_request.h", "model_rows.h", "batch_measure.h",
         "batch_located.h",
     )  # fmt: skip
+    own += "const char *bg_model_message(int status);\n"
     return own + "".join(declarations(header, {}) for header in headers)

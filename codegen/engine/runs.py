@@ -10,6 +10,7 @@ import sympy as sp
 
 from codegen.arrays import Array
 from codegen.engine.build import FLAGS, check_tools
+from codegen.engine.fallback import Stopped
 from codegen.engine.inputs import Packed, Segments, segments
 from codegen.engine.modes import Tables, mode_of
 from codegen.engine.sizes import MOST_PORTS, Engine, aligned, engine, sizes
@@ -41,6 +42,22 @@ class Status(IntEnum):
     UNUSABLE = 9
 
 
+MEANINGS = {
+    Status.UNSUPPORTED: "a friction mode is not one affine map",
+    Status.NEGATIVE: "a friction level falls below zero",
+    Status.UNDECIDED: "no way of sticking and slipping is consistent",
+    Status.STALLS: "events follow one another and time makes no progress",
+    Status.STIFF: "time constants are too short for the span",
+    Status.FULL: "more events than there is room for",
+    Status.WORK: "the search for an event has no end",
+    Status.UNUSABLE: "a number is not finite",
+}
+"""What each status says; `Status.OK` and `Status.MISSING` end no run."""
+
+LIMITS = frozenset({Status.UNSUPPORTED, Status.STIFF, Status.FULL, Status.WORK})
+"""What is no fault of a model: C alone cannot go on."""
+
+
 @dataclass(frozen=True)
 class Outcome:
     """What the engine said of a run; ``track`` is None unless it is whole."""
@@ -48,6 +65,11 @@ class Outcome:
     status: Status
     time: float
     track: Track | None
+
+    @property
+    def stopped(self) -> Stopped:
+        """Why there is no track."""
+        return Stopped(MEANINGS[self.status], self.time, self.status in LIMITS)
 
 
 @dataclass

@@ -17,6 +17,7 @@ from bondgraph import BondGraphError, SignalError
 from codegen.arrays import Array
 from codegen.runs.legs import Settings
 from codegen.runs.result import Result
+from codegen.simulate import Simulator
 from codegen.sweeps.batch import Asked, Batch, Given, batch
 from codegen.sweeps.columns import Columns
 from codegen.sweeps.family import Family
@@ -71,12 +72,13 @@ class Chunk(NamedTuple):
 class Outcome(NamedTuple):
     """What a chunk gave: for each run its measures, or the text of why there are none.
 
-    ``seconds``: how long it took.
+    ``seconds``: how long it took. ``fallen``: why numpy ran what C was asked to, once for each run.
     """
 
     indices: Sequence[int] | NDArray[np.intp]
     results: Sequence[tuple[Array, ...] | str] | Columns
     seconds: float
+    fallen: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,11 +93,11 @@ class Job:
     inputs: Given = None
     settings: Mapping[str, Any] = field(default_factory=dict)
 
-    def run(self, row: Sequence[float]) -> tuple[Array, ...] | str:
-        """The measures of one run, or why there are none."""
+    def run(self, row: Sequence[float], fallen: list[str] | None = None) -> tuple[Array, ...] | str:
+        """The measures of one run, or why there are none; in ``fallen`` why numpy did it for C."""
         values = dict(zip(self.names, row, strict=True))
         try:
-            result = self._result(values)
+            result = self._result(values, [] if fallen is None else fallen)
         except BondGraphError as error:
             return str(error)
         except Exception as error:  # noqa: BLE001 - one run of many: told with its numbers
@@ -108,14 +110,20 @@ class Job:
                 return f"measure {name!r}: {type(error).__name__}: {error}"
         return tuple(found)
 
-    def _result(self, values: Mapping[str, float]) -> Result:
+    def _result(self, values: Mapping[str, float], fallen: list[str]) -> Result:
         model = self.model
         changes = {name: v for name, v in values.items() if name in model.parameters}
         initial, inputs = _given(self.initial, values), settled(_given(self.inputs, values), values)
         initial |= {name: v for name, v in values.items() if name in model.states}
         inputs |= {name: v for name, v in values.items() if name in model.inputs}
         runner = model.simulator(**changes)
-        return runner.run(self.time, initial, inputs, **self.settings)
+        if not isinstance(runner, Simulator):
+            return runner.run(self.time, initial, inputs, **self.settings)
+        # Times differ from run to run; the reason is what is counted.
+        return runner.run_telling(
+            lambda stopped: fallen.append(stopped.reason),
+            self.time, initial, inputs, **self.settings,
+        )  # fmt: skip
 
     def about(self) -> dict[str, object]:
         """What identifies the job, part by part: everything that the results depend on but the rows."""
@@ -142,13 +150,14 @@ def measured(job: Job, chunk: Chunk) -> Outcome:
     start = time.perf_counter()
     loop = batch_of(job)
     rows = np.asarray(chunk.rows, dtype=float)
+    fallen: list[str] = []
     results: tuple[tuple[Array, ...] | str, ...] | Columns
     if loop is None:
-        results = tuple(job.run(row) for row in rows.tolist())
+        results = tuple(job.run(row, fallen) for row in rows.tolist())
     else:
         columns, left = loop(rows)
-        results = Columns(columns, {at: job.run(rows[at].tolist()) for at in left})
-    return Outcome(chunk.indices, results, time.perf_counter() - start)
+        results = Columns(columns, {at: job.run(rows[at].tolist(), fallen) for at in left})
+    return Outcome(chunk.indices, results, time.perf_counter() - start, tuple(fallen))
 
 
 def batch_of(job: Job) -> Batch | None:

@@ -1,5 +1,6 @@
 """`Sweep`: what the runs gave, as columns, as a table or as an xarray data set."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -107,6 +108,8 @@ class Collected:
 
     def __init__(self, runs: int, measures: Sequence[str]) -> None:
         self.done = np.zeros(runs, dtype=bool)
+        #: Why numpy ran what C was asked to, and how often.
+        self.fallen: Counter[str] = Counter()
         self._measures = tuple(measures)
         self._messages: dict[int, str] = {}
         self._shapes: Shapes | None = None
@@ -116,6 +119,7 @@ class Collected:
 
     def add(self, outcome: Outcome) -> int:
         """Take what is new; how many runs that is."""
+        self.fallen.update(outcome.fallen)
         if isinstance(outcome.results, Columns) and self._alike(outcome.results):
             return self._add_columns(np.asarray(outcome.indices), outcome.results)
         new = 0

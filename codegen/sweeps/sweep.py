@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from bondgraph import SignalError
 from bondgraph.expressions import normal
+from codegen.engine.fallback import tell_all
 from codegen.inputs.signal import Signal
 from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
 from codegen.runs.result import Result
@@ -67,6 +68,8 @@ def sweep(
     ``store``: a folder to keep finished runs in; the same call continues there. ``progress``: a bar, where
     tqdm is installed.
 
+    Runs that backend "c" cannot do are done by numpy; one `BackendWarning` tells how many, and why.
+
     A run that is refused, or whose process ends, is told in ``failed``; the others go on. Interrupted, it
     raises `SweepInterrupted`, a `KeyboardInterrupt` whose ``sweep`` has what is done.
 
@@ -115,6 +118,7 @@ def sweep(
                 _run(_crew(job, client, workers, len(todo)), Work(runs, todo, pace), keep)
     except KeyboardInterrupt:
         raise SweepInterrupted(collected.sweep(runs, job.time, over_time)) from None
+    tell_all(collected.fallen, len(runs))
     return collected.sweep(runs, job.time, over_time)
 
 
