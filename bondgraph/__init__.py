@@ -20,6 +20,7 @@ from bondgraph.errors import (
     SingularStorageError,
     StoreError,
     StructureError,
+    WriteError,
 )
 from bondgraph.explaining.explanation import Explanation, explain
 from bondgraph.explaining.records import Equation, Factor, Formula, Step
@@ -78,6 +79,7 @@ __all__ = [
     "StructureError",
     "Sw",
     "Switch",
+    "WriteError",
     "Zero",
     "assemble",
     "assign_causality",

@@ -41,6 +41,10 @@ class FileFormatError(BondGraphError):
     """A file is not a bond graph's, or a graph holds what a file cannot say."""
 
 
+class WriteError(BondGraphError, OSError):
+    """A file cannot be written: no room, no right, or a folder in its place; the one before is kept."""
+
+
 class MissingExtraError(BondGraphError):
     """A package that only an optional extra installs is missing."""
 

@@ -1,8 +1,6 @@
 """Bond graphs as files: read without trust, written whole or not at all."""
 
 import os
-import secrets
-import shutil
 from collections.abc import Callable, Hashable
 from pathlib import Path
 from typing import Any
@@ -12,6 +10,7 @@ import networkx as nx
 from bondgraph.errors import BondGraphError, FileFormatError
 from bondgraph.graphml import from_graphml, to_graphml
 from bondgraph.nodelink import from_json, to_json
+from bondgraph.writing import write_bytes
 
 MAX_BYTES = 10_000_000
 """Files beyond this are refused; a graph of 50 000 nodes is well below."""
@@ -54,19 +53,8 @@ def _read(
 
 
 def _write(text: str, path: str | os.PathLike[str]) -> None:
-    """Write a file beside the place and move it there at once, with the rights of the one before."""
+    """Write a file that can be read back."""
     raw = text.encode("utf-8")
     if len(raw) > MAX_BYTES:
         raise FileFormatError(f"{len(raw)} bytes, but at most {MAX_BYTES} are read back")
-    target = Path(os.path.realpath(path))
-    beside = target.with_name(f".bondgraph-{secrets.token_hex(8)}.tmp")
-    try:
-        with beside.open("xb") as file:
-            file.write(raw)
-            file.flush()
-            os.fsync(file.fileno())
-        if target.exists():
-            shutil.copymode(target, beside)
-        os.replace(beside, target)
-    finally:
-        beside.unlink(missing_ok=True)
+    write_bytes(path, raw)

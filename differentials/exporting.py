@@ -5,6 +5,7 @@ from pathlib import Path
 
 import bondgraph as bg
 import codegen
+from bondgraph.writing import made_folder, write_all
 from differentials.scenarios import Prepared, Scenario, prepared
 from differentials.scripts import script
 
@@ -45,7 +46,7 @@ def write(
     _check(target)
     arguments = (ready.equations, ready.parameters, ready.laws)
     if target.startswith("fmu"):
-        out.mkdir(parents=True, exist_ok=True)
+        made_folder(out)
         path = out / f"{name}.fmu"
         codegen.write_fmu(
             path, *arguments, version=f"{target[-1]}.0", initial=ready.initial, inputs=ready.inputs,
@@ -56,10 +57,12 @@ def write(
         texts = codegen.to_c(
             *arguments, name=name, main=True, initial=ready.initial, inputs=ready.inputs
         )
-        return [_written(out / name / file, text) for file, text in texts.items()]
+        return _written({out / name / file: text for file, text in texts.items()})
     module = codegen.to_python(*arguments, name, initial=ready.initial, inputs=ready.inputs)
     run = script(name, ready)
-    return [_written(out / f"{name}.py", module), _written(out / f"run_{name}.py", run)]
+    return _written({out / f"{name}.py": module, out / f"run_{name}.py": run})
+    run = script(name, ready)
+    return _written({out / f"{name}.py": module, out / f"run_{name}.py": run})
 
 
 def _check(target: str) -> None:
@@ -67,7 +70,6 @@ def _check(target: str) -> None:
         raise bg.SignalError(f"unknown target {target!r}; there are {', '.join(TARGETS)}")
 
 
-def _written(path: Path, text: str) -> Path:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8", newline="\n")
-    return path
+def _written(texts: Mapping[Path, str]) -> list[Path]:
+    write_all(texts)
+    return [*texts]

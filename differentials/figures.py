@@ -3,11 +3,14 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
+from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bondgraph.writing import replacing
 from codegen import Result
 from codegen.pictures import stacked
 from codegen.pictures.labels import pretty
@@ -133,4 +136,11 @@ def draw(figure: Figure, results: tuple[Result, ...], path: str | PathLike[str])
     marks = marks_of(results[0]) if figure.marked else Marks()
     tall = 2.6 if len(figure.panels) < 3 else 1.45
     canvas = stacked.stacked(shown, marks, figure.title, tall)
-    canvas.savefig(path, dpi=150, bbox_inches="tight")
+    save_picture(canvas, path)
+
+
+def save_picture(canvas: Any, path: str | PathLike[str]) -> None:
+    """Write a figure of matplotlib as its path's ending says, .png without one."""
+    kind = Path(path).suffix[1:] or "png"
+    with replacing(path) as file:
+        canvas.savefig(file, format=kind, dpi=150, bbox_inches="tight")

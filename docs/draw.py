@@ -4,6 +4,7 @@ from pathlib import Path
 
 import bondgraph as bg
 import differentials
+from bondgraph.writing import write_text
 
 FOLDER = Path(__file__).parent / "pictures"
 
@@ -22,4 +23,4 @@ def picture(file: str) -> str:
 
 if __name__ == "__main__":
     for file in PICTURES:
-        (FOLDER / file).write_text(picture(file), encoding="utf-8", newline="\n")
+        write_text(FOLDER / file, picture(file))

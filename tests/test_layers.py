@@ -18,7 +18,7 @@ def _room(folder: str, files: str) -> list[str]:
 #: Each package may import the ones before it; each file of a package the files before it.
 ORDER = {
     "bondgraph": [
-        "errors", "residues", "expressions", "laws", "elements", "elimination", "fields",
+        "errors", "writing", "residues", "expressions", "laws", "elements", "elimination", "fields",
         "attributes", "declared", "names", "graph", "switching", "strokes", "causal_order",
         "regularity", "stories", "exact", "vanishing", "causality", "lines", "assignments", "tidy",
         "junction", "modulation", "sorting", "resistances", "stored", "reduction", "rates",

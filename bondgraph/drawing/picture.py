@@ -12,6 +12,7 @@ from bondgraph.drawing.shapes import Scene
 from bondgraph.drawing.subject import Subject, subject
 from bondgraph.drawing.svg import svg
 from bondgraph.errors import StructureError
+from bondgraph.writing import write_text
 
 
 @dataclass(frozen=True)
@@ -38,11 +39,12 @@ class Drawing:
     def save(self, path: str | PathLike[str]) -> None:
         """Write the picture as .svg, .png or .pdf, as the suffix says.
 
-        Raises `StructureError` for another suffix, `MissingExtraError` for .png and .pdf without matplotlib.
+        Raises `StructureError` for another suffix, `MissingExtraError` for .png and .pdf without matplotlib,
+        `WriteError` where the file cannot be written; what was there is kept.
         """
         target = Path(path)
         if target.suffix == ".svg":
-            target.write_text(self.svg(), encoding="utf-8", newline="\n")
+            write_text(target, self.svg())
         elif target.suffix in (".png", ".pdf"):
             save_figure(self.scene, target)
         else:

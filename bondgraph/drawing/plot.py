@@ -7,6 +7,7 @@ from bondgraph.drawing.metrics import FAMILY, SHIFT, SMALL, run_width
 from bondgraph.drawing.shapes import INK, MARKED, Box, Label, Point, Scene
 from bondgraph.drawing.svg import THICK, THIN
 from bondgraph.errors import MissingExtraError
+from bondgraph.writing import replacing
 
 DOTS_PER_INCH = 200
 _POINTS = 72
@@ -15,7 +16,7 @@ _POINTS = 72
 def save_figure(scene: Scene, path: Path) -> None:
     """Write the picture as the suffix says, one unit of the picture a point.
 
-    Raises `MissingExtraError` without matplotlib.
+    Raises `MissingExtraError` without matplotlib, `WriteError` where the file cannot be written.
     """
     figure, axes = _canvas(scene)
     for bond in scene.bonds:
@@ -31,7 +32,9 @@ def save_figure(scene: Scene, path: Path) -> None:
         _text(axes, label)
     # Without a date, so that the same picture is the same bytes.
     stamp = {"CreationDate": None} if path.suffix == ".pdf" else {"Software": None}
-    figure.savefig(path, dpi=DOTS_PER_INCH, metadata={"Title": scene.title, **stamp})
+    metadata = {"Title": scene.title, **stamp}
+    with replacing(path) as file:
+        figure.savefig(file, format=path.suffix[1:], dpi=DOTS_PER_INCH, metadata=metadata)
 
 
 def _canvas(scene: Scene) -> tuple[Any, Any]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from bondgraph import BondGraphError, SignalError, StateEquations
 from bondgraph.expressions import normal
+from bondgraph.writing import write_bytes
 from codegen.c.export import runtime_file, stepped, to_c
 from codegen.fmu.binaries import binaries, chosen_platforms, headers
 from codegen.fmu.model import FmuModel, config_text, model_text
@@ -73,7 +74,8 @@ def write_fmu(
     "x86_64-windows", "all" for every one, this machine's if none is given; see `PLATFORMS`.
 
     The same arguments and compilers give the same bytes. Raises what `to_c` raises, `SignalError` for
-    unusable arguments, `MissingExtraError` without the extra ``export``.
+    unusable arguments, `MissingExtraError` without the extra ``export``, `WriteError` where the file cannot
+    be written; what was there is kept.
     """
     if version not in GLUE:
         raise SignalError(f"FMI version {version!r}: there is {', '.join(GLUE)}")
@@ -93,7 +95,7 @@ def write_fmu(
         built = build_description(model.identifier, units)
         entries["sources/buildDescription.xml"] = built.encode()
     entries |= binaries(sources, model.identifier, chosen, version)
-    target.write_bytes(_zipped(entries))
+    write_bytes(target, _zipped(entries))
     return target
 
 

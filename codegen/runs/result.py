@@ -6,8 +6,6 @@ from os import PathLike
 from types import MappingProxyType
 from typing import Any, Protocol
 
-import numpy as np
-
 from bondgraph import SignalError
 from codegen.arrays import Array
 from codegen.energy.audit import Audit
@@ -16,7 +14,7 @@ from codegen.pictures.marks import Marks, stuck_spans
 from codegen.pictures.stacked import Line, Panel, along, fill, stacked
 from codegen.runs.events import Event
 from codegen.runs.summary import summary
-from codegen.runs.tables import dataset, frame, write_netcdf
+from codegen.runs.tables import dataset, frame, write_columns, write_netcdf
 
 
 class Accountant(Protocol):
@@ -115,10 +113,11 @@ class Result:
         return self.ledger.audit()
 
     def write_csv(self, path: str | PathLike[str]) -> None:
-        """Write time and every column as comma-separated columns with one line of names."""
-        table = np.column_stack([self.time, *self.columns.values()])
-        header = ",".join(["t", *self.columns])
-        np.savetxt(path, table, delimiter=",", header=header, comments="", fmt="%.17g")
+        """Write time and every column as comma-separated columns with one line of names.
+
+        Raises `WriteError` where that cannot be; what was there is kept.
+        """
+        write_columns(path, ["t", *self.columns], [self.time, *self.columns.values()])
 
     def to_xarray(self) -> Any:
         """An `xarray.Dataset` of every column over "time" [s], with units and roles as attributes.
@@ -142,7 +141,7 @@ class Result:
     def write_netcdf(self, path: str | PathLike[str]) -> None:
         """Write `to_xarray` as a netCDF file, which ``xarray.open_dataset`` reads back digit for digit.
 
-        Raises `MissingExtraError` without xarray or h5netcdf.
+        Raises `MissingExtraError` without xarray or h5netcdf, `WriteError` where the file cannot be written.
         """
         write_netcdf(self.to_xarray(), path)
 

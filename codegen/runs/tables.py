@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
-from os import PathLike, fspath
+from io import BytesIO
+from os import PathLike
 from typing import Any
 
 import numpy as np
 
 from bondgraph import MissingExtraError
+from bondgraph.writing import replacing, write_bytes
 from codegen.arrays import Array
 from codegen.runs.events import Event
 
@@ -63,8 +65,25 @@ def frame(time: Array, columns: Mapping[str, Array]) -> Any:
     )
 
 
+def write_columns(
+    path: str | PathLike[str], names: Sequence[str], columns: Sequence[Array]
+) -> None:
+    """Write columns as comma-separated text with one line of names, in digits that give them back."""
+    table = np.column_stack([*columns])
+    with replacing(path) as file:
+        np.savetxt(
+            file, table, delimiter=",", header=",".join(names), comments="", fmt="%.17g",
+            encoding="utf-8",
+        )  # fmt: skip
+
+
 def write_netcdf(table: Any, path: str | PathLike[str]) -> None:
-    """Write a data set as a netCDF-4 file; `MissingExtraError` without h5netcdf."""
+    """Write a data set as a netCDF-4 file; `MissingExtraError` without h5netcdf.
+
+    It is made in memory: HDF5 ends the process where a disk is full.
+    """
     if find_spec("h5netcdf") is None:
         raise MissingExtraError(f"netCDF files need h5netcdf; {INSTALL}")
-    table.to_netcdf(fspath(path), engine="h5netcdf")
+    made = BytesIO()
+    table.to_netcdf(made, engine="h5netcdf")
+    write_bytes(path, made.getvalue())

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from bondgraph import StoreError
+from bondgraph.writing import made_folder, replacing, write_bytes
 from codegen.arrays import Array
 from codegen.sweeps.job import Outcome
 
@@ -24,13 +25,14 @@ class Store:
 
     ``about``: what identifies the sweep. Files appear whole or not at all.
 
-    Raises `StoreError` for a folder of another sweep, or of other files.
+    Raises `StoreError` for a folder of another sweep, or of other files, `WriteError` for one that
+    cannot be written to.
     """
 
     def __init__(self, folder: str | PathLike[str], about: dict[str, Any]) -> None:
         self._folder = Path(folder)
         self._runs, self._width = int(about["runs"]), len(about["measures"])
-        self._folder.mkdir(parents=True, exist_ok=True)
+        made_folder(self._folder)
         written = json.dumps({**FORMAT, **about}, indent=1)
         place = self._folder / ABOUT
         if place.exists():
@@ -40,7 +42,7 @@ class Store:
                 f"{self._folder} holds other files; give the sweep a folder of its own"
             )
         else:
-            _write(place, written.encode())
+            write_bytes(place, written.encode())
 
     def _check(self, place: Path, about: dict[str, Any]) -> None:
         try:
@@ -103,21 +105,5 @@ class Store:
         ]
         about = json.dumps({"indices": indices, "results": results})
         name = f"runs-{min(indices):09d}-{secrets.token_hex(4)}.npz"
-        beside = self._folder / f"{name}.tmp"
-        try:
-            with beside.open("xb") as file:
-                np.savez(file, about=np.array(about), values=np.concatenate([np.zeros(0), *parts]))
-                file.flush()
-                os.fsync(file.fileno())
-            os.replace(beside, self._folder / name)
-        finally:
-            beside.unlink(missing_ok=True)
-
-
-def _write(place: Path, raw: bytes) -> None:
-    beside = place.with_name(f"{place.name}.{secrets.token_hex(4)}.tmp")
-    with beside.open("xb") as file:
-        file.write(raw)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(beside, place)
+        with replacing(self._folder / name) as file:
+            np.savez(file, about=np.array(about), values=np.concatenate([np.zeros(0), *parts]))

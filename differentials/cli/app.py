@@ -51,6 +51,9 @@ class App(click.Group):
         except click.ClickException as error:
             _complain(where, error.format_message())
             status = FAILED
+        except bg.WriteError as error:
+            _complain(where, str(error))
+            status = FAILED
         except bg.BondGraphError as error:
             _complain(where, str(error))
             status = REFUSED

@@ -11,7 +11,7 @@ import codegen
 from codegen import Result
 from differentials.cli.printing import with_folder, written
 from differentials.cli.subject import Subject
-from differentials.figures import Figure, draw, panels
+from differentials.figures import Figure, draw, panels, save_picture
 
 FORMATS = (".csv", ".nc", ".png")
 """What a run may be written as."""
@@ -34,7 +34,7 @@ def picture(subject: Subject, result: Result, case: str, path: Path) -> None:
     chosen = subject.differential
     if chosen is None:
         drawn = codegen.panels(result, alike(result.columns), title=subject.title)
-        drawn.savefig(path, dpi=150, bbox_inches="tight")
+        save_picture(drawn, path)
     else:
         shown = Figure(subject.title, ((subject.name, case),), panels(chosen))
         draw(shown, (result,), path)

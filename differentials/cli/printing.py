@@ -12,6 +12,7 @@ import numpy as np
 import sympy as sp
 
 import bondgraph as bg
+from bondgraph.writing import made_folder
 
 MATRICES = "AJBEFDG"
 
@@ -75,7 +76,7 @@ def causality_data(causal: bg.CausalGraph) -> dict[str, object]:
 
 def with_folder(path: Path) -> Path:
     """The path itself, its folder made."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    made_folder(path.parent)
     return path
 
 

@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import click
-import numpy as np
 
 import bondgraph as bg
 import codegen
 import differentials.cli.options as options
+from bondgraph.writing import write_bytes
+from codegen.runs.tables import write_columns
 from differentials.cli.grids import FORM, GRID, measure_options, measures
 from differentials.cli.names import FileOf, check_names
 from differentials.cli.options import Asked
@@ -133,11 +134,10 @@ def _swept(
 def _save(found: codegen.Sweep, target: Path) -> None:
     with_folder(target)
     if target.suffix.lower() == ".nc":
-        found.to_xarray().to_netcdf(target, engine="scipy")
+        write_bytes(target, bytes(found.to_xarray().to_netcdf(engine="scipy")))
         return
     columns = found.table()
-    np.savetxt(target, np.column_stack([*columns.values()]), delimiter=",",
-               header=",".join(columns), comments="", fmt="%.17g")  # fmt: skip
+    write_columns(target, [*columns], [*columns.values()])
 
 
 def _data(found: codegen.Sweep) -> dict[str, object]:

@@ -7,6 +7,7 @@ import click
 
 import bondgraph as bg
 import differentials.cli.options as options
+from bondgraph.writing import made_folder
 from codegen import Result
 from differentials.cli.names import OneOf
 from differentials.cli.pictures import save_all, told
@@ -31,7 +32,7 @@ def draw_figures(names: tuple[str, ...], out: Path) -> None:
 
 def _drawn(name: str, figure: Figure, out: Path) -> list[Path]:
     """Run a figure's cases, with a bar where someone looks on."""
-    out.mkdir(parents=True, exist_ok=True)
+    made_folder(out)
     hidden = not sys.stderr.isatty()
     with click.progressbar(figure.runs, label=name, file=sys.stderr, hidden=hidden) as runs:
         results = tuple(simulate(*case) for case in runs)
