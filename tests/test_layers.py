@@ -44,7 +44,7 @@ ORDER = {
         *_room("runs", "result snapshots columns"), "energy.replay",
         *_room("pictures", "panels poles bode shapes"), *_room("analysis", "spectrum comparison"),
         *_room("c", "text structure constants rhs blocks rates tables prefix scenario export"),
-        *_room("engine", "build sizes modes inputs fallback runs located"),
+        *_room("engine", "compiler cache build sizes modes inputs fallback runs located"),
         "simulate", "trim",
         *_room("sweeps", "packing family measures design columns swept batch_inputs batch_engine batch_model "
                "batch_plan batch_call batch_exact batch_located batch job crews cluster drive result store "

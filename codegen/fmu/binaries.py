@@ -1,11 +1,8 @@
 """A unit's sources as shared libraries for one platform or several, and the headers they need."""
 
 import importlib.util
-import os
 import platform
-import shutil
 import struct
-import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,6 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bondgraph import MissingExtraError, SignalError, SimulationError
+from bondgraph.writing import telling
+from codegen.engine.cache import workshop
+from codegen.engine.compiler import call, system_compiler
 
 FLAGS = ("-std=c99", "-O2", "-g0", "-fvisibility=hidden", "-shared")
 
@@ -88,9 +88,10 @@ def binaries(
 ) -> dict[str, bytes]:
     """Shared libraries by their path in the unit. On this machine its own compiler is taken."""
     made: dict[str, dict[str, bytes]] = {}
-    with tempfile.TemporaryDirectory() as folder:
-        for name, text in sources.items():
-            (Path(folder) / name).write_text(text, encoding="utf-8", newline="\n")
+    with workshop(Path(tempfile.gettempdir())) as folder:
+        with telling(folder):
+            for name, text in sources.items():
+                (folder / name).write_text(text, encoding="utf-8", newline="\n")
         for name in platforms:
             one = PLATFORMS[name]
             place = one.name if version == "3.0" else one.second
@@ -99,28 +100,25 @@ def binaries(
     return {path: _joined(found) for path, found in made.items()}
 
 
-def _compiled(folder: str, sources: Mapping[str, str], identifier: str, where: Platform) -> bytes:
+def _compiled(folder: Path, sources: Mapping[str, str], identifier: str, where: Platform) -> bytes:
     library = f"{identifier}{where.ending}"
     units = sorted(name for name in sources if name.endswith(".c"))
     flags = [*FLAGS, *([] if where.ending == ".dll" else ["-fPIC"])]
     command = [*_compiler(where), *flags, "-I.", "-o", library, *units]
     command += [] if where.ending == ".dll" else ["-lm"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise SimulationError(
-            f"the C compiler failed for {where.name}: {' '.join(command[:3])} ..\n"
-            f"{done.stderr.strip()[-2000:]}"
-        )
-    return (Path(folder) / library).read_bytes()
+    try:
+        call(command, folder, folder / library)
+    except SimulationError as error:
+        raise SimulationError(f"{where.name}: {error}") from None
+    return (folder / library).read_bytes()
 
 
 def _compiler(where: Platform) -> list[str]:
     """The system's compiler for this machine if there is one, else ziglang's for any."""
     if where.name == this_platform():
-        for name in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
-            found = shutil.which(name) if name else None
-            if found:
-                return [found]
+        found = system_compiler()
+        if found is not None:
+            return [*found]
     _package("ziglang", f"binaries for {where.name} are made by ziglang's compiler")
     return [sys.executable, "-m", "ziglang", "cc", "-target", where.target, "-s"]
 

@@ -2,12 +2,14 @@
 
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
 import bondgraph as bg
-from codegen.engine import build
+from codegen.engine import build, cache
+from codegen.engine import compiler as tools
 
 SOURCE = {
     "one.c": '#include "two.h"\nint one(void) { return TWO - 1; }\n',
@@ -28,14 +30,11 @@ def test_a_library_is_compiled_and_called() -> None:
 
 def test_a_library_is_compiled_once(monkeypatch: pytest.MonkeyPatch) -> None:
     first = build.compiled(SOURCE, FLAGS)
-    assert first.parent == build.cache_folder()
+    assert first.parent == cache.cache_folder()
     made = first.stat().st_mtime_ns
-    monkeypatch.setattr(build, "_call", lambda *arguments: pytest.fail("compiled again"))
-    monkeypatch.setattr(build, "_version", lambda command: pytest.fail("asked again"))
-    with pytest.raises(pytest.fail.Exception, match="asked again"):
-        build.compiled(SOURCE, FLAGS)
-    monkeypatch.undo()
-    monkeypatch.setenv("XDG_CACHE_HOME", str(first.parent.parent))
+    monkeypatch.setattr(build, "call", lambda *arguments: pytest.fail("compiled again"))
+    with pytest.raises(pytest.fail.Exception, match="compiled again"):
+        build.compiled(SOURCE, ("-O0",))
     assert build.compiled(SOURCE, FLAGS) == first
     assert first.stat().st_mtime_ns == made
 
@@ -70,29 +69,29 @@ def test_several_processes_share_the_cache() -> None:
     said = {run.communicate()[0].strip() for run in runs}
     assert len(said) == 1
     assert said.pop().endswith(" 1")
-    assert len(list(build.cache_folder().iterdir())) == 1
+    assert len(list(cache.cache_folder().iterdir())) == 1
 
 
 def test_without_a_compiler_both_ways_to_get_one_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("CC", raising=False)
-    monkeypatch.setattr(build.shutil, "which", lambda name: None)
-    monkeypatch.setattr(build.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(tools.shutil, "which", lambda name: None)
+    monkeypatch.setattr(tools.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(bg.MissingExtraError, match=r"gcc or clang.*pip install ziglang"):
-        build.compiler()
+        tools.compiler()
 
 
 def test_the_wheels_compiler_is_used_where_there_is_no_other(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.delenv("CC", raising=False)
-    monkeypatch.setattr(build.shutil, "which", lambda name: None)
-    monkeypatch.setattr(build.importlib.util, "find_spec", lambda name: object())
-    assert build.compiler() == (sys.executable, "-m", "ziglang", "cc")
+    monkeypatch.setattr(tools.shutil, "which", lambda name: None)
+    monkeypatch.setattr(tools.importlib.util, "find_spec", lambda name: object())
+    assert tools.compiler() == (sys.executable, "-m", "ziglang", "cc")
 
 
 def test_the_environment_chooses_the_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CC", "ccache some-cc -m64")
-    assert build.compiler() == ("ccache", "some-cc", "-m64")
+    assert tools.compiler() == ("ccache", "some-cc", "-m64")
 
 
 def test_a_compiler_that_does_not_start_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -110,4 +109,108 @@ def test_without_cffi_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_what_the_compiler_refuses_is_told() -> None:
     with pytest.raises(bg.SimulationError, match=r"(?s)the C compiler failed: .*one\.c"):
         build.compiled({"one.c": "int one(void) { return }\n"}, FLAGS)
-    assert list(build.cache_folder().iterdir()) == []
+    assert list(cache.cache_folder().iterdir()) == []
+
+
+@pytest.mark.parametrize("spoilt", ["half", "nothing", "foreign", "unreadable"])
+def test_a_library_that_is_not_what_was_kept_is_made_anew(spoilt: str) -> None:
+    """Cut short it would end the process when it is called (SIGBUS), for ever."""
+    path = build.compiled(SOURCE, FLAGS)
+    good = path.read_bytes()
+    if spoilt == "unreadable":
+        path.unlink()
+        path.mkdir()
+    else:
+        texts = {"half": good[: len(good) // 2], "nothing": b"", "foreign": b"\x7fELF" * 5000}
+        path.write_bytes(texts[spoilt])
+    again = build.compiled(SOURCE, FLAGS)
+    assert again.read_bytes() == good
+    assert (again == path) == (spoilt != "unreadable")
+    assert build.loaded(again, "int one(void);")[1].one() == 1
+
+
+def test_a_cache_that_cannot_be_used_gives_way(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_bytes(b"")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    path = build.compiled(SOURCE, FLAGS)
+    assert path.parent == cache.temporary()
+    assert build.compiled(SOURCE, FLAGS) == path
+    assert build.loaded(path, "int one(void);")[1].one() == 1
+
+
+def test_a_cache_without_room_for_the_compiler_gives_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    def call(command: Sequence[str], folder: Path, makes: Path) -> str:
+        if folder.is_relative_to(cache.cache_folder()):
+            raise bg.SimulationError("cc1: fatal error: one.s: No space left on device")
+        return tools.call(command, folder, makes)
+
+    monkeypatch.setattr(build, "call", call)
+    path = build.compiled({"one.c": "int one(void) { return 7; }\n"}, FLAGS)
+    assert path.parent == cache.temporary()
+    assert list(cache.cache_folder().iterdir()) == []
+
+
+def test_no_room_anywhere_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(cache.os, "replace", full)
+    with pytest.raises(bg.WriteError, match=r"so cannot be written: No space left"):
+        build.compiled({"one.c": "int one(void) { return 8; }\n"}, FLAGS)
+
+
+KILLED = """
+import os, signal
+from codegen.engine import build
+def call(*arguments):
+    os.kill(os.getpid(), signal.SIGKILL)
+build.call = call
+build.compiled({sources!r}, {flags!r})
+"""
+
+
+def test_a_process_that_is_killed_while_it_compiles_leaves_nothing_that_stays() -> None:
+    program = KILLED.format(sources=SOURCE, flags=FLAGS)
+    done = subprocess.run([sys.executable, "-c", program], check=False)
+    assert done.returncode == -9
+    (left,) = cache.cache_folder().iterdir()
+    assert left.is_dir()
+    path = build.compiled(SOURCE, FLAGS)
+    assert list(cache.cache_folder().iterdir()) == [path]
+
+
+def test_folders_of_processes_that_live_and_of_other_machines_stay(tmp_path: Path) -> None:
+    with cache.workshop(tmp_path) as mine:
+        other = tmp_path / f"{cache.MAKING}-elsewhere-1-x"
+        other.mkdir()
+        with cache.workshop(tmp_path) as second:
+            assert {mine, other, second} == set(tmp_path.iterdir())
+    assert list(tmp_path.iterdir()) == [other]
+
+
+@pytest.mark.parametrize("variable", ["CC", "CFLAGS"])
+def test_an_open_quote_is_told(variable: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(variable, "gcc 'x")
+    with pytest.raises(bg.MissingExtraError, match=rf"{variable} is .*No closing quotation"):
+        build.compiled(SOURCE, FLAGS)
+
+
+def test_a_compiler_that_makes_nothing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CC", "true")
+    with pytest.raises(
+        bg.SimulationError, match="compiler true says that all went well and made no"
+    ):
+        build.compiled(SOURCE, FLAGS)
+
+
+def test_a_compiler_that_makes_rubbish_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fake = tmp_path / "fake"
+    fake.write_text("#!/bin/sh\necho rubbish > library.so\n", encoding="utf-8")
+    fake.chmod(0o755)
+    monkeypatch.setenv("CC", str(fake))
+    with pytest.raises(bg.SimulationError, match=r"so does not open"):
+        build.loaded(build.compiled(SOURCE, FLAGS), "int one(void);")

@@ -133,3 +133,22 @@ def test_what_is_missing_is_told_with_the_command(
     )
     with pytest.raises(bg.MissingExtraError, match=r"pip install .bondgraph-toolkit\[export\]."):
         belt().written(tmp_path / "a.fmu", "2.0", platforms=platforms)
+
+
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        ("gcc 'x", r"CC is .*No closing quotation"),
+        ("true", r"the C compiler true says that all went well and made no library"),
+        ("/no/such/cc", r"/no/such/cc does not start"),
+        ("false", r"linux: the C compiler failed: false"),
+    ],
+)
+def test_a_compiler_that_cannot_be_used_is_told(
+    command: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CC", command)
+    (tmp_path / "a.fmu").write_bytes(b"old")
+    with pytest.raises(bg.BondGraphError, match=message):
+        belt().written(tmp_path / "a.fmu", "2.0")
+    assert (tmp_path / "a.fmu").read_bytes() == b"old"

@@ -13,7 +13,7 @@ import pytest
 
 import codegen
 import differentials
-from codegen.engine.build import compiler
+from codegen.engine.compiler import compiler
 from differentials.__main__ import main
 
 ROOT = Path(__file__).parents[2]
