@@ -9,7 +9,18 @@ from references.build import bond_graph
 
 import bondgraph as bg
 import differentials
-from codegen import Constant, Lag, Ramp, Result, Sampled, Simulator, Sine, Step, simulator
+from codegen import (
+    BackendWarning,
+    Constant,
+    Lag,
+    Ramp,
+    Result,
+    Sampled,
+    Simulator,
+    Sine,
+    Step,
+    simulator,
+)
 from codegen.engine.build import FLAGS
 from codegen.engine.runs import CRuns, Outcome, Status, not_affine
 from codegen.engine.sizes import Sizes, engine
@@ -177,10 +188,10 @@ def test_the_engine_is_for_affine_models_alone() -> None:
 
 def test_a_run_tells_what_ran_it() -> None:
     fast = simulator(bg.derive(oscillator()), {"m": 1.0, "k": 1e4, "F_c": 1.0}, backend="c")
-    found = {
-        m: fast.run([0, 1], {"v": 1.0}, method=m).backend for m in ("exact", "DOP853", "CVODE")
-    }
-    assert found == {"exact": "c", "DOP853": "c", "CVODE": "numpy"}
+    for method in ("exact", "DOP853"):
+        assert fast.run([0, 1], {"v": 1.0}, method=method).backend == "c"
+    with pytest.warns(BackendWarning, match="C has no method 'CVODE'"):
+        assert fast.run([0, 1], {"v": 1.0}, method="CVODE").backend == "numpy"
 
 
 STRICT = ("-O2", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion",
