@@ -61,8 +61,6 @@ def write(
     module = codegen.to_python(*arguments, name, initial=ready.initial, inputs=ready.inputs)
     run = script(name, ready)
     return _written({out / f"{name}.py": module, out / f"run_{name}.py": run})
-    run = script(name, ready)
-    return _written({out / f"{name}.py": module, out / f"run_{name}.py": run})
 
 
 def _check(target: str) -> None:
