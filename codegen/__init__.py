@@ -23,6 +23,7 @@ from codegen.sparse.run import run_sparse
 from codegen.sweeps.design import Grid, Samples, Table
 from codegen.sweeps.family import Family
 from codegen.sweeps.measures import (
+    balance,
     event_count,
     final,
     first_event,
@@ -66,6 +67,7 @@ __all__ = [
     "Swept",
     "SwitchedSimulator",
     "Table",
+    "balance",
     "bode",
     "compare",
     "event_count",

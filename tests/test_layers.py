@@ -47,8 +47,8 @@ ORDER = {
         *_room("engine", "compiler cache build sizes modes inputs fallback runs located"),
         "simulate", "trim",
         *_room("sweeps", "packing family measures design columns swept batch_inputs batch_engine batch_model "
-               "batch_plan batch_call batch_exact batch_located batch job crews cluster drive result store "
-               "sweep"),
+               "batch_plan batch_energy batch_call batch_exact batch_located batch job crews cluster drive "
+               "result store sweep"),
         *_room("python", "sticking text blocks tables export"),
         *_room("switched", "handover phases spliced simulator"),
         *_room("sparse", "valued signal_rows model steps run"),

@@ -47,10 +47,13 @@ class Accounts:
     moved: Mapping[Hashable, Account]
     owners: Mapping[Hashable, Hashable]
 
+    def parts(self, node: Hashable) -> list[Hashable]:
+        """The ports of a field; of anything else itself."""
+        return [part for part, owner in self.owners.items() if owner == node] or [node]
+
     def of(self, node: Hashable) -> Account:
         """What makes up a one-port's power, or a field's; `StructureError` for anything else."""
-        parts = [part for part, owner in self.owners.items() if owner == node]
-        found = [self.power[part] for part in (parts or [node]) if part in self.power]
+        found = [self.power[part] for part in self.parts(node) if part in self.power]
         if not found:
             raise StructureError(
                 f"{node!r} is not a one-port of the graph; only those have a power"

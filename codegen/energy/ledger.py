@@ -13,6 +13,20 @@ from codegen.arrays import Array
 from codegen.energy.accounts import Account, Accounts, Product, accounts, with_signals
 from codegen.energy.audit import Audit, turned_over
 
+GAVE, TOOK, LOST = "gave", "took", "lost"
+"""The sides of a balance."""
+
+
+def sides(equations: StateEquations) -> dict[Hashable, str | None]:
+    """The side of each node of the graph; None for those that conserve power."""
+    found: dict[Hashable, str | None] = {}
+    ports = equations.reduction.structure.places
+    for name, element in equations.elements.items():
+        side = TOOK if element.kind in STORAGES else GAVE if element.kind in SOURCES else LOST
+        conserves = name not in ports or element.kind in DETECTORS
+        found[element.owner or name] = None if conserves else side
+    return found
+
 
 class Energetic(Protocol):
     """What tells energies at the samples of a run."""
@@ -65,26 +79,17 @@ class Ledger:
 
     def audit(self) -> Audit:
         """The power balance from the first sample to the last."""
-        ports = self.equations.reduction.structure.ports
-        parts = {port.element.owner or port.element.name: port.element.kind for port in ports}
         gave, took, lost = dict[Hashable, float](), dict[Hashable, float](), dict[Hashable, float]()
-        held = dict[Hashable, float]()
-        for node, kind in parts.items():
-            if kind in STORAGES:
+        held, told = dict[Hashable, float](), sides(self.equations)
+        for node, side in told.items():
+            if side == TOOK:
                 took[node], held[node] = self._taken(node)
-            elif kind in SOURCES:
-                gave[node] = float(self.work(node)[-1])
-            elif kind not in DETECTORS:
-                lost[node] = float(self.work(node)[-1])
-        owners = {p.element.name: p.element.owner for p in ports if p.element.owner}
-        nodes = [owners.get(node, node) for node in self.equations.elements]
-        rest = [
-            n for n in dict.fromkeys(nodes) if not any(n in part for part in (gave, took, lost))
-        ]
+            elif side is not None:
+                (gave if side == GAVE else lost)[node] = float(self.work(node)[-1])
+        rest = tuple(node for node, side in told.items() if side is None)
         impacts = float(self._balance[1].impacts[-1])
-        return Audit(
-            gave, took, lost, tuple(rest), impacts, turned_over((gave, took, lost), impacts, held)
-        )
+        turned = turned_over((gave, took, lost), impacts, held)
+        return Audit(gave, took, lost, rest, impacts, turned)
 
     def _taken(self, node: Hashable) -> tuple[float, float]:
         """What a storage took, and the magnitudes of what it holds at both ends."""
@@ -94,8 +99,8 @@ class Ledger:
         except SignalError:
             # A law that reads other signals has no energy of its own; what it took it took by its power.
             return float(self.work(node)[-1]), 0.0
-        own = [part for part, owner in self._accounts.owners.items() if owner == node] or [node]
-        moved = [self._accounts.moved[part] for part in own if part in self._accounts.moved]
+        own, moving = self._accounts.parts(node), self._accounts.moved
+        moved = [moving[part] for part in own if part in moving]
         gained = sum(float(found.totals[-1, whole.index(account)]) for account in moved)
         return float(energy[-1] - energy[0]) + gained, float(abs(energy[0]) + abs(energy[-1]))
 

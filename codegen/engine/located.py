@@ -23,7 +23,7 @@ from codegen.runs.snapshots import Snapshots
 
 FILES = (
     "model_rows.h", "model_rows.c", "bg_extremes.h", "batch_measure.h", "batch_measure.c",
-    "batch_doubt.h", "batch_located.h", "batch_located.c",
+    "batch_doubt.h", "batch_gauss.h", "batch_located.h", "batch_located.c",
 )  # fmt: skip
 """What calls a model: once for a table of a run, or once for many runs."""
 

@@ -55,6 +55,8 @@ static int run(batch_room *room, const batch_numbers *numbers, const bg_inputs *
         return status;
     status = BG_MISSING;
     while (status == BG_MISSING) {
+        for (int k = 0; k < room->job->products; k++)
+            room->totals[k] = 0.0;
         status = bg_run_by(room->context, &room->record, inputs, &task, batch_advance, room);
         if (status == BG_MISSING && batch_supply(room, numbers, task.where))
             return BG_UNSUPPORTED;
@@ -62,7 +64,8 @@ static int run(batch_room *room, const batch_numbers *numbers, const bg_inputs *
     if (status)
         return status;
     batch_sample_last(room->context, room);
-    batch_reduce(room->job, room->values, room->pitch, task.events, task.count, results);
+    batch_reduce(room->job, room->values, room->pitch, room->totals, task.events, task.count,
+                 results);
     return BG_OK;
 }
 

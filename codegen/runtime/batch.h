@@ -14,7 +14,8 @@
 
 enum {
     BATCH_MODES = BG_MODES < 27 ? BG_MODES : 27,
-    BATCH_STRIDE = 8 /* so many steps are taken from one state */
+    BATCH_STRIDE = 8, /* so many steps are taken from one state */
+    BATCH_SQUARES = 4
 };
 
 /* Beyond those of the engine: the model refuses these numbers. */
@@ -34,14 +35,16 @@ typedef double batch_lanes[BATCH_STRIDE];
 /* Where runs are done, one at a time. The caller gives what is pointed to: `readers` for BATCH_MODES
  * times the signals, over (s, w, w', 1); `tables` as `batch_sizes` tells; `values` for the signals
  * times `pitch`, which is BATCH_STRIDE more than the samples; `levels` for the
- * signals; `constants` for 4 BG_K and the signals. `number`: the `made` modes of the latest run. */
+ * signals; `constants` for 4 BG_K and the signals; `totals` for the products; and `squares` for
+ * BATCH_SQUARES times (BG_Z + 1)^2, if there are products. Readers are of signals and factors.
+ * `number`: the `made` modes of the latest run. */
 typedef struct {
     bg_context *context;
     void *model;
     const batch_job *job;
     bg_event *events;
     double (*readers)[BG_L];
-    double *tables, *values, *levels;
+    double *tables, *values, *levels, *totals, *squares;
     batch_lanes *constants;
     int capacity, pitch, made, number[BATCH_MODES], place[BG_MODES];
     bg_model record;

@@ -79,10 +79,13 @@ static int step_on(bg_context *c, const batch_table *table, bg_place *p, double 
 int batch_advance(bg_context *c, int *at, double stop)
 {
     const batch_table table = batch_table_of(c->caller, c);
-    double row[BG_ROW];
+    const batch_room *const room = c->caller;
+    const double begin = c->t;
+    double row[BG_ROW], z[BG_Z];
     bg_place p;
     int status = BG_OK;
     bg_set_out(c, &p, *at, stop);
+    memcpy(z, p.z, sizeof z);
     batch_show(c, c->caller, &table);
     while (!status && !p.ports && (p.t < stop || p.at < p.last)) {
         double h = 0.0;
@@ -96,5 +99,7 @@ int batch_advance(bg_context *c, int *at, double stop)
         }
     }
     bg_arrive(c, &p, at);
+    if (!status && room->job->products)
+        batch_integrate(c, room, begin, z, c->t);
     return status;
 }

@@ -45,6 +45,19 @@ void batch_show(const bg_context *c, const batch_room *room, const batch_table *
 void batch_sample(const batch_room *room, const batch_table *table, const double *z, int at);
 void batch_sample_last(bg_context *c, const batch_room *room);
 
+/* Where the readers of a mode begin: rows of signals and factors over (s, w, w', 1). */
+static inline double (*batch_readers(const batch_room *room, int place))[BG_L]
+{
+    return room->readers + place * (room->job->signals + room->job->factors);
+}
+
+/* batch_signal.c: a row over the state of the present stretch; its constant part. */
+double batch_over_state(const bg_context *c, const double *reader, double *row);
+
+/* batch_integral.c: adds to the totals what products make from t, where the state is z, to `end`. */
+void batch_integrate(const bg_context *c, const batch_room *room, double t, const double *z,
+                     double end);
+
 /* batch_table.c: the table of an entry, and what it holds for steps of h. */
 batch_table batch_table_of(const batch_room *room, const bg_context *c);
 void batch_prepare(bg_context *c, const batch_room *room, const batch_table *table, double h);

@@ -15,13 +15,14 @@ typedef struct {
     int *status;
 } located_runs;
 
-/* Where runs are done, one at a time, and how. `values`: the signals times the samples. */
+/* Where runs are done, one at a time, and how. `values`: the signals times the samples; `totals`: of
+ * the products. */
 typedef struct {
     bg_model *model;
     bg_located *run;
     const batch_job *job;
     bg_event *events;
-    double *values, rtol, atol;
+    double *values, *totals, rtol, atol;
     int capacity, method;
 } located_room;
 

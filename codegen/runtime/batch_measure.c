@@ -1,4 +1,4 @@
-/* What is kept of a run: numbers from its samples and events. */
+/* What is kept of a run: numbers from its samples and events, and integrals. */
 #include "batch_measure.h"
 
 #include <math.h>
@@ -6,14 +6,6 @@
 #include "bg_extremes.h"
 
 enum { LANES = 8 };
-
-static double integral(const batch_job *job, const double *values)
-{
-    double sum = 0.0;
-    for (int i = 1; i < job->samples; i++)
-        sum += (job->times[i] - job->times[i - 1]) * (values[i] + values[i - 1]);
-    return sum / 2;
-}
 
 /* In lanes, which do not wait for each other. */
 static double extreme(const batch_job *job, const double *values, int what)
@@ -59,8 +51,8 @@ static void keep(const batch_job *job, const double *values, const batch_measure
     double *const found = results + measure->at;
     if (measure->what == BATCH_FINAL)
         *found = values[job->samples - 1];
-    else if (measure->what == BATCH_INTEGRAL)
-        *found = integral(job, values);
+    else if (measure->what == BATCH_START)
+        *found = values[0];
     else if (measure->what == BATCH_SAMPLES)
         for (int i = 0; i < job->samples; i++)
             found[i] = values[i];
@@ -68,13 +60,15 @@ static void keep(const batch_job *job, const double *values, const batch_measure
         *found = extreme(job, values, measure->what);
 }
 
-void batch_reduce(const batch_job *job, const double *values, int pitch, const bg_event *events,
-                  int count, double *results)
+void batch_reduce(const batch_job *job, const double *values, int pitch, const double *totals,
+                  const bg_event *events, int count, double *results)
 {
     for (int k = 0; k < job->measures; k++) {
         const batch_measure *const measure = job->measure + k;
         if (measure->what >= BATCH_FIRST)
             results[measure->at] = of_events(events, count, measure);
+        else if (measure->what == BATCH_TOTAL)
+            results[measure->at] = totals[measure->signal];
         else
             keep(job, values + (long)measure->signal * pitch, measure, results);
     }

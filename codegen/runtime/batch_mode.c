@@ -217,7 +217,7 @@ static void fill(bg_mode *made, const double *map, const batch_numbers *a, const
 
 static void fill_readers(const batch_job *job, const double *map, double (*readers)[BG_L])
 {
-    for (int s = 0; s < job->signals; s++)
+    for (int s = 0; s < job->signals + job->factors; s++)
         for (int j = 0; j < BG_L; j++) {
             const int row = job->signal[s], column = column_of(j);
             if (row < 0)
@@ -242,7 +242,7 @@ int batch_supply(batch_room *room, const batch_numbers *numbers, int number)
     const int at = room->made++;
     fill(room->mode + at, map, numbers, &held);
     find_fastest(room, at);
-    fill_readers(room->job, map, room->readers + at * room->job->signals);
+    fill_readers(room->job, map, batch_readers(room, at));
     room->record.modes[number] = room->mode + at;
     room->place[number] = at;
     room->number[at] = number;

@@ -6,11 +6,10 @@
 static const double (*readers_of(const bg_context *c, const batch_room *room))[BG_L]
 {
     const int place = room->place[bg_number(c->mode)];
-    return (const double(*)[BG_L])room->readers + place * room->job->signals;
+    return (const double(*)[BG_L])batch_readers(room, place);
 }
 
-/* A row over the state of a stretch; its constant part. */
-static double over_state(const bg_context *c, const double *reader, double *row)
+double batch_over_state(const bg_context *c, const double *reader, double *row)
 {
     const bg_inputs *const inputs = c->inputs;
     const bg_chains *const chains = inputs->structures + inputs->chains[c->segment];
@@ -36,7 +35,7 @@ void batch_show(const bg_context *c, const batch_room *room, const batch_table *
 {
     const double(*const readers)[BG_L] = readers_of(c, room);
     for (int s = 0; s < room->job->signals; s++)
-        room->levels[s] = over_state(c, readers[s], table->row[BATCH_OWN + s]);
+        room->levels[s] = batch_over_state(c, readers[s], table->row[BATCH_OWN + s]);
 }
 
 void batch_sample(const batch_room *room, const batch_table *table, const double *z, int at)

@@ -148,7 +148,7 @@ static int run_located(bg_model *m, const command *asked, const bg_signals *sign
     const int count = (int)floor(asked->end / asked->sample * (1 + 1e-12)) + 1;
     double *const times = calloc((size_t)count, sizeof *times);
     bg_request request = {times, asked->states, count, BG_AUTO, 1e-10, 1e-11, times, record, events,
-                          EVENTS, 0, 0.0};
+                          EVENTS, 0, 0.0, NULL};
     if (!times)
         return 1;
     for (int k = 0; k < count; k++)

@@ -111,12 +111,15 @@ static double longest(const bg_located *c, int method, double fastest)
 /* A step: its end, or the event in it; samples before that are recorded. */
 static int step(bg_located *c, double stop, int *ended)
 {
+    const bg_request *const asked = c->asked;
     double until = INFINITY, s[BG_SIZE];
     int status = bg_solver_step(c, stop);
     if (status == BG_OK)
         status = bg_watch_step(c, ended, &until, c->touched);
     if (status == BG_OK)
         status = sample(c, *ended ? until : c->solver.t);
+    if (status == BG_OK && asked->smooth)
+        status = asked->smooth(asked->to, c, c->t, *ended ? until : c->solver.t);
     if (status == BG_OK && *ended)
         status = bg_solver_dense(c, until, s);
     if (status != BG_OK)

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from threading import Lock
 from typing import Any, Protocol
 
@@ -16,14 +16,17 @@ from bondgraph.resistances import resistive_loops
 from codegen.arrays import Array
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.inputs.signal import Signal
+from codegen.model.numbers import exact_parameters
 from codegen.program import Program
 from codegen.runs.arguments import named_numbers, signals_for
 from codegen.runs.legs import EXACT, Settings
+from codegen.sweeps.batch_energy import ENERGETIC, plan, telling
 from codegen.sweeps.batch_exact import ExactLoop
 from codegen.sweeps.batch_located import LocatedLoop
 from codegen.sweeps.batch_model import BatchModel, Flags, batch_model
-from codegen.sweeps.batch_plan import Plan, plan
+from codegen.sweeps.batch_plan import Plan
 from codegen.sweeps.family import Family
+from codegen.sweeps.measures import READY, Measure
 from codegen.sweeps.swept import Swept, settled
 
 Given = Mapping[str, Any] | Callable[[Mapping[str, float]], Mapping[str, Any]] | None
@@ -90,7 +93,14 @@ class Batch:
                 kinds, counts = np.unique(status, return_counts=True)
                 self.statuses.update(dict(zip(kinds.tolist(), counts.tolist(), strict=True)))
             found[indices], done[indices] = results, status == 0
-        return self.plan.columns(found), np.flatnonzero(~done).tolist()
+        return self.plan.told(found, self._numbers(table)), np.flatnonzero(~done).tolist()
+
+    def _numbers(self, table: Array) -> Mapping[str, Array]:
+        """The parameters of each run by name."""
+        exact = exact_parameters(self.asked.family.parameters)
+        known = {name: np.full(len(table), float(value)) for name, value in exact.items()}
+        swept = {name: table[:, at] for at, name in enumerate(self.asked.names) if name in known}
+        return known | swept
 
     def _parameters(self, table: Array) -> tuple[Array, Flags]:
         """The parameters of each run, and which runs' elements have values that can be used."""
@@ -161,8 +171,14 @@ def batch(asked: Asked) -> Batch | None:
         family = asked.family
         if family.backend != "c" or not _can(family, family.program, asked.names):
             return None
-        kept = plan(asked.measures.values(), family.program, len(asked.time))
-        return None if kept is None else _looped(asked, kept)
+        measures = [m for m in asked.measures.values() if isinstance(m, Measure)]
+        if len(measures) < len(asked.measures) or any(m.function not in READY for m in measures):
+            return None
+        told, made = family, None
+        if any(READY[m.function] in ENERGETIC for m in measures):
+            told, made = telling(family, measures)
+        kept = plan(measures, told, made, asked.time, asked.names)
+        return None if kept is None else _looped(replace(asked, family=told), kept)
     except BondGraphError:
         return None
 

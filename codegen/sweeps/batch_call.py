@@ -32,16 +32,16 @@ class Rooms(Generic[T]):
 
 def job_record(ffi: Any, kept: Plan, time: Array, grid: float) -> tuple[Any, list[Any]]:
     """What runs share as ``batch_job``, and what has to be kept while that is used."""
-    entries, rows = (
-        ffi.new("batch_measure[]", list(kept.entries)),
-        ffi.new("int[]", [*kept.rows, 0]),
-    )
+    entries = ffi.new("batch_measure[]", list(kept.entries))
+    rows = ffi.new("int[]", [*kept.rows, *kept.factors, 0])
+    products = ffi.new("batch_product[]", [*kept.products, (-1, -1)])
     job = ffi.new("batch_job *")
     job.times, job.grid = ffi.cast("double *", time.ctypes.data), grid
     job.samples, job.width = kept.samples, kept.width
-    job.signals, job.measures = len(kept.rows), len(kept.entries)
-    job.signal, job.measure = rows, entries
-    return job, [entries, rows]
+    job.signals, job.factors = len(kept.rows), len(kept.factors)
+    job.products, job.measures = len(kept.products), len(kept.entries)
+    job.signal, job.product, job.measure = rows, products, entries
+    return job, [entries, rows, products]
 
 
 def outcome_of(

@@ -13,7 +13,8 @@ from codegen.engine.sizes import Engine, Sizes, aligned, declarations, engine_de
 from codegen.program import Program
 
 FILES = (
-    "batch.h", "batch_internal.h", "batch.c", "batch_advance.c", "batch_doubt.h", "batch_leap.c",
+    "batch.h", "batch_internal.h", "batch.c", "batch_advance.c", "batch_doubt.h", "batch_gauss.h",
+    "batch_integral.c", "batch_leap.c",
     "batch_measure.h", "batch_measure.c",
     "batch_mode.c", "batch_model.h", "batch_model.c", "batch_signal.c", "batch_table.c",
 )  # fmt: skip
@@ -27,6 +28,9 @@ MOST_MODES = 27
 STRIDE = 8
 """Steps that are taken from one state."""
 
+SQUARES = 4
+"""Matrices that integrals are worked out in."""
+
 
 def batch_engine(
     model: Mapping[str, str], program: Program, wanted: Sizes, flags: tuple[str, ...] = FLAGS
@@ -37,7 +41,7 @@ def batch_engine(
     library = compiled(files, flags)
     numbers = wanted.numbers
     text = engine_declarations(numbers)
-    shared = {"MODES": min(numbers["MODES"], MOST_MODES), "STRIDE": STRIDE}
+    shared = {"MODES": min(numbers["MODES"], MOST_MODES), "STRIDE": STRIDE, "SQUARES": SQUARES}
     text += declarations("batch_measure.h", {}) + declarations("batch.h", shared, "BATCH")
     for name in ("MODES", "ROW", "L"):
         text = text.replace(f"[BG_{name}]", f"[{numbers[name]}]")
@@ -68,11 +72,14 @@ class Room:
     engine: Engine
     samples: int
     signals: int
+    factors: int
+    products: int
     record: Any = field(init=False)
     kept: list[Any] = field(init=False, default_factory=list)
 
     def __post_init__(self) -> None:
         ffi, numbers, signals = self.engine.ffi, self.engine.sizes.numbers, max(self.signals, 1)
+        readers = MOST_MODES * (signals + self.factors)
         sizes = ffi.new("unsigned long[5]")
         self.engine.library.batch_sizes(sizes)
         _, model, table, of_signal, tables = sizes
@@ -85,10 +92,16 @@ class Room:
         self.record.events = events
         for name, kind, array in (
             ("model", "void *", aligned(model // 8 + 1)),
-            ("readers", f"double(*)[{numbers['L']}]", aligned(MOST_MODES * signals, numbers["L"])),
+            (
+                "readers",
+                f"double(*)[{numbers['L']}]",
+                aligned(readers, numbers["L"]),
+            ),
             ("tables", "double *", aligned(tables * (table + signals * of_signal))),
             ("values", "double *", aligned(signals, self.record.pitch)),
             ("levels", "double *", aligned(signals)),
+            ("totals", "double *", aligned(self.products + 1)),
+            ("squares", "double *", aligned(SQUARES * (numbers["N"] + numbers["G"] + 1) ** 2)),
             ("constants", f"double(*)[{STRIDE}]", aligned(4 * numbers["K"] + signals, STRIDE)),
         ):
             self._point(name, kind, array)

@@ -68,7 +68,9 @@ class ExactLoop:
         return found
 
     def _rooms_of(self, engine: Engine) -> Rooms[Room]:
-        make = partial(Room, engine, self._plan.samples, len(self._plan.rows))
+        kept = self._plan
+        sizes = len(kept.rows), len(kept.factors), len(kept.products)
+        make = partial(Room, engine, kept.samples, *sizes)
         return self._rooms.setdefault(engine.sizes.G, Rooms(make))
 
     def _segments(self, signals: Sequence[Signal]) -> Segments:

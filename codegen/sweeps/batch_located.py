@@ -47,7 +47,9 @@ class _Room:
             aligned(max(len(kept.rows), 1), kept.samples),
             ffi.new("bg_event[]", CAPACITY),
         )
-        self._kept = [instance, run, values, events]
+        totals = aligned(len(kept.products) + 1)
+        self._kept = [instance, run, values, totals, events]
+        self.record.totals = ffi.cast("double *", totals.ctypes.data)
         self.record.model = ffi.cast("bg_model *", instance.ctypes.data)
         self.record.run = ffi.cast("bg_located *", run.ctypes.data)
         self.record.values = ffi.cast("double *", values.ctypes.data)

@@ -57,7 +57,7 @@ def final(signal: str) -> Measure:
 
 
 def integral(signal: str) -> Measure:
-    """A signal integrated over the samples by trapezoids."""
+    """A signal integrated through the run, however few its samples; see `Result.integral`."""
     return Measure(_integral, (signal,))
 
 
@@ -81,6 +81,15 @@ def work(node: Hashable) -> Measure:
     return Measure(_work, (node,))
 
 
+def balance() -> Measure:
+    """What the power balance of a run leaves open, of the energy turned over; see `Result.audit`.
+
+    >>> balance()
+    balance()
+    """
+    return Measure(_balance, ())
+
+
 def _peak(result: Result, signal: str) -> float:
     return float(np.abs(result[signal]).max())
 
@@ -98,8 +107,7 @@ def _final(result: Result, signal: str) -> float:
 
 
 def _integral(result: Result, signal: str) -> float:
-    values = result[signal]
-    return float(np.diff(result.time) @ (values[1:] + values[:-1]) / 2)
+    return float(result.integral(signal)[-1])
 
 
 def _samples(result: Result, signal: str) -> Array:
@@ -121,11 +129,17 @@ def _work(result: Result, node: Hashable) -> float:
     return float(result.work(node)[-1])
 
 
+def _balance(result: Result) -> float:
+    audit = result.audit()
+    left = abs(audit.residual)
+    return left / audit.turned_over if audit.turned_over > 0 else left
+
+
 READY: Mapping[Callable[..., float | Array], str] = MappingProxyType(
     {
         _peak: "peak", _largest: "largest", _smallest: "smallest", _final: "final",
         _integral: "integral", _samples: "samples", _first_event: "first_event",
-        _event_count: "event_count",
+        _event_count: "event_count", _work: "work", _balance: "balance",
     }
 )  # fmt: skip
 """What loops in C can do, too."""

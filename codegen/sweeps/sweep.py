@@ -57,7 +57,7 @@ def sweep(
     which then may have names of their own.
 
     ``workers``: processes to run in, by default one for each core; 0: in this process. A family with
-    backend "c" and ready measures (all of this package but `work`) is run by threads instead, many runs in
+    backend "c" and ready measures (all of this package) is run by threads instead, many runs in
     one call of C, where none of the model's outputs shows the rate of an input. That is fastest without
     functions of a run's numbers, which Python calls run by run.
     What is sent to processes must be picklable, and a script needs the line

@@ -1,7 +1,8 @@
-"""Random runs of every kind, whose power balances are to close."""
+"""Runs of every kind, whose power balances are to close."""
 
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import networkx as nx
 import numpy as np
@@ -11,8 +12,22 @@ from references.diode_networks import random_network
 from references.random_graphs import random_graph
 
 import bondgraph as bg
-from codegen import Lag, Ramp, Result, Signal, Sine, Step, simulator, switched_simulator
+from codegen import (
+    Family,
+    Lag,
+    Ramp,
+    Result,
+    Signal,
+    Sine,
+    Step,
+    simulator,
+    switched_simulator,
+)
+from codegen.arrays import Array
+from codegen.sweeps.job import Job, batch_of
+from codegen.sweeps.measures import Measure
 from oracles.chains import random_chain
+from oracles.circuits import as_graph
 
 CLOSED = 1e-9
 """Of the energy turned over."""
@@ -44,43 +59,61 @@ def _numbers(equations: bg.StateEquations, rng: np.random.Generator) -> dict[str
     return {name: float(rng.uniform(0.5, 2)) for name in sorted(names - moving)}
 
 
-def linear(seed: int, backend: str = "numpy", method: str = "auto") -> Result | None:
+@dataclass(frozen=True)
+class Case:
+    """One run, in numbers."""
+
+    equations: bg.StateEquations
+    numbers: Mapping[str, float]
+    times: Array
+    start: Mapping[str, float]
+    inputs: Mapping[str, object]
+
+    def run(self, backend: str = "numpy", method: str = "auto") -> Result:
+        """Its result."""
+        ready = simulator(self.equations, self.numbers, backend=backend)
+        return ready.run(self.times, self.start, self.inputs, method=method)
+
+    def swept(self, measures: Mapping[str, Measure], method: str = "auto") -> list[Array] | None:
+        """Measures of a sweep of it alone by the loop in C; None where the loop leaves it to others."""
+        family = Family(self.equations, self.numbers, None, "c")
+        settings = {"method": method, "rtol": 1e-10, "atol": 1e-11}
+        loop = batch_of(Job(family, (), self.times, measures, self.start, self.inputs, settings))
+        if loop is None:
+            return None
+        found, left = loop([()])
+        return None if left else [column[0] for column in found]
+
+
+def textbook(name: str) -> Case:
+    """A case of a textbook under sines, its numbers drawn by its place."""
+    case, rng = CASES[name], np.random.default_rng(list(CASES).index(name))
+    equations = bg.derive(bond_graph(case.nodes, case.bonds), outputs=[])
+    return _case(equations, rng, np.array([0, 0.7, 3]), lambda at: Sine(1.0, 0.3 + at))
+
+
+def linear(seed: int) -> Case | None:
     """A random meshed graph under sources that also step; None where it has none of that kind."""
     try:
         equations = bg.derive(random_graph(random.Random(seed), 10, mesh=0.3), outputs=[])
     except bg.BondGraphError:
         return None
+    rng = np.random.default_rng(seed)
     if not equations.states:
         return None
-    rng = np.random.default_rng(seed)
-    ready = simulator(equations, _numbers(equations, rng), backend=backend)
-    start = {name: float(rng.uniform(-1, 1)) for name in ready.states}
-    inputs = {name: _signal(rng, True) for name in ready.inputs}
-    return ready.run(np.linspace(0, 1, 6), start, inputs, method=method)
+    return _case(equations, rng, np.linspace(0, 1, 6), lambda at: _signal(rng, True))
 
 
-def textbook(name: str, backend: str = "numpy") -> Result:
-    """A case of a textbook under sines, its numbers drawn by its place."""
-    case, rng = CASES[name], np.random.default_rng(list(CASES).index(name))
-    equations = bg.derive(bond_graph(case.nodes, case.bonds), outputs=[])
-    numbers = {symbol.name: float(rng.uniform(0.5, 2)) for symbol in equations.parameters}
-    ready = simulator(equations, numbers, backend=backend)
-    start = {state: float(rng.uniform(-1, 1)) for state in ready.states}
-    inputs = {one: Sine(1.0, 0.3 + at) for at, one in enumerate(ready.inputs)}
-    return ready.run([0, 0.7, 3], start, inputs)
-
-
-def rubbing(seed: int, backend: str = "numpy", method: str = "auto") -> Result:
+def rubbing(seed: int) -> Case:
     """A random chain of masses with friction that sticks and slips."""
     chain = random_chain(np.random.default_rng(seed), breakaway=bool(seed % 2))
     start = {f"v{i}": v for i, v in enumerate(chain.start.tolist())}
     inputs: dict[str, object] = {f"P{i}": push for i, push in enumerate(chain.pushes)}
     inputs |= {f"L{i}": level for i, level in enumerate(chain.levels)}
-    ready = simulator(bg.derive(chain.graph()), {}, backend=backend)
-    return ready.run(np.linspace(0, 2, 6), start, inputs, method=method)
+    return Case(bg.derive(chain.graph()), {}, np.linspace(0, 2, 6), start, inputs)
 
 
-def turning(seed: int, backend: str = "numpy", method: str = "auto") -> Result | None:
+def turning(seed: int) -> Case | None:
     """A random graph with ratios and storages that follow an angle, an input, the time or a state."""
     rng, noise = random.Random(seed), np.random.default_rng(seed)
     graph = random_graph(rng, 9, mesh=0.2)
@@ -91,10 +124,19 @@ def turning(seed: int, backend: str = "numpy", method: str = "auto") -> Result |
         return None
     if not equations.states or not equations.varying:
         return None
-    ready = simulator(equations, _numbers(equations, noise), backend=backend)
-    start = {name: float(noise.uniform(-1, 1)) for name in ready.states}
-    inputs = {name: _signal(noise, False) for name in ready.inputs}
-    return ready.run(np.linspace(0, 0.3, 4), start, inputs, method=method)
+    return _case(equations, noise, np.linspace(0, 0.3, 4), lambda at: _signal(noise, False))
+
+
+def _case(
+    equations: bg.StateEquations, rng: np.random.Generator, times: Array,
+    signal: Callable[[int], Signal],
+) -> Case:  # fmt: skip
+    numbers = _numbers(equations, rng)
+    ready = simulator(equations, numbers)
+    start = {name: float(rng.uniform(-1, 1)) for name in ready.states}
+    return Case(
+        equations, numbers, times, start, {n: signal(k) for k, n in enumerate(ready.inputs)}
+    )
 
 
 def _modulate(graph: nx.DiGraph, rng: random.Random, followed: str) -> None:
@@ -119,15 +161,13 @@ def _modulate(graph: nx.DiGraph, rng: random.Random, followed: str) -> None:
             graph.nodes[node]["value"] = f"{1 + at / 5}*(3 + cos({at + 1}*{name}))"
 
 
-def rectifying(seed: int, backend: str = "numpy", method: str = "auto") -> Result:
+def rectifying(seed: int) -> Result:
     """A random network with diodes, ideal ones and with resistances; switches run in Python alone."""
     network = random_network(np.random.default_rng(seed), ideal=bool(seed % 2))
     inputs = {f"u_{b.name}": Sine(b.value, b.frequency, phase=b.phase) for b in network.of("S")}
-    return switched_simulator(network.graph(), {}).run(
-        np.linspace(0.0, 3.0, 7), inputs=inputs, method=method
-    )
+    return switched_simulator(as_graph(network), {}).run(np.linspace(0.0, 3.0, 7), inputs=inputs)
 
 
-FAMILIES: dict[str, Callable[..., Result | None]] = {
-    "linear": linear, "rubbing": rubbing, "turning": turning, "rectifying": rectifying,
+FAMILIES: dict[str, Callable[[int], Case | None]] = {
+    "linear": linear, "rubbing": rubbing, "turning": turning,
 }  # fmt: skip
