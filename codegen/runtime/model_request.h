@@ -11,8 +11,9 @@ enum bg_method { BG_AUTO, BG_DOP853, BG_RADAU };
 
 /* What a run is asked. `times`: samples, increasing, the first where the run begins; `states` are
  * those there, law states last. `record` is called for each sample in turn, with the instant just
- * after it if it is an event's. `smooth`, if there is one, is called for the part of each step that is
- * kept, with the run; a status. The run tells `count` events and `time`, where it ended. */
+ * after it if it is an event's. `smooth`, if there is one, is called for the part of each step that
+ * is kept, with the run; it gives a status. The run tells `count` events and `time`, where it
+ * ended. */
 typedef struct {
     const double *times, *states;
     int samples, method;
