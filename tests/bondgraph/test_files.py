@@ -260,7 +260,7 @@ def test_text_is_the_same_in_every_process() -> None:
             [sys.executable, "-c", code], capture_output=True, check=True, cwd=ROOT,
             env={"PYTHONHASHSEED": seed},
         ).stdout
-        for seed in ("0", "1", "2")
+        for seed in ("0", "1")
     }  # fmt: skip
     assert len(texts) == 1
 

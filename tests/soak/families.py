@@ -121,6 +121,9 @@ FAMILIES = (
         400,
         500,
     ),
+    Family(
+        "drawings", "bondgraph/test_drawing_geometry.py::test_strokes_of_random_graphs", 60, 1_700
+    ),
     Family("files", "bondgraph/test_files.py::test_random_graphs_come_back", 15, 400),
     # Runs.
     Family(
