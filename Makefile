@@ -3,13 +3,15 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 MINUTES ?= 30
+JOBS ?= 2
 READY := $(VENV)/ready
 
-.PHONY: demo test lint types unit soak docs bench bench-agreement bench-peers bench-speed clean help
+.PHONY: demo test check lint types unit quick soak docs bench bench-agreement bench-peers bench-speed clean help
 
 help:
 	@echo "make demo   derive and simulate differentials; tables and pictures in out/"
 	@echo "make test   format, lint, types, tests, documentation and doctests"
+	@echo "make check  what of that needs no compiler and no more than a few seconds"
 	@echo "make soak MINUTES=30  random families beyond what every test run takes; totals in tests/soak/README.md"
 	@echo "make docs   README's guides and the API as pages in site/"
 	@echo "make bench  how time and memory to derive grow with the size of a graph"
@@ -29,6 +31,8 @@ demo: $(READY)
 
 test: lint types unit
 
+check: lint types quick
+
 lint: $(READY)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
@@ -37,7 +41,11 @@ types: $(READY)
 	$(BIN)/mypy
 
 unit: $(READY)
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n $(JOBS)
+
+# Slices of random families are a quarter of those of every run.
+quick: $(READY)
+	BONDGRAPH_SLICE=0.25 $(BIN)/python -m pytest -n $(JOBS) --quick
 
 soak: $(READY)
 	PYTHONPATH=tests $(BIN)/python -m soak $(MINUTES) $(if $(FAMILY),--family $(FAMILY)) $(if $(AGAIN),--again)

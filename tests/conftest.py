@@ -2,7 +2,7 @@
 
 import pytest
 
-pytest_plugins = ["rig.guard", "rig.compilers", "rig.summary"]
+pytest_plugins = ["rig.guard", "rig.compilers", "rig.summary", "rig.needs"]
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

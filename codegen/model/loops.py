@@ -82,6 +82,8 @@ def _newton(left: Residual, values: Array) -> Array:
     """Newton's iteration with differences for slopes; a step that does not help is halved."""
     now = left(values)
     for _ in range(ITERATIONS):
+        if not now.any():
+            return values
         slopes = np.empty((len(values), len(values)))
         for j in range(len(values)):
             step = 1e-7 * (abs(values[j]) + 1e-6)
@@ -98,6 +100,9 @@ def _newton(left: Residual, values: Array) -> Array:
             if np.abs(tried).max() < size:
                 break
             change = change / 2
+            if (values + change == values).all():
+                # Rounding is reached: other steps give what is known.
+                return values
         else:
             return values
         values, now = values + change, tried

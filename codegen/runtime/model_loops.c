@@ -96,8 +96,14 @@ static void newton(search *s, double *values)
             left_over(s, tried, left);
             if (largest(n, left) < size)
                 break;
-            for (int i = 0; i < n; i++)
+            int moves = 0;
+            for (int i = 0; i < n; i++) {
                 change[i] /= 2;
+                moves |= values[i] + change[i] != values[i];
+            }
+            /* Rounding is reached: other steps give what is known. */
+            if (!moves)
+                return;
         }
         if (halvings == ITERATIONS)
             return;

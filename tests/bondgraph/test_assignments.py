@@ -11,6 +11,7 @@ import sympy as sp
 from references.alsd import alsd_graph
 from references.build import Graph, bond_graph
 from references.random_graphs import chain, random_graph
+from soak.families import seeds
 
 import bondgraph as bg
 from bondgraph.modulation import Reading
@@ -276,13 +277,13 @@ def test_fields_are_the_readings() -> None:
     _check(graph)
 
 
-@pytest.mark.parametrize("seed", range(120))
+@pytest.mark.parametrize("seed", seeds("assignments"))
 def test_put_in_one_after_the_other_they_are_the_readings(seed: int) -> None:
     if _accepted(graph := _numeric(seed)):
         _check(graph)
 
 
-@pytest.mark.parametrize("seed", range(500, 540))
+@pytest.mark.parametrize("seed", seeds("assignments-in-symbols"))
 def test_the_same_with_symbols(seed: int) -> None:
     if _accepted(graph := _symbolic(seed)):
         _check(graph)
@@ -302,8 +303,8 @@ def test_random_graphs_are_of_all_sorts() -> None:
 
 
 def test_long_chains_take_time_in_proportion() -> None:
-    """Printed, not asserted: seconds for chains of up to 10 000 storages."""
-    for n in (1250, 5000):
+    """Printed, not asserted: seconds for chains of up to 5 000 storages."""
+    for n in (625, 2500):
         causal = bg.assign_causality(chain(n))
         start = time.perf_counter()
         lines = bg.assignments(causal)

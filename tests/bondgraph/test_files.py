@@ -18,6 +18,7 @@ import sympy as sp
 from references.build import bond_graph
 from references.cases import CASES
 from references.random_graphs import random_graph
+from soak.families import seeds
 
 import bondgraph as bg
 import differentials
@@ -99,7 +100,7 @@ def test_textbook_graphs_come_back(name: str, form: tuple) -> None:
     _round(bond_graph(CASES[name].nodes, CASES[name].bonds), form)
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", seeds("files"))
 def test_random_graphs_come_back(seed: int, form: tuple) -> None:
     graph = random_graph(random.Random(seed), 3 + seed, mesh=0.4, symbols=seed % 2 == 0)
     _round(graph, form, derive=seed < 12)
@@ -259,7 +260,7 @@ def test_text_is_the_same_in_every_process() -> None:
             [sys.executable, "-c", code], capture_output=True, check=True, cwd=ROOT,
             env={"PYTHONHASHSEED": seed},
         ).stdout
-        for seed in ("0", "1", "2")
+        for seed in ("0", "1")
     }  # fmt: skip
     assert len(texts) == 1
 

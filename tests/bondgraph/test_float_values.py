@@ -16,6 +16,7 @@ import pytest
 import sympy as sp
 from references.build import bond_graph
 from references.random_graphs import random_graph
+from soak.families import seeds
 
 import bondgraph as bg
 from codegen import simulator
@@ -72,7 +73,7 @@ def _outcome(graph: Graph) -> Outcome:
     return *names, *(getattr(equations, name) for name in "AJBEFDG")
 
 
-@pytest.mark.parametrize("seed", range(150))
+@pytest.mark.parametrize("seed", seeds("float-values"))
 def test_floats_are_derived_as_the_decimals_they_are_written_as(seed: int) -> None:
     graph = _drawn(seed)
     expected = _outcome(_written(graph, FORMS["rational"]))
@@ -103,7 +104,7 @@ def _prime_fractions(graph: Graph) -> Graph:
     return _written(graph, lambda _: round(rng.uniform(0.1, 1), 15))
 
 
-@pytest.mark.parametrize("seed", range(150))
+@pytest.mark.parametrize("seed", seeds("symbols-as-floats"))
 def test_symbols_decide_as_floats_unless_a_value_makes_something_vanish(seed: int) -> None:
     """Floats of many digits make nothing vanish."""
     graph = _prime_fractions(_drawn(seed))
@@ -259,7 +260,7 @@ def test_parameters_that_make_a_value_vanish_in_decimals_are_refused() -> None:
         simulator(equations, SUM)
 
 
-@pytest.mark.parametrize("seed", range(100))
+@pytest.mark.parametrize("seed", seeds("late-values"))
 def test_values_given_late_decide_as_values_given_early(seed: int) -> None:
     """Symbols with numbers in `simulator`: what decimals make singular is refused at both times."""
     graph = _drawn(seed)

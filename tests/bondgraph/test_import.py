@@ -60,7 +60,7 @@ def test_derivation_is_the_same_in_every_process() -> None:
             [sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True,
             env={"PYTHONHASHSEED": seed},
         ).stdout
-        for seed in ("0", "1", "2")
+        for seed in ("0", "1")
     }  # fmt: skip
     (text,) = texts
     assert "StateEquations" in text

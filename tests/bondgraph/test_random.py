@@ -115,7 +115,7 @@ def test_random_graphs_are_of_both_sorts() -> None:
     assert len(dependent) > 20
 
 
-@pytest.mark.parametrize("seed", range(2000, 2150))
+@pytest.mark.parametrize("seed", seeds("best-causality"))
 def test_causality_is_the_best_regular_choice_in_order_of_preference(seed: int) -> None:
     """Storages in declaration order, integral first; then resistances, effort first."""
     graph = _small(seed, largest=9)
@@ -142,7 +142,7 @@ def _rationals(graph: Graph, rng: random.Random) -> dict[str, Fraction]:
     return {name: Fraction(rng.randint(1, 30), 10) for name in _values(graph, rng)}
 
 
-@pytest.mark.parametrize("seed", range(3000, 3060))
+@pytest.mark.parametrize("seed", seeds("mass-matrices"))
 def test_mass_matrix_is_symmetric_and_positive_definite_for_positive_storages(seed: int) -> None:
     graph = _regular(seed, largest=20)
     A = rationals(bg.derive(graph).A, _rationals(graph, random.Random(seed)))
@@ -150,7 +150,7 @@ def test_mass_matrix_is_symmetric_and_positive_definite_for_positive_storages(se
     assert all(minor > 0 for minor in leading_minors(A))
 
 
-@pytest.mark.parametrize("seed", range(4000, 4060))
+@pytest.mark.parametrize("seed", seeds("lossless"))
 def test_structure_without_resistances_is_skew_symmetric(seed: int) -> None:
     """Energy is stored or exchanged, never lost: J = -J^T.
 

@@ -46,7 +46,7 @@ def test_text_does_not_depend_on_the_order_of_sets() -> None:
             env={"PYTHONHASHSEED": str(seed),
                  "PYTHONPATH": f"{folder}:{folder.parent}:{folder.parents[1]}"},
         ).stdout
-        for seed in (0, 1, 2)
+        for seed in (0, 1)
     }  # fmt: skip
     assert len(found) == 1
 

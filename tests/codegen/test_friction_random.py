@@ -5,6 +5,7 @@ import pytest
 from oracles.chains import Chain, random_chain
 from oracles.contact import time_stepped
 from oracles.energy import misfit
+from soak.families import seeds
 
 import bondgraph as bg
 from codegen import Result, simulator
@@ -36,7 +37,7 @@ def _check_consistent(chain: Chain, result: Result) -> None:
         assert np.abs(s[inside]).max(initial=0.0) < 1e-9
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", seeds("friction-chains"))
 def test_every_sample_is_consistent(seed: int) -> None:
     chain = random_chain(np.random.default_rng(seed))
     result = _run(chain)
@@ -44,7 +45,7 @@ def test_every_sample_is_consistent(seed: int) -> None:
     assert len(result.events) < 100
 
 
-@pytest.mark.parametrize("seed", range(100, 140))
+@pytest.mark.parametrize("seed", seeds("breakaway-chains"))
 def test_every_sample_is_consistent_with_breakaway(seed: int) -> None:
     chain = random_chain(np.random.default_rng(seed), breakaway=True)
     result = _run(chain)
@@ -52,7 +53,7 @@ def test_every_sample_is_consistent_with_breakaway(seed: int) -> None:
     assert len(result.events) < 100
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", seeds("implicit-steps"))
 def test_velocities_are_those_of_small_implicit_steps(seed: int) -> None:
     """Breakaway at the level makes the motion unique. Steps of half the length halve the error:
     the difference of both is the error of the finer one, and extrapolation leaves much less."""
@@ -69,7 +70,7 @@ def test_velocities_are_those_of_small_implicit_steps(seed: int) -> None:
     assert error < 0.1 * (np.abs(fine).max() + 0.1)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", seeds("chain-power"))
 def test_power_is_balanced(seed: int) -> None:
     chain = random_chain(np.random.default_rng(300 + seed), breakaway=bool(seed % 2))
     n = len(chain.masses)

@@ -12,6 +12,7 @@ import pytest
 import sympy as sp
 from references.build import bond_graph
 from references.random_graphs import random_graph
+from soak.families import seeds
 
 import bondgraph as bg
 from bondgraph.elements import STORAGES
@@ -110,7 +111,7 @@ def _assert_equal(model: SparseModel, equations: bg.StateEquations, values: Valu
         _assert_close(getattr(model, name).toarray(), direct, name)
 
 
-@pytest.mark.parametrize("seed", [*range(300), 2049, 2111, 2802, 3039, 3086, 3818, 3884])
+@pytest.mark.parametrize("seed", [*seeds("sparse"), 2049, 2111, 2802, 3039, 3086, 3818, 3884])
 def test_small_graph_has_the_matrices_of_the_exact_derivation(seed: int) -> None:
     graph, values = _drawn(seed, 13)
     equations = _derived(graph)
@@ -121,7 +122,7 @@ def test_small_graph_has_the_matrices_of_the_exact_derivation(seed: int) -> None
         _assert_equal(sparse_model(graph, values, _seen(graph)), equations, values)
 
 
-@pytest.mark.parametrize("seed", range(1000, 1025))
+@pytest.mark.parametrize("seed", seeds("larger-sparse"))
 def test_larger_graph_has_the_matrices_of_the_exact_derivation(seed: int) -> None:
     graph, values = _drawn(seed, 40)
     equations = _derived(graph)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Family:
-    """Random models, one for each seed from 0 on.
+    """Random models, one for each seed from ``first`` on; `BONDGRAPH_SLICE=0.25` has a quarter of each slice.
 
     ``name``: words joined by hyphens. ``test``: the file that takes its seeds, and ``::`` the test where
     the file has several families. ``slice``: how many seeds every run of the tests takes. ``promised``:
@@ -23,6 +23,7 @@ class Family:
     test: str
     slice: int
     promised: int
+    first: int = 0
 
     @property
     def variable(self) -> str:
@@ -32,8 +33,9 @@ class Family:
     @property
     def seeds(self) -> range:
         """The slice, or what the environment says instead: a count, or ``first:stop``."""
-        first, _, stop = os.environ.get(self.variable, str(self.slice)).rpartition(":")
-        return range(int(first or 0), int(stop))
+        part = round(self.slice * float(os.environ.get("BONDGRAPH_SLICE", "1")))
+        first, _, stop = os.environ.get(self.variable, str(part)).rpartition(":")
+        return range(int(first), int(stop)) if first else range(self.first, self.first + int(stop))
 
 
 def seeds(name: str) -> range:
@@ -55,11 +57,108 @@ def family(name: str) -> Family:
 
 FAMILIES = (
     # Derivation.
-    Family("graphs", "bondgraph/test_random.py::test_small_graph_is_derived_as_brute_force_solves_it",
-           400, 10_000),
-    Family("larger-graphs",
-           "bondgraph/test_random.py::test_larger_graph_is_derived_as_brute_force_solves_it", 60, 1_500),
+    Family(
+        "graphs",
+        "bondgraph/test_random.py::test_small_graph_is_derived_as_brute_force_solves_it",
+        200,
+        10_000,
+    ),
+    Family(
+        "larger-graphs",
+        "bondgraph/test_random.py::test_larger_graph_is_derived_as_brute_force_solves_it",
+        30,
+        1_500,
+    ),
+    Family(
+        "best-causality",
+        "bondgraph/test_random.py::test_causality_is_the_best_regular_choice_in_order_of_preference",
+        50,
+        1_500,
+        2_000,
+    ),
+    Family(
+        "mass-matrices",
+        "bondgraph/test_random.py::test_mass_matrix_is_symmetric_and_positive_definite_for_positive_storages",
+        30,
+        600,
+        3_000,
+    ),
+    Family(
+        "lossless",
+        "bondgraph/test_random.py::test_structure_without_resistances_is_skew_symmetric",
+        30,
+        600,
+        4_000,
+    ),
+    Family(
+        "float-values",
+        "bondgraph/test_float_values.py::test_floats_are_derived_as_the_decimals_they_are_written_as",
+        50,
+        1_500,
+    ),
+    Family(
+        "symbols-as-floats",
+        "bondgraph/test_float_values.py::test_symbols_decide_as_floats_unless_a_value_makes_something_vanish",
+        50,
+        1_500,
+    ),
+    Family(
+        "late-values",
+        "bondgraph/test_float_values.py::test_values_given_late_decide_as_values_given_early",
+        40,
+        1_000,
+    ),
+    Family(
+        "assignments",
+        "bondgraph/test_assignments.py::test_put_in_one_after_the_other_they_are_the_readings",
+        50,
+        1_200,
+    ),
+    Family(
+        "assignments-in-symbols",
+        "bondgraph/test_assignments.py::test_the_same_with_symbols",
+        15,
+        400,
+        500,
+    ),
+    Family(
+        "drawings", "bondgraph/test_drawing_geometry.py::test_strokes_of_random_graphs", 60, 1_700
+    ),
+    Family("files", "bondgraph/test_files.py::test_random_graphs_come_back", 15, 400),
     # Runs.
+    Family(
+        "friction-chains",
+        "codegen/test_friction_random.py::test_every_sample_is_consistent",
+        20,
+        1_000,
+    ),
+    Family(
+        "breakaway-chains",
+        "codegen/test_friction_random.py::test_every_sample_is_consistent_with_breakaway",
+        15,
+        1_000,
+        100,
+    ),
+    Family(
+        "implicit-steps",
+        "codegen/test_friction_random.py::test_velocities_are_those_of_small_implicit_steps",
+        4,
+        200,
+    ),
+    Family("chain-power", "codegen/test_friction_random.py::test_power_is_balanced", 4, 200),
+    Family(
+        "sparse",
+        "codegen/test_sparse.py::test_small_graph_has_the_matrices_of_the_exact_derivation",
+        100,
+        3_000,
+    ),
+    Family(
+        "larger-sparse",
+        "codegen/test_sparse.py::test_larger_graph_has_the_matrices_of_the_exact_derivation",
+        8,
+        500,
+        1_000,
+    ),
     Family("audits-linear", "codegen/test_audit.py::test_random_runs_close", 12, 200),
     Family("audits-rubbing", "codegen/test_audit.py::test_random_runs_close", 6, 200),
     Family("audits-turning", "codegen/test_audit.py::test_random_runs_close", 4, 200),
@@ -69,8 +168,15 @@ FAMILIES = (
     Family("flat", "codegen/test_roots.py", 0, 1),
     Family("agreements", "differentials/test_agreement.py", 0, 1),
     Family("platforms", "codegen/test_fmu_platforms.py", 0, 1),
-    Family("scenarios", "differentials/test_random_scenarios.py::test_random_scenarios_agree", 40, 2_000),
-    Family("diodes", "codegen/test_switched_networks.py::test_diodes_with_resistances", 20, 1_000),
-    Family("stiff-linear", "codegen/test_stiff_linear.py::test_states_are_the_exponential", 24, 500),
-    Family("ideal-diodes", "codegen/test_switched_networks.py::test_ideal_diodes", 20, 1_000),
-)  # fmt: skip
+    Family(
+        "scenarios",
+        "differentials/test_random_scenarios.py::test_random_scenarios_agree",
+        20,
+        2_000,
+    ),
+    Family("diodes", "codegen/test_switched_networks.py::test_diodes_with_resistances", 12, 1_000),
+    Family(
+        "stiff-linear", "codegen/test_stiff_linear.py::test_states_are_the_exponential", 24, 500
+    ),
+    Family("ideal-diodes", "codegen/test_switched_networks.py::test_ideal_diodes", 12, 1_000),
+)

@@ -45,10 +45,9 @@ class Record:
         """How many passed."""
         return sum(stop - first for first, stop in self.passed)
 
-    @property
-    def next(self) -> int:
+    def next(self, first: int = 0) -> int:
         """The first seed that no soak has run, past all that one has."""
-        return max([0, *(stop for _, stop in self.passed), *(seed + 1 for seed in self.failed)])
+        return max([first, *(stop for _, stop in self.passed), *(seed + 1 for seed in self.failed)])
 
 
 def _joined(spans: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:

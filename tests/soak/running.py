@@ -67,7 +67,7 @@ class Soak:
 
     def __init__(self, families: Sequence[Family], records: Mapping[str, Record]) -> None:
         self.families, self.records = tuple(families), dict(records)
-        self.upto = {one.name: records[one.name].next for one in families}
+        self.upto = {one.name: records[one.name].next(one.first) for one in families}
         self.pace: dict[str, float] = {}
         self.busy: list[str] = []
         self.broken: set[str] = set()
@@ -80,18 +80,20 @@ class Soak:
             if one.name not in self.busy
             and one.name not in self.broken
             # A whole set is run once: other seeds are the same cases.
-            and (one.slice or self.upto[one.name] < one.promised)
+            and (one.slice or self._run(one) < one.promised)
         ]
         if not free:
             return None
-        one = min(free, key=lambda one: self.upto[one.name] / one.promised)
-        first = self.upto[one.name]
-        count = max(
-            1, min(self._count(one), one.promised - first if first < one.promised else one.promised)
-        )
+        one = min(free, key=lambda one: self._run(one) / one.promised)
+        first, left = self.upto[one.name], one.promised - self._run(one)
+        count = max(1, min(self._count(one), left if left > 0 else one.promised))
         self.upto[one.name] += count
         self.busy.append(one.name)
         return Part(one, range(first, first + count))
+
+    def _run(self, one: Family) -> int:
+        """How many seeds have been run or are being run."""
+        return self.upto[one.name] - one.first
 
     def _count(self, one: Family) -> int:
         """As many seeds as last for about `LASTS`; at first the slice of every run."""

@@ -2,6 +2,7 @@
 
 import random
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -44,6 +45,8 @@ def test_the_environment_chooses_seeds(said, expected, monkeypatch: pytest.Monke
     if said is not None:
         monkeypatch.setenv("BONDGRAPH_SOAK_DRAWN", said)
     assert DRAWN.seeds == expected
+    later = replace(DRAWN, first=100).seeds
+    assert later == (expected if expected.start else range(100, 100 + len(expected)))
     assert Family("two-words", "", 1, 2).variable == "BONDGRAPH_SOAK_TWO_WORDS"
     with pytest.raises(KeyError, match="no-such"):
         family("no-such")
@@ -64,7 +67,7 @@ def test_records_keep_what_passed_and_what_failed(seed: int) -> None:
         assert {one for span in record.passed for one in range(*span)} == passed
         assert set(record.failed) == failed
         assert record.count == len(passed)
-        assert record.next == max(passed | failed, default=-1) + 1
+        assert record.next() == max(passed | failed, default=-1) + 1
 
 
 def test_records_come_back_from_their_file(tmp_path: Path) -> None:
@@ -72,7 +75,7 @@ def test_records_come_back_from_their_file(tmp_path: Path) -> None:
     records["graphs"].note(range(5, 9), [7])
     ledger.write(records, tmp_path / "seeds.json", tmp_path / "table.md")
     assert ledger.read(tmp_path / "seeds.json") == records
-    assert "| 400 | 10,000 | 3 | 1 | 7 |" in (tmp_path / "table.md").read_text("utf-8")
+    assert "| 10,000 | 3 | 1 | 7 |" in (tmp_path / "table.md").read_text("utf-8")
 
 
 def test_the_table_is_of_the_seeds() -> None:

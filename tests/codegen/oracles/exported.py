@@ -1,6 +1,7 @@
 """Models to export, of every kind, and what the simulator makes of them at an instant."""
 
 from collections.abc import Iterator
+from functools import cache
 from types import ModuleType
 
 import networkx as nx
@@ -12,7 +13,7 @@ import differentials
 from codegen import Simulator
 from codegen.inputs.pieces import Piece
 from codegen.model.modes import LOOK_AHEAD, Peaks, decide
-from differentials.model import model
+from differentials.model import Model, model
 from oracles.models import belt, clutches, oscillator, stacked_blocks
 
 Case = tuple[bg.StateEquations, dict[str, float], dict]
@@ -25,13 +26,29 @@ def loaded(text: str) -> ModuleType:
     return module
 
 
-def catalog_cases() -> Iterator[tuple[str, Case]]:
-    """The eight differentials, rigid and with halfshafts where there are any."""
+@cache
+def catalog_cases() -> tuple[tuple[str, Case], ...]:
+    """The eight differentials, rigid and with halfshafts where there are any; derived once in a process."""
+    return tuple(_catalog_cases())
+
+
+@cache
+def model_of(name: str) -> Model:
+    """A differential's full model, derived once in a process."""
+    return model(name)
+
+
+def catalog_case(name: str) -> Case:
+    """A differential with halfshafts where there are any."""
+    full = model_of(name)
+    numbers = {symbol: one.value for symbol, one in full.parameters.items()}
+    return full.equations, numbers | dict.fromkeys(full.starts, 80.0), dict(full.laws)
+
+
+def _catalog_cases() -> Iterator[tuple[str, Case]]:
     for name in differentials.catalog:
-        full = model(name)
-        numbers = {symbol: one.value for symbol, one in full.parameters.items()}
-        numbers |= dict.fromkeys(full.starts, 80.0)
-        yield name, (full.equations, numbers, dict(full.laws))
+        yield name, catalog_case(name)
+        full, numbers = model_of(name), catalog_case(name)[1]
         rigid = differentials.equations(name)
         values = {symbol.name: numbers.get(symbol.name, 1.3) for symbol in rigid.parameters}
         clutch = {node: bg.DryFriction(level) for node, level in full.differential.clutches.items()}
@@ -92,8 +109,13 @@ def _diode() -> bg.StateEquations:
     return bg.derive(bond_graph(nodes, "s>n>r n>diode"), outputs=["diode", "s"])
 
 
-def small_cases() -> Iterator[tuple[str, Case]]:
+@cache
+def small_cases() -> tuple[tuple[str, Case], ...]:
     """Nonlinear laws, loops, own states, moving ratios, E u', redundant and mixed friction."""
+    return tuple(_small_cases())
+
+
+def _small_cases() -> Iterator[tuple[str, Case]]:
     rub = bg.DryFriction("L")
     yield "duffing", (_mass_with(bg.C("s", law="k*q_s + c*q_s**3")), {"m": 1.3, "k": 4, "c": 9}, {})
     laws = "Min(v, 2) + sign(v)*sqrt(Abs(v)) - Max(v, t)/3 + atan2(v, 2) + v**(1/3 + 5/3)"
