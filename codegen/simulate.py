@@ -15,7 +15,7 @@ from codegen.energy.ledger import Ledger
 from codegen.energy.replay import Run
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
-from codegen.engine.runs import CRuns
+from codegen.engine.runs import CRuns, Status
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
@@ -146,9 +146,11 @@ class Simulator:
     ) -> Recorded | None:  # fmt: skip
         """The run in C; None where it cannot go on, and the loop in Python can or tells why."""
         if self.engine is not None and settings.method in ("auto", EXACT):
-            track = self.engine.run(times, start, signals).track
-            if track is not None:
-                return self._recorded(times, signals, track, "c")
+            outcome = self.engine.run(times, start, signals)
+            if outcome.track is not None:
+                return self._recorded(times, signals, outcome.track, "c")
+            if outcome.status == Status.ENDLESS:
+                return None  # step control would have no end either; the loop in Python tells why
         if self.located is None or settings.method not in LOCATED_METHODS:
             return None
         return self.located.run(times, states, signals, settings)
