@@ -25,8 +25,9 @@ typedef struct {
     const batch_measure *measure;
 } batch_job;
 
-/* A run's measures. `values`: each followed signal at every sample, `pitch` after the one before. */
-void batch_reduce(const batch_job *job, const double *values, int pitch, const bg_event *events,
-                  int count, double *results);
+/* A run's measures. `values`: each followed signal at every sample, `pitch` after the one before.
+ * Whether all are finite, but for times of what never happened. */
+int batch_reduce(const batch_job *job, const double *values, int pitch, const bg_event *events,
+                 int count, double *results);
 
 #endif
