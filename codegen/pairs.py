@@ -5,7 +5,7 @@ Sums and products come with their rounding errors, without any error (Dekker 197
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from decimal import Decimal
+from decimal import Context, Decimal, localcontext
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,9 @@ from codegen.arrays import Array
 
 SPLIT = 134217729.0
 """2^27 + 1: cuts a double into two halves, whose products are exact."""
+
+LONG = 200
+"""Digits in which what doubles leave of decimals is found."""
 
 ROOM = 1 << 16
 """So many products are formed at a time."""
@@ -47,10 +50,11 @@ def pair(values: Array) -> Pair:
 def from_decimals(rows: list[list[Decimal]]) -> Pair:
     """Long decimals, rounded to pairs."""
     hi = np.array([[float(value) for value in row] for row in rows], dtype=float)
-    rest = [
-        [float(value - Decimal(high)) for value, high in zip(row, found, strict=True)]
-        for row, found in zip(rows, hi.tolist(), strict=True)
-    ]
+    with localcontext(Context(prec=LONG)):
+        rest = [
+            [float(value - Decimal(high)) for value, high in zip(row, found, strict=True)]
+            for row, found in zip(rows, hi.tolist(), strict=True)
+        ]
     return Pair(hi, np.array(rest, dtype=float).reshape(hi.shape))
 
 

@@ -16,7 +16,7 @@ from codegen.energy.replay import Run
 from codegen.engine.fallback import Stopped, tell
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
-from codegen.engine.runs import CRuns
+from codegen.engine.runs import CRuns, Status
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
@@ -177,6 +177,10 @@ class Simulator:
             if found.track is not None:
                 return self._recorded(times, signals, found.track, "c")
             stopped = found.stopped
+            if found.status == Status.ENDLESS:
+                return (
+                    stopped  # step control would have no end either; the loop in Python tells why
+                )
         if settings.method not in LOCATED_METHODS:
             return stopped
         return self.located.run(times, states, signals, settings)

@@ -42,6 +42,15 @@ class Tables:
         self._modes[number] = made
         self.record.modes[number] = made
 
+    def sharpen(self, number: int) -> None:
+        """Work out the rates of a mode that nothing is watched in, with 32 digits."""
+        made, rates = self._modes[number], self.model.sharp_rates
+        if rates is not None:
+            size = self.engine.sizes.numbers
+            for field, part in ((made.rate, rates.hi), (made.rest, rates.lo)):
+                view(self.engine, field, size["L"], size["N"])[:] = self._wide(part).T
+            made.sharp = 1
+
     def _magnitudes(self) -> None:
         model, numbers, engine = self.model, self.model.constant, self.engine
         n, m, K = len(model.program.states), len(model.program.inputs), engine.sizes.K
@@ -70,6 +79,11 @@ class Tables:
             at += length
         made.supported = 1
         made.fastest = affine.fastest
+        found = np.array(affine.spectrum)
+        made.rates = len(found)
+        view(self.engine, made.spectrum, -1, 2)[: len(found)] = np.column_stack(
+            [abs(found), -found.real]
+        )
         own = affine.rows(RATE)[:, : model.size]
         scale = scipy.linalg.matrix_balance(own, permute=False, separate=True)[1][0]
         view(self.engine, made.weight)[:] = 1 / scale

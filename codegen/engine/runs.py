@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.engine.build import FLAGS, check_tools
 from codegen.engine.fallback import Stopped
@@ -40,6 +41,8 @@ class Status(IntEnum):
     FULL = 7
     WORK = 8
     UNUSABLE = 9
+    BLUNT = 10
+    ENDLESS = 11
 
 
 MEANINGS = {
@@ -111,7 +114,9 @@ class Prepared:
             status = Status(library.bg_run(*arguments))
             if status == Status.MISSING:
                 self.tables.supply(self.task.where)
-            elif status == Status.FULL and self.capacity < 1 << 20:
+            elif status == Status.BLUNT:
+                self.tables.sharpen(self.task.where)
+            elif status == Status.FULL:
                 self.capacity *= 8
                 self._room()
             else:
@@ -136,7 +141,13 @@ class Prepared:
         return Track(vectors, modes, largest, events, len(vectors))
 
     def _room(self) -> None:
-        self.events = self.engine.ffi.new("bg_event[]", self.capacity)
+        try:
+            self.events = self.engine.ffi.new("bg_event[]", self.capacity)
+        except (MemoryError, OverflowError):
+            raise SimulationError(
+                f"at t = {self.task.time:.9g} the run has had {self.capacity // 8} events: more do not fit "
+                "into memory; run it for a shorter time"
+            ) from None
         self.task.events, self.task.capacity = self.events, self.capacity
 
 

@@ -64,10 +64,16 @@ class AffineMap:
         return [values[part] for part in self.parts]
 
     @cached_property
+    def spectrum(self) -> tuple[complex, ...]:
+        """The rates [1/s] of s by itself."""
+        rate = self.rows(self._rate)
+        found: tuple[complex, ...] = tuple(np.linalg.eigvals(rate[:, : len(rate)]).tolist())
+        return found
+
+    @property
     def fastest(self) -> float:
         """The largest rate [1/s] of s by itself."""
-        rate = self.rows(self._rate)
-        return float(np.abs(np.linalg.eigvals(rate[:, : len(rate)])).max(initial=0.0))
+        return max((abs(rate) for rate in self.spectrum), default=0.0)
 
     def rows(self, part: int) -> Array:
         """The rows of one part."""

@@ -64,9 +64,10 @@ static int run(batch_room *room, const batch_numbers *numbers, const bg_inputs *
     if (status)
         return status;
     batch_sample_last(room->context, room);
-    batch_reduce(room->job, room->values, room->pitch, room->totals, task.events, task.count,
-                 results);
-    return BG_OK;
+    return batch_reduce(room->job, room->values, room->pitch, room->totals, task.events, task.count,
+                        results)
+               ? BG_OK
+               : BG_UNUSABLE;
 }
 
 void batch_run(batch_room *room, const batch_job *job, const batch_runs *runs)

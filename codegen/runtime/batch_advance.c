@@ -20,7 +20,7 @@ static int doubtful(bg_context *c, bg_place *p, batch_leaps *l, double *row)
     double end;
     for (int j = 0; j < BG_Z; j++)
         p->z[j] = l->origin[j] + l->beyond[j];
-    const int status = bg_series(c, p->t + l->done * e->step, e->step, p->z, &end, &p->ports);
+    const int status = bg_series(c, p->t + (double)l->done * e->step, e->step, p->z, &end, &p->ports);
     if (p->ports)
         p->stop = end;
     if (status || p->ports)
@@ -30,7 +30,7 @@ static int doubtful(bg_context *c, bg_place *p, batch_leaps *l, double *row)
     l->done++;
     if (l->done % e->parts)
         return BG_OK;
-    batch_sample(l->room, &l->table, p->z, p->base + l->done / e->parts);
+    batch_sample(l->room, &l->table, p->z, p->base + (int)(l->done / e->parts));
     memcpy(row, p->z, sizeof p->z);
     bg_fill(&c->stretch, row);
     return bg_check_levels(c, end, row);
@@ -39,7 +39,7 @@ static int doubtful(bg_context *c, bg_place *p, batch_leaps *l, double *row)
 /* Leaps over `count` samples of one distance, as far as they reach. */
 static int leap_on(bg_context *c, const batch_table *table, bg_place *p, int count, double *row)
 {
-    const int parts = c->stretch.entry->parts;
+    const long long parts = c->stretch.entry->parts;
     batch_leaps l = {.room = c->caller, .stretch = &c->stretch, .table = *table};
     int status = BG_OK;
     batch_begin_leaps(&l, p->z, count * parts);
@@ -48,7 +48,7 @@ static int leap_on(bg_context *c, const batch_table *table, bg_place *p, int cou
         if (l.done < l.total)
             status = doubtful(c, p, &l, row);
     }
-    const int until = p->at + l.done / parts;
+    const int until = p->at + (int)(l.done / parts);
     p->at = until < p->last ? until : p->last;
     if (status || p->ports)
         return status;

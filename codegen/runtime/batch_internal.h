@@ -32,7 +32,7 @@ typedef struct {
     const bg_stretch *stretch;
     batch_table table;
     double origin[BG_ROW], beyond[BG_Z], step[BATCH_POWERS][BG_Z];
-    int done, total;
+    long long done, total;
 } batch_leaps;
 
 /* batch_mode.c: the engine's records of a model, and of one of its modes; a status. */
@@ -63,7 +63,7 @@ batch_table batch_table_of(const batch_room *room, const bg_context *c);
 void batch_prepare(bg_context *c, const batch_room *room, const batch_table *table, double h);
 
 /* batch_leap.c: from a state on; steps that are certain to be without an event, signals written. */
-void batch_begin_leaps(batch_leaps *l, const double *z, int total);
+void batch_begin_leaps(batch_leaps *l, const double *z, long long total);
 void batch_leap(batch_leaps *l, int at);
 
 /* batch_advance.c: to `stop` or the first event. */

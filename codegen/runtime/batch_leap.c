@@ -66,7 +66,7 @@ static void fill_constants(const batch_leaps *l, double (*add)[STRIDE])
     }
 }
 
-void batch_begin_leaps(batch_leaps *l, const double *z, int total)
+void batch_begin_leaps(batch_leaps *l, const double *z, long long total)
 {
     const bg_entry *const e = l->stretch->entry;
     const double none[BG_Z] = {0};
@@ -155,7 +155,7 @@ static inline int certain(batch_leaps *l, trail *at, const double *slack)
 static inline void write_signals(const batch_leaps *l, int at)
 {
     const batch_room *const room = l->room;
-    const int parts = l->stretch->entry->parts;
+    const long long parts = l->stretch->entry->parts;
     for (int s = 0; s < room->job->signals; s++) {
         double *const to = room->values + s * room->pitch + at;
         batch_lanes *const lane = l->table.lane[BATCH_OWN + s];
@@ -166,7 +166,7 @@ static inline void write_signals(const batch_leaps *l, int at)
             continue;
         }
         reach(lane, constant, l->beyond, found);
-        for (int k = parts - l->done % parts; k <= STRIDE; k += parts)
+        for (long long k = parts - l->done % parts; k <= STRIDE; k += parts)
             if (l->done + k <= l->total)
                 to[(l->done + k) / parts] = found[k - 1];
     }
@@ -191,8 +191,9 @@ void batch_leap(batch_leaps *l, int at)
         for (int j = 0; j < BG_Z; j++)
             found.now[i] += l->table.row[i][j] * l->beyond[j];
     }
-    for (int walked = 0; l->done < l->total; walked += STRIDE) {
-        const int left = l->total - l->done, ahead = left < STRIDE ? left : STRIDE;
+    for (long long walked = 0; l->done < l->total; walked += STRIDE) {
+        const long long left = l->total - l->done;
+        const int ahead = left < STRIDE ? (int)left : STRIDE;
         if (walked % BG_RENEWAL == 0 && BG_K)
             renew(l, slack);
         const int certainly = BG_K ? certain(l, &found, slack) : STRIDE;

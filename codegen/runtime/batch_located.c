@@ -76,9 +76,10 @@ static int run(located_room *room, const double *parameters, const double *state
         status = bg_model_run(room->run, room->model, inputs, &asked);
     if (status != BG_OK)
         return status;
-    batch_reduce(job, room->values, job->samples, room->totals, asked.events, asked.count,
-                 results);
-    return BG_OK;
+    return batch_reduce(job, room->values, job->samples, room->totals, asked.events, asked.count,
+                        results)
+               ? BG_OK
+               : BG_NOT_FINITE;
 }
 
 void located_batch(located_room *room, const batch_job *job, const located_runs *runs)

@@ -60,9 +60,20 @@ static void keep(const batch_job *job, const double *values, const batch_measure
         *found = extreme(job, values, measure->what);
 }
 
-void batch_reduce(const batch_job *job, const double *values, int pitch, const double *totals,
-                  const bg_event *events, int count, double *results)
+/* Whether what a measure has found is finite; what never happened has no time. */
+static int is_finite(const batch_job *job, const batch_measure *measure, const double *found)
 {
+    const int length = measure->what == BATCH_SAMPLES ? job->samples : 1;
+    int all = 1;
+    for (int i = 0; i < length; i++)
+        all &= isfinite(found[i]) || measure->what == BATCH_FIRST;
+    return all;
+}
+
+int batch_reduce(const batch_job *job, const double *values, int pitch, const double *totals,
+                 const bg_event *events, int count, double *results)
+{
+    int all = 1;
     for (int k = 0; k < job->measures; k++) {
         const batch_measure *const measure = job->measure + k;
         if (measure->what >= BATCH_FIRST)
@@ -71,5 +82,7 @@ void batch_reduce(const batch_job *job, const double *values, int pitch, const d
             results[measure->at] = totals[measure->signal];
         else
             keep(job, values + (long)measure->signal * pitch, measure, results);
+        all &= is_finite(job, measure, results + measure->at);
     }
+    return all;
 }

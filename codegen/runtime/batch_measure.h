@@ -32,8 +32,9 @@ typedef struct {
 } batch_job;
 
 /* A run's measures. `values`: each followed signal at every sample, `pitch` after the one before;
- * `totals`: the integrals of the products. */
-void batch_reduce(const batch_job *job, const double *values, int pitch, const double *totals,
-                  const bg_event *events, int count, double *results);
+ * `totals`: the integrals of the products. Whether all are finite, but for times of what never
+ * happened. */
+int batch_reduce(const batch_job *job, const double *values, int pitch, const double *totals,
+                 const bg_event *events, int count, double *results);
 
 #endif

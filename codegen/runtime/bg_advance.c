@@ -72,19 +72,19 @@ int bg_armed(bg_context *c, const double *row)
 }
 
 /* Keeps those of `count` steps in scratch that are samples; `done` were there before. */
-static void keep(const bg_context *c, const bg_place *p, int done, int count)
+static void keep(const bg_context *c, const bg_place *p, long long done, int count)
 {
-    const int parts = c->stretch.entry->parts;
-    for (int k = parts - done % parts; k <= count; k += parts)
+    const long long parts = c->stretch.entry->parts;
+    for (long long k = parts - done % parts; k <= count; k += parts)
         memcpy(c->task->rows[p->base + (done + k) / parts], c->scratch[k], sizeof c->scratch[k]);
 }
 
 /* A step that leaps could not be sure of; its end is written to `next`. */
-static int doubtful(bg_context *c, bg_place *p, int done, double *next)
+static int doubtful(bg_context *c, bg_place *p, long long done, double *next)
 {
     const bg_entry *e = c->stretch.entry;
     double end;
-    const int status = bg_series(c, p->t + done * e->step, e->step, p->z, &end, &p->ports);
+    const int status = bg_series(c, p->t + (double)done * e->step, e->step, p->z, &end, &p->ports);
     if (status || p->ports) {
         p->stop = end;
         return status;
@@ -95,14 +95,15 @@ static int doubtful(bg_context *c, bg_place *p, int done, double *next)
 }
 
 /* `count` samples by leaps of steps from sample `base`; how many steps there were goes to *done. */
-static int steps(bg_context *c, bg_place *p, int count, int *done)
+static int steps(bg_context *c, bg_place *p, int count, long long *done)
 {
-    const int parts = c->stretch.entry->parts, total = count * parts;
+    const long long parts = c->stretch.entry->parts, total = count * parts;
     *done = 0;
     if (parts > 1)
         memcpy(c->scratch[0], c->task->rows[p->base], sizeof c->scratch[0]);
     while (*done < total) {
-        const int left = total - *done, ahead = parts > 1 && left > BG_BLOCK ? BG_BLOCK : left;
+        const long long left = total - *done;
+        const int ahead = parts > 1 && left > BG_BLOCK ? BG_BLOCK : (int)left;
         double(*rows)[BG_ROW] = parts > 1 ? c->scratch : c->task->rows + p->base + *done;
         int sure = bg_leap(&c->stretch, ahead, rows);
         if (parts > 1)
@@ -127,8 +128,8 @@ static int steps(bg_context *c, bg_place *p, int count, int *done)
 /* Leaps over samples of one distance, as far as they reach. */
 static int leap_on(bg_context *c, bg_place *p, int count)
 {
-    int done;
-    const int status = steps(c, p, count, &done), made = done / c->stretch.entry->parts;
+    long long done;
+    const int status = steps(c, p, count, &done), made = (int)(done / c->stretch.entry->parts);
     const int number = bg_number(c->mode), until = p->at + made;
     for (; p->at < until && p->at < p->last; p->at++)
         c->task->modes[p->at] = number;
@@ -180,6 +181,8 @@ int bg_advance(bg_context *c, int *at, double stop)
 {
     bg_place p;
     int status = BG_OK;
+    if (BG_K == 0 && c->stretch.entry->norm * (stop - c->t) > BG_ROUNDED)
+        return bg_free(c, at, stop);
     bg_set_out(c, &p, *at, stop);
     while (!status && !p.ports && (p.t < stop || p.at < p.last)) {
         double h = 0.0;

@@ -125,8 +125,8 @@ static void constants(bg_stretch *stretch, const double *row)
 void bg_divide(bg_context *c, bg_entry *e, double h, double (*E)[BG_Z])
 {
     e->h = h;
-    e->parts = (int)bg_greater(ceil(e->norm * h / BG_LONGEST), 1.0);
-    e->step = h / e->parts;
+    e->parts = (long long)bg_greater(ceil(e->norm * h / BG_LONGEST), 1.0);
+    e->step = h / (double)e->parts;
     bg_exponential(c, e->M, e->norm, e->step, E, e->gather);
 }
 

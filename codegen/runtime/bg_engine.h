@@ -38,11 +38,12 @@ enum {
 
 /* How a run ended. BG_MISSING: the mode `where` is not in the table. BG_UNSUPPORTED: that mode is
  * not affine. BG_NEGATIVE: a friction level falls below zero. BG_UNDECIDED: no mode is consistent.
- * BG_STALLS: no progress. BG_STIFF: too many steps. BG_FULL: more events than fit.
- * BG_WORK: a search had no end. BG_UNUSABLE: numbers that are not finite. */
+ * BG_STALLS: no progress. BG_STIFF: most steps would follow what has decayed. BG_FULL: more events
+ * than fit. BG_WORK: a search had no end. BG_UNUSABLE: numbers that are not finite. BG_BLUNT: the
+ * rates of the mode `where` are wanted with 32 digits. BG_ENDLESS: so many steps have no end. */
 enum bg_status {
     BG_OK, BG_MISSING, BG_UNSUPPORTED, BG_NEGATIVE, BG_UNDECIDED, BG_STALLS, BG_STIFF, BG_FULL,
-    BG_WORK, BG_UNUSABLE
+    BG_WORK, BG_UNUSABLE, BG_BLUNT, BG_ENDLESS
 };
 
 /* One friction mode: affine maps over (s, w, w', 1), by columns. */
@@ -54,6 +55,10 @@ typedef struct {
                                       the slips change; the rates of s */
     double left[BG_L][BG_PORTS];   /* the slips that are to be removed .. */
     double take_away[BG_PORTS][BG_N]; /* .. and what to add to s per unit of each */
+    int rates;                     /* how many of `spectrum` are known */
+    double spectrum[BG_N][2];      /* rates of s by itself: magnitudes, and how fast they decay */
+    int sharp;                     /* whether `rate` and `rest` are known .. */
+    double rate[BG_L][BG_N], rest[BG_L][BG_N]; /* .. the rates of s as pairs, without friction */
 } bg_mode;
 
 /* Magnitudes from which rounding is told, rows of the ports by columns of states and inputs. */

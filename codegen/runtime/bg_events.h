@@ -4,6 +4,8 @@
 
 #include "config.h"
 
+#define BG_AT_REST 1e3 /* an event's own rounding, in what counts as zero */
+
 enum bg_kind { BG_STICK, BG_SLIP, BG_CROSS };
 
 typedef struct {

@@ -4,12 +4,15 @@
 
 #include "bg_engine.h"
 #include "bg_extremes.h"
+#include "bg_pair.h"
 #include "bg_rounds.h"
 
 enum {
     BG_DEGREE = 18,       /* of power series; over |M| h <= 1 what is left out is below rounding */
     BG_RENEWAL = 16,      /* steps for which a bound on fourth derivatives holds */
-    BG_MOST_STEPS = 300000
+    BG_RUNGS = 62,        /* beyond, rounding of pairs would show: 2^62 of them are 1e-13 */
+    BG_KEPT = BG_K > 0 ? 1 : BG_RUNGS,
+    BG_F = BG_Z + BG_W + 1 /* state where nothing is watched */
 };
 
 #if defined(__GNUC__)
@@ -20,11 +23,17 @@ enum {
 
 #define BG_LOOK_AHEAD 1e-4 /* ties are decided this fraction of the shortest time constant later */
 #define BG_LONGEST 2.5     /* |M| h of one step of a leap: bounds need its square below 8 */
+#define BG_ROUNDED 1e4     /* so many steps in double precision leave all digits that count */
+#define BG_MANY 3e5        /* so many steps are always taken where something is watched .. */
+#define BG_LEAST_PART 0.01 /* .. of more, unless a smaller part follows what has not decayed .. */
+#define BG_MOST 1e11       /* .. up to some hours' */
+#define BG_GONE 40.0       /* after so many of its time constants a motion is below rounding */
 
 /* A mode with a generator, z' = M z + .., and its exponentials for one step. By columns. */
 typedef struct {
     const bg_mode *mode;
-    int number, parts;
+    int number;
+    long long parts;
     unsigned caps;                      /* a bit for each trigger that is only a cap */
     bg_chains chains;
     double norm;                        /* of M, in a sum weighted by `weight` */
@@ -44,6 +53,15 @@ typedef struct {
     BG_ALIGNED double origin[BG_ROW];
     int armed[BG_TRIGGERS], leaping;
 } bg_stretch;
+
+/* exp(M h) for h of 1, 2, 4, .. units, of a mode and a generator; by columns. */
+typedef struct {
+    const bg_mode *mode;
+    int known, rungs;
+    bg_chains chains;
+    double unit, h;                     /* of `leap`, negative if there is none */
+    bg_pair M[BG_F][BG_F], leap[BG_F][BG_F], rung[BG_KEPT][BG_F][BG_F];
+} bg_ladder;
 
 /* The largest magnitudes seen, and the shortest time constant. */
 typedef struct {
@@ -85,6 +103,7 @@ struct bg_context {
     double scratch[BG_BLOCK + 1][BG_ROW];
     int used[BG_ENTRIES];               /* when each was used last; 0 if it is empty */
     bg_entry entries[BG_ENTRIES];
+    bg_ladder ladder;
 };
 
 /* bg_inputs.c: the slots at t in a segment; and w and its rate from them. */
@@ -106,6 +125,15 @@ int bg_decide(bg_context *c, double time);
 /* bg_system.c: an entry of the cache, without and with exponentials, and stretches. */
 int bg_begin(bg_context *c, double stop);
 void bg_leaps(bg_context *c, bg_stretch *stretch, double h, const double *row);
+
+/* bg_ladder.c: the ladder of an entry; z after any time, and after one for which an exponential of
+ * its own is kept. */
+void bg_build(bg_ladder *l, const bg_entry *e);
+void bg_climb(bg_ladder *l, double length, bg_pair *z);
+void bg_leap_by(bg_ladder *l, double h, bg_pair *z);
+
+/* bg_free.c: to `stop`, where nothing is watched. */
+int bg_free(bg_context *c, int *at, double stop);
 
 /* bg_bounds.c: e for steps that divide h, whose exponential goes to E; and bounds on its triggers'
  * fourth derivatives. */

@@ -17,6 +17,7 @@ void bg_forget(bg_context *c)
 {
     c->clock = 0;
     memset(c->used, 0, sizeof c->used);
+    c->ladder.known = 0;
 }
 
 /* Removes the slip that is left at sticking ports: no energy but the slip's own. */
@@ -47,11 +48,11 @@ static int settle(bg_context *c, int started)
     signed char before[BG_PORTS], touched = 0;
     int status = BG_OK;
     memcpy(before, c->mode, sizeof before);
-    for (int i = 0; i < BG_K; i++)
-        touched |= c->touched[i];
     status = bg_find(c, bg_number(c->mode), &mode);
     if (status || BG_K == 0)
         return status;
+    for (int i = 0; i < BG_K; i++)
+        touched |= c->touched[i];
     const double fastest = bg_greater(mode->fastest, c->inputs->fastest[c->segment]);
     status = bg_decide(c, 1.0 / bg_greater(fastest, 100.0 / c->span));
     if (status == BG_OK && started) {
@@ -83,13 +84,29 @@ static void begin(bg_context *c, const bg_model *model, const bg_inputs *inputs,
     task->where = -1;
 }
 
-/* Whether the run is not over: at its end a step or an event is still decided. */
-static int goes_on(const bg_context *c, double end)
+/* At the end of a run: whether there is something to decide. The search may have missed an event
+ * there by a rounding: what slips and is at rest, or sticks and is at its limit, counts as one. */
+static int come_to_end(bg_context *c, int *undecided)
 {
-    int touched = c->t < end;
-    for (int i = 0; i < BG_K; i++)
-        touched |= c->touched[i];
-    return touched || (c->segment > 0 && c->inputs->breaks[c->segment - 1] == c->t);
+    const bg_mode *mode;
+    bg_shot shot;
+    bg_scales size;
+    *undecided = c->segment > 0 && c->inputs->breaks[c->segment - 1] == c->t;
+    int status = bg_find(c, bg_number(c->mode), &mode);
+    if (status == BG_OK && BG_K > 0)
+        status = bg_look(c, c->t, c->s, mode, shot);
+    if (status || BG_K == 0)
+        return status;
+    bg_scale(c, shot, c->t, &size);
+    for (int i = 0; i < BG_K; i++) {
+        const double slip = fabs(shot[BG_AT_SLIP + i]), effort = fabs(shot[BG_AT_EFFORT + i]);
+        if (c->mode[i] == 0)
+            c->touched[i] |= shot[BG_AT_CAP + i] - effort <= BG_AT_REST * size.effort[i];
+        else if (!c->model->coupled[i])
+            c->touched[i] |= slip <= BG_AT_REST * size.slip[i];
+        *undecided |= c->touched[i];
+    }
+    return BG_OK;
 }
 
 static int run(bg_context *c)
@@ -99,8 +116,11 @@ static int run(bg_context *c)
     int status = BG_OK, at = 0;
     for (double turns = 0.0; !status && turns < most; turns += 1.0) {
         c->segment = bg_segment(c->inputs, c->t);
-        if (turns > 0 && !goes_on(c, end))
-            return BG_OK;
+        int undecided = 1;
+        if (turns > 0 && c->t >= end)
+            status = come_to_end(c, &undecided);
+        if (status || !undecided)
+            return status;
         status = settle(c, turns > 0);
         if (status || c->t >= end)
             return status;

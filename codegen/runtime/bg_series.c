@@ -141,10 +141,8 @@ int bg_series(bg_context *c, double t, double length, double *z, double *end, un
     *end = t + length;
     if (length <= 0.0)
         return BG_OK;
-    if (!(parts <= BG_MOST_STEPS))
-        return BG_STIFF;
     const double step = length / parts;
-    for (int part = 0; part < (int)parts; part++) {
+    for (double part = 0.0; part < parts; part += 1.0) {
         const double from = t + part * step;
         double tau;
         expand(c, z, step);

@@ -144,6 +144,32 @@ static void constants(const bg_context *c, bg_stretch *stretch)
     triggers(c->mode, sum, stretch->level);
 }
 
+/* How long a motion has to be followed: until its end, or until it has decayed. */
+static double lasting(double rate, double decay, double span)
+{
+    return rate * (decay * span > BG_GONE ? BG_GONE / decay : span);
+}
+
+/* Whether a stretch takes a bearable number of steps, or none; a status. */
+static int bearable(bg_context *c, const bg_entry *e, double span)
+{
+    const double steps = e->norm * span;
+    const double few = BG_K || c->advance != bg_advance ? BG_MANY : BG_ROUNDED;
+    double most = 0.0;
+    if (!(steps > few))
+        return isfinite(steps) ? BG_OK : BG_ENDLESS;
+    if (BG_K == 0)
+        return !e->mode->sharp ? BG_BLUNT : steps < ldexp(1.0, BG_RUNGS - 3) ? BG_OK : BG_ENDLESS;
+    for (int i = 0; i < e->mode->rates; i++)
+        most = bg_greater(most, lasting(e->mode->spectrum[i][0], e->mode->spectrum[i][1], span));
+    for (int i = 0; i < e->chains.count; i++) {
+        const double *rate = e->chains.rate[i];
+        most = bg_greater(most, lasting(hypot(rate[0], rate[1]), -rate[0], span));
+    }
+    const double work = bg_lesser(steps, most / BG_LEAST_PART);
+    return work > BG_MOST ? BG_ENDLESS : work < steps ? BG_STIFF : BG_OK;
+}
+
 /* A stretch from the context's instant on, in its mode. */
 int bg_begin(bg_context *c, double stop)
 {
@@ -153,8 +179,9 @@ int bg_begin(bg_context *c, double stop)
     int status = entry(c, &stretch->entry);
     if (status)
         return status;
-    if (!(stretch->entry->norm * (stop - c->t) <= BG_MOST_STEPS))
-        return BG_STIFF;
+    status = bearable(c, stretch->entry, stop - c->t);
+    if (status)
+        return status;
     constants(c, stretch);
     stretch->t = c->t;
     stretch->blind = BG_LOOK_AHEAD * c->peaks.time;

@@ -45,8 +45,22 @@ static int touched(const bg_located *c)
     return any;
 }
 
+/* At the end of a run the search may have missed an event by a rounding: slips that are at rest. */
+static int come_to_end(bg_located *c)
+{
+    bg_rounding size;
+    const int status = bg_located_look(c, c->t, c->s, c->mode);
+    if (status != BG_OK)
+        return status;
+    bg_located_rounding(c, c->t, &size);
+    for (int i = 0; i < K; i++)
+        if (c->mode[i] && !bg_beside[i])
+            c->touched[i] |= fabs(c->shot.y[bg_friction_readings[i]]) <= BG_AT_REST * size.slip[i];
+    return BG_OK;
+}
+
 /* Takes the present instant into account, decides the mode there and removes slips that stick. */
-static int settle(bg_located *c, int started)
+static int settle(bg_located *c, int started, int last)
 {
     signed char before[BG_ROOM(K)];
     double fastest;
@@ -58,6 +72,9 @@ static int settle(bg_located *c, int started)
         return status;
     memcpy(before, c->mode, sizeof before);
     c->moment = 1.0 / fmax(fastest, 100.0 / c->span);
+    status = last ? come_to_end(c) : BG_OK;
+    if (status != BG_OK)
+        return status;
     status = bg_located_decide(c);
     if (status != BG_OK || !started)
         return status;
@@ -180,10 +197,7 @@ static int run(bg_located *c)
     for (;;) {
         const bg_signals *const signals = c->signals;
         c->segment = bg_signals_segment(signals, c->t);
-        const int broken = c->segment > 0 && signals->breaks[c->segment - 1] == c->t;
-        if (started && !(c->t < end) && !touched(c) && !broken)
-            return BG_OK;
-        status = settle(c, started);
+        status = settle(c, started, started && c->t >= end);
         started = 1;
         memset(c->touched, 0, sizeof c->touched);
         if (status != BG_OK || c->t >= end)

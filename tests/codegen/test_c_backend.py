@@ -12,6 +12,7 @@ import differentials
 from codegen import (
     BackendWarning,
     Constant,
+    Family,
     Lag,
     Ramp,
     Result,
@@ -19,7 +20,9 @@ from codegen import (
     Simulator,
     Sine,
     Step,
+    event_count,
     simulator,
+    sweep,
 )
 from codegen.engine.build import FLAGS
 from codegen.engine.runs import CRuns, Outcome, Status, not_affine
@@ -164,8 +167,49 @@ def test_redundant_ports_are_left_to_located_runs() -> None:
 
 
 def test_too_many_steps_have_a_status() -> None:
-    ready = simulator(bg.derive(oscillator()), {"m": 1e-8, "k": 1e8, "F_c": 1.0})
+    """2 pi 1e15 turns to follow have no end; what a stiff damper joins has soon decayed."""
+    ready = simulator(bg.derive(oscillator()), {"m": 1e-16, "k": 4e14, "F_c": 1.0})
+    assert _outcome(ready, [0, 1], {"v": 1.0}).status == Status.ENDLESS
+    damped = bg.derive(oscillator(bg.R("damper", "b")))
+    ready = simulator(damped, {"m": 1.0, "k": 1.0, "F_c": 0.01, "b": 1e9})
     assert _outcome(ready, [0, 1], {"v": 1.0}).status == Status.STIFF
+
+
+def test_a_run_without_end_is_refused_with_its_steps() -> None:
+    fast = simulator(bg.derive(oscillator()), {"m": 1e-16, "k": 4e14, "F_c": 1.0}, backend="c")
+    with pytest.raises(bg.SimulationError, match=r"to look for events until 1 s takes \S+ steps"):
+        fast.run([0, 1], {"v": 1.0})
+
+
+def test_many_events_of_a_long_run() -> None:
+    """A block pushed to and fro at 100 Hz: two events in every period, for 500 s."""
+    ready = simulator(bg.derive(block()), {"m": 1.0, "F_c": 1.0})
+    outcome = _outcome(ready, [0.0, 500.0], None, {"P": Sine(2.0, 100.0)})
+    assert outcome.track is not None
+    assert len(outcome.track.events) == 100_000
+    at = np.array([event.time for event in outcome.track.events])
+    period = np.diff(at[::2])
+    assert period[100:] == pytest.approx(0.01, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", ["exact", "DOP853", "Radau"])
+def test_an_event_at_the_last_instant_is_one(method: str) -> None:
+    """v = 1 - t/2 comes to rest at 2 s, where the run ends; a force grows to the breakaway at 1 s."""
+    numbers, counts = {"m": 1.0, "F_c": 1.0}, [event_count("ground", k) for k in ("stick", "slip")]
+    family = Family(bg.derive(block()), numbers, None, "c")
+    for end, start, push, kind in (
+        (2.0, {"v": 1.0}, Constant(0.5), "stick"),
+        (1.0, {}, Ramp(0.0, 1.0), "slip"),
+    ):
+        times = np.linspace(0, end, 21)
+        run = family.simulator().run(times, start, {"P": push}, method=method)
+        assert run.backend == "c"
+        assert [(e.kind, round(e.time, 9)) for e in run.events] == [(kind, end)]
+        swept = sweep(
+            family, {"m": [1.0]}, times, dict(zip(("stick", "slip"), counts, strict=True)), start,
+            {"P": push}, method=method, workers=0, progress=False,
+        )  # fmt: skip
+        assert (swept[kind][0], swept["stick"][0] + swept["slip"][0]) == (1, 1)
 
 
 def test_room_for_events_grows() -> None:

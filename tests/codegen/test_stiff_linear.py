@@ -11,7 +11,7 @@ from soak.families import seeds
 import bondgraph as bg
 from codegen import simulator
 
-BACKENDS = ("numpy",)
+BACKENDS = ("numpy", "c")
 SAMPLES = 101
 LOOKED_AT = (1, 10, 100)
 
@@ -21,7 +21,7 @@ def _errors(model: Linear, found: "dict[str, np.ndarray]", times: np.ndarray) ->
     and units in the last place of what hardly changes."""
     right = np.array([list(model.start.values()), *(model.at(float(times[k])) for k in LOOKED_AT)])
     allowed = max(1e-9, 1e-15 * model.turning * model.span) * np.ptp(right, axis=0)
-    allowed += 4 * np.spacing(np.abs(right).max(axis=0))
+    allowed += 16 * np.spacing(np.abs(right).max(axis=0))
     got = np.array([found[name][list(LOOKED_AT)] for name in model.states]).T
     return float((np.abs(got - right[1:]) / np.maximum(allowed, 1e-300)).max())
 
