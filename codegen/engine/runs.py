@@ -54,6 +54,7 @@ MEANINGS = {
     Status.FULL: "more events than there is room for",
     Status.WORK: "the search for an event has no end",
     Status.UNUSABLE: "a number is not finite",
+    Status.ENDLESS: "it would take too many steps to look for events in",
 }
 """What each status says; `Status.OK` and `Status.MISSING` end no run."""
 
