@@ -6,6 +6,7 @@ on; `make soak` sets these. A fixed set of cases that takes too long for every r
 which stands for the whole set: `whole("platforms")` says whether it is asked for.
 """
 
+import math
 import os
 from dataclasses import dataclass
 
@@ -33,7 +34,7 @@ class Family:
     @property
     def seeds(self) -> range:
         """The slice, or what the environment says instead: a count, or ``first:stop``."""
-        part = round(self.slice * float(os.environ.get("BONDGRAPH_SLICE", "1")))
+        part = math.ceil(self.slice * float(os.environ.get("BONDGRAPH_SLICE", "1")))
         first, _, stop = os.environ.get(self.variable, str(part)).rpartition(":")
         return range(int(first), int(stop)) if first else range(self.first, self.first + int(stop))
 
