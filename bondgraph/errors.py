@@ -1,4 +1,7 @@
-"""What can be refused, one class per stage; every message names the place, the rule and the way out."""
+"""What can be refused, one class per stage; every message names the place, the rule and the way out.
+
+What is done all the same, but should be looked at, is a `ModelWarning`.
+"""
 
 
 class BondGraphError(ValueError):
@@ -55,3 +58,7 @@ class StoreError(BondGraphError):
 
 class SimulationError(BondGraphError):
     """A run cannot go on; the message gives the time and the numbers."""
+
+
+class ModelWarning(UserWarning):
+    """Base of this toolkit's warnings: what is run all the same, but should be looked at."""

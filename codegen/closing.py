@@ -144,7 +144,8 @@ def _sort(
     law_states: set[sp.Symbol],
     parameters: set[str],
 ) -> Sorted:
-    held = {given for given, closed in laws.items() if closed == ExpressionLaw(given)}
+    held = {name for name, law in laws.items() if law == ExpressionLaw(name)}
+    held = {name for name in held if name.name in parameters}
     signals = (set(equations.signals) | law_states) - (set(equations.inputs) - set(laws)) - held
     friction = tuple(name for name in laws if isinstance(laws[name], DryFriction))
     known = tuple(name for name in laws if not depends_on_signals(laws[name], signals))

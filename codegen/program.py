@@ -9,6 +9,7 @@ from bondgraph import DryFriction, ParameterError, StateEquations, StructureErro
 from bondgraph.expressions import TIME
 from bondgraph.laws import ExpressionLaw
 from codegen.closing import Closing, close_ports
+from codegen.gains import check_gains
 from codegen.model.affine import is_affine
 from codegen.records import Block, FrictionPort, Group, Pattern, Program, block
 from codegen.sections import coefficients, friction, group, known_rates, uses
@@ -46,7 +47,7 @@ def lower(
     rubbing, values = friction(closing)
     readings = tuple(equations.readings)
     external_rates = _rate_names(closing.external, taken)
-    return Program(
+    program = Program(
         parameters=tuple(sorted((n for n in taken if n.name in given), key=str)),
         states=equations.states,
         law_states=tuple(closing.law_states),
@@ -71,6 +72,8 @@ def lower(
         varying=bool(equations.varying),
         affine=_is_affine(closing, values, given),
     )
+    check_gains(program)
+    return program
 
 
 def _check_varying(closing: Closing) -> None:

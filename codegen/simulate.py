@@ -21,6 +21,7 @@ from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
 from codegen.model.closed import ClosedModel
+from codegen.model.energies import warn_of_energies
 from codegen.model.modes import LOOK_AHEAD, Peaks, decide
 from codegen.program import Program, lower
 from codegen.runs.arguments import (
@@ -221,12 +222,16 @@ def simulator(
     an input. ``backend``: "numpy", or "c", whose runs are generated C and much faster; it needs a C
     compiler and the extra ``c``.
 
+    Warns (`ModelWarning`) of storages whose energy is not positive at these numbers, by name.
+
     Raises `ParameterError`, `StructureError` or `DependentSourceError` for what cannot be used,
     `SignalError` for what the backend cannot run, `MissingExtraError` for what it needs.
     """
     if backend not in BACKENDS:
         raise SignalError(f"unknown backend {backend!r}; there is {', '.join(BACKENDS)}")
-    return with_engine(guarded_simulator(equations, parameters, laws, ()), backend)
+    ready = guarded_simulator(equations, parameters, laws, ())
+    warn_of_energies(equations, ready.closed.parameters)
+    return with_engine(ready, backend)
 
 
 def with_engine(ready: Simulator, backend: str, library: LocatedLibrary | None = None) -> Simulator:

@@ -34,9 +34,10 @@ ORDER = {
     "codegen": [
         "arrays", "pairs", "roots", *_room("inputs", "pieces generators polynomials signal signals sampled "
                                             "tables"),
-        "model.affine", "closing", "records", "sections", "program", "identifiers", "printing", "units",
-        *_room("model", "numpy_backend numbers sharp snapshot sharing friction instant loops rubbing closed "
-               "stability sizes modes guards places"),
+        "model.affine", "closing", "records", "gains", "sections", "program", "identifiers", "printing",
+        "units",
+        *_room("model", "numpy_backend numbers energies sharp snapshot sharing friction instant loops "
+               "rubbing closed stability sizes modes guards places"),
         *_room("energy", "stored quadrature accounts tally"),
         *_room("runs", "events sundials progress legs watched exact ladder free hybrid arguments steps "
                "impulses observer tables summary"),

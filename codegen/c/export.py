@@ -15,6 +15,7 @@ from codegen.c.structure import structures
 from codegen.c.tables import config, group_tables, name_tables, program_tables, structure_table
 from codegen.c.text import comment
 from codegen.model.closed import ClosedModel
+from codegen.model.energies import warn_of_energies
 from codegen.program import Block, Program, lower
 from codegen.runs.arguments import initial_values, signals_for
 from codegen.runs.steps import step_at_start
@@ -107,6 +108,7 @@ def to_c(
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
     program = lower(equations, laws, parameters)
     closed = ClosedModel(program, equations, parameters)
+    warn_of_energies(equations, closed.parameters)
     defaults = [float(closed.parameters[symbol.name]) for symbol in program.parameters]
     states = [symbol.name for symbol in (*program.states, *program.law_states)]
     external = [symbol.name for symbol in program.external]

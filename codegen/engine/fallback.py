@@ -4,8 +4,10 @@ import warnings
 from collections import Counter
 from dataclasses import dataclass
 
+from bondgraph import ModelWarning
 
-class BackendWarning(UserWarning):
+
+class BackendWarning(ModelWarning):
     """A run that was asked of compiled C is done by numpy, which is slower; the message tells why."""
 
 

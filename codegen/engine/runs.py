@@ -6,7 +6,6 @@ from enum import IntEnum
 from typing import Any
 
 import numpy as np
-import sympy as sp
 
 from bondgraph import SimulationError
 from codegen.arrays import Array
@@ -15,10 +14,11 @@ from codegen.engine.fallback import Stopped
 from codegen.engine.inputs import Packed, Segments, segments
 from codegen.engine.modes import Tables, mode_of
 from codegen.engine.sizes import MOST_PORTS, Engine, aligned, engine, sizes
+from codegen.gains import written_out
 from codegen.inputs.signal import Signal
 from codegen.model.affine import is_affine
 from codegen.model.closed import ClosedModel
-from codegen.program import Block, Program
+from codegen.program import Program
 from codegen.runs.events import Event
 from codegen.runs.legs import Track
 
@@ -208,22 +208,14 @@ def not_affine(program: Program) -> str | None:
     if looped is not None:
         return f"the laws at {', '.join(map(repr, looped.ports))} have to be solved for"
     ports = [port for group in groups for port in group.ports]
-    laws = [law for group in groups for law in _expressions(group.values)]
+    laws = [law for group in groups for law in written_out(group.values)]
     ports += [port.name for port in program.friction for _ in range(4)]
-    laws += _expressions(program.friction_values)
+    laws += written_out(program.friction_values)
     parameters = {name.name for name in program.parameters}
     for port, law in zip(ports, laws, strict=True):
         if not is_affine([law], parameters):
             return f"the law at {port!r} is {law}"
     return "a law of this one is not"
-
-
-def _expressions(block: Block) -> list[sp.Expr]:
-    """A block's results, written out."""
-    results = list(block.results)
-    for name, value in reversed(block.assignments):
-        results = [result.xreplace({name: value}) for result in results]
-    return results
 
 
 def grid_of(times: Array) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 
 from bondgraph import SimulationError, StateEquations
 from codegen.arrays import Array
+from codegen.gains import check_gains
 from codegen.inputs.pieces import Piece
 from codegen.model.affine import AffineMap, check_finite, probed
 from codegen.model.friction import Hold
@@ -36,6 +37,7 @@ class ClosedModel:
     ) -> None:
         exact = exact_parameters(parameters)
         self.program, self.equations, self.parameters = program, equations, exact
+        check_gains(program, exact)
         self.friction_inputs = [port.input for port in program.friction]
         self.friction_readings = [port.reading for port in program.friction]
         binding = Binding(program, exact)

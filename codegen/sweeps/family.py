@@ -14,6 +14,7 @@ from bondgraph import ParameterError, SignalError, StateEquations
 from bondgraph.closures import merged_laws
 from bondgraph.expressions import normal
 from codegen.engine.located import LocatedLibrary
+from codegen.model.energies import warn_of_energies
 from codegen.model.numbers import exact_parameters
 from codegen.program import Program, lower
 from codegen.simulate import BACKENDS, Simulator, bound, with_engine
@@ -59,7 +60,10 @@ class Family:
     @cached_property
     def program(self) -> Program:
         """The equations lowered, for parameters of these names."""
-        return lower(self.equations, self.laws, self.parameters)
+        program = lower(self.equations, self.laws, self.parameters)
+        # Once for the family's own numbers, not for every run's.
+        warn_of_energies(self.equations, exact_parameters(self.parameters))
+        return program
 
     @property
     def states(self) -> tuple[str, ...]:

@@ -1,0 +1,60 @@
+"""Storages whose energy is not positive: they are run, with a warning that names them."""
+
+import warnings
+from collections.abc import Hashable, Iterator, Mapping
+
+import numpy as np
+import sympy as sp
+
+from bondgraph import ModelWarning, StateEquations
+from bondgraph.elements import STORAGES, Element
+from codegen.model.numbers import at_parameters
+
+ROUNDING = 1e-12
+"""An eigenvalue of a field above minus this fraction of its largest entry is zero."""
+
+
+def warn_of_energies(
+    equations: StateEquations, parameters: Mapping[str, sp.Rational], level: int = 3
+) -> None:
+    """Warn of linear storages whose energy falls below zero: masses, stiffnesses, matrices of fields.
+
+    Values that change in time are left out. ``level``: how far up the line stands that is told.
+    """
+    named = [repr(name) for name in _negative(equations, parameters)]
+    if named:
+        warnings.warn(
+            f"the energy stored in {', '.join(named)} is not positive at these parameters: a negative "
+            "inertia or stiffness, or a field whose matrix is not positive definite, makes most models "
+            "unstable; check its value",
+            ModelWarning,
+            stacklevel=level,
+        )
+
+
+def _negative(
+    equations: StateEquations, parameters: Mapping[str, sp.Rational]
+) -> Iterator[Hashable]:
+    """The storages in question, a field by its own name."""
+    fields: dict[Hashable, dict[Hashable, Element]] = {}
+    for name, element in equations.elements.items():
+        if element.kind not in STORAGES or element.value is None:
+            continue
+        if element.row:
+            fields.setdefault(element.owner, {})[element.name] = element
+        elif (value := _number(element.value, parameters)) is not None and value < 0:
+            yield name
+    for owner, ports in fields.items():
+        entries = [[_number(e, parameters) for _, e in port.row] for port in ports.values()]
+        known = [[entry for entry in row if entry is not None] for row in entries]
+        if all(len(row) == len(ports) for row in known):
+            matrix = np.array(known)
+            least = np.linalg.eigvalsh((matrix + matrix.T) / 2).min()
+            if least < -ROUNDING * np.abs(matrix).max():
+                yield owner
+
+
+def _number(value: sp.Expr, parameters: Mapping[str, sp.Rational]) -> float | None:
+    """A value at the parameters, None where it is none."""
+    found = sp.N(at_parameters(value, parameters))
+    return float(found) if found.is_real else None
