@@ -3,6 +3,7 @@
 import builtins
 import keyword
 import math
+import sys
 import unicodedata
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
@@ -28,6 +29,12 @@ PYTHON_WORDS = frozenset(
 """Keywords, builtins, and the names that generated Python uses."""
 
 RESERVED: Mapping[str, frozenset[str]] = MappingProxyType({"c": C_WORDS, "python": PYTHON_WORDS})
+
+
+_MODULES = frozenset(
+    one.lower() for one in (*PYTHON_WORDS, *sys.stdlib_module_names, "numpy", "simulate")
+)
+"""What no exported module may be called, whatever the case."""
 
 
 def identifiers(
@@ -56,6 +63,22 @@ def identifiers(
             result[name] = text
             used.add(text)
     return MappingProxyType({name: result[name] for name in wanted})
+
+
+def module_name(name: str) -> str:
+    """The name of a Python module and its file: the name itself unless something else is called so.
+
+    A module beside a script hides every other of its name, also the ones that numpy imports, and where
+    files differ by more than case.
+
+    >>> module_name("oscillator"), module_name("numpy"), module_name("Class"), module_name("１st gear")
+    ('oscillator', 'numpy_', 'Class_', 'x1st_gear')
+    """
+    plain = name.isascii() and name.isidentifier()
+    text = name if plain else _ascii(name)
+    while text.lower() in _MODULES:
+        text += "_"
+    return text
 
 
 def _plain(name: str) -> bool:

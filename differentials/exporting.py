@@ -6,6 +6,7 @@ from pathlib import Path
 import bondgraph as bg
 import codegen
 from bondgraph.writing import made_folder, write_all
+from codegen.identifiers import module_name
 from differentials.scenarios import Prepared, Scenario, prepared
 from differentials.scripts import script
 
@@ -37,7 +38,8 @@ def write(
 ) -> list[Path]:
     """Write what a run needs into a folder; the files written.
 
-    ``target``: "python", a module and a script that runs it; "c", a folder of C99 whose parameters and main
+    ``target``: "python", a module and a script that runs it, called like the model unless Python knows
+    something else by that name; "c", a folder of C99 whose parameters and main
     program are the run's; "fmu2" or "fmu3", a unit with its inputs inside, for ``platforms`` as of
     `codegen.write_fmu`.
 
@@ -59,8 +61,9 @@ def write(
         )
         return _written({out / name / file: text for file, text in texts.items()})
     module = codegen.to_python(*arguments, name, initial=ready.initial, inputs=ready.inputs)
-    run = script(name, ready)
-    return _written({out / f"{name}.py": module, out / f"run_{name}.py": run})
+    own = module_name(name)
+    run = script(own, ready, codegen.Family(*arguments).inputs)
+    return _written({out / f"{own}.py": module, out / f"run_{own}.py": run})
 
 
 def _check(target: str) -> None:

@@ -1,5 +1,8 @@
 """A script that runs an exported Python module as a run was prepared."""
 
+import json
+from collections.abc import Sequence
+
 from codegen import Constant, Lag, Signal, Step
 from codegen.inputs.signals import as_signal
 from differentials.scenarios import Prepared
@@ -30,12 +33,18 @@ _HELPERS = {"pieces": (("bisect", "cmath"), _PIECES), "lagged": (("math",), _LAG
 """What a signal's text may call, with the modules that it needs."""
 
 
-def script(name: str, ready: Prepared) -> str:
-    """The text of a script that runs the module ``name`` and writes every signal as a table."""
-    inputs = "".join(
-        f'    "{one}": {_signal(as_signal(signal, one))},\n' for one, signal in ready.inputs.items()
-    )
-    initial = "".join(f'    "{one}": {float(v)!r},\n' for one, v in ready.initial.items())
+_UNKNOWN = "  # nothing was given: a constant, or a function of time, to change"
+
+
+def script(name: str, ready: Prepared, names: Sequence[str]) -> str:
+    """The text of a script that runs the module ``name`` and writes every signal as a table.
+
+    ``names``: the model's inputs; those that the run does not give are constants of zero, to be changed.
+    """
+    given = {one: _signal(as_signal(signal, one)) + "," for one, signal in ready.inputs.items()}
+    given |= {one: f"0.0,{_UNKNOWN}" for one in names if one not in given}
+    inputs = "".join(f"    {_text(one)}: {value}\n" for one, value in given.items())
+    initial = "".join(f"    {_text(one)}: {float(v)!r},\n" for one, v in ready.initial.items())
     used = [helper for word, helper in _HELPERS.items() if f": {word}(" in inputs]
     imports = "".join(f"import {one}\n" for modules, _ in used for one in modules)
     imports += "\n" if imports else ""
@@ -59,6 +68,11 @@ header = ",".join(result)
 np.savetxt("{name}.csv", table, delimiter=",", header=header, comments="")
 print("wrote {name}.csv")
 '''
+
+
+def _text(name: str) -> str:
+    """A name as a text of the script."""
+    return json.dumps(name, ensure_ascii=False)
 
 
 def _signal(signal: Signal) -> str:

@@ -1,5 +1,6 @@
 """``export``: a model outside the toolkit, as Python, C or a functional mock-up unit."""
 
+import shlex
 from pathlib import Path
 
 import click
@@ -14,10 +15,10 @@ from differentials.cli.subject import Subject
 from differentials.exporting import TARGETS, write
 
 NEXT = {
-    "python": "cd {out} && python run_{name}.py",
-    "c": "cc -std=c99 -O2 {out}/{name}/*.c -lm -o run_{name}",
-    "fmu2": "load {out}/{name}.fmu into any tool that knows FMI 2.0",
-    "fmu3": "load {out}/{name}.fmu into any tool that knows FMI 3.0",
+    "python": "cd {folder} && python {file}",
+    "c": "cc -std=c99 -O2 {folder}/*.c -lm -o run_{name}",
+    "fmu2": "load {path} into any tool that knows FMI 2.0",
+    "fmu3": "load {path} into any tool that knows FMI 3.0",
 }
 """What to do with an export."""
 
@@ -62,4 +63,7 @@ def export(
         return
     for path in paths:
         click.echo(path)
-    click.echo(f"\nNext: {NEXT[target].format(name=subject.name, out=out)}")
+    last = paths[-1]
+    told = {"folder": last.parent, "file": last.name, "path": last, "name": subject.name}
+    quoted = {key: shlex.quote(str(value)) for key, value in told.items()}
+    click.echo(f"\nNext: {NEXT[target].format(**quoted)}")

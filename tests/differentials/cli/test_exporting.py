@@ -1,5 +1,6 @@
 """Exports of catalog and file that run as the toolkit runs them."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -74,3 +75,61 @@ def test_switches_need_a_mode(call: Call) -> None:
     done = call("export", "examples/rectifier.json", "--to", "c")
     assert done.exit_code == 2
     assert "add --on d" in done.stderr
+
+
+HARD = (
+    "class",
+    "numpy",
+    "Numpy",
+    "math",
+    "simulate",
+    "random",
+    "print",
+    "１ﬁ τ",
+    "a b",
+    "2nd",
+    "_",
+)
+"""Names that Python knows, that hide what numpy imports, or that are no identifiers."""
+
+
+def _copied(name: str, folder: Path) -> str:
+    path = folder / f"{name}.json"
+    shutil.copy("examples/oscillator.json", path)
+    return str(path)
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_the_next_line_runs_under_any_name(name: str, call: Call, tmp_path: Path) -> None:
+    """Without an input on the command line, which is then zero in the script."""
+    path = _copied(name, tmp_path)
+    out = tmp_path / "the folder"
+    done = call(
+        "export", path, *OSCILLATOR[2:], "--initial", "v=1", "--to", "python", "--out", str(out)
+    )
+    assert done.exit_code == 0, done.output
+    following = done.stdout.rpartition("Next: ")[2].strip()
+    text = next(out.glob("run_*.py")).read_text(encoding="utf-8")
+    assert (
+        '    "F": 0.0,  # nothing was given: a constant, or a function of time, to change' in text
+    )
+    folder = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    ran = subprocess.run(
+        following, shell=True, cwd=tmp_path, env={**os.environ, "PATH": folder},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert ran.returncode == 0, ran.stderr
+    (table,) = out.glob("*.csv")
+    found = np.genfromtxt(table, delimiter=",", names=True)
+    assert found["v"] == pytest.approx(np.cos(20 * found["t"]), abs=1e-6)
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+@pytest.mark.parametrize("name", ["class", "a b"])
+def test_the_next_line_of_c_compiles_under_any_name(name: str, call: Call, tmp_path: Path) -> None:
+    path = _copied(name, tmp_path)
+    done = call("export", path, *OSCILLATOR[2:], "--to", "c", "--out", str(tmp_path / "the folder"))
+    assert done.exit_code == 0, done.output
+    following = done.stdout.rpartition("Next: ")[2].strip()
+    subprocess.run(following.replace("-O2", "-O0"), shell=True, cwd=tmp_path, check=True)
+    assert next(tmp_path.glob("run_*")).is_file()
