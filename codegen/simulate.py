@@ -179,9 +179,8 @@ class Simulator:
                 return self._recorded(times, signals, found.track, "c")
             stopped = found.stopped
             if found.status == Status.ENDLESS:
-                return (
-                    stopped  # step control would have no end either; the loop in Python tells why
-                )
+                # Step control would have no end either; the loop in Python tells why.
+                return stopped
         if settings.method not in LOCATED_METHODS:
             return stopped
         return self.located.run(times, states, signals, settings)

@@ -56,7 +56,7 @@ MEANINGS = {
     Status.UNUSABLE: "a number is not finite",
     Status.ENDLESS: "it would take too many steps to look for events in",
 }
-"""What each status says; `Status.OK` and `Status.MISSING` end no run."""
+"""What each status says but `Status.OK`, and `Status.MISSING` and `Status.BLUNT`, which ask for more."""
 
 LIMITS = frozenset({Status.UNSUPPORTED, Status.STIFF, Status.FULL, Status.WORK})
 """What is no fault of a model: C alone cannot go on."""
