@@ -22,7 +22,8 @@ from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
 from codegen.model.closed import ClosedModel
 from codegen.model.energies import warn_of_energies
-from codegen.model.modes import LOOK_AHEAD, Peaks, decide
+from codegen.model.modes import decide
+from codegen.model.rounding import LOOK_AHEAD, Peaks
 from codegen.program import Program, lower
 from codegen.runs.arguments import (
     checked_times,

@@ -9,6 +9,7 @@ from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import ClosedModel, Mode, Snapshot
+from codegen.model.trials import evaluated
 from codegen.simulate import Simulator
 
 ITERATIONS = 50
@@ -43,7 +44,11 @@ def trim(
     pieces, start = simulator.steady(inputs or {}, initial or {})
     with np.errstate(all="ignore"):
         for mode in _modes(model, pieces, start):
-            found = _rest(model, pieces, mode, start)
+            try:
+                found = _rest(model, pieces, mode, start)
+            except SimulationError:
+                # Laws without a solution in a mode: it is none.
+                found = None
             if found is not None and _consistent(model, mode, model.at(0.0, found, pieces, mode)):
                 return _named(model, model.at(0.0, found, pieces, mode))
     raise SimulationError(
@@ -57,7 +62,8 @@ def _modes(model: ClosedModel, pieces: Sequence[Piece], start: Array) -> list[Mo
     ports = len(model.friction_inputs)
     if not ports:
         return [()]
-    slips = model.at(0.0, start, pieces, (1,) * ports).y[model.friction_readings]
+    _, now = evaluated(model, 0.0, start, pieces, (1,) * ports)
+    slips = now.y[model.friction_readings]
     signs = np.sign(np.round(slips, 12)).astype(int)
     every = product((0, 1, -1), repeat=ports)
     return sorted(

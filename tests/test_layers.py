@@ -36,8 +36,8 @@ ORDER = {
                                             "tables"),
         "model.affine", "closing", "records", "gains", "sections", "program", "identifiers", "printing",
         "units",
-        *_room("model", "numpy_backend numbers energies sharp snapshot sharing friction instant loops "
-               "rubbing closed stability sizes modes guards places"),
+        *_room("model", "numpy_backend numbers energies sharp snapshot sharing slips friction instant loops "
+               "rubbing closed stability sizes trials rounding verdicts modes guards places"),
         *_room("energy", "stored quadrature accounts tally"),
         *_room("runs", "events sundials progress legs watched exact ladder free hybrid arguments steps "
                "impulses observer tables summary"),

@@ -21,16 +21,17 @@ from codegen.runs.arguments import initial_values, signals_for
 from codegen.runs.steps import step_at_start
 
 STEPPED = (
-    "model_runtime.h", "model_internal.h", "model_linear.c", "model_numbers.c", "model_hold.c",
+    "model_runtime.h", "model_internal.h", "model_linear.c", "model_numbers.c",
+    "model_independent.c", "model_hold.c", "model_ruling.h", "model_ruling.c", "bg_choose.h", "bg_choose.c",
     "model_share.c", "model_roots.c", "model_loops.c", "model_evaluate.c", "model_instance.c",
-    "model_region.c", "model_slope.c", "model_fastest.c", "model_step.c", "model_signals.h",
-    "model_signals.c",
+    "model_region.c", "model_slope.c", "model_fastest.c", "model_stick.c", "model_step.c",
+    "model_signals.h", "model_signals.c",
 )  # fmt: skip
 """What is the same for every model."""
 
 LOCATED = (
     "model_request.h", "model_located.h", "model_located_internal.h", "model_located.c",
-    "model_rounding.c", "model_progress.c", "model_decide.c", "bg_choose.h", "bg_choose.c",
+    "model_rounding.c", "model_progress.c", "model_decide.c",
     "bg_events.h", "bg_events.c", "bg_rounds.h", "bg_rounds.c",
     "model_watch.c", "model_solver.c", "model_explicit_table.h", "model_explicit.c",
     "model_implicit.c",
@@ -144,7 +145,7 @@ def texts(
         "",
         *program_tables(program, defaults, [closed.coupled_directly(i) for i in ports]),
         "",
-        *structure_table(structures(program, equations, closed.parameters)),
+        *structure_table(structures(program, closed.slips)),
         *_functions(program),
         "",
         *group_tables(program),

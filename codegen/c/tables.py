@@ -75,6 +75,7 @@ def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:
         "LARGEST": largest,
         "LOOP": max([ports + coupled if program.joint else 0, *loops]),
         "FRICTION": ports,
+        "COUPLED": coupled,
         "HOLDS": 1 if program.varying or ports > MOST_HOLDS else 2**ports,
         "CONSTANTS": len(fast.constants) if fast else 0,
         "VARYING": int(program.varying),
@@ -144,9 +145,10 @@ def structure_table(found: Sequence[Structure]) -> list[str]:
     """What holds each set of sticking ports, by its bits."""
     rows = []
     for one in found:
-        parts = (one.direct, one.direct_columns, one.null, one.kept, one.kept_columns)
+        parts = (one.moved, one.direct, one.direct_columns, one.null, one.kept, one.kept_columns)
         listed = ", ".join(f"{{{', '.join(map(str, part)) or '0'}}}" for part in parts)
-        rows.append(f"{{{len(one.direct)}, {len(one.null)}, {len(one.kept)}, {listed}}}")
+        counts = (len(one.moved), len(one.direct), len(one.null), len(one.kept), int(one.ruled))
+        rows.append(f"{{{', '.join(map(str, counts))}, {listed}}}")
     return array("const bg_structure bg_structures[]", rows)
 
 

@@ -5,10 +5,12 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
+from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.engine.sizes import Engine, view
 from codegen.model.affine import AffineMap
 from codegen.model.closed import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, ClosedModel, Mode
+from codegen.model.friction import SlopeNeededError
 
 STATES = 0
 """Where the states stand in an affine map."""
@@ -35,10 +37,20 @@ class Tables:
     def supply(self, number: int) -> None:
         """Work out a mode."""
         made = self.engine.new("bg_mode")
-        mode = mode_of(number, self.engine.sizes.K)
-        affine = self.model.affine_map(mode, len(self.model.program.external))
+        mode, inputs = mode_of(number, self.engine.sizes.K), len(self.model.program.external)
+        try:
+            affine = self.model.affine_map(mode, inputs)
+        except SlopeNeededError:
+            affine = None
+        except SimulationError:
+            affine, made.none = None, 1
         if affine is not None:
             self._fill(made, mode, affine)
+        elif not made.none and self._rule(made, mode):
+            # What rules the slips does not depend on what holds them.
+            slipping = self.model.affine_map(tuple(sign or 1 for sign in mode), inputs)
+            if slipping is not None:
+                self._fill_shot(made, slipping)
         self._modes[number] = made
         self.record.modes[number] = made
 
@@ -69,7 +81,19 @@ class Tables:
             self.record.coupled[i] = model.coupled_directly(i)
         assert len(rows) == K
 
-    def _fill(self, made: Any, mode: Mode, affine: AffineMap) -> None:
+    def _rule(self, made: Any, mode: Mode) -> bool:
+        """Write what only inputs rule of the slips that stick; whether there is such a thing."""
+        held = [i for i, sign in enumerate(mode) if sign == 0]
+        try:
+            rows = self.model.hold(mode, self.model.constant).ruled if held else np.zeros((0, 0))
+        except SimulationError:
+            return False
+        made.ruled = len(rows)
+        for k, row in enumerate(rows):
+            view(self.engine, made.ruling[k])[held] = row
+        return len(rows) > 0
+
+    def _fill_shot(self, made: Any, affine: AffineMap) -> None:
         model, size = self.model, self.engine.sizes.numbers
         parts = _parts(model, affine)
         at, lengths = 0, (size["X"], size["U"], *[size["PORTS"]] * 4, size["N"])
@@ -77,6 +101,11 @@ class Tables:
         for rows, length in zip(parts, lengths, strict=True):
             shot[:, at : at + len(rows)] = self._wide(rows).T
             at += length
+
+    def _fill(self, made: Any, mode: Mode, affine: AffineMap) -> None:
+        model, size = self.model, self.engine.sizes.numbers
+        self._fill_shot(made, affine)
+        self._rule(made, mode)
         made.supported = 1
         made.fastest = affine.fastest
         found = np.array(affine.spectrum)

@@ -20,6 +20,7 @@ from codegen.model.loops import solve_loop
 from codegen.model.numbers import Numbers, assembled, check_values, exact_parameters, numbers
 from codegen.model.rubbing import Rubbing
 from codegen.model.sharp import NotAffineError, sharp_rates
+from codegen.model.slips import SlipRows
 from codegen.model.snapshot import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, Mode, Snapshot
 from codegen.pairs import Pair, pair
 from codegen.program import Group, Program
@@ -69,6 +70,11 @@ class ClosedModel:
     def coupled_directly(self, port: int) -> bool:
         """Whether a friction port's slip depends at once on efforts of friction ports."""
         return self._rubbing.coupled_directly(port)
+
+    @property
+    def slips(self) -> SlipRows:
+        """What friction ports receive, exact."""
+        return self._rubbing.slips
 
     def hold(self, mode: Mode, numbers: Numbers) -> Hold:
         """The holding equations of the ports that stick in a mode, with the matrices of an instant."""
@@ -194,7 +200,7 @@ class ClosedModel:
         if not self.program.affine:
             return None
         if mode not in self._maps:
-            redundant = 0 in mode and len(self.hold(mode, self.constant).share) > 0
+            redundant = 0 in mode and self.hold(mode, self.constant).shares
             self._maps[mode] = None if redundant else self._affine_map(mode, inputs)
         return self._maps[mode]
 

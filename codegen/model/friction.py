@@ -3,27 +3,34 @@
 For the sticking ports s, ``y_s = F_s x + D_s u = 0``. Rows of D_ss that are independent determine
 efforts at once (a resistance lies beside the port). Along the left null space N of D_ss the
 constraint rules the states instead: ``N^T y_s' = 0``, that is ``N^T F_s A^-1 (J x + B u) + ... = 0``.
-What neither determines is how redundant ports share a load.
+What neither determines is how redundant ports share a load; and where other inputs rule such a
+combination of slips, a source or a law, the ports stick only while it is zero and stays so.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import sympy as sp
 
-from bondgraph import SimulationError, StateEquations
+from bondgraph import SimulationError
 from codegen.arrays import Array
-from codegen.model.numbers import Numbers, at_parameters, scaled_solve
+from codegen.model.numbers import Numbers, scaled_solve
 from codegen.model.sharing import fair_share
+from codegen.model.slips import SlipRows, independence
 from codegen.program import Program
+
+
+class SlopeNeededError(SimulationError):
+    """Ports could hold, but what holds them needs the slope in time of what a law gives."""
 
 
 @dataclass(frozen=True)
 class Hold:
     """The holding equations ``X x + U u + V u' = 0`` of one set of sticking ports.
 
-    ``share``: directions in which the holding efforts may change without moving anything.
+    ``share``: directions in which the holding efforts may change without moving anything. ``ruled``: the
+    same as combinations of slips, where other inputs rule them: the ports hold only while these are zero.
     ``slip_x``, ``slip_u``: the slips that constrain the states, independent, as ``slip_x x + slip_u u``.
     ``take_away``: what to add to x per unit of those slips to remove them, along ``A^-1 F^T``.
     """
@@ -35,9 +42,15 @@ class Hold:
     #: Inverse of the square system for the efforts, the rows of ``share`` appended.
     inverse: Array
     share: Array
+    ruled: Array
     slip_x: Array
     slip_u: Array
     take_away: Array
+
+    @property
+    def shares(self) -> bool:
+        """Whether redundant ports share a load; one that nothing can load gives nothing."""
+        return bool(np.count_nonzero(self.share.any(axis=0)) > len(self.share))
 
     def efforts(self, x: Array, u: Array, du: Array, inputs: Sequence[int], caps: Array) -> Array:
         """The holding efforts; u must hold zero at the sticking ports. Redundant ports share fairly."""
@@ -47,53 +60,28 @@ class Hold:
         return fair_share(efforts, self.share, caps) if len(self.share) else efforts
 
 
-def exact_rows(
-    program: Program, equations: StateEquations, parameters: Mapping[str, sp.Rational]
-) -> tuple[sp.Matrix, sp.Matrix]:
-    """F (friction ports x states) and D (friction ports x friction ports), exact."""
-    readings = list(equations.readings.values())
-    rows = [readings[port.reading] for port in program.friction]
-    F = sp.zeros(len(rows), len(program.states))
-    D = sp.zeros(len(rows), len(rows))
-    column = {port.input: at for at, port in enumerate(program.friction)}
-    for i, row in enumerate(rows):
-        for j, entry in row.F.items():
-            F[i, j] = at_parameters(entry, parameters)
-        for j, entry in row.D.items():
-            if j in column:
-                D[i, column[j]] = at_parameters(entry, parameters)
-    return F, D
-
-
-def hold(
-    program: Program, model: Numbers, F: sp.Matrix, D: sp.Matrix, ports: tuple[int, ...]
-) -> Hold:
-    """The holding equations of the friction ports with these numbers, ranks taken from exact F and D."""
-    chosen = list(ports)
-    D_ss = D.extract(chosen, chosen)
-    direct = list(D_ss.T.rref()[1])
-    null = [vector.T for vector in D_ss.T.nullspace()]
-    N = sp.Matrix.vstack(*null) if null else sp.zeros(0, len(chosen))
-    constrained = N * F.extract(chosen, list(range(F.cols)))
-    kept = list(constrained.T.rref()[1]) if constrained.rows and constrained.cols else []
-    free = constrained.T.nullspace() if constrained.rows else []
-    share = sp.Matrix.vstack(*[(N.T * v).T for v in free]) if free else sp.zeros(0, len(chosen))
-    N_kept = _array(N.extract(kept, list(range(N.cols))))
+def hold(program: Program, model: Numbers, slips: SlipRows, ports: tuple[int, ...]) -> Hold:
+    """The holding equations of the friction ports with these numbers, ranks taken from exact rows."""
+    found, chosen = independence(slips, ports), list(ports)
+    N_kept = _array(found.null.extract(list(found.kept), list(range(found.null.cols))))
     rows = [program.friction[i].reading for i in chosen]
-    inputs = [program.friction[i].input for i in chosen]
+    inputs, direct = [program.friction[i].input for i in chosen], list(found.direct)
     F_s, D_s, G_s = model.F[rows], model.D[rows], model.G[rows]
     slip_x, slip_u = N_kept @ F_s, N_kept @ D_s
     X = np.vstack([F_s[direct], slip_x @ model.P])
     U = np.vstack([D_s[direct], slip_x @ model.Q])
     V = np.vstack([G_s[direct], slip_x @ model.R + slip_u])
-    system = np.vstack([U[:, inputs], _array(share)])
+    share = _array(found.share)
+    alone = len(slips.answering(chosen)) == len(chosen)
     return Hold(
         ports,
         X,
         U,
         V,
-        inverse=_inverse(system),
-        share=_array(share),
+        # Where laws answer as well, all are searched for together.
+        inverse=_inverse(np.vstack([U[:, inputs], share])) if alone else np.zeros((0, 0)),
+        share=share,
+        ruled=share if found.ruled else share[:0],
         slip_x=slip_x,
         slip_u=slip_u,
         take_away=_take_away(model, slip_x),

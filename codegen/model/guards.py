@@ -7,7 +7,7 @@ import numpy as np
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import ClosedModel, Mode
-from codegen.model.modes import TOLERANCE, Peaks
+from codegen.model.rounding import TOLERANCE, Peaks
 from codegen.model.sizes import STEP
 
 

@@ -7,11 +7,12 @@ import sympy as sp
 
 from bondgraph import SimulationError, StateEquations
 from codegen.arrays import Array
-from codegen.model.friction import Hold, exact_rows, hold
+from codegen.model.friction import Hold, SlopeNeededError, hold
 from codegen.model.instant import Binding, Instant
 from codegen.model.loops import solve_loop
 from codegen.model.numbers import Numbers
 from codegen.model.sharing import fair_share
+from codegen.model.slips import slip_rows
 from codegen.model.snapshot import Mode
 from codegen.program import Program
 
@@ -30,20 +31,21 @@ class Rubbing:
         self._inputs = [port.input for port in program.friction]
         self._readings = [port.reading for port in program.friction]
         self._outside = [program.inputs.index(n) for n in program.external if n in program.inputs]
-        self._exact_F, self._exact_D = exact_rows(program, equations, parameters)
+        self.slips = slip_rows(program, equations, parameters)
+        self._beside = [self.slips.coupled(port) for port in range(len(self._inputs))]
         self._coupled = binding.function(program.coupled.values)
         self._friction = binding.function(program.friction_values)
         self._holds: dict[Mode, Hold] = {}
 
     def coupled_directly(self, port: int) -> bool:
         """Whether a friction port's slip depends at once on efforts of friction ports."""
-        return bool(self._exact_D[port, :].todok())
+        return self._beside[port]
 
     def hold(self, mode: Mode, numbers: Numbers) -> Hold:
         """The holding equations of the ports that stick in a mode, with the matrices of an instant."""
         if mode not in self._holds or self._program.varying:
             ports = tuple(i for i, sign in enumerate(mode) if sign == 0)
-            found = hold(self._program, numbers, self._exact_F, self._exact_D, ports)
+            found = hold(self._program, numbers, self.slips, ports)
             self._check_differentiable(found)
             self._holds[mode] = found
         return self._holds[mode]
@@ -112,7 +114,7 @@ class Rubbing:
         for column in np.flatnonzero(np.abs(found.V).max(axis=0, initial=0.0) > 1e-12):
             if column not in allowed:
                 names = ", ".join(repr(self._program.friction[i].name) for i in found.ports)
-                raise SimulationError(
+                raise SlopeNeededError(
                     f"holding {names} would need the slope in time of {self._program.inputs[column]}, "
                     "which a law gives; put a storage between"
                 )

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import INPUTS, ClosedModel, Mode
@@ -31,6 +32,9 @@ def input_terms(
     for j in np.flatnonzero(s):
         moved = s.copy()
         moved[j] *= 1 + STEP
-        change = np.abs(model.at(t, moved, pieces, mode).u - now.u) / STEP
+        try:
+            change = np.abs(model.at(t, moved, pieces, mode).u - now.u) / STEP
+        except SimulationError:
+            continue
         terms += np.nan_to_num(change, nan=0.0, posinf=0.0)
     return terms

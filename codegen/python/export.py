@@ -86,7 +86,7 @@ def to_python(
     held = sticking_ranks(program, equations, exact) if program.friction else {}
     names = names_of(program)
     used = {symbol.name: float(exact[symbol.name]) for symbol in program.parameters}
-    body, fixed = _functions(program, names), chosen(_template(), flags(program, held))
+    body, fixed = _functions(program, names), chosen(_template(), flags(program, equations, held))
     lines = [
         *_head(program, equations, name, body, fixed),
         *("", *table("PARAMETERS", used)),

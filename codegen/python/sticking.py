@@ -7,9 +7,9 @@ import sympy as sp
 
 from bondgraph import ParameterError, StateEquations, StructureError
 from bondgraph.elimination import ResidueRows
-from bondgraph.modulation import Reading
 from bondgraph.residues import residues
 from codegen.model.numbers import at_parameters
+from codegen.model.slips import moved_laws
 from codegen.program import Program
 
 Ports = tuple[int, ...]
@@ -22,7 +22,7 @@ class _Ranks:
     """Ranks of the blocks of D and F that belong to sets of friction ports."""
 
     def __init__(
-        self, program: Program, rows: Sequence[Reading], parameters: Mapping[str, sp.Rational]
+        self, program: Program, equations: StateEquations, parameters: Mapping[str, sp.Rational]
     ) -> None:
         value = residues()
 
@@ -30,15 +30,19 @@ class _Ranks:
             found = {j: value(at_parameters(entry, parameters)) for j, entry in row.items()}
             return {j: entry for j, entry in found.items() if entry}
 
+        readings = list(equations.readings.values())
+        rows = [readings[port.reading] for port in program.friction]
         self._D = [exact(row.D) for row in rows]
         self._F = [exact({j + len(program.inputs): e for j, e in row.F.items()}) for row in rows]
         self._inputs = [port.input for port in program.friction]
+        self._moved = moved_laws(program, equations)
         laws = [group.inputs for group in (*program.groups, program.coupled)]
         self._laws = [j for inputs in laws for j in inputs]
 
     def rank(self, ports: Ports, others: Iterable[int] = (), states: bool = False) -> int:
-        """The rank of ``[D_ss, D_s others, F_s]``."""
-        columns = [*(self._inputs[i] for i in ports), *others]
+        """The rank of ``[D_ss, D_s others, F_s]``; laws that efforts of s move count with these."""
+        moved = [j for i in ports for j in self._moved[i]]
+        columns = list(dict.fromkeys([*(self._inputs[i] for i in ports), *moved, *others]))
         rows = [{j: self._D[i][j] for j in columns if j in self._D[i]} for i in ports]
         if states:
             rows = [row | self._F[i] for i, row in zip(ports, rows, strict=True)]
@@ -65,10 +69,8 @@ def sticking_ranks(
     `StructureError` or `ParameterError`, naming the ports, if a set could not be held, or is held in
     another way with these parameters than with most.
     """
-    readings = list(equations.readings.values())
-    rows = [readings[port.reading] for port in program.friction]
     names = [port.name for port in program.friction]
-    given, general = _Ranks(program, rows, parameters), _Ranks(program, rows, {})
+    given, general = _Ranks(program, equations, parameters), _Ranks(program, equations, {})
     result: dict[Ports, tuple[int, int]] = {}
     for ports in _sets(given, general, names):
         listed = _listed(names, ports)
@@ -88,9 +90,9 @@ def sticking_ranks(
 
 
 def beside_resistance(program: Program, equations: StateEquations) -> tuple[bool, ...]:
-    """For each friction port whether its slip depends at once on efforts of friction ports."""
+    """For each friction port whether its slip depends at once on friction, or on laws that friction moves."""
     readings = list(equations.readings.values())
-    inputs = {port.input for port in program.friction}
+    inputs = {port.input for port in program.friction} | set(program.coupled.inputs)
     return tuple(
         any(readings[port.reading].D.get(j, 0) != 0 for j in inputs) for port in program.friction
     )

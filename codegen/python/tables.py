@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from bondgraph import StateEquations
+from codegen.model.slips import moved_laws
 from codegen.model.stability import FARTHEST, IMAGINARY_LIMIT, NEAREST, REAL_LIMIT
 from codegen.program import Program
 from codegen.python.sticking import beside_resistance
@@ -14,12 +15,14 @@ Held = Mapping[tuple[int, ...], tuple[int, int]]
 """Ranks of sets of sticking ports, as `sticking_ranks` gives them."""
 
 
-def flags(program: Program, held: Held) -> dict[str, bool]:
-    """Which sections of the fixed part the model needs; ``shared``: ports that are redundant."""
+def flags(program: Program, equations: StateEquations, held: Held) -> dict[str, bool]:
+    """Which sections of the fixed part the model needs; ``shared``: ports that are redundant, or rest though
+    other inputs rule them; ``moved``: ports whose efforts move laws."""
     return {
         "friction": bool(program.friction),
         "shared": any(sum(ranks) < len(ports) for ports, ranks in held.items()),
         "joint": program.joint,
+        "moved": any(moved for moved in moved_laws(program, equations)),
         "loops": program.joint or any(group.loop for group in program.groups),
         "varying": program.varying,
     }
@@ -72,7 +75,7 @@ def _places(name: str, numbers: Sequence[int]) -> list[str]:
 
 def friction_tables(program: Program, equations: StateEquations, held: Held) -> list[str]:
     """The friction ports, how sets of them are held, and the settings of loops."""
-    lines = [""]
+    lines, needed = [""], flags(program, equations, held)
     if program.friction:
         lines += [
             "# Friction ports, the inputs they give, the slips they receive; is a resistance beside?"
@@ -91,7 +94,7 @@ def friction_tables(program: Program, equations: StateEquations, held: Held) -> 
             "# A slip below this fraction of the terms that make it up counts as zero.",
             "ROUNDING = 1e-9",
         ]
-    if flags(program, held)["shared"]:
+    if needed["shared"]:
         lines += [
             "# Entries below this fraction of the largest are rounding where ports share a load.",
             "NOTHING = 1e-11",
@@ -100,7 +103,12 @@ def friction_tables(program: Program, equations: StateEquations, held: Held) -> 
         lines += ["# Laws that depend on friction, and what their ports receive."]
         lines += _places("COUPLED", program.coupled.inputs)
         lines += _places("COUPLED_READINGS", program.coupled.readings)
-    if flags(program, held)["loops"]:
+    if needed["moved"]:
+        lines += [
+            "# For each friction port the places in u of the laws that its effort moves at once."
+        ]
+        lines += listing("MOVED = [", [f"{[*one]}" for one in moved_laws(program, equations)], "]")
+    if needed["loops"]:
         lines += [
             "",
             "# Loops of laws: what counts as solved, and the most steps of each kind of search.",
@@ -108,7 +116,7 @@ def friction_tables(program: Program, equations: StateEquations, held: Held) -> 
         lines += [
             "LOOP_RESIDUAL = 1e-9",
             "LOOP_STEPS = 60",
-            "LOOP_HALVES = 20",
+            "LOOP_HALVES = 60",
             "LOOP_BRACKETS = 200",
         ]
     return lines

@@ -10,7 +10,8 @@ from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import CAPS, INPUTS, READINGS, ClosedModel, Mode, Snapshot
 from codegen.model.guards import guard_rounding
-from codegen.model.modes import LOOK_AHEAD, Peaks, scales
+from codegen.model.rounding import LOOK_AHEAD, Peaks, scales
+from codegen.model.verdicts import Look, room
 from codegen.roots import root
 
 CHECKS = 6
@@ -60,8 +61,9 @@ class Watch:
         )  # fmt: skip
         now = self._snapshot(t, s)
         self._limits = np.zeros(0)
+        size = scales(model, now, t, peaks)
+        self._look = Look(model, mode, now, size)
         if mode:
-            size = scales(model, now, t, peaks)
             self._limits = np.where(np.array(mode) == 0, size.effort, size.slip)
         if guarded:
             limits = guard_rounding(model, t, s, pieces, mode, peaks)
@@ -113,20 +115,23 @@ class Watch:
         if caps.min() < 0:
             # One by one, so that a friction level below zero is refused with its time.
             return [self._triggers(t, self._snapshot(t, dense(t))) for t in times]
-        signs = np.array(self._mode)
-        margins = caps - np.abs(efforts)
-        return list(np.where(signs == 0, margins, signs * slips))
+        return list(self._of_ports(efforts, slips, caps))
 
     def _snapshot(self, t: float, s: Array) -> Snapshot:
         return self._model.at(t, s, self._pieces, self._mode)
 
     def _triggers(self, t: float, now: Snapshot) -> Array:
         efforts, slips = now.u[self._model.friction_inputs], now.y[self._model.friction_readings]
-        ports = [
-            sign * slips[i] if sign else now.caps[i] - abs(efforts[i])
-            for i, sign in enumerate(self._mode)
-        ]
+        ports = self._of_ports(efforts[None], slips[None], now.caps[None])[0]
         return np.concatenate([ports, self._model.guards(t, now)])
+
+    def _of_ports(self, efforts: Array, slips: Array, caps: Array) -> Array:
+        """The triggers of ports, by rows; one that sticks lets go where sources move it, too."""
+        signs, margins = np.array(self._mode, dtype=float), caps - np.abs(efforts)
+        if len(self._look.ruling):
+            rest = caps + 4 * self._look.size.effort
+            margins = np.minimum(margins, rest * room(self._look, slips))
+        return np.where(signs == 0, margins, signs * slips)
 
     def _fall(
         self, i: int, t_a: float, t_b: float, a: float, b: float, dense: Dense

@@ -12,7 +12,8 @@ from codegen.inputs.pieces import Piece
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.model.affine import AffineMap
 from codegen.model.closed import ClosedModel, Mode
-from codegen.model.modes import LOOK_AHEAD, Peaks, scales
+from codegen.model.rounding import LOOK_AHEAD, Peaks, scales
+from codegen.model.verdicts import LEFT, Look
 from codegen.runs.legs import Ended, Track
 from codegen.runs.watched import DEGREE, Steps, exponential, lasting, series, watched
 
@@ -48,12 +49,14 @@ class ExactLeg:
         made = generator(pieces, t)
         self._n, self._mode, self._t = len(s), mode, t
         self._model, self._pieces = model, pieces
-        self._system = watched(model, affine, made, mode, len(s))
-        self._z = np.concatenate([s, made.start])
-        self._blind = LOOK_AHEAD * peaks.time
         now = model.at(t, s, pieces, mode)
         size = scales(model, now, t, peaks)
-        limits = np.where(np.array(mode) == 0, size.effort, size.slip)
+        ruled = Look(model, mode, now, size).ruling.any(axis=0)
+        limits = np.where((np.array(mode) == 0) & ~ruled, size.effort, size.slip)
+        rest = np.where(ruled, LEFT * size.slip, np.inf)
+        self._system = watched(model, affine, made, mode, len(s), rest)
+        self._z = np.concatenate([s, made.start])
+        self._blind = LOOK_AHEAD * peaks.time
         self._limits = limits[list(self._system.ports)] if mode else np.zeros(0)
         self._armed = np.zeros(len(self._limits), dtype=bool)
 

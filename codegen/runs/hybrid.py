@@ -12,7 +12,9 @@ from codegen.inputs.pieces import Piece
 from codegen.inputs.signal import Signal
 from codegen.model.closed import ClosedModel, Mode
 from codegen.model.guards import fallen_guards
-from codegen.model.modes import LOOK_AHEAD, Peaks, decide, scales
+from codegen.model.modes import decide
+from codegen.model.rounding import LOOK_AHEAD, Peaks, scales
+from codegen.model.trials import evaluated
 from codegen.runs.events import Event
 from codegen.runs.exact import ExactLeg
 from codegen.runs.free import FreeLeg
@@ -116,7 +118,8 @@ class _Course:
         model, t, pieces, peaks = self._model, self.t, self._pieces, self._peaks
         peaks.see(model, t, self.s, pieces, self.mode)
         if self.mode or model.program.guards.results:
-            fastest = self._leg(pieces).fastest(t, self.s)
+            mode, _ = evaluated(model, t, self.s, pieces, self.mode, slipping=False)
+            fastest = self._leg(pieces, mode).fastest(t, self.s)
             peaks.time = 1 / max(fastest, 100.0 / self._span)
         self.ahead = LOOK_AHEAD * peaks.time
         if t >= self.end and self._settled is not None:
@@ -155,7 +158,7 @@ class _Course:
             self.t, self.s, ended = exact.run(stop, self._times, self.track)
             self._integrate(pieces, begin, s, first)
         else:
-            leg = self._leg(pieces)
+            leg = self._leg(pieces, self.mode)
             self.t, self.s, ended = leg.run(self.t, self.s, stop, self._times, self.track)
         self._touched = frozenset(i for i in ended if i < ports)
         return frozenset(i - ports for i in ended if i >= ports)
@@ -168,8 +171,8 @@ class _Course:
             vectors = np.vstack([s, self.track.vectors[own], self.s])
             tally.exact(pieces, self.mode, points, vectors)
 
-    def _leg(self, pieces: Sequence[Piece]) -> Leg:
-        return Leg(self._model, pieces, self.mode, self._settings, self._span, self._peaks)
+    def _leg(self, pieces: Sequence[Piece], mode: Mode) -> Leg:
+        return Leg(self._model, pieces, mode, self._settings, self._span, self._peaks)
 
     def _exact(self, pieces: Sequence[Piece], stop: float) -> ExactLeg | FreeLeg | None:
         """The stretch ahead as an exact one, where the mode is affine and exact steps are asked for."""
@@ -204,7 +207,7 @@ def _still(
     """Those of the ports that are at rest, or close enough for it to be the event's own rounding."""
     if not ports:
         return frozenset()
-    now = model.at(t, s, pieces, tuple(sign or 1 for sign in mode))
+    _, now = evaluated(model, t, s, pieces, mode)
     slips = np.abs(now.y[model.friction_readings])
     limits = 1e3 * scales(model, now, t, peaks).slip
     return frozenset(i for i in ports if slips[i] <= limits[i] or model.coupled_directly(i))

@@ -12,7 +12,7 @@ from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import ClosedModel, Mode
-from codegen.model.modes import Peaks
+from codegen.model.rounding import Peaks
 from codegen.runs.events import Dense, Event, Watch
 from codegen.runs.progress import Progress, difference, no_progress
 from codegen.runs.sundials import Cvode

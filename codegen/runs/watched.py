@@ -22,7 +22,8 @@ GONE = 40.0
 class Watched:
     """``z' = M z`` with z = [s, g], and the rows over z of triggers; ``ports``: whose trigger each row is.
 
-    A sticking port has two: the distances of its effort to both breakaway efforts.
+    A sticking port has two: the distances of its effort to both breakaway efforts, or of its slip to what
+    is no longer zero, where only sources rule it: it gives nothing then.
     """
 
     M: Array
@@ -40,8 +41,13 @@ def over_z(rows: Array, made: Generator, n: int) -> Array:
     return np.hstack([rows[:, :n], rows[:, n : n + 2 * m + 1] @ fed])
 
 
-def watched(model: ClosedModel, affine: AffineMap, made: Generator, mode: Mode, n: int) -> Watched:
-    """An affine mode over z, whose first n components are s."""
+def watched(
+    model: ClosedModel, affine: AffineMap, made: Generator, mode: Mode, n: int, rest: Array
+) -> Watched:
+    """An affine mode over z, whose first n components are s.
+
+    ``rest``: what a sticking port's slip must stay below where only sources rule it.
+    """
     G = made.G
     rate = over_z(affine.rows(RATE), made, n)
     M = np.vstack([rate, np.hstack([np.zeros((len(G), n)), G])])
@@ -50,7 +56,10 @@ def watched(model: ClosedModel, affine: AffineMap, made: Generator, mode: Mode, 
     caps = over_z(affine.rows(CAPS), made, n)
     triggers, ports = [np.zeros((0, len(M)))], []
     for i, sign in enumerate(mode):
-        rows = [sign * slips[i]] if sign else [caps[i] - efforts[i], caps[i] + efforts[i]]
+        below, moved = caps[i], efforts[i]
+        if np.isfinite(rest[i]):
+            below, moved = rest[i] * np.eye(1, len(M), n)[0], slips[i]
+        rows = [sign * slips[i]] if sign else [below - moved, below + moved]
         triggers.append(np.array(rows))
         ports += [i] * len(rows)
     return Watched(M, np.vstack(triggers), caps, tuple(ports), balanced_norm(M))

@@ -196,9 +196,18 @@ static void find_fastest(batch_room *room, int at)
     made->fastest = spectral_radius(own);
 }
 
+/* What only inputs rule of the slips that stick. */
+static void fill_ruling(bg_mode *made, const batch_hold *held)
+{
+    made->ruled = held->ruled;
+    for (int r = 0; r < held->ruled; r++)
+        for (int c = 0; c < held->count; c++)
+            made->ruling[r][held->ports[c]] = held->ruling[r * held->count + c];
+}
+
 static void fill(bg_mode *made, const double *map, const batch_numbers *a, const batch_hold *held)
 {
-    memset(made, 0, sizeof *made);
+    fill_ruling(made, held);
     for (int j = 0; j < BG_L; j++) {
         const int column = column_of(j);
         if (column < 0)
@@ -208,7 +217,6 @@ static void fill(bg_mode *made, const double *map, const batch_numbers *a, const
             made->left[j][k] = product(map, 0, STATES, held->slip_x + k * STATES, column)
                                + product(map, BATCH_AT_U, M, held->slip_u + k * M, column);
     }
-    made->supported = 1;
     made->held = held->kept;
     for (int k = 0; k < held->kept; k++)
         for (int i = 0; i < STATES; i++)
@@ -237,12 +245,18 @@ int batch_supply(batch_room *room, const batch_numbers *numbers, int number)
         return BG_UNSUPPORTED;
     for (int i = 0; i < BG_K; i++, digits /= 3)
         mode[i] = signs[digits % 3];
-    if (batch_model_mode(room->model, mode, map, &held))
+    const enum batch_found found = batch_model_mode(room->model, mode, map, &held);
+    if (found == BATCH_MODE_REFUSED)
         return BG_UNSUPPORTED;
     const int at = room->made++;
-    fill(room->mode + at, map, numbers, &held);
+    memset(room->mode + at, 0, sizeof room->mode[at]);
+    if (found != BATCH_MODE_NONE)
+        fill(room->mode + at, map, numbers, &held);
+    room->mode[at].none = found == BATCH_MODE_NONE;
+    room->mode[at].supported = found == BATCH_MODE_WHOLE;
     find_fastest(room, at);
-    fill_readers(room->job, map, batch_readers(room, at));
+    if (found == BATCH_MODE_WHOLE)
+        fill_readers(room->job, map, batch_readers(room, at));
     room->record.modes[number] = room->mode + at;
     room->place[number] = at;
     room->number[at] = number;

@@ -205,7 +205,20 @@ static void flatten(map_parts *map, double *matrix)
     copy(matrix, K, map->caps);
 }
 
-int batch_model_mode(void *model, const int *mode, double *map, batch_hold *held)
+/* Redundant ports share a load, and that is not affine; but what rules their slips does not depend
+ * on what they give. */
+static enum batch_found slips_alone(instance *own, const int *mode, double *map)
+{
+    map_parts parts;
+    int slipping[BG_ROOM(K)] = {0};
+    for (int i = 0; i < K; i++)
+        slipping[i] = mode[i] ? mode[i] : 1;
+    combine(own, slipping, NULL, &parts);
+    flatten(&parts, map);
+    return BATCH_MODE_SLIPS;
+}
+
+enum batch_found batch_model_mode(void *model, const int *mode, double *map, batch_hold *held)
 {
     instance *const own = model;
     bg_hold *hold = NULL;
@@ -213,22 +226,24 @@ int batch_model_mode(void *model, const int *mode, double *map, batch_hold *held
     int sticking = 0, status = BG_AFFINE ? BG_OK : BG_NOT_AFFINE;
     for (int i = 0; i < K; i++)
         sticking |= mode[i] == 0;
-    *held = (batch_hold){0, NULL, NULL, NULL};
+    *held = (batch_hold){0};
     if (status == BG_OK && sticking)
         status = bg_hold_of(&own->m, mode, &hold);
-    if (status == BG_OK && hold) {
-        *held = (batch_hold){hold->kept, hold->slip_x, hold->slip_u, hold->take_away};
-        status = hold->share_count > 0 ? BG_NOT_AFFINE : BG_OK;
-    }
-    if (status == BG_OK && BG_JOINT)
-        return bg_model_affine_map(&own->m, mode, map);
+    if (status == BG_NO_HOLD)
+        return BATCH_MODE_NONE;
+    if (status == BG_OK && hold)
+        *held = (batch_hold){hold->kept, hold->ruled, hold->count, hold->ports, hold->slip_x,
+                             hold->slip_u, hold->take_away, hold->share};
     if (status == BG_OK && !own->based)
         status = find_base(own);
-    if (status != BG_OK)
-        return status;
+    const int shares = status == BG_OK && hold && bg_shares(hold);
+    if (status != BG_OK || (shares && hold->ruled == 0))
+        return BATCH_MODE_REFUSED;
+    if (shares)
+        return slips_alone(own, mode, map);
     combine(own, mode, hold, &parts);
     flatten(&parts, map);
-    return BG_OK;
+    return BATCH_MODE_WHOLE;
 }
 
 int batch_model_start(void *model, double t, const double *states, const double *w, double *s)

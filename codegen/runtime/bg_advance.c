@@ -24,7 +24,8 @@ int bg_check_levels(bg_context *c, double t, double *row)
     int below = 0;
     for (int i = 0; i < BG_K; i++) {
         const double *pair = row + BG_Z + 2 * i;
-        below |= (c->mode[i] ? 2.0 * pair[1] : pair[0] + pair[1]) < 0.0;
+        below |= (c->mode[i] ? 2.0 * pair[1] : pair[0] + pair[1]) < 0.0
+            || bg_rests(c->stretch.entry->mode, i);
     }
     if (!below)
         return BG_OK;

@@ -2,8 +2,7 @@
 #include "bg_internal.h"
 
 #include <math.h>
-
-#include "bg_choose.h"
+#include <string.h>
 
 /* Everything a little later in a mode, by one midpoint step. */
 static int later(bg_context *c, const bg_mode *mode, const double *now, double *shot)
@@ -22,25 +21,36 @@ static int later(bg_context *c, const bg_mode *mode, const double *now, double *
 }
 
 /* The ports in a mode, at the instant or a moment later. */
-static int look(void *self, const signed char *mode, int moved, bg_port *ports)
+static int look(void *self, const signed char *mode, int moved, bg_port *ports, bg_ruling *ruling)
 {
     bg_context *const c = self;
     const bg_mode *found;
     bg_shot shot;
     bg_scales size = {0};
     int status = bg_find(c, bg_number(mode), &found);
+    if (status == BG_UNSUPPORTED && found->none)
+        return BG_NO_MODE;
+    if (status == BG_UNSUPPORTED && found->ruled) {
+        ruling->unknown = status;
+        status = BG_OK;
+    }
     if (status == BG_OK)
         status = bg_look(c, c->t, c->s, found, shot);
     if (status == BG_OK && moved)
         status = later(c, found, shot, shot);
     else if (status == BG_OK)
         bg_scale(c, shot, c->t, &size);
-    for (int i = 0; i < BG_K && status == BG_OK; i++)
+    if (status)
+        return status;
+    for (int i = 0; i < BG_K; i++)
         ports[i] = (bg_port){
             shot[BG_AT_SLIP + i], shot[BG_AT_EFFORT + i], shot[BG_AT_CAP + i],
             shot[BG_AT_PUSH + i], size.slip[i], size.effort[i], size.acceleration[i],
         };
-    return status;
+    ruling->count = found->ruled;
+    for (int k = 0; k < found->ruled; k++)
+        memcpy(ruling->rows[k], found->ruling[k], sizeof found->ruling[k]);
+    return BG_OK;
 }
 
 int bg_decide(bg_context *c, double time)

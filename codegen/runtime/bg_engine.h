@@ -46,9 +46,13 @@ enum bg_status {
     BG_WORK, BG_UNUSABLE, BG_BLUNT, BG_ENDLESS
 };
 
-/* One friction mode: affine maps over (s, w, w', 1), by columns. */
+/* One friction mode: affine maps over (s, w, w', 1), by columns. One that is not affine may have no
+ * more than slips, their rates and caps, to tell whether what inputs rule of them lets it be;
+ * `none`: nothing holds its ports. */
 typedef struct {
     int supported, held;           /* whether it is affine; slips that sticking takes from x */
+    int none, ruled;
+    double ruling[BG_PORTS][BG_PORTS]; /* combinations of slips, by rows, that must be zero */
     double fastest;                /* the largest rate of s by itself */
     double weight[BG_N];           /* M is balanced in the sum of weight times magnitude */
     double shot[BG_L][BG_SHOT];    /* x, u, then of the ports: slips, efforts, caps, and how fast

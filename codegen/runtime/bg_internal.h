@@ -5,6 +5,7 @@
 #include "bg_engine.h"
 #include "bg_extremes.h"
 #include "bg_pair.h"
+#include "bg_choose.h" /* after the engine, which says whose sizes are meant */
 #include "bg_rounds.h"
 
 enum {
@@ -21,7 +22,6 @@ enum {
 #define BG_ALIGNED
 #endif
 
-#define BG_LOOK_AHEAD 1e-4 /* ties are decided this fraction of the shortest time constant later */
 #define BG_LONGEST 2.5     /* |M| h of one step of a leap: bounds need its square below 8 */
 #define BG_ROUNDED 1e4     /* so many steps in double precision leave all digits that count */
 #define BG_MANY 3e5        /* so many steps are always taken where something is watched .. */
@@ -114,6 +114,7 @@ int bg_segment(const bg_inputs *inputs, double t);
 /* bg_modes.c: everything at one instant in a mode; a status. */
 int bg_number(const signed char *mode);
 int bg_find(bg_context *c, int number, const bg_mode **found);
+int bg_rests(const bg_mode *mode, int port);
 void bg_vector(bg_context *c, double t, const double *s, double *v);
 int bg_look(bg_context *c, double t, const double *s, const bg_mode *mode, double *shot);
 void bg_see(bg_context *c, const bg_mode *mode, const double *shot);

@@ -21,6 +21,15 @@ int bg_find(bg_context *c, int number, const bg_mode **found)
     return (*found)->supported ? BG_OK : BG_UNSUPPORTED;
 }
 
+/* Whether a port sticks in a mode though only inputs rule its slip. */
+int bg_rests(const bg_mode *mode, int port)
+{
+    int any = 0;
+    for (int k = 0; k < mode->ruled; k++)
+        any |= mode->ruling[k][port] != 0.0;
+    return any;
+}
+
 /* What affine maps act on; inputs are evaluated once for an instant. */
 void bg_vector(bg_context *c, double t, const double *s, double *v)
 {

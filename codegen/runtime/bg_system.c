@@ -41,13 +41,16 @@ static void generate(const bg_chains *chains, double (*M)[BG_Z])
 }
 
 /* Triggers from the rows of slips, efforts and caps: a port that slips has its slip, and its cap,
- * which is only watched; one that sticks the distances of its effort to both breakaway efforts. */
-static void triggers(const signed char *mode, const double *shot, double *to)
+ * which is only watched; one that sticks the distances of its effort to both breakaway efforts, or,
+ * where only inputs rule its slip, of that to what is no longer zero: it gives nothing then. */
+static void triggers(const bg_mode *record, const signed char *mode, const double *shot, double *to)
 {
     for (int i = 0; i < BG_K; i++) {
-        const double effort = shot[BG_AT_EFFORT + i], cap = shot[BG_AT_CAP + i];
-        to[2 * i] = mode[i] ? mode[i] * shot[BG_AT_SLIP + i] : cap - effort;
-        to[2 * i + 1] = mode[i] ? cap : cap + effort;
+        const int rests = bg_rests(record, i);
+        const double moved = shot[(rests ? BG_AT_SLIP : BG_AT_EFFORT) + i];
+        const double cap = shot[BG_AT_CAP + i], below = rests ? 0.0 : cap;
+        to[2 * i] = mode[i] ? mode[i] * shot[BG_AT_SLIP + i] : below - moved;
+        to[2 * i + 1] = mode[i] ? cap : below + moved;
     }
 }
 
@@ -81,7 +84,7 @@ static void assemble(bg_context *c, bg_entry *e)
         const double *shot = j < BG_N ? e->mode->shot[j] : slots[j - BG_N];
         for (int i = 0; i < BG_N; i++)
             e->M[j][i] = shot[BG_AT_RATE + i];
-        triggers(c->mode, shot, e->trigger[j]);
+        triggers(e->mode, c->mode, shot, e->trigger[j]);
     }
     e->caps = 0;
     for (int i = 0; i < BG_K; i++)
@@ -141,7 +144,7 @@ static void constants(const bg_context *c, bg_stretch *stretch)
         stretch->b[i] = sum[BG_AT_RATE + i];
     for (int i = BG_N; i < BG_Z; i++)
         stretch->b[i] = 0.0;
-    triggers(c->mode, sum, stretch->level);
+    triggers(mode, c->mode, sum, stretch->level);
 }
 
 /* How long a motion has to be followed: until its end, or until it has decayed. */
@@ -193,7 +196,9 @@ int bg_begin(bg_context *c, double stop)
         return status;
     bg_scale(c, now, c->t, &size);
     for (int i = 0; i < BG_T; i++) {
-        stretch->limit[i] = c->mode[i / 2] ? size.slip[i / 2] : size.effort[i / 2];
+        const int port = i / 2, rests = bg_rests(stretch->entry->mode, port);
+        stretch->limit[i] = c->mode[port] || rests ? size.slip[port] : size.effort[port];
+        stretch->level[i] += rests ? BG_LEFT * size.slip[port] : 0.0;
         stretch->armed[i] = c->mode[i / 2] && i % 2; /* caps need not be */
     }
     return BG_OK;

@@ -105,7 +105,7 @@ void fmu_scale(fmu_instance *f, const bg_snapshot *now, fmu_scales *size);
 void fmu_note_peaks(fmu_instance *f, const bg_snapshot *now);
 
 /* fmu_events.c */
-void fmu_indicators_of(const fmu_instance *f, const bg_snapshot *now, double *values);
+void fmu_indicators_of(fmu_instance *f, const bg_snapshot *now, double *values);
 fmu_error fmu_indicators(fmu_instance *f, double *values);
 fmu_error fmu_initialize(fmu_instance *f);
 fmu_error fmu_event(fmu_instance *f, int *states_changed);

@@ -16,7 +16,7 @@ static int affine(fmu_instance *f)
         sticking |= f->at.mode[i] == 0;
     if (!BG_AFFINE || (sticking && bg_hold_of(&f->model, f->at.mode, &held) != BG_OK))
         return 0;
-    return !held || held->share_count == 0;
+    return !held || !bg_shares(held);
 }
 
 /* Moves variables along the seed, where they are part of s, w or w'; 0: one is not. */

@@ -6,9 +6,26 @@
 
 enum { K = BG_FRICTION };
 
+/* How far ports that stick are from leaving what inputs rule of their slips at zero. */
+static void keep_at_rest(fmu_instance *f, const bg_snapshot *now, double *values)
+{
+    bg_hold *held = NULL;
+    int sticking = 0;
+    for (int i = 0; i < K; i++)
+        sticking |= f->at.mode[i] == 0;
+    if (!sticking || bg_hold_of(&f->model, f->at.mode, &held) != BG_OK || held->ruled == 0)
+        return;
+    for (int i = 0; i < K; i++) {
+        const double most = now->caps[i] + f->at.margin[i];
+        const double rest = f->at.mode[i] ? INFINITY : most * bg_room(held, i, now, f->at.rest);
+        for (int k = 2 * i; k < 2 * i + 2; k++)
+            values[k] = fmin(values[k], rest);
+    }
+}
+
 /* Two for each friction port: its slip in its direction; margins to breakaway where it sticks. Then one
  * for each expression at whose zero a law switches. A little below zero still counts as holding. */
-void fmu_indicators_of(const fmu_instance *f, const bg_snapshot *now, double *values)
+void fmu_indicators_of(fmu_instance *f, const bg_snapshot *now, double *values)
 {
     for (int i = 0; i < K; i++) {
         const int mode = f->at.mode[i];
@@ -21,6 +38,7 @@ void fmu_indicators_of(const fmu_instance *f, const bg_snapshot *now, double *va
             values[2 * i + 1] = now->caps[i] + effort + f->at.margin[i];
         }
     }
+    keep_at_rest(f, now, values);
     for (int k = 0; k < FMU_SWITCHES; k++)
         values[2 * K + k] = f->at.side[k] * f->switches[k] + f->at.switch_rest[k];
 }

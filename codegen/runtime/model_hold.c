@@ -1,6 +1,4 @@
-/* What holds ports that stick: linear equations for their efforts. Which rows of them are
- * independent was decided exactly when the model was generated; here only numbers are solved for.
- * */
+/* What holds ports that stick: linear equations for their efforts. */
 #include <math.h>
 #include <string.h>
 
@@ -9,73 +7,6 @@
 enum { K = BG_FRICTION, N = BG_STATES, M = BG_INPUTS };
 #define SQUARE BG_TABLE(BG_FRICTION, BG_FRICTION)
 #define PORTS BG_ROOM(BG_FRICTION)
-static const double CONSISTENT = 1e-9;
-
-/* factors[j]: row `row` of a as a combination of `count` independent rows; 0 unless it is one. */
-static int combination(int columns, const double *a, int count, const int *rows,
-                       const int *pivot_columns, int row, double *factors)
-{
-    double system[SQUARE];
-    int pivots[PORTS];
-    for (int j = 0; j < count; j++) {
-        for (int i = 0; i < count; i++)
-            system[i * count + j] = a[rows[j] * columns + pivot_columns[i]];
-        factors[j] = a[row * columns + pivot_columns[j]];
-    }
-    if (!bg_factor(count, system, pivots))
-        return 0;
-    bg_solve(count, system, pivots, 1, factors);
-    for (int c = 0; c < columns; c++) {
-        double left = a[row * columns + c], size = fabs(left);
-        for (int j = 0; j < count; j++) {
-            left -= factors[j] * a[rows[j] * columns + c];
-            size += fabs(factors[j] * a[rows[j] * columns + c]);
-        }
-        if (fabs(left) > CONSISTENT * size)
-            return 0;
-    }
-    return 1;
-}
-
-/* null x count: combinations of slips that efforts do not change at once. */
-static int null_rows(const bg_structure *s, int count, const double *D, double *null)
-{
-    double factors[PORTS];
-    memset(null, 0, sizeof(double) * SQUARE);
-    for (int r = 0; r < s->null; r++) {
-        if (!combination(count, D, s->direct, s->direct_rows, s->direct_columns, s->null_rows[r],
-                         factors))
-            return 0;
-        null[r * count + s->null_rows[r]] = 1.0;
-        for (int j = 0; j < s->direct; j++)
-            null[r * count + s->direct_rows[j]] = -factors[j];
-    }
-    return 1;
-}
-
-/* held->share: combinations that the states do not see either. */
-static int share_rows(const bg_structure *s, const double *null, const double *seen, bg_hold *held)
-{
-    double factors[PORTS];
-    const int count = held->count;
-    for (int r = 0; r < s->null; r++) {
-        double *row = held->share + held->share_count * count;
-        int kept = 0;
-        for (int j = 0; j < s->kept; j++)
-            kept |= s->kept_rows[j] == r;
-        if (kept)
-            continue;
-        if (!combination(N, seen, s->kept, s->kept_rows, s->kept_columns, r, factors))
-            return 0;
-        for (int c = 0; c < count; c++) {
-            row[c] = null[r * count + c];
-            for (int j = 0; j < s->kept; j++)
-                row[c] -= factors[j] * null[s->kept_rows[j] * count + c];
-        }
-        held->share_count++;
-    }
-    return 1;
-}
 
 static void copy_direct(const bg_model *m, const bg_structure *s, bg_hold *held)
 {
@@ -167,24 +98,15 @@ static int check_slopes(const bg_structure *s, const bg_hold *held)
 
 static int build(bg_model *m, const bg_structure *s, bg_hold *held)
 {
-    double D[SQUARE], null[SQUARE];
-    double *const seen = held->take_away; /* not in use yet */
-    const int count = held->count;
-    for (int i = 0; i < count; i++)
-        for (int j = 0; j < count; j++)
-            D[i * count + j] = m->numbers.slip_D[held->ports[i] * K + held->ports[j]];
-    if (!null_rows(s, count, D, null))
+    double null[SQUARE];
+    if (!bg_independent(m, s, held, null))
         return BG_STRUCTURE;
-    for (int r = 0; r < s->null; r++)
-        for (int c = 0; c < count; c++)
-            add_row(N, null[r * count + c], m->numbers.slip_F, held->ports[c], seen + r * N);
-    if (!share_rows(s, null, seen, held))
-        return BG_STRUCTURE;
-    memset(held->take_away, 0, sizeof held->take_away);
     held->kept = s->kept;
+    held->ruled = s->ruled ? held->share_count : 0;
     copy_direct(m, s, held);
     rule_states(m, s, null, held);
-    if (!invert_system(s, held) || !find_take_away(m, held))
+    /* Where laws answer as well, all are searched for together. */
+    if ((s->moved == 0 && !invert_system(s, held)) || !find_take_away(m, held))
         return BG_NO_HOLD;
     return check_slopes(s, held);
 }

@@ -111,7 +111,7 @@ int bg_model_affine_map(bg_model *m, const int *mode, double *matrix)
         sticking |= mode[i] == 0;
     if (status == BG_OK && sticking)
         status = bg_hold_of(m, mode, &held);
-    if (status == BG_OK && held && held->share_count > 0)
+    if (status == BG_OK && held && bg_shares(held))
         status = BG_NOT_AFFINE;
     if (status == BG_OK)
         status = probe(m, mode, -1, m->work.origin);

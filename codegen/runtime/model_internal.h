@@ -21,11 +21,13 @@ typedef struct {
     bg_block *values;
 } bg_group;
 
-/* Ranks of one set of sticking ports, exact: `direct` rows of D are independent in
- * `direct_columns`; of the combinations that D leaves free (one for each of `null`, positions of
- * the other ports), those of positions `kept` are independent in the states `kept_columns`. */
+/* Ranks of one set of sticking ports, exact: `direct` rows of D, over the set and the coupled laws
+ * that it moves, are independent in `direct_columns`; of the combinations that D leaves free (one
+ * for each of `null`, positions of the other ports), those of positions `kept` are independent in
+ * the states `kept_columns`; `ruled`: whether other inputs rule one that is not. */
 typedef struct {
-    int direct, null, kept;
+    int moved, direct, null, kept, ruled;
+    int moved_laws[BG_ROOM(BG_COUPLED)];
     int direct_rows[BG_ROOM(BG_FRICTION)], direct_columns[BG_ROOM(BG_FRICTION)];
     int null_rows[BG_ROOM(BG_FRICTION)];
     int kept_rows[BG_ROOM(BG_FRICTION)], kept_columns[BG_ROOM(BG_FRICTION)];
@@ -71,6 +73,12 @@ int bg_assemble(bg_model *m);
 void bg_inverse_entries(bg_model *m, int count, const int *rows, const int *columns, double *out);
 void bg_solve_storages(const bg_numbers *a, int columns, double *right);
 
+/* model_independent.c: combinations of slips; whether redundant ports share a load; how far what
+ * other inputs rule of slips is from leaving zero. */
+int bg_independent(const bg_model *m, const bg_structure *s, bg_hold *held, double *null);
+int bg_shares(const bg_hold *held);
+double bg_room(const bg_hold *held, int port, const bg_snapshot *shot, const double *near);
+
 /* model_hold.c */
 int bg_hold_of(bg_model *m, const int *mode, bg_hold **found);
 int bg_holding_efforts(bg_model *m, const bg_hold *held, double *efforts);
@@ -78,6 +86,9 @@ void bg_correct(const bg_hold *held, double *rate, const double *du);
 
 /* Takes what slips are left at sticking ports from s, along A^-1 F^T; `shot` is of that mode. */
 int bg_remove_slips(bg_model *m, const int *mode, const bg_snapshot *shot, double *s);
+
+/* model_stick.c: m->mode for a step of h; rates of inputs are in m->work. */
+int bg_stick(bg_model *m, double t, double h, const double *s, const double *w);
 
 /* model_share.c */
 void bg_fair_share(const bg_hold *held, const double *caps, double *efforts);

@@ -62,15 +62,22 @@ static int come_to_end(bg_located *c)
 /* Takes the present instant into account, decides the mode there and removes slips that stick. */
 static int settle(bg_located *c, int started, int last)
 {
-    signed char before[BG_ROOM(K)];
+    signed char before[BG_ROOM(K)], usable[BG_ROOM(K)];
     double fastest;
-    int status = K > 0 ? bg_located_see(c) : BG_OK;
-    if (status != BG_OK || K == 0)
-        return status;
-    status = bg_located_fastest(c, c->t, c->s, &fastest);
+    if (K == 0)
+        return BG_OK;
+    memcpy(before, c->mode, sizeof before);
+    memcpy(usable, before, sizeof usable);
+    int status = bg_located_usable(c, 1, usable);
+    if (status == BG_OK)
+        status = bg_located_see(c, usable);
+    if (status == BG_OK)
+        status = bg_located_usable(c, 0, c->mode);
+    if (status == BG_OK)
+        status = bg_located_fastest(c, c->t, c->s, &fastest);
+    memcpy(c->mode, before, sizeof before);
     if (status != BG_OK)
         return status;
-    memcpy(before, c->mode, sizeof before);
     c->moment = 1.0 / fmax(fastest, 100.0 / c->span);
     status = last ? come_to_end(c) : BG_OK;
     if (status != BG_OK)

@@ -25,6 +25,7 @@ typedef struct {
  * margin to the breakaway effort. Armed when they have risen above rounding. */
 typedef struct {
     double blind, limit[BG_ROOM(BG_FRICTION)], before[BG_ROOM(BG_FRICTION)];
+    double near[BG_ROOM(BG_FRICTION)]; /* where slips that inputs rule have left zero */
     int armed[BG_ROOM(BG_FRICTION)];
 } bg_watch;
 
@@ -49,7 +50,7 @@ typedef struct {
     const bg_signals *signals;
     bg_request *asked;
     double t, span, s[BG_SIZE], moment;
-    int segment, next;
+    int segment, next, failed; /* why no mode could be evaluated */
     signed char mode[BG_ROOM(BG_FRICTION)], touched[BG_ROOM(BG_FRICTION)];
     double peak_x[BG_ROOM(BG_STATES)], peak_u[BG_ROOM(BG_INPUTS)];
     bg_rounds rounds;

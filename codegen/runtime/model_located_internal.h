@@ -2,10 +2,9 @@
 #ifndef BG_MODEL_LOCATED_INTERNAL_H
 #define BG_MODEL_LOCATED_INTERNAL_H
 
+#include "bg_choose.h"
 #include "model_internal.h"
 #include "model_located.h"
-
-#define BG_LOOK_AHEAD 1e-4 /* ties are decided this fraction of the shortest time constant later */
 
 /* model_located.c: everything at t and s in the present segment and a mode, in c->shot; rates. */
 int bg_located_look(bg_located *c, double t, const double *s, const signed char *mode);
@@ -14,7 +13,7 @@ int bg_located_rate(bg_located *c, double t, const double *s, double *rate);
 /* model_rounding.c */
 double bg_slip_rate(const bg_model *m, const bg_snapshot *shot, int port);
 void bg_located_rounding(bg_located *c, double t, bg_rounding *size);
-int bg_located_see(bg_located *c);
+int bg_located_see(bg_located *c, const signed char *slipping);
 int bg_located_jacobian(bg_located *c, double t, const double *s, double *jacobian);
 int bg_located_fastest(bg_located *c, double t, const double *s, double *fastest);
 
@@ -24,7 +23,9 @@ int bg_located_calm(bg_located *c, double *fastest);
 void bg_progress_begin(bg_located *c);
 int bg_progress_check(bg_located *c);
 
-/* model_decide.c: the mode just after c->t, sticking slips removed. */
+/* model_decide.c: a mode in which the present instant can be evaluated, see bg_choose.h; the mode
+ * just after c->t, sticking slips removed. */
+int bg_located_usable(bg_located *c, int slipping, signed char *mode);
 int bg_located_decide(bg_located *c);
 
 /* model_watch.c: triggers from c->t on; the first event of the solver's latest step: 1 in *found,

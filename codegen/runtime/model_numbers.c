@@ -74,8 +74,11 @@ static void note_slips(bg_numbers *a)
         const int row = bg_friction_readings[i];
         for (int j = 0; j < BG_STATES; j++)
             a->slip_F[i * BG_STATES + j] = a->F[row * BG_STATES + j];
+        double *const slip = a->slip_D + i * (BG_FRICTION + BG_COUPLED);
         for (int j = 0; j < BG_FRICTION; j++)
-            a->slip_D[i * BG_FRICTION + j] = a->D[row * BG_INPUTS + bg_friction_inputs[j]];
+            slip[j] = a->D[row * BG_INPUTS + bg_friction_inputs[j]];
+        for (int j = 0; j < BG_COUPLED; j++)
+            slip[BG_FRICTION + j] = a->D[row * BG_INPUTS + bg_coupled.inputs[j]];
     }
 }
 

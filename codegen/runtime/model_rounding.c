@@ -94,12 +94,9 @@ void bg_located_rounding(bg_located *c, double t, bg_rounding *size)
 
 /* Takes the present instant into the peaks, friction slipping: states, and for every input the sum
  * of the magnitudes of its terms in states. A term is the effect of a small relative change. */
-int bg_located_see(bg_located *c)
+int bg_located_see(bg_located *c, const signed char *slipping)
 {
-    signed char slipping[BG_ROOM(K)] = {0};
     double u[BG_ROOM(M)], terms[BG_ROOM(M)], moved[BG_SIZE];
-    for (int i = 0; i < K; i++)
-        slipping[i] = c->mode[i] ? c->mode[i] : 1;
     int status = bg_located_look(c, c->t, c->s, slipping);
     for (int i = 0; i < N; i++)
         c->peak_x[i] = fmax(c->peak_x[i], fabs(c->shot.x[i]));

@@ -56,22 +56,25 @@ typedef struct {
 } bg_snapshot;
 
 /* x' = P x + Q u + R u',  y = F x + D u + G u', by rows; A factored, its rows and columns scaled.
- * slip_F, slip_D: F and D of the friction ports' slips, as they stand without x'. */
+ * slip_F, slip_D: F and D of the friction ports' slips, as they stand without x'; of D what
+ * friction and the laws coupled to it give. */
 typedef struct {
     double P[BG_TABLE(BG_STATES, BG_STATES)], Q[BG_TABLE(BG_STATES, BG_INPUTS)];
     double R[BG_TABLE(BG_STATES, BG_INPUTS)];
     double F[BG_TABLE(BG_READINGS, BG_STATES)], D[BG_TABLE(BG_READINGS, BG_INPUTS)];
     double G[BG_TABLE(BG_READINGS, BG_INPUTS)];
     double A[BG_TABLE(BG_STATES, BG_STATES)], scale[BG_ROOM(BG_STATES)];
-    double slip_F[BG_TABLE(BG_FRICTION, BG_STATES)], slip_D[BG_TABLE(BG_FRICTION, BG_FRICTION)];
+    double slip_F[BG_TABLE(BG_FRICTION, BG_STATES)];
+    double slip_D[BG_TABLE(BG_FRICTION, BG_FRICTION + BG_COUPLED)];
     int pivots[BG_ROOM(BG_STATES)];
 } bg_numbers;
 
 /* The holding equations X x + U u + V u' = 0 of one set of sticking ports (bits of `stuck`).
- * Of `count` ports, the slips of `kept` combinations are states' and kept zero by taking away. */
+ * Of `count` ports, the slips of `kept` combinations are states' and kept zero by taking away;
+ * those of the first `ruled` rows of `share` are other inputs' and must be zero. */
 typedef struct {
     unsigned stuck;
-    int ready, count, kept, share_count, ports[BG_ROOM(BG_FRICTION)];
+    int ready, count, kept, share_count, ruled, ports[BG_ROOM(BG_FRICTION)];
     double X[BG_TABLE(BG_FRICTION, BG_STATES)];
     double U[BG_TABLE(BG_FRICTION, BG_INPUTS)], V[BG_TABLE(BG_FRICTION, BG_INPUTS)];
     double inverse[BG_TABLE(BG_FRICTION, BG_FRICTION)], share[BG_TABLE(BG_FRICTION, BG_FRICTION)];

@@ -14,13 +14,24 @@ typedef struct {
     double level;
 } search;
 
-/* The triggers of the instant in c->shot. */
+/* The triggers of the instant in c->shot; a port that sticks lets go where inputs move it, too. */
 static void triggers(const bg_located *c, double *values)
 {
+    int mode[PORTS] = {0}, sticking = 0;
+    bg_hold *held = NULL;
     for (int i = 0; i < K; i++) {
         const double effort = c->shot.u[bg_friction_inputs[i]];
         const double slip = c->shot.y[bg_friction_readings[i]];
         values[i] = c->mode[i] ? c->mode[i] * slip : c->shot.caps[i] - fabs(effort);
+        mode[i] = c->mode[i];
+        sticking |= mode[i] == 0;
+    }
+    if (!sticking || bg_hold_of(c->model, mode, &held) != BG_OK || held->ruled == 0)
+        return;
+    for (int i = 0; i < K; i++) {
+        const double rest = c->shot.caps[i] + 4 * c->watch.limit[i];
+        if (c->mode[i] == 0)
+            values[i] = fmin(values[i], rest * bg_room(held, i, &c->shot, c->watch.near));
     }
 }
 
@@ -141,6 +152,7 @@ int bg_watch_begin(bg_located *c)
     c->watch.blind = c->t + BG_LOOK_AHEAD * c->moment;
     for (int i = 0; i < K; i++) {
         c->watch.limit[i] = c->mode[i] ? size.slip[i] : size.effort[i];
+        c->watch.near[i] = BG_LEFT * size.slip[i];
         c->watch.armed[i] = 0;
     }
     triggers(c, c->watch.before);

@@ -21,7 +21,8 @@ from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import Mode
 from codegen.model.guards import guard_values
-from codegen.model.modes import LOOK_AHEAD, TOLERANCE, Peaks, a_moment_later, decide
+from codegen.model.modes import a_moment_later, decide
+from codegen.model.rounding import LOOK_AHEAD, TOLERANCE, Peaks
 from codegen.runs.legs import Leg, Settings
 from codegen.simulate import Simulator, guarded_simulator
 from codegen.switched.handover import Handover

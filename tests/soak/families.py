@@ -175,6 +175,18 @@ FAMILIES = (
         20,
         2_000,
     ),
+    Family(
+        "ruled-friction",
+        "codegen/test_friction_ruled.py::test_random_drivelines_move_as_the_judge_finds",
+        30,
+        2_000,
+    ),
+    Family(
+        "ruled-friction-in-c",
+        "codegen/test_friction_ruled.py::test_random_drivelines_move_as_the_judge_finds_in_c",
+        4,
+        2_000,
+    ),
     Family("diodes", "codegen/test_switched_networks.py::test_diodes_with_resistances", 12, 1_000),
     Family(
         "stiff-linear", "codegen/test_stiff_linear.py::test_states_are_the_exponential", 24, 500

@@ -80,7 +80,7 @@ const bg_pattern bg_layout[BG_MATRICES] = {
 };
 
 const bg_structure bg_structures[] = {
-    {0, 0, 0, {0}, {0}, {0}, {0}, {0}}, {0, 1, 1, {0}, {0}, {0}, {0}, {0}}
+    {0, 0, 0, 0, 0, {0}, {0}, {0}, {0}, {0}, {0}}, {0, 0, 1, 1, 0, {0}, {0}, {0}, {0}, {0}, {0}}
 };
 
 /* Nonzero entries of A, J, B, E, F, D, H, K: 22 operations. */
