@@ -12,7 +12,8 @@ from codegen.inputs.pieces import Piece
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.model.affine import AffineMap
 from codegen.model.closed import ClosedModel, Mode
-from codegen.model.modes import LOOK_AHEAD, Peaks, scales
+from codegen.model.modes import Peaks, scales
+from codegen.model.pace import moment
 from codegen.runs.legs import Ended, Track
 from codegen.runs.watched import DEGREE, Steps, exponential, lasting, series, watched
 
@@ -50,7 +51,7 @@ class ExactLeg:
         self._model, self._pieces = model, pieces
         self._system = watched(model, affine, made, mode, len(s))
         self._z = np.concatenate([s, made.start])
-        self._blind = LOOK_AHEAD * peaks.time
+        self._blind = moment(peaks.time)
         now = model.at(t, s, pieces, mode)
         size = scales(model, now, t, peaks)
         limits = np.where(np.array(mode) == 0, size.effort, size.slip)

@@ -21,7 +21,6 @@ enum {
 #define BG_ALIGNED
 #endif
 
-#define BG_LOOK_AHEAD 1e-4 /* ties are decided this fraction of the shortest time constant later */
 #define BG_LONGEST 2.5     /* |M| h of one step of a leap: bounds need its square below 8 */
 #define BG_ROUNDED 1e4     /* so many steps in double precision leave all digits that count */
 #define BG_MANY 3e5        /* so many steps are always taken where something is watched .. */
@@ -91,7 +90,7 @@ struct bg_context {
     bg_advancing *advance;
     void *caller;                       /* for `advance` */
     int clock, segment, where;
-    double t, s[BG_N], span;
+    double t, s[BG_N], began;
     int known, known_segment;           /* whether `given` holds, for `known_time` */
     double known_time, given[2 * BG_W];
     signed char mode[BG_PORTS], touched[BG_PORTS];

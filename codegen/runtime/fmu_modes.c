@@ -19,13 +19,16 @@ typedef struct {
 static fmu_error later(fmu_instance *f, const int *mode, const bg_snapshot *now, bg_snapshot *then)
 {
     const double t = f->at.time;
+    double following = INFINITY;
     fmu_error failed;
+    fmu_next_break(f, &following);
+    const double ahead = fmin(AHEAD, 0.5 * (following - t));
     for (int i = 0; i < BG_SIZE; i++)
-        f->point[0][i] = f->at.s[i] + 0.5 * AHEAD * now->rate[i];
-    failed = fmu_look(f, t + 0.5 * AHEAD, f->point[0], mode, then);
+        f->point[0][i] = f->at.s[i] + 0.5 * ahead * now->rate[i];
+    failed = fmu_look(f, t + 0.5 * ahead, f->point[0], mode, then);
     for (int i = 0; i < BG_SIZE; i++)
-        f->point[1][i] = f->at.s[i] + AHEAD * then->rate[i];
-    return failed ? failed : fmu_look(f, t + AHEAD, f->point[1], mode, then);
+        f->point[1][i] = f->at.s[i] + ahead * then->rate[i];
+    return failed ? failed : fmu_look(f, t + ahead, f->point[1], mode, then);
 }
 
 /* 1: holds; -1: contradicts; 0: a tie. A slip that is none of rounding decides by itself. */

@@ -5,8 +5,6 @@
 #include "model_internal.h"
 #include "model_located.h"
 
-#define BG_LOOK_AHEAD 1e-4 /* ties are decided this fraction of the shortest time constant later */
-
 /* model_located.c: everything at t and s in the present segment and a mode, in c->shot; rates. */
 int bg_located_look(bg_located *c, double t, const double *s, const signed char *mode);
 int bg_located_rate(bg_located *c, double t, const double *s, double *rate);

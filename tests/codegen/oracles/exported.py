@@ -12,7 +12,8 @@ import bondgraph as bg
 import differentials
 from codegen import Simulator
 from codegen.inputs.pieces import Piece
-from codegen.model.modes import LOOK_AHEAD, Peaks, decide
+from codegen.model.modes import Peaks, decide
+from codegen.model.pace import LOOK_AHEAD
 from differentials.model import Model, model
 from oracles.models import belt, clutches, oscillator, stacked_blocks
 
