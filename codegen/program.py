@@ -13,6 +13,7 @@ from codegen.gains import check_gains
 from codegen.model.affine import is_affine
 from codegen.records import Block, FrictionPort, Group, Pattern, Program, block
 from codegen.sections import coefficients, friction, group, known_rates, uses
+from codegen.timed import Sources
 
 __all__ = ["Block", "FrictionPort", "Group", "Pattern", "Program", "block", "lower"]
 
@@ -22,12 +23,14 @@ def lower(
     laws: Mapping[Any, object] | None = None,
     parameters: Iterable[str] = (),
     guards: Sequence[sp.Expr] = (),
+    timed: bool = False,
 ) -> Program:
     """Sort names into parameters and inputs, order the laws, and share common subexpressions.
 
     ``laws``: node (or the input it gives) to the law that closes its port, over those declared.
     ``parameters``: the names that will be given numbers; any other name in a law is an input.
-    ``guards``: expressions that end a run where one of them falls below zero.
+    ``guards``: expressions that end a run where one of them falls below zero. ``timed``: what holds the
+    time and parameters alone becomes an input of its own, one of ``Program.sources``.
 
     Raises `ParameterError` if the matrices use a name that is no parameter, `DependentSourceError`
     if a law would have to be differentiated.
@@ -44,6 +47,12 @@ def lower(
     _check_varying(closing)
     taken = _all_names(equations, closing) | watched
     expressions, layout = coefficients(equations)
+    sources = Sources(closing, given, taken)
+    if timed:
+        expressions = [sources.parted(entry) for entry in expressions]
+        guards = [sources.parted(guard) for guard in guards]
+        closing = sources.told(closing)
+        taken |= set(closing.external)
     rubbing, values = friction(closing)
     readings = tuple(equations.readings)
     external_rates = _rate_names(closing.external, taken)
@@ -54,6 +63,7 @@ def lower(
         law_rates=tuple(readings.index(name) for name in closing.law_states.values()),
         inputs=equations.inputs,
         external=closing.external,
+        sources=tuple(sources.found),
         external_rates=external_rates,
         readings=readings,
         outputs=equations.outputs,

@@ -68,6 +68,8 @@ class Program:
     inputs: tuple[sp.Symbol, ...]
     #: Inputs that a run must be given, those of laws included.
     external: tuple[sp.Symbol, ...]
+    #: Expressions of time and parameters that the last of these are; users do not give them.
+    sources: tuple[sp.Expr, ...]
     #: The rates of external inputs, for known laws.
     external_rates: tuple[sp.Symbol, ...]
     readings: tuple[sp.Symbol, ...]
@@ -92,6 +94,11 @@ class Program:
     varying: bool
     #: Whether each friction mode is an affine system with constant coefficients.
     affine: bool
+
+    @property
+    def asked(self) -> tuple[sp.Symbol, ...]:
+        """The external inputs that a run is given by its user."""
+        return self.external[: len(self.external) - len(self.sources)]
 
 
 def block(expressions: Sequence[sp.Expr], taken: Iterable[sp.Symbol] = ()) -> Block:

@@ -23,7 +23,9 @@ from codegen.inputs.signals import Constant
 from codegen.model.closed import ClosedModel
 from codegen.model.energies import warn_of_energies
 from codegen.model.modes import decide
-from codegen.model.rounding import LOOK_AHEAD, Peaks
+from codegen.model.pace import LOOK_AHEAD
+from codegen.model.rounding import Peaks
+from codegen.model.sources import source_signals
 from codegen.program import Program, lower
 from codegen.runs.arguments import (
     checked_times,
@@ -78,6 +80,9 @@ class Simulator:
         if not is_number(t) or not is_finite(t):
             raise SignalError(f"the time must be a finite number, not {t!r}")
         pieces = [Constant(float(value)).pieces[0] for value in given]
+        sources = self.sources(t, t)
+        pieces += [signal.piece(t) for signal in sources]
+        given = np.append(given, [signal(t) for signal in sources])
         s = self.vector(t, state, given)
         slipping, peaks = self._all_slipping(), Peaks.none(self.closed)
         with np.errstate(all="ignore"):
@@ -131,6 +136,8 @@ class Simulator:
         """
         times = checked_times(time)
         signals = signals_for({} if inputs is None else inputs, self.inputs)
+        asked = signals
+        signals = [*asked, *self.sources(float(times[0]), float(times[-1]))]
         settings = settings_of(method, rtol, atol)
         refuse_impulses(self.closed, signals, times)
         at_start = np.array([signal(times[0]) for signal in signals])
@@ -142,8 +149,8 @@ class Simulator:
                 stopped = found
                 if stopped is not None and stopped.limit:
                     tell(stopped)
-                begin, span = float(times[0]), float(times[-1] - times[0])
-                run = run_hybrid(self.closed, times, start, signals, settings, begin, span)
+                begin = float(times[0])
+                run = run_hybrid(self.closed, times, start, signals, settings, begin, begin)
                 found = self._recorded(times, signals, run.track, "numpy")
                 if stopped is not None and not stopped.limit:
                     tell(stopped)
@@ -156,14 +163,14 @@ class Simulator:
             found.events,
             MappingProxyType(columns),
             observer,
-            self._ledger(Run(self.laws, self.closed.parameters, times, start, signals, settings)),
+            self._ledger(Run(self.laws, self.closed.parameters, times, start, asked, settings)),
             told_units(self.closed.equations),
             found.backend,
         )
 
     def _ledger(self, run: Run) -> Ledger:
         program = self.closed.program
-        names = (*program.states, *program.law_states, *program.inputs, *program.external)
+        names = (*program.states, *program.law_states, *program.inputs, *program.asked)
         return Ledger(self.closed.equations, tuple(name.name for name in names), run.again)
 
     def _in_c(
@@ -197,9 +204,14 @@ class Simulator:
     ) -> tuple[list[Piece], Array]:
         """Constant inputs as pieces, and the integrated vector at these states."""
         signals = signals_for(inputs, self.inputs)
-        given = np.array([signal(0.0) for signal in signals])
-        pieces = [constant_piece(0.0, value) for value in given.tolist()]
+        pieces = [constant_piece(0.0, signal(0.0)) for signal in signals]
+        pieces += [signal.piece(0.0) for signal in self.sources(0.0, 0.0)]
+        given = np.array([piece(0.0) for piece in pieces])
         return pieces, self.vector(0.0, initial_values(initial, self.states), given)
+
+    def sources(self, begin: float, end: float) -> list[Signal]:
+        """What known sources do from ``begin`` to ``end`` [s]; their pieces follow those of the inputs."""
+        return source_signals(self.closed.program, self.closed.parameters, begin, end)
 
     def _all_slipping(self) -> tuple[int, ...]:
         return tuple(1 for _ in self.closed.program.friction)
@@ -251,11 +263,15 @@ def guarded_simulator(
     parameters: Mapping[str, object],
     laws: Mapping[Any, object] | None,
     guards: Sequence[sp.Expr],
+    timed: bool = True,
 ) -> Simulator:
-    """A simulator whose model has guards: conditions that end a stretch where one falls below zero."""
+    """A simulator whose model has guards: conditions that end a stretch where one falls below zero.
+
+    ``timed``: as `lower` takes it.
+    """
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
-    return bound(lower(equations, laws, parameters, guards), equations, parameters, laws)
+    return bound(lower(equations, laws, parameters, guards, timed), equations, parameters, laws)
 
 
 def bound(
@@ -266,7 +282,7 @@ def bound(
     closed = ClosedModel(program, equations, parameters)
     return Simulator(
         tuple(name.name for name in (*program.states, *program.law_states)),
-        tuple(name.name for name in program.external),
+        tuple(name.name for name in program.asked),
         tuple(name.name for name in program.outputs),
         closed,
         laws,

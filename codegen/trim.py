@@ -131,10 +131,10 @@ def _named(model: ClosedModel, now: Snapshot) -> dict[str, float]:
     program = model.program
     groups = (
         (program.states, now.x), (program.law_states, now.z), (program.inputs, now.u),
-        (program.external, now.external), (program.readings, now.y),
+        (program.asked, now.external), (program.readings, now.y),
     )  # fmt: skip
     values: dict[str, float] = {}
     for names, row in groups:
-        for name, value in zip(names, row.tolist(), strict=True):
+        for name, value in zip(names, row.tolist(), strict=False):
             values.setdefault(name.name, value)
     return values

@@ -33,11 +33,11 @@ ORDER = {
     ],
     "codegen": [
         "arrays", "pairs", "roots", *_room("inputs", "pieces generators polynomials signal signals sampled "
-                                            "tables"),
-        "model.affine", "closing", "records", "gains", "sections", "program", "identifiers", "printing",
-        "units",
-        *_room("model", "numpy_backend numbers energies sharp snapshot sharing slips friction instant loops "
-               "rubbing closed stability sizes trials rounding verdicts modes guards places"),
+                                            "tables discs segments branches harmonics known"),
+        "model.affine", "closing", "timed", "records", "gains", "sections", "program", "identifiers",
+        "printing", "units",
+        *_room("model", "numpy_backend numbers energies sharp sources pace snapshot sharing slips friction "
+               "instant loops rubbing closed stability sizes trials rounding verdicts modes guards places"),
         *_room("energy", "stored quadrature accounts tally"),
         *_room("runs", "events sundials progress legs watched exact ladder free hybrid arguments steps "
                "impulses observer tables summary"),
@@ -53,7 +53,7 @@ ORDER = {
         *_room("python", "sticking text blocks tables export"),
         *_room("switched", "handover phases spliced simulator"),
         *_room("sparse", "valued signal_rows model steps run"),
-        *_room("fmu", "variables switches model dependencies xml binaries export"),
+        *_room("fmu", "variables switches resolution model dependencies xml binaries export"),
     ],
     "differentials": [
         "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "model",

@@ -17,6 +17,7 @@ from codegen.energy.tally import Tally, vector_of
 from codegen.inputs.signal import Signal
 from codegen.model.closed import ClosedModel, Snapshot
 from codegen.model.places import places
+from codegen.model.sources import source_signals
 from codegen.program import lower
 from codegen.runs.columns import named_columns
 from codegen.runs.hybrid import run_hybrid
@@ -39,12 +40,13 @@ class Run:
         """The run once more, in Python, with accounts integrated."""
         model = closed_model(equations, self.laws, self.parameters)
         tally = tally_of(model, whole, self.times)
-        begin, span = float(self.times[0]), float(self.times[-1] - self.times[0])
+        begin, end = float(self.times[0]), float(self.times[-1])
+        signals = [*self.signals, *source_signals(model.program, model.parameters, begin, end)]
         with np.errstate(all="ignore"):
             run = run_hybrid(
-                model, self.times, self.start, self.signals, self.settings, begin, span, tally
+                model, self.times, self.start, signals, self.settings, begin, begin, tally
             )
-            shots = snapshots(model, self.times, self.signals, run.track)
+            shots = snapshots(model, self.times, signals, run.track)
         _, observer = named_columns(model, self.times, shots)
         rows = np.array(tally.rows)
         return Integrated(rows[:, :-1] @ shares(whole), rows[:, -1], observer)
@@ -55,7 +57,9 @@ def closed_model(
     parameters: Mapping[str, sp.Rational], guards: Sequence[sp.Expr] = (),
 ) -> ClosedModel:  # fmt: skip
     """The model of a run, with more signals told."""
-    return ClosedModel(lower(equations, laws, parameters, guards), equations, parameters)
+    return ClosedModel(
+        lower(equations, laws, parameters, guards, timed=True), equations, parameters
+    )
 
 
 def tally_of(model: ClosedModel, whole: Sequence[Account], times: Array) -> Tally:

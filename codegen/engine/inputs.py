@@ -62,7 +62,7 @@ def _settled(piece: Piece) -> Piece:
             kept.pop()
         if kept:
             terms.append((rate, tuple(kept)))
-    return Piece(piece.start, tuple(terms))
+    return Piece(piece.start, tuple(terms), piece.pace)
 
 
 def _structures(

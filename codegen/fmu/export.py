@@ -23,12 +23,13 @@ from codegen.fmu.xml import build_description, description
 from codegen.identifiers import identifiers
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, as_signal
+from codegen.model.pace import time_constant
 from codegen.program import Program
 from codegen.runs.arguments import initial_values
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import Leg, Settings
 from codegen.runs.steps import round_step, step_at_start
-from codegen.simulate import Simulator, simulator
+from codegen.simulate import Simulator, guarded_simulator
 
 _COMMON = (
     "common.c",
@@ -41,15 +42,12 @@ _COMMON = (
     "derive.c",
 )
 
+_SHARED = ("fmu_common.h", "fmu_ranges.h", *(f"fmu_{name}" for name in _COMMON))
+
 GLUE: Mapping[str, tuple[str, ...]] = {
-    "2.0": (
-        "fmu_common.h", *(f"fmu_{name}" for name in _COMMON), "fmu2.h", "fmu2.c", "fmu2_modes.c",
-    ),
-    "3.0": (
-        "fmu_common.h", *(f"fmu_{name}" for name in _COMMON), "fmu3.h", "fmu3.c", "fmu3_modes.c",
-        "fmu3_refused.c",
-    ),
-}  # fmt: skip
+    "2.0": (*_SHARED, "fmu2.h", "fmu2.c", "fmu2_modes.c"),
+    "3.0": (*_SHARED, "fmu3.h", "fmu3.c", "fmu3_modes.c", "fmu3_refused.c"),
+}
 """C sources that are the same for every unit, by FMI version."""
 
 _DATE = (1980, 1, 1, 0, 0, 0)
@@ -108,14 +106,15 @@ def _model(
     inputs: Mapping[str, object],
 ) -> FmuModel:
     """Everything about the unit but its sources."""
-    ready = simulator(equations, parameters, laws)
+    ready = guarded_simulator(equations, parameters, laws, (), timed=False)
+    told = guarded_simulator(equations, parameters, laws, ())
     program, exact = ready.closed.program, ready.closed.parameters
     signals = _signals(ready, inputs)
     inside = {at: one for at, one in enumerate(signals) if not isinstance(one, float)}
     every = [Constant(one) if isinstance(one, float) else one for one in signals]
     refuse_impulses(ready.closed, every, np.array([0.0, math.inf]))
     start = initial_values(initial, ready.states)
-    shortest = _shortest(ready, start.tolist(), every)
+    shortest = _shortest(told, start.tolist(), every)
     switches = switching(program)
     starts = Starts(
         [float(exact[symbol.name]) for symbol in program.parameters],
@@ -133,6 +132,7 @@ def _model(
         starts,
         tuple(sorted(inside.items())),
         switches,
+        told.closed.program.sources,
         shortest,
     )
 
@@ -159,6 +159,7 @@ def _signals(ready: Simulator, inputs: Mapping[str, object]) -> list[Signal | fl
 
 def _shortest(ready: Simulator, start: list[float], signals: list[Signal]) -> float:
     """The shortest time constant [s] at the start, friction slipping."""
+    signals = [*signals, *ready.sources(0.0, 0.0)]
     pieces = [signal.piece(0.0) for signal in signals]
     mode = tuple(1 for _ in ready.closed.program.friction)
     settings = Settings("auto", 1e-10, 1e-11)
@@ -166,10 +167,10 @@ def _shortest(ready: Simulator, start: list[float], signals: list[Signal]) -> fl
         with np.errstate(all="ignore"):
             given = np.array([signal(0.0) for signal in signals])
             vector = ready.vector(0.0, np.array(start), given)
-            fastest = Leg(ready.closed, pieces, mode, settings, 1.0).fastest(0.0, vector)
+            fastest = Leg(ready.closed, pieces, mode, settings, 0.0).fastest(0.0, vector)
     except BondGraphError:
         return 1e-2
-    return 1 / max(fastest, 100.0)
+    return time_constant(fastest, 0.0)
 
 
 def _internal_step(shortest: float, longest: float) -> float:

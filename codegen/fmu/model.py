@@ -9,6 +9,7 @@ from bondgraph import StateEquations
 from codegen.c.blocks import function, places
 from codegen.c.scenario import signal_lines
 from codegen.c.text import array, comment, doubles, integers, quoted
+from codegen.fmu.resolution import resolution_text
 from codegen.fmu.variables import Starts, Variable
 from codegen.inputs.signal import Signal
 from codegen.inputs.tables import signal_table
@@ -19,7 +20,9 @@ from codegen.program import Program, block
 class FmuModel:
     """A model on its way into a unit. ``sources``: external inputs with the signals that are inside.
 
-    ``shortest`` [s]: its shortest time constant. ``identifier``: what its binaries are called.
+    ``known``: what holds the
+    time and parameters alone. ``shortest`` [s]: its shortest time constant. ``identifier``: what its binaries
+    are called.
     """
 
     name: str
@@ -30,6 +33,7 @@ class FmuModel:
     starts: Starts
     sources: tuple[tuple[int, Signal], ...]
     switches: tuple[sp.Expr, ...]
+    known: tuple[sp.Expr, ...]
     shortest: float
 
     @property
@@ -63,6 +67,7 @@ def model_text(model: FmuModel) -> str:
         "#include <math.h>",
         "",
         '#include "fmu_common.h"',
+        '#include "fmu_ranges.h"',
         "",
         *array(
             "const fmu_variable fmu_variables[]",
@@ -72,6 +77,7 @@ def model_text(model: FmuModel) -> str:
         *doubles("fmu_inputs", model.starts.inputs),
         *_sources(model.sources, len(program.external)),
         *function("fmu_switch_values", "Where laws switch", code, places(program), local=False),
+        *resolution_text(program, model.known),
     ]
     return "\n".join(lines) + "\n"
 

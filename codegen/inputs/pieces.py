@@ -22,10 +22,14 @@ SERIES = 9
 
 @dataclass(frozen=True)
 class Piece:
-    """The real part of ``sum_j p_j(tau) exp(rate_j tau)``, ``tau = t - start``."""
+    """The real part of ``sum_j p_j(tau) exp(rate_j tau)``, ``tau = t - start``.
+
+    ``pace`` [1/s]: how fast a polynomial is that stands for something else.
+    """
 
     start: float
     terms: tuple[Term, ...]
+    pace: float = 0.0
 
     def __call__(self, t: float) -> float:
         """The value at one time."""
@@ -56,12 +60,13 @@ class Piece:
     @cached_property
     def derivative(self) -> "Piece":
         """The rate of change in time, as a piece."""
-        return Piece(self.start, tuple((rate, _slope(rate, poly)) for rate, poly in self.terms))
+        slopes = tuple((rate, _slope(rate, poly)) for rate, poly in self.terms)
+        return Piece(self.start, slopes, self.pace)
 
     @property
     def fastest(self) -> float:
         """The largest magnitude of a rate [1/s]."""
-        return max((abs(rate) for rate, _ in self.terms), default=0.0)
+        return max(self.pace, *(abs(rate) for rate, _ in self.terms), 0.0)
 
 
 def constant_piece(start: float, value: float) -> Piece:
@@ -116,7 +121,7 @@ def moved(piece: Piece, start: float) -> Piece:
         ]
         factor = cmath.exp(rate * shift)
         terms.append((rate, tuple(factor * c for c in shifted)))
-    return Piece(start, tuple(terms))
+    return Piece(start, tuple(terms), piece.pace)
 
 
 def collected(terms: Sequence[Term]) -> tuple[Term, ...]:

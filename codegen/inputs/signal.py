@@ -5,6 +5,7 @@ A piece is a sum of polynomials times exponentials, ``sum_j p_j(tau) exp(rate_j 
 pieces again, so every signal is evaluated exactly.
 """
 
+import math
 from abc import ABC, abstractmethod
 from bisect import bisect_right
 from collections.abc import Sequence
@@ -35,6 +36,16 @@ class Signal(ABC):
     def piece(self, t: float) -> Piece:
         """The piece that holds at t and just after."""
         return self.pieces[bisect_right(self.breakpoints, t)]
+
+    @property
+    def seams(self) -> frozenset[float]:
+        """Breakpoints at which the signal goes on smoothly."""
+        return frozenset()
+
+    def following(self, t: float) -> float:
+        """The first breakpoint after t; infinite if there is none."""
+        at = bisect_right(self.breakpoints, t)
+        return self.breakpoints[at] if at < len(self.breakpoints) else math.inf
 
     def __call__(self, t: float) -> float:
         """The value at one time [s]; at a breakpoint that of the piece that begins."""
@@ -111,7 +122,11 @@ def first_step(signal: Signal, begin: float, end: float) -> float | None:
     """The first time after ``begin``, up to ``end``, at which a signal jumps; None if it never does."""
     for b, one, other in zip(signal.breakpoints, signal.pieces, signal.pieces[1:], strict=False):
         jump = abs(one(b) - other(b))
-        if begin < b <= end and jump > 1e-12 * (abs(one(b)) + abs(other(b))):
+        if (
+            begin < b <= end
+            and b not in signal.seams
+            and jump > 1e-12 * (abs(one(b)) + abs(other(b)))
+        ):
             return b
     return None
 

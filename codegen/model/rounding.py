@@ -17,9 +17,6 @@ TOLERANCE = 1e-10
 ROUNDING = 1e-4
 """A little later, an acceleration above this fraction of what counts as zero is a real one."""
 
-LOOK_AHEAD = 1e-4
-"""Ties are decided this fraction of the system's shortest time constant later."""
-
 
 @dataclass
 class Peaks:

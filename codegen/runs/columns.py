@@ -23,7 +23,7 @@ def named_columns(
         (program.states, found.x),
         (program.law_states, found.z),
         (program.inputs, found.u),
-        (program.external, found.external),
+        (program.asked, found.external),
         (program.readings, found.y),
     )
     columns: dict[str, Array] = {}

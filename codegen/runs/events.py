@@ -10,7 +10,8 @@ from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import CAPS, INPUTS, READINGS, ClosedModel, Mode, Snapshot
 from codegen.model.guards import guard_rounding
-from codegen.model.rounding import LOOK_AHEAD, Peaks, scales
+from codegen.model.pace import moment
+from codegen.model.rounding import Peaks, scales
 from codegen.model.verdicts import Look, room
 from codegen.roots import root
 
@@ -51,7 +52,7 @@ class Watch:
         peaks: Peaks | None = None,
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
-        self._blind = t + LOOK_AHEAD * (peaks.time if peaks else 0.0)
+        self._blind = t + moment(peaks.time if peaks else 0.0)
         guarded = bool(model.program.guards.results)
         affine = model.affine_map(mode, len(pieces)) if mode and not guarded else None
         self._affine = None if affine is None else (

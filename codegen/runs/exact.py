@@ -12,7 +12,8 @@ from codegen.inputs.pieces import Piece
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.model.affine import AffineMap
 from codegen.model.closed import ClosedModel, Mode
-from codegen.model.rounding import LOOK_AHEAD, Peaks, scales
+from codegen.model.pace import moment
+from codegen.model.rounding import Peaks, scales
 from codegen.model.verdicts import LEFT, Look
 from codegen.runs.legs import Ended, Track
 from codegen.runs.watched import DEGREE, Steps, exponential, lasting, series, watched
@@ -56,7 +57,7 @@ class ExactLeg:
         rest = np.where(ruled, LEFT * size.slip, np.inf)
         self._system = watched(model, affine, made, mode, len(s), rest)
         self._z = np.concatenate([s, made.start])
-        self._blind = LOOK_AHEAD * peaks.time
+        self._blind = moment(peaks.time)
         self._limits = limits[list(self._system.ports)] if mode else np.zeros(0)
         self._armed = np.zeros(len(self._limits), dtype=bool)
 

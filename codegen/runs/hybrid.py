@@ -1,5 +1,6 @@
 """The event-driven loop: smooth legs between breakpoints, sticking, release and zero crossings."""
 
+import math
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,28 +14,23 @@ from codegen.inputs.signal import Signal
 from codegen.model.closed import ClosedModel, Mode
 from codegen.model.guards import fallen_guards
 from codegen.model.modes import decide
-from codegen.model.rounding import LOOK_AHEAD, Peaks, scales
+from codegen.model.pace import STALLED, hardly_apart, look_ahead, time_constant
+from codegen.model.rounding import Peaks, scales
 from codegen.model.trials import evaluated
 from codegen.runs.events import Event
 from codegen.runs.exact import ExactLeg
 from codegen.runs.free import FreeLeg
 from codegen.runs.legs import EXACT, Accumulating, Leg, Settings, Track
 
-STALLED = 60
-"""So many events in a row are a run that goes nowhere, if they are hardly apart."""
-
 ROUNDED = 1e4
 """So many steps in double precision leave all digits that count, of slow motions beside fast ones, too."""
-
-APART = 1e-9
-"""Hardly apart: closer than this fraction of the run, or than what decides ties."""
 
 
 @dataclass(frozen=True)
 class Stretch:
     """How far a run came: the end of its time, or the first instant at which guards fell.
 
-    ``ahead`` [s]: a time too short to matter, in which ties are decided.
+    ``time`` [s]: the shortest time constant there.
     """
 
     track: Track
@@ -42,7 +38,7 @@ class Stretch:
     s: Array
     mode: Mode
     fallen: frozenset[int]
-    ahead: float
+    time: float
 
 
 def run_hybrid(
@@ -52,18 +48,18 @@ def run_hybrid(
     signals: Sequence[Signal],
     settings: Settings,
     begin: float,
-    span: float,
+    origin: float,
     tally: Accumulating | None = None,
     before: Mode | None = None,
 ) -> Stretch:
     """Integrate from ``begin`` to the last of ``times`` [s], recording the vector at each of them.
 
-    At a breakpoint or an event a sample shows the instant just after. ``span`` [s]: the length of the
-    whole run, of which this may be the rest, and ``before`` the friction mode in which it was: what changes
+    At a breakpoint or an event a sample shows the instant just after. ``origin`` [s]: where the run
+    began, of which this may be the rest, and ``before`` the friction mode in which it was: what changes
     at ``begin`` is an event, too. ``tally``: what is integrated on the way. Ends where a guard falls below
     zero.
     """
-    course = _Course(model, times, start, signals, settings, begin, span, before)
+    course = _Course(model, times, start, signals, settings, begin, origin, before)
     course.track.tally = tally
     fallen = frozenset[int]()
     while course.unfinished and not fallen:
@@ -74,7 +70,7 @@ def run_hybrid(
         course.track.record(course.s, course.mode)
         if tally is not None:
             tally.record()
-    return Stretch(course.track, course.t, course.s, course.mode, fallen, course.ahead)
+    return Stretch(course.track, course.t, course.s, course.mode, fallen, course.time)
 
 
 class _Course:
@@ -82,14 +78,14 @@ class _Course:
 
     def __init__(
         self, model: ClosedModel, times: Array, start: Array, signals: Sequence[Signal],
-        settings: Settings, begin: float, span: float, before: Mode | None,
+        settings: Settings, begin: float, origin: float, before: Mode | None,
     ) -> None:  # fmt: skip
-        self.t, self.s, self.end, self.ahead = begin, start, float(times[-1]), 0.0
+        self.t, self.s, self.end = begin, start, float(times[-1])
         self.mode: Mode = tuple(1 for _ in model.friction_inputs) if before is None else before
         self._continued = before is not None
         self.track = Track(np.zeros((len(times), model.size)), [], np.abs(start))
         self._model, self._times, self._signals = model, times, signals
-        self._settings, self._span = settings, span
+        self._settings, self._origin = settings, origin
         points = {b for signal in signals for b in signal.breakpoints if begin < b <= self.end}
         self._breaks = sorted(points)
         self._touched = frozenset[int]()
@@ -102,6 +98,11 @@ class _Course:
         """Whether there is anything left to decide or to integrate."""
         undecided = self.t != self._settled
         return undecided or self.t < self.end or bool(self._touched)
+
+    @property
+    def time(self) -> float:
+        """The shortest time constant [s] at the latest instant that was decided."""
+        return self._peaks.time
 
     @property
     def _pieces(self) -> list[Piece]:
@@ -120,20 +121,20 @@ class _Course:
         if self.mode or model.program.guards.results:
             mode, _ = evaluated(model, t, self.s, pieces, self.mode, slipping=False)
             fastest = self._leg(pieces, mode).fastest(t, self.s)
-            peaks.time = 1 / max(fastest, 100.0 / self._span)
-        self.ahead = LOOK_AHEAD * peaks.time
+            peaks.time = time_constant(fastest, t - self._origin)
+        following = min((signal.following(t) for signal in self._signals), default=math.inf)
+        ahead = look_ahead(peaks.time, t, following)
         if t >= self.end and self._settled is not None:
             # The search may have missed an event at the very end by a rounding.
             self._touched |= _still(model, t, self.s, pieces, self.mode, self._slipping, peaks)
         # A breakpoint may set the slips anew, so sticking ports are decided again with the others.
         loose = self._touched | {i for i, sign in enumerate(self.mode) if sign == 0}
         at_zero = _still(model, t, self.s, pieces, self.mode, loose, peaks)
-        new = decide(model, t, self.s, pieces, self.mode, at_zero, self.ahead, peaks, self._touched)
+        new = decide(model, t, self.s, pieces, self.mode, at_zero, ahead, peaks, self._touched)
         if self._settled is not None or self._continued:
             _note(model, self.track.events, t, self.mode, new)
             if self._touched:
-                least = max(APART * self._span, 2 * STALLED * self.ahead)
-                _check_progress(self._rounds, t, least, self.track.events)
+                _check_progress(self._rounds, t, hardly_apart(peaks.time), self.track.events)
         self.mode, self._touched = new, frozenset()
         self._come_to_rest(pieces, new)
         # Where a run or a phase begins, whoever began it has looked at the guards.
@@ -172,7 +173,7 @@ class _Course:
             tally.exact(pieces, self.mode, points, vectors)
 
     def _leg(self, pieces: Sequence[Piece], mode: Mode) -> Leg:
-        return Leg(self._model, pieces, mode, self._settings, self._span, self._peaks)
+        return Leg(self._model, pieces, mode, self._settings, self._origin, self._peaks)
 
     def _exact(self, pieces: Sequence[Piece], stop: float) -> ExactLeg | FreeLeg | None:
         """The stretch ahead as an exact one, where the mode is affine and exact steps are asked for."""

@@ -8,6 +8,7 @@ from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.inputs.signal import Signal, first_step
 from codegen.model.closed import ClosedModel
+from codegen.program import Program
 
 
 def refuse_impulses(model: ClosedModel, signals: Sequence[Signal], times: Array) -> None:
@@ -30,9 +31,15 @@ def refuse_impulses(model: ClosedModel, signals: Sequence[Signal], times: Array)
         step = first_step(signal, float(times[0]), float(times[-1]))
         if step is not None:
             raise SimulationError(
-                f"input {symbol.name!r} steps at t = {step:g}, where {where} its rate and would be an "
+                f"{_told(program, at)} steps at t = {step:g}, where {where} its rate and would be an "
                 "impulse; smooth it with Lag or Ramp"
             )
+
+
+def _told(program: Program, at: int) -> str:
+    """An input, or what a known source is."""
+    name, asked = program.external[at].name, len(program.asked)
+    return f"input {name!r}" if at < asked else f"known source {program.sources[at - asked]}"
 
 
 def _shown_rates(model: ClosedModel) -> Array:

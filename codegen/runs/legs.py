@@ -12,6 +12,7 @@ from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import ClosedModel, Mode
+from codegen.model.pace import longest_step
 from codegen.model.rounding import Peaks
 from codegen.runs.events import Dense, Event, Watch
 from codegen.runs.progress import Progress, difference, no_progress
@@ -39,9 +40,6 @@ STEP_BOUND = 1.0
 
 FOLLOWED = 0.1
 """An implicit step's length in shortest time constants of the inputs."""
-
-LEAST_STEPS = 200
-"""Steps are never longer than the span of the run divided by this."""
 
 
 REFRESH = 50
@@ -114,7 +112,7 @@ class Settings:
 
 
 class Leg:
-    """A smooth stretch in one mode; ``span`` [s] is the length of the whole run."""
+    """A smooth stretch in one mode; ``origin`` [s] is where the run began."""
 
     def __init__(
         self,
@@ -122,11 +120,11 @@ class Leg:
         pieces: Sequence[Piece],
         mode: Mode,
         settings: Settings,
-        span: float,
+        origin: float,
         peaks: Peaks | None = None,
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
-        self._settings, self._span, self._peaks = settings, span, peaks
+        self._settings, self._origin, self._peaks = settings, origin, peaks
         self._rates = model.rates(pieces, mode)
 
     def fastest(self, t: float, s: Array) -> float:
@@ -139,7 +137,7 @@ class Leg:
         base = self._rate(t, s)
         jacobian = np.empty((len(s), len(s)))
         for j in range(len(s)):
-            jacobian[:, j] = difference(self._rates, t, s, j, base, self._span)
+            jacobian[:, j] = difference(self._rates, t, s, j, base, longest_step(t - self._origin))
         return float(np.abs(np.linalg.eigvals(jacobian)).max(initial=0.0))
 
     def run(self, t: float, s: Array, stop: float, times: Array, track: Track) -> Ended:
@@ -154,11 +152,11 @@ class Leg:
                     track.tally.record()
             return stop, s, frozenset()
         fastest = self.fastest(t, s)
-        integrator = self._integrator(fastest)
+        integrator = self._integrator(fastest, float(times[-1]) - self._origin)
         explicit = integrator is DOP853
         solver = integrator(
             self._rate, t, s, stop, rtol=self._settings.rtol, atol=self._settings.atol,
-            max_step=self._bound(explicit, fastest),
+            max_step=self._bound(explicit, fastest, t),
         )  # fmt: skip
         watch = Watch(self._model, self._pieces, self._mode, t, s, self._peaks)
         steps, progress = 0, self._progress(t)
@@ -178,25 +176,26 @@ class Leg:
             steps += 1
             progress.check(solver.t, solver.y)
             if explicit and steps % REFRESH == 0 and not self._model.program.affine:
-                solver.max_step = self._bound(explicit, self.fastest(solver.t, solver.y))
+                fastest = self.fastest(solver.t, solver.y)
+            solver.max_step = self._bound(explicit, fastest, solver.t)
         return stop, solver.y, frozenset()
 
     def _progress(self, t: float) -> Progress:
         driven = max((piece.fastest for piece in self._pieces), default=0.0)
         settings = self._settings
-        return Progress(self._rates, self._span, driven, settings.rtol, settings.atol, t)
+        return Progress(self._rates, self._origin, driven, settings.rtol, settings.atol, t)
 
-    def _integrator(self, fastest: float) -> Any:
+    def _integrator(self, fastest: float, span: float) -> Any:
         method = self._settings.method
-        stiff = fastest * self._span > STIFF
+        stiff = fastest * span > STIFF
         if method == "CVODE" and not self._model.program.affine:
             # Laws may grow stiff on the way; backward differences do not mind where they don't.
             stiff = True
         return METHODS[method][stiff]
 
-    def _bound(self, explicit: bool, fastest: float) -> float:
+    def _bound(self, explicit: bool, fastest: float, t: float) -> float:
         """The longest step: events and inputs must not fall between, nor the interpolant be strained."""
-        bound = self._span / LEAST_STEPS
+        bound = longest_step(t - self._origin)
         driven = max((piece.fastest for piece in self._pieces), default=0.0)
         if explicit:
             return min(bound, STEP_BOUND / fastest) if fastest > 0 else bound

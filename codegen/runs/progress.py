@@ -8,6 +8,7 @@ import numpy as np
 
 from bondgraph import SimulationError
 from codegen.arrays import Array
+from codegen.model.pace import longest_step
 
 MANY = 200
 """Steps that are looked at together."""
@@ -17,9 +18,6 @@ SHORT = 1e-2
 
 TINY = 1e-4
 """Of the same: so short steps go nowhere at any jump, such as one where crossings accumulate."""
-
-FINEST = 200
-"""What a run's span allows as a step, whatever the model is."""
 
 REACH = 32
 """So many such steps ahead a jump is looked for: integrators end in front of it, too."""
@@ -38,10 +36,11 @@ Rates = Callable[[float, Array], Array]
 
 @dataclass
 class Progress:
-    """Counts the steps of a stretch; ``driven`` [1/s]: the fastest rate of its inputs."""
+    """Counts the steps of a stretch; ``origin`` [s]: where the run began; ``driven`` [1/s]: the fastest
+    rate of its inputs."""
 
     rates: Rates
-    span: float
+    origin: float
     driven: float
     rtol: float
     atol: float
@@ -58,7 +57,7 @@ class Progress:
         if self.steps % MANY:
             return
         mean, self.begin = (t - self.begin) / MANY, t
-        part = mean * FINEST / self.span
+        part = mean / longest_step(t - self.origin)
         if part < SHORT:
             part = max(part, mean * self._fastest(t, s))
         idle = part < SHORT
@@ -68,10 +67,10 @@ class Progress:
 
     def _fastest(self, t: float, s: Array) -> float:
         """The largest rate [1/s] of the model and its inputs at s, a jump beside it left aside."""
-        base = self.rates(t, s)
+        base, past = self.rates(t, s), longest_step(t - self.origin)
         ahead, behind = (
             np.column_stack([
-                difference(self.rates, t, s, j, base, side * self.span) for j in range(len(s))
+                difference(self.rates, t, s, j, base, side * past) for j in range(len(s))
             ])
             for side in (1.0, -1.0)
         )  # fmt: skip
@@ -113,12 +112,12 @@ def no_progress(t: float, what: str = "jump there") -> SimulationError:
     )
 
 
-def difference(rates: Rates, t: float, s: Array, j: int, base: Array, span: float) -> Array:
+def difference(rates: Rates, t: float, s: Array, j: int, base: Array, past: float) -> Array:
     """How the rates change with one component, by a difference that stays where laws have values.
 
-    ``span`` [s] is that of the run; below zero the difference is taken downwards.
+    ``past`` [s]: a part of what went before; below zero the difference is taken downwards.
     """
-    step = np.copysign(1e-6 * abs(s[j]) + 1e-9 * abs(base[j] * span) + 1e-9, span)
+    step = np.copysign(1e-6 * abs(s[j]) + 1e-9 * abs(base[j] * past) + 1e-9, past)
     for _ in range(12):
         moved = s.copy()
         moved[j] += step

@@ -29,15 +29,22 @@ class Cvode:
         def fill(t: float, y: Array, out: Array) -> None:
             out[:] = rates(t, y)
 
-        self._solver = _solver_class()(
-            fill, method=formulas, rtol=TIGHTER * rtol, atol=TIGHTER * atol, max_step=max_step
-        )
-        self._solver.init_step(t0, y0)
-        self.status, self._bound = "running", t_bound
+        def begun(t: float, y: Array, longest: float) -> Any:
+            solver = _solver_class()(
+                fill, method=formulas, rtol=TIGHTER * rtol, atol=TIGHTER * atol, max_step=longest
+            )
+            solver.init_step(t, y)
+            return solver
+
+        self._begun, self._solver, self._longest = begun, begun(t0, y0, max_step), max_step
+        self.status, self._bound, self.max_step = "running", t_bound, max_step
         self.t_old, self.t, self.y = t0, t0, y0
 
     def step(self) -> str | None:
-        """Take one step; what went wrong, if anything did."""
+        """Take one step; what went wrong, if anything did. A longest step that has doubled begins anew."""
+        if self.max_step >= 2 * self._longest:
+            self._longest = self.max_step
+            self._solver = self._begun(self.t, self.y, self._longest)
         found = self._solver.step(self._bound, "onestep", self._bound)
         if found.status >= 0 and found.t == self.t:
             # Once asked for an instant inside a step, CVODE first returns to the step's end.

@@ -7,7 +7,9 @@
 /* Everything a little later in a mode, by one midpoint step. */
 static int later(bg_context *c, const bg_mode *mode, const double *now, double *shot)
 {
-    const double ahead = BG_LOOK_AHEAD * c->peaks.time;
+    const int last = c->segment + 1 == c->inputs->segments;
+    const double following = last ? INFINITY : c->inputs->breaks[c->segment];
+    const double ahead = bg_look_ahead(c->peaks.time, c->t, following);
     double s[BG_N];
     bg_shot half;
     for (int i = 0; i < BG_N; i++)

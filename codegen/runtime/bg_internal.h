@@ -91,7 +91,7 @@ struct bg_context {
     bg_advancing *advance;
     void *caller;                       /* for `advance` */
     int clock, segment, where;
-    double t, s[BG_N], span;
+    double t, s[BG_N], began;
     int known, known_segment;           /* whether `given` holds, for `known_time` */
     double known_time, given[2 * BG_W];
     signed char mode[BG_PORTS], touched[BG_PORTS];

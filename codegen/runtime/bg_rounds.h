@@ -1,4 +1,4 @@
-/* Whether a run gets anywhere. */
+/* How short a moment is, and whether a run gets anywhere. */
 #ifndef BG_ROUNDS_H
 #define BG_ROUNDS_H
 
@@ -12,7 +12,20 @@ typedef struct {
     int next, full;
 } bg_rounds;
 
-/* Counts an event at t; whether the latest ones all were within `least`. */
-int bg_stalls(bg_rounds *rounds, double t, double least);
+/* The shortest time constant at the largest rate; what has none of its own is as slow as a run is
+ * old, which is `elapsed`. As codegen/model/pace.py. */
+double bg_time_constant(double fastest, double elapsed);
+
+/* How much later ties at t are decided: never beyond `following`, the inputs' next breakpoint. */
+double bg_look_ahead(double time, double t, double following);
+
+/* Too short to matter: in it, what starts from complete rest gets going. */
+double bg_moment(double time);
+
+/* No step is longer. */
+double bg_longest_step(double elapsed);
+
+/* Counts an event at t; whether the latest ones all were within a moment of a time constant. */
+int bg_stalls(bg_rounds *rounds, double t, double time);
 
 #endif

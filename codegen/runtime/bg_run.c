@@ -54,14 +54,12 @@ static int settle(bg_context *c, int started)
     for (int i = 0; i < BG_K; i++)
         touched |= c->touched[i];
     const double fastest = bg_greater(mode->fastest, c->inputs->fastest[c->segment]);
-    status = bg_decide(c, 1.0 / bg_greater(fastest, 100.0 / c->span));
+    status = bg_decide(c, bg_time_constant(fastest, c->t - c->began));
     if (status == BG_OK && started) {
-        const double ahead = BG_LOOK_AHEAD * c->peaks.time;
-        const double least = bg_greater(1e-9 * c->span, 2 * BG_STALLED * ahead);
         bg_task *const task = c->task;
         if (bg_note(task->events, &task->count, task->capacity, c->t, BG_K, before, c->mode))
             status = BG_FULL;
-        else if (touched && bg_stalls(&c->rounds, c->t, least))
+        else if (touched && bg_stalls(&c->rounds, c->t, c->peaks.time))
             status = BG_STALLS;
     }
     return status ? status : come_to_rest(c);
@@ -72,8 +70,7 @@ static void begin(bg_context *c, const bg_model *model, const bg_inputs *inputs,
     c->model = model;
     c->inputs = inputs;
     c->task = task;
-    c->t = task->times[0];
-    c->span = task->times[task->samples - 1] - c->t;
+    c->t = c->began = task->times[0];
     c->known = 0;
     c->rounds.next = c->rounds.full = 0;
     memcpy(c->s, task->start, sizeof c->s);

@@ -187,7 +187,7 @@ int bg_begin(bg_context *c, double stop)
         return status;
     constants(c, stretch);
     stretch->t = c->t;
-    stretch->blind = BG_LOOK_AHEAD * c->peaks.time;
+    stretch->blind = bg_moment(c->peaks.time);
     stretch->leaping = 0;
     if (BG_K == 0)
         return BG_OK;

@@ -16,7 +16,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info)
     const fmu_error failed = fmu_update(CORE(c), &moved);
     memset(info, 0, sizeof *info);
     info->valuesOfContinuousStatesChanged = moved;
-    info->nextEventTimeDefined = fmu_next_break(CORE(c), &info->nextEventTime);
+    info->nextEventTimeDefined = fmu_next_event(CORE(c), &info->nextEventTime);
     return fmu2_tell(c, failed);
 }
 

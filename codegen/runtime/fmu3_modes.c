@@ -22,7 +22,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *again, fmi3Bool
     const fmu_error failed = fmu_update(CORE(c), &moved);
     *again = *end = *nominals = fmi3False;
     *values = moved != 0;
-    *planned = fmu_next_break(CORE(c), time) != 0;
+    *planned = fmu_next_event(CORE(c), time) != 0;
     return fmu3_tell(c, failed);
 }
 

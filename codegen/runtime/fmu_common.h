@@ -57,6 +57,7 @@ extern const bg_signals fmu_signals; /* sources inside the unit .. */
 extern const int fmu_inside[];       /* .. and whether an external input is one */
 extern const double fmu_starts[], fmu_inputs[];
 void fmu_switch_values(const bg_values *v, double *out);
+int fmu_resolved(const bg_values *v, double t, double h); /* known sources do little in h */
 
 /* fmu_common.c */
 void fmu_reset(fmu_instance *f, int exchange);
@@ -86,10 +87,13 @@ fmu_error fmu_get_indicators(fmu_instance *f, double *indicators, size_t count);
 void fmu_get_nominals(double *nominals, size_t count);
 fmu_error fmu_copy(void *to, const void *from, size_t size);
 
-/* fmu_sources.c: external inputs at a time; breakpoints that are passed; the next one. */
+/* fmu_sources.c: external inputs at a time; breakpoints that are passed; the next one. The time of
+ * the next event: of a breakpoint, or where known sources have done enough to be looked at. */
 void fmu_externals(const fmu_instance *f, double t, double *w, double *dw);
 void fmu_pass(fmu_instance *f, double t);
 int fmu_next_break(const fmu_instance *f, double *time);
+int fmu_next_event(const fmu_instance *f, double *time);
+double fmu_resolution(const fmu_instance *f, double t, double longest);
 
 /* fmu_modes.c: everything at an instant; the friction mode from the slips and efforts there. */
 fmu_error fmu_look(fmu_instance *f, double t, const double *s, const int *mode, bg_snapshot *shot);

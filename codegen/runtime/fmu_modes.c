@@ -19,8 +19,11 @@ typedef struct {
 /* Everything a little later in a mode, by one midpoint step. */
 static fmu_error later(fmu_instance *f, const int *mode, const bg_snapshot *now, bg_snapshot *then)
 {
-    const double t = f->at.time, ahead = BG_LOOK_AHEAD * FMU_SHORTEST;
+    const double t = f->at.time;
+    double following = INFINITY;
     fmu_error failed;
+    fmu_next_break(f, &following);
+    const double ahead = fmin(BG_LOOK_AHEAD * FMU_SHORTEST, 0.5 * (following - t));
     for (int i = 0; i < BG_SIZE; i++)
         f->point[0][i] = f->at.s[i] + 0.5 * ahead * now->rate[i];
     failed = fmu_look(f, t + 0.5 * ahead, f->point[0], mode, then);

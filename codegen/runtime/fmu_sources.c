@@ -25,3 +25,22 @@ int fmu_next_break(const fmu_instance *f, double *time)
     *time = fmu_signals.breaks[f->at.segment];
     return 1;
 }
+
+/* A part of `longest`, halved until known sources do little in it. */
+double fmu_resolution(const fmu_instance *f, double t, double longest)
+{
+    double h = longest;
+    for (int halvings = 0; halvings < 80 && !fmu_resolved(&f->model.now, t, h); halvings++)
+        h *= 0.5;
+    return h;
+}
+
+int fmu_next_event(const fmu_instance *f, double *time)
+{
+    const double never = 1099511627776.0, t = f->at.time; /* 2^40 s: nothing happens */
+    const double ahead = fmu_resolution(f, t, never);
+    const int breaks = fmu_next_break(f, time), looks = ahead < never && t + ahead > t;
+    if (looks && (!breaks || t + ahead < *time))
+        *time = t + ahead;
+    return breaks || looks;
+}

@@ -20,10 +20,10 @@ static fmu_error told(fmu_instance *f, int status, double t, double h)
     return f->text;
 }
 
-/* Equal steps from t to stop, none longer than the internal step. */
-static fmu_error walk(fmu_instance *f, double t, double stop)
+/* Equal steps from t to stop, none longer than `longest`. */
+static fmu_error stride(fmu_instance *f, double t, double stop, double longest)
 {
-    const double count = fmax(1.0, ceil((stop - t) / f->at.step * (1 - 1e-9)));
+    const double count = fmax(1.0, ceil((stop - t) / longest * (1 - 1e-9)));
     const double h = (stop - t) / count;
     for (double k = 0; k < count; k++) {
         double rates[BG_ROOM(W)];
@@ -35,6 +35,19 @@ static fmu_error walk(fmu_instance *f, double t, double stop)
             return told(f, status, t + k * h, h);
     }
     return NULL;
+}
+
+/* From t to stop in internal steps, shorter ones where known sources do much in one. */
+static fmu_error walk(fmu_instance *f, double t, double stop)
+{
+    fmu_error failed = NULL;
+    while (!failed && t < stop) {
+        const double ahead = fmu_resolution(f, t, stop - t), next = t + ahead;
+        const double until = next < stop && next > t ? next : stop;
+        failed = stride(f, t, until, fmin(f->at.step, ahead));
+        t = until;
+    }
+    return failed;
 }
 
 /* From t to the end, breakpoint by breakpoint. */

@@ -1,4 +1,6 @@
 /* The mode just after an instant of an event-located run, and sticking ports brought to rest. */
+#include <math.h>
+
 #include "model_located_internal.h"
 #include "model_ruling.h"
 
@@ -7,7 +9,9 @@ enum { K = BG_FRICTION };
 /* Everything a little later in a mode, by one midpoint step from the instant in c->shot. */
 static int later(bg_located *c, const signed char *mode)
 {
-    const double ahead = BG_LOOK_AHEAD * c->moment;
+    const int last = c->segment + 1 == c->signals->segments;
+    const double following = last ? INFINITY : c->signals->breaks[c->segment];
+    const double ahead = bg_look_ahead(c->moment, c->t, following);
     double s[BG_SIZE];
     for (int i = 0; i < BG_SIZE; i++)
         s[i] = c->s[i] + 0.5 * ahead * c->shot.rate[i];

@@ -4,7 +4,7 @@
 
 #include "model_located_internal.h"
 
-enum { K = BG_FRICTION, FINEST = 200, REFRESH = 50 };
+enum { K = BG_FRICTION, REFRESH = 50 };
 static const double STIFF = 2e5;     /* run over time constant: from here on implicit steps */
 static const double FOLLOWED = 0.1;  /* an implicit step in time constants of the inputs */
 
@@ -78,7 +78,7 @@ static int settle(bg_located *c, int started, int last)
     memcpy(c->mode, before, sizeof before);
     if (status != BG_OK)
         return status;
-    c->moment = 1.0 / fmax(fastest, 100.0 / c->span);
+    c->moment = bg_time_constant(fastest, c->t - c->began);
     status = last ? come_to_end(c) : BG_OK;
     if (status != BG_OK)
         return status;
@@ -88,8 +88,7 @@ static int settle(bg_located *c, int started, int last)
     bg_request *const asked = c->asked;
     if (bg_note(asked->events, &asked->count, asked->capacity, c->t, K, before, c->mode))
         return BG_EVENTS;
-    const double least = fmax(1e-9 * c->span, 2 * BG_STALLED * BG_LOOK_AHEAD * c->moment);
-    return touched(c) && bg_stalls(&c->rounds, c->t, least) ? BG_STALLS : BG_OK;
+    return touched(c) && bg_stalls(&c->rounds, c->t, c->moment) ? BG_STALLS : BG_OK;
 }
 
 /* Hands the next sample over, which is at s. */
@@ -126,7 +125,8 @@ static int sample(bg_located *c, double until)
 /* The longest step: events and inputs must not fall between, nor the interpolant be strained. */
 static double longest(const bg_located *c, int method, double fastest)
 {
-    const double bound = c->span / FINEST, driven = c->signals->fastest[c->segment];
+    const double bound = bg_longest_step(c->t - c->began);
+    const double driven = c->signals->fastest[c->segment];
     if (method == BG_RADAU)
         return driven > 0 ? fmin(bound, FOLLOWED / driven) : bound;
     return fastest > 0 ? fmin(bound, 1.0 / fastest) : bound;
@@ -159,8 +159,9 @@ static int advance(bg_located *c, double stop)
     double fastest;
     int status = bg_located_fastest(c, c->t, c->s, &fastest), ended = 0;
     int method = c->asked->method;
+    const double span = c->asked->times[c->asked->samples - 1] - c->began;
     if (method == BG_AUTO)
-        method = fastest * c->span > STIFF ? BG_RADAU : BG_DOP853;
+        method = fastest * span > STIFF ? BG_RADAU : BG_DOP853;
     if (status == BG_OK)
         status = bg_solver_begin(c, method, longest(c, method, fastest));
     if (status == BG_OK)
@@ -170,10 +171,9 @@ static int advance(bg_located *c, double stop)
         status = step(c, stop, &ended);
         if (status == BG_OK && !ended)
             status = bg_progress_check(c);
-        if (status == BG_OK && !BG_AFFINE && count % REFRESH == 0) {
+        if (status == BG_OK && !BG_AFFINE && count % REFRESH == 0)
             status = bg_located_fastest(c, c->t, c->s, &fastest);
-            c->solver.longest = longest(c, method, fastest);
-        }
+        c->solver.longest = longest(c, method, fastest);
     }
     return status;
 }
@@ -184,8 +184,7 @@ static int begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_reque
     c->model = m;
     c->signals = signals;
     c->asked = asked;
-    c->t = asked->times[0];
-    c->span = asked->times[asked->samples - 1] - c->t;
+    c->t = c->began = asked->times[0];
     c->next = asked->count = c->rounds.next = c->rounds.full = 0;
     c->moment = 0.0;
     memset(c->touched, 0, sizeof c->touched);

@@ -44,12 +44,12 @@ typedef struct {
 } bg_rounding;
 
 /* A run. `peak_x`, `peak_u`: the largest magnitudes seen, of the terms that make inputs up;
- * `moment` [s]: the shortest time constant. */
+ * `moment` [s]: the shortest time constant; `began` [s]: where the run did. */
 typedef struct {
     bg_model *model;
     const bg_signals *signals;
     bg_request *asked;
-    double t, span, s[BG_SIZE], moment;
+    double t, began, s[BG_SIZE], moment;
     int segment, next, failed; /* why no mode could be evaluated */
     signed char mode[BG_ROOM(BG_FRICTION)], touched[BG_ROOM(BG_FRICTION)];
     double peak_x[BG_ROOM(BG_STATES)], peak_u[BG_ROOM(BG_INPUTS)];

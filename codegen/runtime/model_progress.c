@@ -6,7 +6,7 @@
 
 #include "model_located_internal.h"
 
-enum { MANY = 200, REACH = 32, HALVES = 24, FINEST = 200 };
+enum { MANY = 200, REACH = 32, HALVES = 24 };
 static const double SHORT = 1e-2, TINY = 1e-4, WHOLE = 0.1, FELT = 1e-3;
 static const double BACK = 1.0 / 1024.0;
 
@@ -76,7 +76,7 @@ int bg_progress_check(bg_located *c)
     if (++p->steps % MANY)
         return BG_OK;
     const double mean = (c->t - p->begin) / MANY;
-    double part = mean * FINEST / c->span;
+    double part = mean / bg_longest_step(c->t - c->began);
     p->begin = c->t;
     if (part < SHORT) {
         const int status = bg_located_calm(c, &fastest);

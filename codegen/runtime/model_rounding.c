@@ -123,11 +123,12 @@ int bg_located_see(bg_located *c, const signed char *slipping)
  * downwards where `side` is -1. */
 static int slopes(bg_located *c, double t, const double *s, double side, double *jacobian)
 {
+    const double past = bg_longest_step(t - c->began);
     double base[BG_SIZE], rate[BG_SIZE], moved[BG_SIZE];
     int status = bg_located_rate(c, t, s, base);
     memcpy(moved, s, sizeof moved);
     for (int j = 0; j < BG_SIZE && status == BG_OK; j++) {
-        double step = side * (1e-6 * fabs(s[j]) + 1e-9 * fabs(base[j]) * c->span + 1e-9);
+        double step = side * (1e-6 * fabs(s[j]) + 1e-9 * fabs(base[j]) * past + 1e-9);
         for (int tries = 0; tries < 12; tries++, step *= 1e-2) {
             moved[j] = s[j] + step;
             status = bg_located_rate(c, t, moved, rate);

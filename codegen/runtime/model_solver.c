@@ -31,7 +31,7 @@ static int first_step(bg_located *c, double order)
     const double bend = status == BG_OK ? norm(c, rate) / h : INFINITY;
     const double most = fmax(slope, bend);
     const double next = most <= 1e-15 ? fmax(1e-6, h * 1e-3) : pow(0.01 / most, 1.0 / order);
-    s->next = fmin(fmin(100 * h, fmax(next, 1e-12 * c->span)), s->longest);
+    s->next = fmin(fmin(100 * h, fmax(next, 1e-12 * s->longest)), s->longest);
     return status == BG_NOT_FINITE || status == BG_NO_SOLUTION ? BG_OK : status;
 }
 

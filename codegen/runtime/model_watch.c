@@ -149,7 +149,7 @@ int bg_watch_begin(bg_located *c)
     if (status != BG_OK || K == 0)
         return status;
     bg_located_rounding(c, c->t, &size);
-    c->watch.blind = c->t + BG_LOOK_AHEAD * c->moment;
+    c->watch.blind = c->t + bg_moment(c->moment);
     for (int i = 0; i < K; i++) {
         c->watch.limit[i] = c->mode[i] ? size.slip[i] : size.effort[i];
         c->watch.near[i] = BG_LEFT * size.slip[i];

@@ -17,6 +17,7 @@ from codegen.arrays import Array
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.inputs.signal import Signal
 from codegen.model.numbers import exact_parameters
+from codegen.model.sources import source_signals
 from codegen.program import Program
 from codegen.runs.arguments import named_numbers, signals_for
 from codegen.runs.legs import EXACT, Settings
@@ -138,12 +139,13 @@ class Batch:
         """The inputs of these runs, in groups that are run together."""
         asked, names = self.asked, self.asked.family.inputs
         swept = [name for name in asked.names if name in names]
-        if not callable(asked.inputs):
+        if not callable(asked.inputs) and not self._sources_differ:
             given = {**(asked.inputs or {}), **{name: Swept(name) for name in swept}}
             sized = {name: one for name, one in given.items() if isinstance(one, Swept)}
             if self._shared is None:
                 units = {name: one.signal for name, one in sized.items()}
-                self._shared = self.loop.shared(signals_for({**given, **units}, names))
+                signals = signals_for({**given, **units}, names)
+                self._shared = self.loop.shared([*signals, *self._sources({})])
             factors = table[:, [asked.names.index(one.name) for one in sized.values()]]
             places = [names.index(str(normal(name))) for name in sized]
             indices = indices[np.isfinite(factors[indices]).all(axis=1)]
@@ -154,12 +156,28 @@ class Batch:
         found: list[tuple[int, Sequence[Signal]]] = []
         for k, values in zip(indices.tolist(), self._named(table[indices]), strict=True):
             try:
-                given = settled(asked.inputs(values) or {}, values)
+                told = asked.inputs(values) if callable(asked.inputs) else asked.inputs
+                given = settled(told or {}, values)
                 given |= {name: values[name] for name in swept}
-                found.append((k, signals_for(given, names)))
+                found.append((k, [*signals_for(given, names), *self._sources(values)]))
             except Exception:  # noqa: BLE001 - told by whoever does the run then
                 continue
         return self.loop.different(found)
+
+    @property
+    def _sources_differ(self) -> bool:
+        """Whether numbers that differ from run to run tell what known sources do."""
+        sources = self._model.program.sources
+        return any(s.name in self.asked.names for expr in sources for s in expr.free_symbols)
+
+    def _sources(self, values: Mapping[str, float]) -> list[Signal]:
+        """What known sources do in a run with these numbers."""
+        program, family, time = self._model.program, self.asked.family, self.asked.time
+        numbers = {
+            **family.parameters,
+            **{k: v for k, v in values.items() if k in family.parameters},
+        }
+        return source_signals(program, exact_parameters(numbers), float(time[0]), float(time[-1]))
 
     def _named(self, table: Array) -> list[dict[str, float]]:
         return [dict(zip(self.asked.names, row, strict=True)) for row in table.tolist()]

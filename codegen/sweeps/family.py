@@ -60,7 +60,7 @@ class Family:
     @cached_property
     def program(self) -> Program:
         """The equations lowered, for parameters of these names."""
-        program = lower(self.equations, self.laws, self.parameters)
+        program = lower(self.equations, self.laws, self.parameters, timed=True)
         # Once for the family's own numbers, not for every run's.
         warn_of_energies(self.equations, exact_parameters(self.parameters))
         return program
@@ -73,7 +73,7 @@ class Family:
     @property
     def inputs(self) -> tuple[str, ...]:
         """The names of what a run must be given, as of every simulator."""
-        return tuple(name.name for name in self.program.external)
+        return tuple(name.name for name in self.program.asked)
 
     def simulator(self, /, **changes: object) -> Simulator:
         """A simulator with other numbers for some of the parameters.

@@ -22,7 +22,8 @@ from codegen.inputs.pieces import Piece
 from codegen.model.closed import Mode
 from codegen.model.guards import guard_values
 from codegen.model.modes import a_moment_later, decide
-from codegen.model.rounding import LOOK_AHEAD, TOLERANCE, Peaks
+from codegen.model.pace import LOOK_AHEAD, look_ahead, time_constant
+from codegen.model.rounding import TOLERANCE, Peaks
 from codegen.runs.legs import Leg, Settings
 from codegen.simulate import Simulator, guarded_simulator
 from codegen.switched.handover import Handover
@@ -55,12 +56,17 @@ class Held:
 
 @dataclass(frozen=True)
 class Moment:
-    """When a phase begins, with the inputs' pieces by name; ``span`` [s]: of the whole run."""
+    """When a phase begins, with the inputs' pieces by name; ``begin``, ``end`` [s]: of the run.
+
+    ``following`` [s]: the inputs' next breakpoint, infinite if there is none.
+    """
 
     t: float
     pieces: Mapping[str, Piece]
     settings: Settings
-    span: float
+    begin: float
+    end: float
+    following: float
 
 
 Keeping = Callable[[Phase], Held]
@@ -180,6 +186,7 @@ def enter(phase: Phase, start: Moment, held: Held) -> tuple[Array, frozenset[int
     """
     model, t = phase.simulator.closed, start.t
     given = [start.pieces[name] for name in phase.simulator.inputs]
+    given += [one.piece(t) for one in phase.simulator.sources(start.begin, start.end)]
     own = np.array([held.own[name.name] for name in model.program.law_states])
     before = np.array([held.momenta[name] for name in phase.handover.storages])
     s = phase.handover.begin(t, before, own, *model.given(t, given))
@@ -189,8 +196,9 @@ def enter(phase: Phase, start: Moment, held: Held) -> tuple[Array, frozenset[int
     fallen = values < -limits
     tied = np.abs(values) <= limits
     if tied.any():
-        leg = Leg(model, given, mode, start.settings, start.span, peaks)
-        ahead = LOOK_AHEAD / max(leg.fastest(t, s), 100.0 / start.span)
+        leg = Leg(model, given, mode, start.settings, start.begin, peaks)
+        time = time_constant(leg.fastest(t, s), t - start.begin)
+        ahead = look_ahead(time, t, start.following)
         later = a_moment_later(model, t, s, given, mode, ahead)
         fallen |= tied & (model.guards(t + ahead, later) < -limits)
     pushed = _pushed(phase, start, s, given, mode, before, held)

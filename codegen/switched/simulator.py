@@ -1,5 +1,6 @@
 """`switched_simulator`: graphs with switches, one phase after another, momenta handed over between."""
 
+import math
 from collections import deque
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -21,10 +22,11 @@ from codegen.energy.tally import Tally
 from codegen.inputs.signal import Signal
 from codegen.model.closed import Snapshot
 from codegen.model.energies import warn_of_energies
+from codegen.model.pace import STALLED, hardly_apart
 from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
 from codegen.runs.columns import named_columns
 from codegen.runs.events import Event
-from codegen.runs.hybrid import APART, STALLED, run_hybrid
+from codegen.runs.hybrid import run_hybrid
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import Settings
 from codegen.runs.result import Result
@@ -128,7 +130,7 @@ class _Journey:
         self._parts: list[Result] = []
         self._modes: list[On] = []
         self._events: list[Event] = []
-        self._span = float(times[-1] - times[0])
+        self._begin, self._end = float(times[0]), float(times[-1])
         self._peaks: dict[Hashable, float] = {}
         #: How each friction port slips as a phase ends; none before the first.
         self._slips: dict[Hashable, int] = {}
@@ -140,23 +142,26 @@ class _Journey:
         changed, rounds = On(), deque[float](maxlen=STALLED)
         while True:
             pieces = {name: signal.piece(t) for name, signal in self._signals.items()}
-            moment = Moment(t, pieces, self._settings, self._span)
+            moment = Moment(t, pieces, self._settings, self._begin, self._end, self._following(t))
             phase, vector = phases.begin(moment, held, on, changed)
             if rounds:
                 self._note(t, on, phase.on)
             on = phase.on
-            t, kept, changed, ahead = self._pass(phase, t, vector)
+            t, kept, changed, time = self._pass(phase, t, vector)
             held = partial(_same, kept)
             if not changed:
                 return self._result()
             rounds.append(t)
-            if len(rounds) == STALLED and t - rounds[0] < max(
-                APART * self._span, 2 * STALLED * ahead
-            ):
+            if len(rounds) == STALLED and t - rounds[0] < hardly_apart(time):
                 raise SimulationError(
                     f"{STALLED} switchings within a moment of t = {t:.12g}: the run makes no progress; "
                     f"the last were {', '.join(map(repr, changed))}"
                 )
+
+    def _following(self, t: float) -> float:
+        """The inputs' next breakpoint."""
+        points = (signal.following(t) for signal in self._signals.values())
+        return min(points, default=math.inf)
 
     def _started(self, t: float, initial: Mapping[str, float], phase: Phase) -> Held:
         """What storages hold at the start: as given by name, the others as the phase makes them follow."""
@@ -169,12 +174,15 @@ class _Journey:
         return _held(phase, t, simulator.closed.at(t, s, pieces, slipping), initial, self._peaks)
 
     def _given(self, phase: Phase) -> list[Signal]:
-        return [self._signals[name] for name in phase.simulator.inputs]
+        """The inputs' signals, and those of the phase's known sources."""
+        simulator, times = phase.simulator, self._times
+        sources = simulator.sources(float(times[0]), float(times[-1]))
+        return [self._signals[name] for name in simulator.inputs] + sources
 
     def _pass(self, phase: Phase, t: float, vector: Array) -> tuple[float, Held, On, float]:
         """One phase: to the end of the run or the first switching, whose switches come third.
 
-        Fourth comes a time too short to matter.
+        Fourth comes the shortest time constant there.
         """
         model, signals = phase.simulator.closed, self._given(phase)
         done = sum(len(part.time) for part in self._parts)
@@ -184,7 +192,7 @@ class _Journey:
         ports = [port.name for port in model.program.friction]
         before = tuple(self._slips[name] for name in ports) if self._slips else None
         stretch = run_hybrid(
-            model, rest, vector, signals, self._settings, t, self._span, tally, before
+            model, rest, vector, signals, self._settings, t, self._begin, tally, before
         )
         self._slips = dict(zip(ports, stretch.mode, strict=True))
         track = stretch.track
@@ -212,7 +220,7 @@ class _Journey:
         if tally is not None:
             self.rows += tally.rows
             self._ended = tally, tally.pair(now), phase.handover.momenta(stretch.t, now)
-        return stretch.t, held, On(names[k] for k in stretch.fallen), stretch.ahead
+        return stretch.t, held, On(names[k] for k in stretch.fallen), stretch.time
 
     def _tally(
         self, phase: Phase, rest: Array, t: float, vector: Array, signals: Sequence[Signal]

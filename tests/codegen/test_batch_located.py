@@ -88,7 +88,7 @@ def test_models_of_every_kind(name: str) -> None:
     inputs = {one: Sine(float(rng.uniform(1, 6)), 1.3, offset=0.3) for one in family.inputs}
     start = {state: float(rng.uniform(-1, 1)) for state in family.states[1:]}
     signals = [s.name for s in (*program.states, *program.law_states, *program.inputs,
-                                *program.external, *program.readings)]  # fmt: skip
+                                *program.asked, *program.readings)]  # fmt: skip
     measures: dict[str, Any] = {f"last {s}": final(s) for s in dict.fromkeys(signals)}
     for port in program.friction:
         measures[f"stick {port.name}"] = first_event(port.name, "stick")

@@ -13,7 +13,8 @@ import differentials
 from codegen import Simulator
 from codegen.inputs.pieces import Piece
 from codegen.model.modes import decide
-from codegen.model.rounding import LOOK_AHEAD, Peaks
+from codegen.model.pace import LOOK_AHEAD
+from codegen.model.rounding import Peaks
 from differentials.model import Model, model
 from oracles.models import belt, clutches, oscillator, stacked_blocks
 

@@ -1,0 +1,24 @@
+"""The signals of a model's known sources: expressions of time at its parameters' numbers."""
+
+from collections.abc import Mapping
+
+import sympy as sp
+
+from codegen.inputs.known import known_signal
+from codegen.inputs.signal import Signal
+from codegen.model.numbers import at_parameters
+from codegen.program import Program
+
+
+def source_signals(
+    program: Program, parameters: Mapping[str, sp.Rational], begin: float, end: float
+) -> list[Signal]:
+    """A signal for each of the program's sources, from ``begin`` to ``end`` [s]."""
+    return [
+        known_signal(at_parameters(expr, parameters), begin, max(end, begin + SHORTEST))
+        for expr in program.sources
+    ]
+
+
+SHORTEST = 1e-6
+"""Time [s] over which sources are told where an instant is asked for."""
