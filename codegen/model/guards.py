@@ -21,7 +21,8 @@ def guard_rounding(
 ) -> Array:
     """Below these the guards count as zero, from the magnitude of the terms that make them up.
 
-    A component's term is the effect of a small relative change of it, divided by the change.
+    A component's term is the effect of a small relative change of it, divided by the change. At rest a
+    state is rounding itself: of what moves it within a time constant.
     """
     now = model.at(t, s, pieces, mode)
     values = model.guards(t, now)
@@ -29,7 +30,9 @@ def guard_rounding(
     n = len(model.program.states)
     sizes = s.copy()
     if peaks is not None:
-        sizes[:n] = np.where(sizes[:n] < 0, -1, 1) * np.maximum(np.abs(sizes[:n]), peaks.x)
+        moving = np.abs(now.numbers.P) @ np.abs(now.x) + np.abs(now.numbers.Q) @ np.abs(now.u)
+        least = np.maximum(peaks.x, peaks.time * moving)
+        sizes[:n] = np.where(sizes[:n] < 0, -1, 1) * np.maximum(np.abs(sizes[:n]), least)
     for j in np.flatnonzero(sizes):
         moved = s.copy()
         moved[j] += STEP * sizes[j]

@@ -192,13 +192,13 @@ def enter(phase: Phase, start: Moment, held: Held) -> tuple[Array, frozenset[int
     s = phase.handover.begin(t, before, own, *model.given(t, given))
     peaks, mode = Peaks.none(model), _friction_mode(phase, t, s, given)
     peaks.see(model, t, s, given, mode)
+    leg = Leg(model, given, mode, start.settings, start.begin, peaks)
+    peaks.time = time_constant(leg.fastest(t, s), t - start.begin)
     values, limits = guard_values(model, t, s, given, mode, peaks)
     fallen = values < -limits
     tied = np.abs(values) <= limits
     if tied.any():
-        leg = Leg(model, given, mode, start.settings, start.begin, peaks)
-        time = time_constant(leg.fastest(t, s), t - start.begin)
-        ahead = look_ahead(time, t, start.following)
+        ahead = look_ahead(peaks.time, t, start.following)
         later = a_moment_later(model, t, s, given, mode, ahead)
         fallen |= tied & (model.guards(t + ahead, later) < -limits)
     pushed = _pushed(phase, start, s, given, mode, before, held)
