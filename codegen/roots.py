@@ -21,8 +21,9 @@ def root(f: Callable[[float], float], a: float, b: float) -> float:
     ``model_roots.c`` takes the same steps. f must not have the same sign at a and b; what is no number
     counts as below zero.
 
-    >>> root(lambda x: x**2 - 2, 0.0, 2.0), root(lambda x: (x - 1) ** 9, -1.0, 2.0)
-    (1.4142135623730951, 1.0)
+    >>> found = root(lambda x: x**2 - 2, 0.0, 2.0), root(lambda x: (x - 1) ** 9, -1.0, 2.0)
+    >>> [round(place, 15) for place in found]
+    [1.414213562373095, 1.0]
     """
     at_a, at_b, share, slow = f(a), f(b), 0.5, 0
     if at_a == 0:

@@ -30,7 +30,7 @@ def time_constant(fastest: float, elapsed: float) -> float:
 def look_ahead(time: float, t: float, following: float) -> float:
     """How much later [s] ties at t are decided; never beyond ``following`` [s], the next breakpoint.
 
-    >>> look_ahead(0.01, 1.0, 2.0), look_ahead(1e4, 1.0, 2.0)
+    >>> round(look_ahead(0.01, 1.0, 2.0), 9), look_ahead(1e4, 1.0, 2.0)
     (1e-06, 0.5)
     """
     return min(LOOK_AHEAD * time, 0.5 * (following - t))
