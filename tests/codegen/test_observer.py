@@ -158,7 +158,9 @@ def test_an_energy_that_needs_more_says_so() -> None:
     """Nothing flows in the secondary: L2 rules nothing but the sum that its field's energy is."""
     numbers = {"L1": 1.0, "M": 0.5, "R": 1.0, "n": 4.0}
     result = simulator(_measured_coils(), numbers).run([0.0, 1.0], inputs={"u": 1.0})
-    with pytest.raises(bg.ParameterError, match="L2 needs a number for L2; give it in parameters"):
+    with pytest.raises(
+        bg.ParameterError, match="energy of 'coils' needs a number for L2 in parameters"
+    ):
         result.energy("coils")
     result = simulator(_measured_coils(), {**numbers, "L2": 3.0}).run([0.0, 1.0], inputs={"u": 1.0})
     current = 1 - np.exp(-1.0)

@@ -187,6 +187,12 @@ FAMILIES = (
         4,
         2_000,
     ),
+    Family(
+        "pulses",
+        "codegen/test_known_runs.py::test_pulses_a_ten_thousandth_of_the_run_wide_are_seen",
+        6,
+        200,
+    ),
     Family("diodes", "codegen/test_switched_networks.py::test_diodes_with_resistances", 12, 1_000),
     Family(
         "stiff-linear", "codegen/test_stiff_linear.py::test_states_are_the_exponential", 24, 500

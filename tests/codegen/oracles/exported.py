@@ -159,6 +159,10 @@ def instant(ready: Simulator, t: float, x: np.ndarray, u: np.ndarray, du: np.nda
     """The simulator's rates, readings and inputs at an instant, inputs moving at these rates."""
     closed, program = ready.closed, ready.closed.program
     pieces = [Piece(t, ((0, (a, b)),)) for a, b in zip(u.tolist(), du.tolist(), strict=True)]
+    sources = [signal.piece(t) for signal in ready.sources(t, t)]
+    pieces += sources
+    u = np.append(u, [piece(t) for piece in sources])
+    du = np.append(du, [piece.derivative(t) for piece in sources])
     s, slipping = ready.vector(t, x, u), tuple(1 for _ in program.friction)
     peaks = Peaks.none(closed)
     with np.errstate(all="ignore"):

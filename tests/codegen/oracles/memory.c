@@ -28,7 +28,7 @@ static int located(const bg_signals *signals, double end, int samples, int metho
     double *const p = malloc(sizeof(double) * (BG_PARAMETERS + 1));
     bg_event *const events = malloc(sizeof(bg_event) * 256);
     bg_request asked = {times, scenario_states, samples, method, 1e-10, 1e-11, NULL, NULL, events,
-                        256, 0, 0.0};
+                        256, 0, 0.0, NULL};
     for (int k = 0; k < samples; k++)
         times[k] = samples > 1 ? end * k / (samples - 1) : 0.0;
     bg_model_parameters(p);
