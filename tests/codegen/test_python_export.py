@@ -77,6 +77,7 @@ def test_rates_and_outputs_are_the_simulators(name: str) -> None:
         rate, signals, _ = instant(ready, t, x, u, du)
         now = exported.instant(t, x, u, du, None)
         terms = np.abs(now.m.P) @ np.abs(now.x) + np.abs(now.m.Q) @ np.abs(now.u) + 1e-3
+        terms += np.abs(now.m.R) @ np.abs(now.du)
         size = np.append(terms, np.full(len(x) - len(now.x), 1 + np.abs(now.y).max(initial=0)))
         assert (np.abs(exported.rhs(t, x, u, du) - rate) <= 1e-12 * size).all()
         if not du.any():
