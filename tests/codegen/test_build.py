@@ -209,7 +209,8 @@ def test_a_compiler_that_makes_rubbish_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fake = tmp_path / "fake"
-    fake.write_text("#!/bin/sh\necho rubbish > library.so\n", encoding="utf-8")
+    made = 'case "$*" in *"-o library.so"*) echo rubbish > library.so ;; esac'
+    fake.write_text(f"#!/bin/sh\n{made}\n", encoding="utf-8")
     fake.chmod(0o755)
     monkeypatch.setenv("CC", str(fake))
     with pytest.raises(bg.SimulationError, match=r"so does not open"):
