@@ -102,12 +102,12 @@ class Machine:
         course, t, x = Course(), float(times[0]), self._line.start.copy()
         breaks = sorted({b for wave in self._waves for b in wave.begins if b > t})
         mode: Mode = tuple(1 for _ in self._line.levels)
-        ended, first = frozenset(range(len(mode))), True
+        first = True
         while True:
-            mode, x = self._decide(t, x, mode, ended, course, first)
+            mode, x = self._decide(t, x, mode, course, first)
             first = False
             stop = min([b for b in breaks if b > t] + [float(times[-1])])
-            t_new, z, ended = self._advance(t, x, mode, stop, times, course)
+            t_new, z = self._advance(t, x, mode, stop, times, course)
             if t_new >= times[-1]:
                 course.states.append(z[: self._n + self._d])
                 course.modes.append(mode)
@@ -130,7 +130,7 @@ class Machine:
         return self._line.W @ x[: self._n] + self._line.Z @ w
 
     def _decide(
-        self, t: float, x: Array, old: Mode, ended: frozenset[int], course: Course, first: bool
+        self, t: float, x: Array, old: Mode, course: Course, first: bool
     ) -> tuple[Mode, Array]:
         """The mode just after t, and the state with what is stuck at rest to the last digit."""
         slips = self.slips(t, x)
@@ -191,7 +191,7 @@ class Machine:
 
     def _advance(
         self, t: float, x: Array, mode: Mode, stop: float, times: Array, course: Course
-    ) -> tuple[float, Array, frozenset[int]]:
+    ) -> tuple[float, Array]:
         """Step to ``stop`` or the first event; the samples before it are recorded."""
         made = self._made(mode)
         assert made is not None
@@ -213,9 +213,9 @@ class Machine:
             course.states += [(expm(A * (s - at)) @ z)[: self._n + self._d] for s in inside]
             course.modes += [mode] * len(inside)
             if len(fallen):
-                return at + left, expm(A * left) @ z, frozenset(fallen.tolist())
+                return at + left, expm(A * left) @ z
             z, armed = z_next, armed | (after > 1e-10)
-        return stop, z, frozenset()
+        return stop, z
 
     def _root(
         self, made: _Mode, mode: Mode, A: Array, z: Array, h: float, i: int, armed: bool
