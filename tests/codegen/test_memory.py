@@ -77,7 +77,7 @@ _aligned = sizes.aligned
 @pytest.fixture
 def spoilt(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Whatever the C core is given to work in, and what it puts on its stack, begins as rubbish."""
-    monkeypatch.setenv("CFLAGS", "-O1 -ftrivial-auto-var-init=pattern")
+    monkeypatch.setenv("CFLAGS", "-O0 -ftrivial-auto-var-init=pattern")
     for module in (runs, located, batch_engine, batch_located):
         monkeypatch.setattr(module, "aligned", _spoilt)
     sizes.engine.cache_clear()

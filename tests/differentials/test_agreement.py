@@ -29,7 +29,7 @@ FEW = 3
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _compiled_quickly() -> Iterator[None]:
+def _compiled_quickly(optimised: None) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(binaries, "FLAGS", (*binaries.FLAGS, "-O1"))
         yield

@@ -11,6 +11,7 @@ import shutil
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -25,9 +26,8 @@ PROGRAM = Path(__file__).with_name("shared_cc.py")
 
 def pytest_configure(config: pytest.Config) -> None:
     """The first process of a run makes the folder; those that it starts find it."""
-    # Compiled code is tested here, not timed: compilers take half the time over it, and still fuse
-    # multiplications with additions as they do for users, which they do not without optimisation.
-    os.environ.setdefault("CFLAGS", "-O1")
+    # Most tests compile for one short run: what optimising takes is many times what it saves there.
+    os.environ.setdefault("CFLAGS", "-O0")
     if FOLDER in os.environ:
         return
     folder = Path(tempfile.mkdtemp(prefix="bondgraph-tests-"))
@@ -40,6 +40,18 @@ def pytest_configure(config: pytest.Config) -> None:
             program.write_text(f'#!/bin/sh\nexec {shlex.join(words)} "$@"\n', encoding="utf-8")
             program.chmod(0o755)
     config.pluginmanager.register(Shared(folder), "shared compilers")
+
+
+@pytest.fixture(scope="module")
+def optimised() -> Iterator[None]:
+    """Engines compiled so that multiplications are fused with additions, as they are for users."""
+    from codegen.engine.sizes import engine
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("CFLAGS", "-O1")
+        engine.cache_clear()
+        yield
+    engine.cache_clear()
 
 
 class Shared:

@@ -38,7 +38,16 @@ def test_the_command_says_how_to_go_on(call: Call, tmp_path: Path) -> None:
     "signal", ["lag(step(0.1, 10), 0.05)", "ramp(0.1, 5)", "2 + sine(3, 1)", "step(0.1, 3, 1)", "4"]
 )
 def test_the_exported_script_runs_under_any_signal(signal: str, call: Call, tmp_path: Path) -> None:
-    arguments = ["--initial", "v=1", "--input", f"F={signal}"]
+    arguments = [
+        "--initial",
+        "v=1",
+        "--input",
+        f"F={signal}",
+        "--until",
+        "0.25",
+        "--sample",
+        "0.001",
+    ]
     assert call(*OSCILLATOR, "--to", "python", *arguments).exit_code == 0
     script = [sys.executable, "run_oscillator.py"]
     subprocess.run(script, cwd=tmp_path / "out", check=True, capture_output=True)
@@ -105,8 +114,9 @@ def test_the_next_line_runs_under_any_name(name: str, call: Call, tmp_path: Path
     path = _copied(name, tmp_path)
     out = tmp_path / "the folder"
     done = call(
-        "export", path, *OSCILLATOR[2:], "--initial", "v=1", "--to", "python", "--out", str(out)
-    )
+        "export", path, *OSCILLATOR[2:], "--initial", "v=1", "--to", "python", "--out", str(out),
+        "--until", "0.1", "--sample", "0.001",
+    )  # fmt: skip
     assert done.exit_code == 0, done.output
     following = done.stdout.rpartition("Next: ")[2].strip()
     text = next(out.glob("run_*.py")).read_text(encoding="utf-8")
