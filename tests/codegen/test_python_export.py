@@ -219,24 +219,6 @@ def test_the_text_of_the_alsd(update_golden: bool) -> None:
     assert file.read_text(encoding="utf-8") == text
 
 
-MAKE = """
-import sys
-sys.path[:0] = sys.argv[1:]
-from oracles.exported import catalog_case, small_cases
-from codegen import to_python
-cases = {"stationary_tvd": catalog_case("stationary_tvd"), **dict(small_cases())}
-for name in ("stationary_tvd", "mixed", "crank"):
-    sys.stdout.buffer.write(to_python(*cases[name]).encode())
-"""
-
-
-def test_the_same_model_gives_the_same_bytes() -> None:
-    here = Path(__file__).parent
-    paths = [str(folder) for folder in (here.parents[1], here, here.parent)]
-    texts = {_python("-c", MAKE, *paths, PYTHONHASHSEED=seed) for seed in ("1", "2")}
-    assert len(texts) == 1
-
-
 def test_other_numbers_at_run_time_and_what_is_refused() -> None:
     equations, numbers, laws = CASES["oscillator"]
     module = loaded(to_python(equations, numbers, laws))
