@@ -36,8 +36,9 @@ ORDER = {
                                             "tables discs segments branches harmonics known"),
         "model.affine", "closing", "timed", "records", "gains", "sections", "program", "identifiers",
         "printing", "units",
-        *_room("model", "numpy_backend numbers energies sharp sources pace snapshot sharing slips friction "
-               "instant loops rubbing closed stability sizes trials rounding verdicts modes guards places"),
+        *_room("model", "numpy_backend numbers energies sharp sources pace snapshot sharing slips "
+               "friction instant loops terms rubbing closed stability sizes trials rounding verdicts modes "
+               "guards places"),
         *_room("energy", "stored quadrature accounts tally"),
         *_room("runs", "events sundials progress legs watched exact ladder free hybrid arguments steps "
                "impulses observer tables summary"),

@@ -23,8 +23,8 @@ from codegen.runs.steps import step_at_start
 STEPPED = (
     "model_runtime.h", "model_internal.h", "model_linear.c", "model_numbers.c",
     "model_independent.c", "model_hold.c", "model_ruling.h", "model_ruling.c", "bg_choose.h", "bg_choose.c",
-    "model_share.c", "model_roots.c", "model_loops.c", "model_evaluate.c", "model_instance.c",
-    "model_region.c", "model_slope.c", "model_fastest.c", "model_stick.c", "model_step.c",
+    "model_share.c", "model_roots.c", "model_loops.c", "model_level.c", "model_evaluate.c",
+    "model_instance.c", "model_region.c", "model_slope.c", "model_fastest.c", "model_stick.c", "model_step.c",
     "model_signals.h", "model_signals.c",
 )  # fmt: skip
 """What is the same for every model."""

@@ -19,6 +19,10 @@ RESONANCE = 1e-3
 SERIES = 9
 """Terms of that series: rounding takes over from the quotient where the series leaves off."""
 
+ROUNDED = 2.0**-49
+"""Below this fraction of the terms that make it up a value is zero, or below what rounding of the time by
+an eighth of it changes: a ramp that comes down to nothing ends at nothing."""
+
 
 @dataclass(frozen=True)
 class Piece:
@@ -42,6 +46,8 @@ class Piece:
             if rate:
                 value *= cmath.exp(rate * tau) if rate.imag else math.exp(rate.real * tau)
             total += value.real
+        if total and abs(total) <= self._suspect and abs(total) <= self._rounding(np.array(t)):
+            return 0.0
         return total
 
     def values(self, times: Array) -> Array:
@@ -55,7 +61,33 @@ class Piece:
             if rate:
                 value = value * np.exp(rate * tau if rate.imag else rate.real * tau)
             total += value.real
+        near = np.flatnonzero(np.abs(total) <= self._suspect)
+        if len(near):
+            total[near[np.abs(total[near]) <= self._rounding(times[near])]] = 0.0
         return total
+
+    @cached_property
+    def _suspect(self) -> float:
+        """Below this a value may be rounding; never where no terms can cancel, which saves the look."""
+        alone = len(self.terms) == 1 and len(self.terms[0][1]) == 1
+        if alone and not complex(self.terms[0][0]).imag:
+            return -1.0
+        sizes = [abs(c) for _, polynomial in self.terms for c in polynomial]
+        return 1e-6 * max(sizes, default=0.0)
+
+    def _rounding(self, times: Array) -> Array:
+        """What rounding leaves of terms that cancel, at their times."""
+        tau = np.abs(times - self.start)
+        size, slope = np.zeros_like(tau), np.zeros_like(tau)
+        for rate, polynomial in self.terms:
+            own, rising = np.zeros_like(tau), np.zeros_like(tau)
+            for coefficient in reversed(polynomial):
+                rising = rising * tau + own
+                own = own * tau + abs(coefficient)
+            grown = np.exp(complex(rate).real * (times - self.start))
+            size, slope = size + own * grown, slope + (rising + abs(rate) * own) * grown
+        late = (np.abs(times) + abs(self.start)) / 8
+        return np.asarray(ROUNDED * (size + late * slope), dtype=float)
 
     @cached_property
     def derivative(self) -> "Piece":

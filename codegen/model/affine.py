@@ -75,6 +75,11 @@ class AffineMap:
         """The largest rate [1/s] of s by itself."""
         return max((abs(rate) for rate in self.spectrum), default=0.0)
 
+    def terms(self, part: int, *vectors: Array) -> Array:
+        """The sums of the magnitudes of the terms that make a part up."""
+        found: Array = np.abs(self.rows(part)) @ np.abs(np.concatenate((*vectors, (1.0,))))
+        return found
+
     def rows(self, part: int) -> Array:
         """The rows of one part."""
         return self.matrix[self.parts[part]]

@@ -22,6 +22,7 @@ from codegen.model.rubbing import Rubbing
 from codegen.model.sharp import NotAffineError, sharp_rates
 from codegen.model.slips import SlipRows
 from codegen.model.snapshot import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, Mode, Snapshot
+from codegen.model.terms import without_rounding
 from codegen.pairs import Pair, pair
 from codegen.program import Group, Program
 
@@ -105,9 +106,10 @@ class ClosedModel:
             affine = self.affine_map(mode, len(w))
             if affine is not None:
                 x, z, u, du, y, rate, caps = affine(s, w, dw)
-                now = Snapshot(x, z, u, du, y, rate, caps, w, self.constant)
-                if not mode or min(now.caps) >= 0:
-                    return now
+                if mode and min(caps) < 0:
+                    caps = without_rounding(caps, affine.terms(CAPS, s, w, dw))
+                if not mode or min(caps) >= 0:
+                    return Snapshot(x, z, u, du, y, rate, caps, w, self.constant)
         return self.evaluate(t, s, w, dw, mode)
 
     def vector(self, t: float, state: Array, given: Array) -> Array:

@@ -7,8 +7,8 @@ import numpy as np
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import ClosedModel, Mode
-from codegen.model.rounding import TOLERANCE, Peaks
-from codegen.model.sizes import STEP
+from codegen.model.rounding import Peaks
+from codegen.model.terms import STEP, TOLERANCE
 
 
 def guard_rounding(

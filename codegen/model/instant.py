@@ -55,22 +55,33 @@ class Binding:
         """A block as a function of an instant, giving its results as an array."""
         if not code.results:
             return lambda now: np.zeros(0)
-        run = compiled(code)
-        unknown = [name.name for name in code.arguments if name not in self._places]
-        if unknown:
-            raise ParameterError(f"{', '.join(unknown)} need a number in parameters")
-        indices = [self._places[name] for name in code.arguments]
+        evaluate = self.of_pool(code)
+        return lambda now: evaluate(self.pool(now))
 
-        def evaluate(now: Instant) -> Array:
-            pool = np.concatenate(
-                ((now.t,), now.x, now.z, now.y, now.u, now.w, now.dw, self._constants)
-            )
+    def pool(self, now: Instant) -> Array:
+        """Everything that blocks read, in one array: t, x, z, y, u, w, w' and the parameters."""
+        return np.concatenate(
+            ((now.t,), now.x, now.z, now.y, now.u, now.w, now.dw, self._constants)
+        )
+
+    def of_pool(self, code: Block) -> Callable[[Array], Array]:
+        """A block as a function of a pool."""
+        run, indices = compiled(code), self.read(code)
+
+        def evaluate(pool: Array) -> Array:
             try:
                 return real_values(run(*pool[indices].tolist()))
             except (ArithmeticError, TypeError) as error:
-                raise SimulationError(f"at t = {now.t:g} a law has no value: {error}") from None
+                raise SimulationError(f"at t = {pool[0]:g} a law has no value: {error}") from None
 
         return evaluate
+
+    def read(self, code: Block) -> list[int]:
+        """Where in a pool the names stand that a block reads."""
+        unknown = [name.name for name in code.arguments if name not in self._places]
+        if unknown:
+            raise ParameterError(f"{', '.join(unknown)} need a number in parameters")
+        return [self._places[name] for name in code.arguments]
 
 
 def _places(program: Program) -> dict[sp.Symbol, int]:

@@ -9,10 +9,8 @@ from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import ClosedModel, Mode, Snapshot
 from codegen.model.sizes import input_terms
+from codegen.model.terms import TOLERANCE
 from codegen.model.trials import evaluated
-
-TOLERANCE = 1e-10
-"""Slips and efforts count as zero below this fraction of the terms that make them up."""
 
 ROUNDING = 1e-4
 """A little later, an acceleration above this fraction of what counts as zero is a real one."""

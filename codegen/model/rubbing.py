@@ -14,6 +14,7 @@ from codegen.model.numbers import Numbers
 from codegen.model.sharing import fair_share
 from codegen.model.slips import slip_rows
 from codegen.model.snapshot import Mode
+from codegen.model.terms import LevelTerms, without_rounding
 from codegen.program import Program
 
 
@@ -35,6 +36,7 @@ class Rubbing:
         self._beside = [self.slips.coupled(port) for port in range(len(self._inputs))]
         self._coupled = binding.function(program.coupled.values)
         self._friction = binding.function(program.friction_values)
+        self._terms = LevelTerms(program, binding)
         self._holds: dict[Mode, Hold] = {}
 
     def coupled_directly(self, port: int) -> bool:
@@ -88,7 +90,10 @@ class Rubbing:
 
     def _against(self, now: Instant, mode: Mode, checked: bool) -> Array:
         """Slipping ports' efforts, zero at sticking ones; notes every port's breakaway effort."""
-        levels, caps, curves, at_rest = self._friction(now).reshape(-1, 4).T
+        values = self._friction(now)
+        if checked and (values < 0).any():
+            values = without_rounding(values, self._terms(now))
+        levels, caps, curves, at_rest = values.reshape(-1, 4).T
         if checked:
             self._check_friction(now.t, levels, caps, curves, at_rest)
         now.caps = caps

@@ -8,9 +8,7 @@ from bondgraph import SimulationError
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import INPUTS, ClosedModel, Mode
-
-STEP = 2.0**-20
-"""Relative change of a component; its effect, divided by it, is the component's term."""
+from codegen.model.terms import STEP
 
 
 def input_terms(

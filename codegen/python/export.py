@@ -147,7 +147,16 @@ def _functions(program: Program, names: Names) -> list[str]:
         lines += values_function("friction_values", doc, program.friction_values, rows, names)
     if program.joint:
         lines += group_function("coupled_laws", program.coupled, program, names)
-    return lines
+    return [*lines, *(_laws(program) if program.friction else ())]
+
+
+def _laws(program: Program) -> list[str]:
+    """A table of the laws in turn with the inputs they give, for whoever asks how large their terms are."""
+    groups = [("known_laws", program.known), *zip(law_names(program), program.groups, strict=True)]
+    if program.joint:
+        groups.append(("coupled_laws", program.coupled))
+    rows = [f"({name}, {list(group.inputs)})" for name, group in groups if group.inputs]
+    return ["", "", *listing("LAWS = [", rows, "]", 0)]
 
 
 def _in_turn(program: Program) -> list[str]:

@@ -93,6 +93,8 @@ def friction_tables(program: Program, equations: StateEquations, held: Held) -> 
         lines += [
             "# A slip below this fraction of the terms that make it up counts as zero.",
             "ROUNDING = 1e-9",
+            "# A friction level below zero by no more than this fraction of its terms counts as zero.",
+            "LEVEL_ROUNDING = 1e-10",
         ]
     if needed["shared"]:
         lines += [

@@ -14,6 +14,7 @@ from codegen.model.affine import AffineMap
 from codegen.model.closed import ClosedModel, Mode
 from codegen.model.pace import moment
 from codegen.model.rounding import Peaks, scales
+from codegen.model.terms import without_rounding
 from codegen.model.verdicts import LEFT, Look
 from codegen.runs.legs import Ended, Track
 from codegen.runs.watched import DEGREE, Steps, exponential, lasting, series, watched
@@ -135,7 +136,10 @@ class ExactLeg:
 
     def _record(self, track: Track, rows: Array, times: Array) -> None:
         """Samples; where a friction level is below zero, let the model refuse it with its time."""
-        for at in np.flatnonzero((rows @ self._system.caps.T < 0).any(axis=1)).tolist():
+        caps = rows @ self._system.caps.T
+        if (caps < 0).any():
+            caps = without_rounding(caps, np.abs(rows) @ np.abs(self._system.caps.T))
+        for at in np.flatnonzero((caps < 0).any(axis=1)).tolist():
             if at < len(times):
                 self._model.at(float(times[at]), rows[at, : self._n], self._pieces, self._mode)
         a, b = track.recorded, track.recorded + len(rows)

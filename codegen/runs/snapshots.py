@@ -7,7 +7,9 @@ import numpy as np
 
 from codegen.arrays import Array
 from codegen.inputs.signal import Signal, sampled_rates, sampled_values
+from codegen.model.affine import AffineMap
 from codegen.model.closed import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, ClosedModel
+from codegen.model.terms import without_rounding
 from codegen.runs.legs import Track
 
 STATES, LAW_STATES = 0, 1
@@ -64,8 +66,17 @@ def _by_modes(
         if tables is None:
             tables = np.zeros((len(times), len(affine.matrix)))
         tables[which == number[mode]] = vectors[which == number[mode]] @ affine.matrix.T
-    if affine is None or tables is None or (mode and tables[:, affine.parts[CAPS]].min() < 0):
+    if affine is None or tables is None or (mode and _refused(affine, tables, vectors)):
         return None
     kept = (STATES, LAW_STATES, INPUTS, RATES_OF_INPUTS, READINGS, RATE)
     x, z, u, du, y, rate = (tables[:, affine.parts[part]] for part in kept)
     return Snapshots(x, z, u, du, y, rate, w.T)
+
+
+def _refused(affine: AffineMap, tables: Array, vectors: Array) -> bool:
+    """Whether a friction level is below zero, by more than the rounding of its terms."""
+    caps = tables[:, affine.parts[CAPS]]
+    if caps.min() >= 0:
+        return False
+    terms = np.abs(vectors) @ np.abs(affine.rows(CAPS)).T
+    return bool(without_rounding(caps, terms).min() < 0)

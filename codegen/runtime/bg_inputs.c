@@ -1,6 +1,7 @@
 /* Inputs: chains of polynomials times exponentials between breakpoints. */
 #include "bg_internal.h"
 
+#include <float.h>
 #include <math.h>
 
 /* The segment that holds at t and just after. */
@@ -71,5 +72,26 @@ void bg_given(const bg_inputs *inputs, int segment, const double *g, double *w, 
             dw[j] -= chains->rate[i][1] * g[first + 1];
         if (chains->depth[i] > 1)
             dw[j] += g[first + width];
+    }
+}
+
+void bg_input_sizes(const bg_inputs *inputs, int segment, double t, double *w)
+{
+    const bg_chains *chains = inputs->structures + inputs->chains[segment];
+    const double *c = inputs->polynomial[segment], *start = inputs->start[segment];
+    for (int j = 0; j < BG_W; j++)
+        w[j] = fabs(inputs->constant[segment][j]);
+    for (int i = 0; i < chains->count; i++) {
+        const int width = chains->width[i];
+        const double re = chains->rate[i][0], im = chains->rate[i][1], tau = t - start[i];
+        double size = 0.0, slope = 0.0;
+        for (int k = chains->depth[i] - 1; k >= 0; k--) {
+            const double *const at = c + chains->first[i] + k * width;
+            slope = slope * fabs(tau) + size;
+            size = size * fabs(tau) + fabs(at[0]) + (width == 2 ? fabs(at[1]) : 0.0);
+        }
+        slope += (fabs(re) + fabs(im)) * size;
+        const double late = DBL_EPSILON * (fabs(t) + fabs(start[i])) / BG_ROUNDING;
+        w[chains->input[i]] += (size + late * slope) * (re != 0.0 ? exp(re * tau) : 1.0);
     }
 }

@@ -111,6 +111,9 @@ void bg_slots(const bg_inputs *inputs, int segment, double t, double *g);
 void bg_given(const bg_inputs *inputs, int segment, const double *g, double *w, double *dw);
 int bg_segment(const bg_inputs *inputs, double t);
 
+/* The magnitudes of the terms that make up w, with what rounding of t adds. */
+void bg_input_sizes(const bg_inputs *inputs, int segment, double t, double *w);
+
 /* bg_modes.c: everything at one instant in a mode; a status. */
 int bg_number(const signed char *mode);
 int bg_find(bg_context *c, int number, const bg_mode **found);

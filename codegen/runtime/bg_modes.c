@@ -48,6 +48,19 @@ void bg_vector(bg_context *c, double t, const double *s, double *v)
     v[BG_L - 1] = 1.0;
 }
 
+/* Whether a level that is not positive is rounding of its terms, and so zero. */
+static int is_rounding(const bg_context *c, double t, const double *v, const bg_mode *mode,
+                       int port, double level)
+{
+    double w[BG_W], sum = 0.0;
+    bg_input_sizes(c->inputs, c->segment, t, w);
+    for (int j = 0; j < BG_L; j++) {
+        const int given = j >= BG_N && j < BG_N + BG_W;
+        sum += fabs(mode->shot[j][BG_AT_CAP + port]) * (given ? w[j - BG_N] : fabs(v[j]));
+    }
+    return level >= -BG_ROUNDING * sum;
+}
+
 int bg_look(bg_context *c, double t, const double *s, const bg_mode *mode, double *shot)
 {
     double v[BG_L];
@@ -62,6 +75,10 @@ int bg_look(bg_context *c, double t, const double *s, const bg_mode *mode, doubl
     }
     for (int i = 0; i < BG_K; i++)
         if (!(shot[BG_AT_CAP + i] >= 0.0)) {
+            if (is_rounding(c, t, v, mode, i, shot[BG_AT_CAP + i])) {
+                shot[BG_AT_CAP + i] = 0.0;
+                continue;
+            }
             c->task->time = t;
             return shot[BG_AT_CAP + i] < 0.0 ? BG_NEGATIVE : BG_UNUSABLE;
         }
@@ -89,7 +106,7 @@ void bg_see(bg_context *c, const bg_mode *mode, const double *shot)
 /* The rounding to be expected, from the magnitude of the terms that cancel, and of the time's. */
 void bg_scale(const bg_context *c, const double *shot, double t, bg_scales *size)
 {
-    const double tolerance = 1e-10, time = c->peaks.time;
+    const double time = c->peaks.time;
     const double spacing = nextafter(fabs(t), INFINITY) - fabs(t);
     double x[BG_X], u[BG_U], rate[BG_X], slip[BG_PORTS] = {0}, moved[BG_PORTS] = {0};
     for (int i = 0; i < BG_X; i++) {
@@ -121,8 +138,8 @@ void bg_scale(const bg_context *c, const double *shot, double t, bg_scales *size
         const double driven = inertia > 0.0 ? moved[i] / inertia : 0.0;
         const double effort = fabs(shot[BG_AT_EFFORT + i]) + shot[BG_AT_CAP + i];
         const double late = 16.0 * spacing * fabs(shot[BG_AT_PUSH + i]);
-        size->slip[i] = tolerance * (slip[i] + moved[i] * time) + late + DBL_MIN;
-        size->effort[i] = tolerance * (effort + driven) + DBL_MIN;
-        size->acceleration[i] = tolerance * 10.0 * moved[i] + DBL_MIN;
+        size->slip[i] = BG_ROUNDING * (slip[i] + moved[i] * time) + late + DBL_MIN;
+        size->effort[i] = BG_ROUNDING * (effort + driven) + DBL_MIN;
+        size->acceleration[i] = BG_ROUNDING * 10.0 * moved[i] + DBL_MIN;
     }
 }

@@ -63,8 +63,12 @@ fmu_error fmu_refresh(fmu_instance *f)
 
 fmu_error fmu_look(fmu_instance *f, double t, const double *s, const int *mode, bg_snapshot *shot)
 {
+    double following;
+    /* An importer's integrator looks past a time event and keeps nothing of it: a level that comes
+     * down to zero there goes on smoothly, and is not refused for being below. */
+    const int beyond = f->at.exchange && fmu_next_break(f, &following) && t > following;
     fmu_externals(f, t, f->w, f->dw);
-    return message(bg_model_evaluate(&f->model, t, s, f->w, f->dw, mode, shot));
+    return message(bg_evaluate(&f->model, t, s, f->w, f->dw, mode, !beyond, shot));
 }
 
 static double state_of(const fmu_instance *f, int at)

@@ -1,4 +1,6 @@
 /* External inputs: what the importer gives, and the sources inside. */
+#include <math.h>
+
 #include "fmu_common.h"
 
 /* Values and rates at t; what the importer gives goes on from the instance's time with its slope. */
@@ -7,7 +9,11 @@ void fmu_externals(const fmu_instance *f, double t, double *w, double *dw)
     bg_signals_at(&fmu_signals, f->at.segment, t, w, dw);
     for (int i = 0; i < BG_EXTERNAL; i++)
         if (!fmu_inside[i]) {
-            w[i] = f->at.given[i] + f->at.slopes[i] * (t - f->at.time);
+            const double change = f->at.slopes[i] * (t - f->at.time);
+            const double size = fabs(f->at.given[i]) + fabs(change), slope = fabs(f->at.slopes[i]);
+            w[i] = f->at.given[i] + change;
+            if (change != 0.0 && fabs(w[i]) <= bg_cancelled(size, slope, fabs(t)))
+                w[i] = 0.0;
             dw[i] = f->at.slopes[i];
         }
 }

@@ -23,7 +23,12 @@ void bg_give(bg_model *m, int count, const int *columns, const double *values)
 static int efforts_against(bg_model *m, const int *mode, int checked, double *efforts)
 {
     double values[4 * BG_ROOM(K)] = {0};
+    int below = 0;
     bg_friction_values(&m->now, values);
+    for (int i = 0; i < 4 * K; i++)
+        below |= values[i] < 0.0;
+    if (checked && below)
+        bg_without_rounding(m, values);
     for (int i = 0; i < K; i++) {
         const double level = values[4 * i], cap = values[4 * i + 1], curve = values[4 * i + 2];
         const double at_rest = level * values[4 * i + 3];

@@ -130,6 +130,10 @@ int bg_slope(bg_model *m, double t, const double *s, const double *w, double amo
 int bg_check_step(bg_model *m, double t, double h, const double *s, const double *w);
 void bg_note_stages(bg_model *m);
 
+/* model_level.c: of level, cap, curve and curve at rest of every port at `m->now` those become zero
+ * that are below by no more than the rounding of their terms. */
+void bg_without_rounding(bg_model *m, double *values);
+
 /* model_evaluate.c */
 void bg_give(bg_model *m, int count, const int *columns, const double *values);
 int bg_residual(bg_model *m, const bg_loop *loop, double *left);

@@ -7,7 +7,6 @@
 #include "model_located_internal.h"
 
 enum { K = BG_FRICTION, N = BG_STATES, M = BG_INPUTS, SQUARINGS = 8 };
-static const double TOLERANCE = 1e-10;
 static const double SMALL = 1.0 / 1048576.0; /* relative change of a state, a power of 2 */
 
 /* How fast a port's slip changes. */
@@ -86,9 +85,9 @@ void bg_located_rounding(bg_located *c, double t, bg_rounding *size)
         inertia = fabs(inertia) + fabs(a->D[row * M + own]);
         const double late = 16.0 * spacing * fabs(bg_slip_rate(c->model, now, k));
         const double effort = fabs(now->u[own]) + now->caps[k];
-        size->slip[k] = TOLERANCE * (slip + moved * c->moment) + late + DBL_MIN;
-        size->effort[k] = TOLERANCE * (effort + (inertia > 0 ? moved / inertia : 0.0)) + DBL_MIN;
-        size->push[k] = TOLERANCE * 10.0 * moved + DBL_MIN;
+        size->slip[k] = BG_ROUNDING * (slip + moved * c->moment) + late + DBL_MIN;
+        size->effort[k] = BG_ROUNDING * (effort + (inertia > 0 ? moved / inertia : 0.0)) + DBL_MIN;
+        size->push[k] = BG_ROUNDING * 10.0 * moved + DBL_MIN;
     }
 }
 

@@ -94,6 +94,7 @@ typedef struct {
     double origin[BG_MAP_ROWS], external[2][BG_ROOM(BG_EXTERNAL)];
     double loop[BG_ROOM(BG_LOOP)][6], slopes[BG_TABLE(BG_LOOP, BG_LOOP)];
     int pivots[BG_ROOM(BG_LOOP)];
+    bg_values sizes;
 } bg_work;
 
 /* What a step knows of the model's fastest rates: a direction in which the rates move fast, and how

@@ -25,8 +25,36 @@ void bg_term_add(const bg_term *term, const double (*coefficients)[2], double t,
     *slope += size * (d[0] * cosine - d[1] * sine);
 }
 
+double bg_cancelled(double size, double slope, double time)
+{
+    return 8.0 * DBL_EPSILON * (size + slope * time / 8.0);
+}
+
+/* What rounding leaves of an input's terms where they cancel. */
+static double rounding(const bg_signals *signals, int segment, int input, double t)
+{
+    double sum = 0.0;
+    for (int k = signals->begins[segment]; k < signals->begins[segment + 1]; k++) {
+        const bg_term *const term = signals->terms + k;
+        const double(*const c)[2] = signals->coefficients + term->first;
+        const double tau = t - term->start;
+        double size = 0.0, slope = 0.0;
+        if (term->input != input)
+            continue;
+        for (int i = term->count - 1; i >= 0; i--) {
+            slope = slope * fabs(tau) + size;
+            size = size * fabs(tau) + hypot(c[i][0], c[i][1]);
+        }
+        slope += hypot(term->rate[0], term->rate[1]) * size;
+        const double grown = term->rate[0] != 0.0 ? exp(term->rate[0] * tau) : 1.0;
+        sum += grown * bg_cancelled(size, slope, fabs(t) + fabs(term->start));
+    }
+    return sum;
+}
+
 void bg_signals_at(const bg_signals *signals, int segment, double t, double *w, double *dw)
 {
+    double largest[BG_ROOM(BG_EXTERNAL)] = {0};
     for (int i = 0; i < BG_EXTERNAL; i++)
         w[i] = dw[i] = 0.0;
     /* A segment is not continued back before its begin: a level would fall below zero. */
@@ -34,8 +62,16 @@ void bg_signals_at(const bg_signals *signals, int segment, double t, double *w, 
         t = fmax(t, signals->breaks[segment - 1]);
     for (int k = signals->begins[segment]; k < signals->begins[segment + 1]; k++) {
         const bg_term *const term = signals->terms + k;
+        const double(*const c)[2] = signals->coefficients + term->first;
+        double *const most = largest + term->input;
         bg_term_add(term, signals->coefficients, t, w + term->input, dw + term->input);
+        for (int i = 0; i < term->count; i++)
+            *most = fmax(*most, fmax(fabs(c[i][0]), fabs(c[i][1])));
     }
+    for (int i = 0; i < BG_EXTERNAL; i++)
+        if (w[i] != 0.0 && fabs(w[i]) <= 1e-6 * largest[i] /* else it is none: saves the look */
+            && fabs(w[i]) <= rounding(signals, segment, i, t))
+            w[i] = 0.0;
 }
 
 /* A breakpoint counts as reached a rounding before it: times are sums of steps. */

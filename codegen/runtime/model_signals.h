@@ -22,6 +22,10 @@ typedef struct {
     const double *fastest;
 } bg_signals;
 
+/* Below this a value is rounding of terms that cancel: of so large a sum of magnitudes, which an
+ * eighth of the time's rounding, too, changes with this slope. */
+double bg_cancelled(double size, double slope, double time);
+
 /* Adds a term's value and slope at t. */
 void bg_term_add(const bg_term *term, const double (*coefficients)[2], double t, double *value,
                  double *slope);

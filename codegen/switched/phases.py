@@ -23,7 +23,8 @@ from codegen.model.closed import Mode
 from codegen.model.guards import guard_values
 from codegen.model.modes import a_moment_later, decide
 from codegen.model.pace import LOOK_AHEAD, look_ahead, time_constant
-from codegen.model.rounding import TOLERANCE, Peaks
+from codegen.model.rounding import Peaks
+from codegen.model.terms import TOLERANCE
 from codegen.runs.legs import Leg, Settings
 from codegen.simulate import Simulator, guarded_simulator
 from codegen.switched.handover import Handover

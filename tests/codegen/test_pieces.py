@@ -84,3 +84,21 @@ def test_fastest_is_the_largest_rate() -> None:
     assert Piece(0.0, ((0, (1.0,)), (-3 + 0j, (1.0,)), (4j, (1.0,)))).fastest == 4.0
     assert constant_piece(0.0, 2.0).fastest == 0.0
     assert Piece(0.0, ()).fastest == 0.0
+
+
+@pytest.mark.parametrize(
+    ("piece", "t"),
+    [
+        (Piece(0.3, ((0, (1.3, -13.0)),)), 0.4),
+        (Piece(0.0, ((2j * np.pi, (-1j,)),)), 0.5),
+        (Piece(0.0, ((0, (1.0,)), (-1.0 + 0j, (-np.exp(2.0 / 3.0),)))), 2.0 / 3.0),
+        # A double near 1e4 is off by 1e-12, and so this ramp by 1e-10, which its terms are 1e8 of.
+        (Piece(1e4 + 0.1, ((0, (0.1, -100.0)),)), 1e4 + 0.101),
+    ],
+)  # fmt: skip
+def test_where_terms_cancel_their_rounding_is_zero(piece: Piece, t: float) -> None:
+    assert piece(t) == 0.0
+    assert piece.values(np.array([t, t + 0.01])).tolist()[0] == 0.0
+    moved_off = 1e-9 * max(1.0, t)
+    assert abs(piece(t + moved_off)) > 1e-10
+    assert piece.values(np.array([t + moved_off]))[0] == pytest.approx(piece(t + moved_off))

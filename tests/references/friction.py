@@ -209,11 +209,13 @@ class Machine:
             if len(fallen):
                 left = min(self._root(made, mode, A, z, h, int(i), armed[int(i)]) for i in fallen)
             at = t + k * h
-            inside = times[(times >= at) & (times < at + left)]
+            # Where the next step begins, to the last digit: a sample there is the next step's alone.
+            end = at + left if len(fallen) else min(t + (k + 1) * h, stop)
+            inside = times[(times >= at) & (times < end)]
             course.states += [(expm(A * (s - at)) @ z)[: self._n + self._d] for s in inside]
             course.modes += [mode] * len(inside)
             if len(fallen):
-                return at + left, expm(A * left) @ z
+                return end, expm(A * left) @ z
             z, armed = z_next, armed | (after > 1e-10)
         return stop, z
 
