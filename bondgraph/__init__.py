@@ -1,10 +1,18 @@
 """Symbolic bond graphs: declared with networkx, derived into ``A x' = J x + B u``, slip ``= F x``."""
 
-from bondgraph.assignments import Assignment, assignments
-from bondgraph.causality import CausalGraph, assign_causality
-from bondgraph.composition import assemble, prefixed
+from bondgraph.algebra.expressions import expression
+from bondgraph.analyse.explicit import explicit
+from bondgraph.analyse.holding import holding_efforts
+from bondgraph.analyse.linearize import LinearModel, linearize
+from bondgraph.analyse.loops import Loop, loops
+from bondgraph.causality.assign import CausalGraph, assign_causality
+from bondgraph.causality.assignments import Assignment, assignments
+from bondgraph.declare.composition import assemble, prefixed
+from bondgraph.declare.elements import GY, TF, C, De, Df, I, Kind, One, R, Se, Sf, Sw, Switch, Zero
+from bondgraph.declare.laws import DryFriction, ExpressionLaw
+from bondgraph.declare.switching import in_mode, switches
+from bondgraph.declare.validate import validate
 from bondgraph.drawing.picture import Drawing, drawing
-from bondgraph.elements import GY, TF, C, De, Df, I, Kind, One, R, Se, Sf, Sw, Switch, Zero
 from bondgraph.equations import StateEquations, derive, state_equations
 from bondgraph.errors import (
     AlgebraicLoopError,
@@ -25,19 +33,11 @@ from bondgraph.errors import (
 )
 from bondgraph.explaining.explanation import Explanation, explain
 from bondgraph.explaining.records import Equation, Factor, Formula, Step
-from bondgraph.explicit import explicit
-from bondgraph.expressions import expression
-from bondgraph.files import read_graphml, read_json, write_graphml, write_json
-from bondgraph.graph import validate
-from bondgraph.graphml import from_graphml, to_graphml
-from bondgraph.holding import holding_efforts
-from bondgraph.junction import JunctionStructure, junction_structure
-from bondgraph.latex import latex
-from bondgraph.laws import DryFriction, ExpressionLaw
-from bondgraph.linear import LinearModel, linearize
-from bondgraph.loop_gains import Loop, loops
-from bondgraph.nodelink import from_json, to_json
-from bondgraph.switching import in_mode, switches
+from bondgraph.files.disk import read_graphml, read_json, write_graphml, write_json
+from bondgraph.files.graphml import from_graphml, to_graphml
+from bondgraph.files.nodelink import from_json, to_json
+from bondgraph.reduce.junction import JunctionStructure, junction_structure
+from bondgraph.show.latex import latex
 
 __all__ = [
     "GY",

@@ -7,22 +7,22 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.causality import assign_causality
-from bondgraph.display import equations_text
-from bondgraph.elements import Element
+from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.tidy import tidy_matrices
+from bondgraph.causality.assign import assign_causality
+from bondgraph.declare.elements import Element
+from bondgraph.declare.laws import Law
 from bondgraph.errors import StructureError
-from bondgraph.expressions import TIME
-from bondgraph.inertia import check_regular, inertia
-from bondgraph.junction import JunctionStructure, Port, junction_structure
-from bondgraph.latex import notebook_latex
-from bondgraph.laws import Law
-from bondgraph.modulation import Reading
-from bondgraph.outputs import PortRow, named_signals, shown_signals
-from bondgraph.rates import resolved
-from bondgraph.readings import check_laws
-from bondgraph.reduction import reduce_ports
-from bondgraph.sorting import Reduction
-from bondgraph.tidy import tidy_matrices
+from bondgraph.reduce.inertia import check_regular, inertia
+from bondgraph.reduce.junction import JunctionStructure, Port, junction_structure
+from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.outputs import PortRow, named_signals, shown_signals
+from bondgraph.reduce.ports import reduce_ports
+from bondgraph.reduce.rates import resolved
+from bondgraph.reduce.readings import check_laws
+from bondgraph.reduce.sorting import Reduction
+from bondgraph.show.display import equations_text
+from bondgraph.show.latex import notebook_latex
 
 LARGEST_REPR = 100
 """Equations with more states, inputs or outputs are represented by their sizes."""

@@ -5,24 +5,19 @@ from codegen.analysis.spectrum import Spectrum, spectrum
 from codegen.c.export import to_c
 from codegen.energy.audit import Audit
 from codegen.engine.fallback import BackendWarning
+from codegen.family import Family
 from codegen.fmu.export import write_fmu
 from codegen.inputs.sampled import Sampled
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, Lag, Ramp, Sine, Step
-from codegen.pictures.bode import bode
-from codegen.pictures.panels import panels
-from codegen.pictures.poles import pole_map
-from codegen.pictures.shapes import mode_shapes
-from codegen.program import Block, Program, lower
+from codegen.inputs.swept import Swept
+from codegen.plots.bode import bode
+from codegen.plots.panels import panels
+from codegen.plots.poles import pole_map
+from codegen.plots.shapes import mode_shapes
+from codegen.program.lower import Block, Program, lower
 from codegen.python.export import to_python
-from codegen.runs.events import Event
-from codegen.runs.result import Result
-from codegen.simulate import Simulator, simulator
-from codegen.sparse.model import SparseModel, sparse_model
-from codegen.sparse.run import run_sparse
-from codegen.sweeps.design import Grid, Samples, Table
-from codegen.sweeps.family import Family
-from codegen.sweeps.measures import (
+from codegen.record.measures import (
     balance,
     event_count,
     final,
@@ -34,9 +29,14 @@ from codegen.sweeps.measures import (
     smallest,
     work,
 )
+from codegen.record.result import Result
+from codegen.runs.events import Event
+from codegen.simulate import Simulator, simulator
+from codegen.sparse.model import SparseModel, sparse_model
+from codegen.sparse.run import run_sparse
+from codegen.sweeps.design import Grid, Samples, Table
 from codegen.sweeps.result import Failure, Sweep, SweepInterrupted
 from codegen.sweeps.sweep import sweep
-from codegen.sweeps.swept import Swept
 from codegen.switched.simulator import SwitchedSimulator, switched_simulator
 from codegen.trim import trim
 

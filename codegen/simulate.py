@@ -9,10 +9,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
-from bondgraph import ParameterError, SignalError, StateEquations
-from codegen.arrays import Array, is_finite, is_number
+from bondgraph.equations import StateEquations
+from bondgraph.errors import ParameterError, SignalError
 from codegen.energy.ledger import Ledger
-from codegen.energy.replay import Run
 from codegen.engine.fallback import Stopped, tell
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
@@ -20,13 +19,19 @@ from codegen.engine.runs import CRuns, Status
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
-from codegen.model.closed import ClosedModel
 from codegen.model.energies import warn_of_energies
-from codegen.model.modes import decide
-from codegen.model.pace import LOOK_AHEAD
-from codegen.model.rounding import Peaks
 from codegen.model.sources import source_signals
-from codegen.program import Program, lower
+from codegen.modes.choose import decide
+from codegen.modes.closed import ClosedModel
+from codegen.modes.pace import LOOK_AHEAD
+from codegen.modes.rounding import Peaks
+from codegen.numbers.arrays import Array, is_finite, is_number
+from codegen.program.lower import Program, lower
+from codegen.program.units import told_units
+from codegen.record.columns import named_columns
+from codegen.record.replay import Run
+from codegen.record.result import Result
+from codegen.record.snapshots import snapshots
 from codegen.runs.arguments import (
     checked_times,
     initial_values,
@@ -34,13 +39,9 @@ from codegen.runs.arguments import (
     settings_of,
     signals_for,
 )
-from codegen.runs.columns import named_columns
 from codegen.runs.hybrid import run_hybrid
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import EXACT, Settings, Track
-from codegen.runs.result import Result
-from codegen.runs.snapshots import snapshots
-from codegen.units import told_units
 
 BACKENDS = ("numpy", "c")
 """What runs models."""

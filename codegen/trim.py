@@ -5,11 +5,11 @@ from itertools import product
 
 import numpy as np
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
-from codegen.model.closed import ClosedModel, Mode, Snapshot
-from codegen.model.trials import evaluated
+from codegen.modes.closed import ClosedModel, Mode, Snapshot
+from codegen.modes.trials import evaluated
+from codegen.numbers.arrays import Array
 from codegen.simulate import Simulator
 
 ITERATIONS = 50

@@ -6,7 +6,7 @@ from pathlib import Path
 import bondgraph as bg
 import codegen
 from bondgraph.writing import made_folder, write_all
-from codegen.identifiers import module_name
+from codegen.program.identifiers import module_name
 from differentials.scenarios import Prepared, Scenario, prepared
 from differentials.scripts import script
 

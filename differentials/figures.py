@@ -15,7 +15,7 @@ from codegen import Result
 from codegen.pictures import stacked
 from codegen.pictures.labels import pretty
 from codegen.pictures.marks import Marks
-from codegen.runs.result import marks_of
+from codegen.record.result import marks_of
 from differentials.scenarios import STIFFNESSES
 from differentials.topologies import Differential, catalog
 

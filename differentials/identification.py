@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 
 import bondgraph as bg
-from bondgraph.response import StateSpace
-from codegen.roots import root
+from bondgraph.analyse.state_space import StateSpace
+from codegen.numbers.roots import root
 from differentials.model import Model, model
 from differentials.parameters import checked
 

@@ -9,9 +9,9 @@ from collections.abc import Hashable
 import networkx as nx
 
 import bondgraph as bg
-from bondgraph.composition import assemble as assemble
-from bondgraph.elements import Node
-from bondgraph.renaming import Part as Part
+from bondgraph.declare.composition import assemble as assemble
+from bondgraph.declare.elements import Node
+from bondgraph.declare.renaming import Part as Part
 from differentials.laws import backlash
 
 

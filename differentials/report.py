@@ -3,7 +3,7 @@
 from collections.abc import Hashable, Mapping, Sequence
 
 import bondgraph as bg
-from bondgraph.response import StateSpace
+from bondgraph.analyse.state_space import StateSpace
 from codegen import Result
 from differentials.parameters import Parameter
 

@@ -6,7 +6,7 @@ from types import MappingProxyType
 import sympy as sp
 
 import bondgraph as bg
-from bondgraph.tidy import tidy
+from bondgraph.algebra.tidy import tidy
 
 
 def zero_slip_ratios(equations: bg.StateEquations) -> Mapping[sp.Symbol, sp.Expr]:

@@ -1,118 +1,112 @@
-"""Imports go one way: between the packages, and inside each down a list of its files."""
+"""Folders are the stages: imports go one way down this list, and nothing goes round in a circle.
+
+Every import counts, inside functions and for types alone, too; faces (`__init__`) and `__main__` do not, as
+they are for users. A file at the top of a package is a folder of its own.
+"""
 
 import ast
 import re
-from collections.abc import Iterator
+from collections import Counter
 from pathlib import Path
 
+import networkx as nx
 import pytest
 
 ROOT = Path(__file__).parents[1]
+
+FOLDERS = """
+bondgraph.errors bondgraph.writing bondgraph.algebra bondgraph.declare bondgraph.causality bondgraph.reduce
+bondgraph.show bondgraph.equations bondgraph.analyse bondgraph.explaining bondgraph.drawing bondgraph.files
+codegen.numbers codegen.inputs codegen.program codegen.model codegen.ports codegen.modes codegen.energy
+codegen.runs codegen.pictures codegen.record codegen.plots codegen.analysis codegen.c codegen.engine
+codegen.simulate codegen.trim codegen.packing codegen.family codegen.batch codegen.sweeps codegen.python
+codegen.switched codegen.sparse codegen.fmu
+differentials.laws differentials.parts differentials.pieces differentials.passive differentials.active
+differentials.topologies differentials.parameters differentials.model differentials.identification
+differentials.speeds differentials.scenarios differentials.scripts differentials.exporting
+differentials.figures differentials.report differentials.cli
+""".split()  # fmt: skip
+"""Each imports only earlier ones."""
+
 DISPLAY = re.compile(r"_repr_[a-z]+_")
+"""What a notebook calls: these methods of a record may import the drawing of it."""
+
+MOST_FILES = 20
+"""In one folder."""
+
+LONGEST = 46
+"""Files, each importing the next, over `bondgraph` and `codegen`."""
 
 
-def _room(folder: str, files: str) -> list[str]:
-    return [f"{folder}.{file}" for file in files.split()]
+def _modules() -> dict[str, Path]:
+    found = {}
+    for package in ("bondgraph", "codegen", "differentials"):
+        for path in (ROOT / package).rglob("*.py"):
+            if path.stem not in ("__init__", "__main__"):
+                found[".".join(path.relative_to(ROOT).with_suffix("").parts)] = path
+    return found
 
 
-#: Each package may import the ones before it; each file of a package the files before it.
-ORDER = {
-    "bondgraph": [
-        "errors", "writing", "residues", "expressions", "laws", "elements", "elimination", "fields",
-        "attributes", "declared", "names", "graph", "switching", "strokes", "causal_order",
-        "regularity", "stories", "exact", "vanishing", "causality", "lines", "assignments", "tidy",
-        "junction", "modulation", "sorting", "resistances", "stored", "reduction", "rates",
-        "inertia", "loop_gains", "outputs", "readings", "sums", "blocks", "display", "latex",
-        "equations", "closures", "slopes", "constrained", "holding", "closed_rows", "response",
-        "linear", "explicit",
-        *_room("explaining", "records momenta strokes_told primitives elimination dependence inertias "
-               "layout text typesetting explanation"),
-        *_room("drawing", "rich metrics subject shapes tight layers order columns marks places ends bonds "
-               "powers compose svg plot listing picture"),
-        "renaming", "composition", "declarations", "restored", "nodelink", "safexml", "graphml", "files",
-    ],
-    "codegen": [
-        "arrays", "pairs", "roots", *_room("inputs", "pieces generators polynomials signal signals sampled "
-                                            "tables discs segments branches harmonics known"),
-        "model.affine", "closing", "timed", "records", "gains", "sections", "program", "identifiers",
-        "printing", "units",
-        *_room("model", "numpy_backend numbers energies sharp sources pace snapshot sharing slips "
-               "friction instant loops terms rubbing closed stability sizes trials rounding verdicts modes "
-               "guards places"),
-        *_room("energy", "stored quadrature accounts tally"),
-        *_room("runs", "events sundials progress legs watched exact ladder free hybrid arguments steps "
-               "impulses observer tables summary"),
-        *_room("energy", "audit ledger"), *_room("pictures", "style canvas labels flags marks stacked"),
-        *_room("runs", "result snapshots columns"), "energy.replay",
-        *_room("pictures", "panels poles bode shapes"), *_room("analysis", "spectrum comparison"),
-        *_room("c", "text structure constants rhs blocks rates tables prefix scenario export"),
-        *_room("engine", "compiler cache build sizes modes inputs fallback runs located"),
-        "simulate", "trim",
-        *_room("sweeps", "packing family measures design columns swept batch_inputs batch_engine batch_model "
-               "batch_plan batch_energy batch_call batch_exact batch_located batch job crews cluster drive "
-               "result store sweep"),
-        *_room("python", "sticking text blocks tables export"),
-        *_room("switched", "handover phases spliced simulator"),
-        *_room("sparse", "valued signal_rows model steps run"),
-        *_room("fmu", "variables switches resolution model dependencies xml binaries export"),
-    ],
-    "differentials": [
-        "laws", "parts", "pieces", "passive", "active", "topologies", "parameters", "model",
-        "identification", "speeds", "scenarios", "scripts", "exporting", "figures", "report",
-        *_room("cli", "printing names signals subject options preparing pictures reading graphs "
-               "linearising running grids sweeping exporting tours app"),
-    ],
-}  # fmt: skip
-
-
-def _nodes(tree: ast.AST) -> Iterator[ast.AST]:
-    """What a file consists of, without the bodies of display methods.
-
-    A notebook calls ``_repr_svg_`` and its like; they may ask a later file for the picture of their record.
-    """
-    for node in ast.iter_child_nodes(tree):
-        if not (isinstance(node, ast.FunctionDef) and DISPLAY.fullmatch(node.name)):
-            yield node
-            yield from _nodes(node)
-
-
-def _imports(path: Path) -> Iterator[str]:
-    """The full name of every module that a file imports, anywhere in it but in display methods."""
-    for node in _nodes(ast.parse(path.read_text(encoding="utf-8"))):
+def _imported(path: Path, modules: dict[str, Path]) -> set[str]:
+    waiting, found = [ast.parse(path.read_text(encoding="utf-8"))], set()
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.FunctionDef) and DISPLAY.fullmatch(node.name):
+            continue
+        waiting += ast.iter_child_nodes(node)
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}:{node.lineno} imports relatively"
-            module = str(node.module)
-            yield from (
-                (f"{module}.{alias.name}" for alias in node.names) if module in ORDER else [module]
-            )
+            parts = {f"{node.module}.{alias.name}" for alias in node.names}
+            found |= parts & set(modules) or {str(node.module)}
+    return found
 
 
-def _files(package: str) -> dict[str, Path]:
-    folder = ROOT / package
-    files = {path.relative_to(folder): path for path in folder.rglob("*.py")}
-    return {".".join(name.with_suffix("").parts): path for name, path in files.items()}
+def _folder(module: str) -> str:
+    parts = module.split(".")
+    return module if len(parts) == 2 else ".".join(parts[:2])
 
 
-CASES = [(package, module) for package, modules in ORDER.items() for module in modules]
+@pytest.fixture(scope="module")
+def imports() -> "nx.DiGraph[str]":
+    """An edge from each file to each that it imports; to a face where it takes that."""
+    modules = _modules()
+    found: nx.DiGraph[str] = nx.DiGraph()
+    found.add_nodes_from(modules)
+    for module, path in modules.items():
+        found.add_edges_from((module, name) for name in _imported(path, modules))
+    return found
 
 
-@pytest.mark.parametrize(("package", "module"), CASES)
-def test_file_imports_only_what_is_above_it(package: str, module: str) -> None:
-    packages = list(ORDER)
-    below = {*packages[packages.index(package) + 1 :]}
-    above = ORDER[package][: ORDER[package].index(module)]
-    for name in _imports(_files(package)[module]):
-        top, _, rest = name.partition(".")
-        assert top not in below, f"{package}.{module} imports {name}"
-        if top == package:
-            assert rest in above, f"{package}.{module} imports {name}"
+def test_files_import_files_and_no_faces(imports: "nx.DiGraph[str]") -> None:
+    """Inside the two packages that others build on."""
+    faces = {name for name in imports if name.split(".")[0] in ("bondgraph", "codegen")}
+    faces -= set(_modules())
+    taken = [(one, face) for one, face in imports.edges if face in faces]
+    assert [edge for edge in taken if not edge[0].startswith("differentials.")] == []
 
 
-@pytest.mark.parametrize("package", [package for package, modules in ORDER.items() if modules])
-def test_every_file_has_its_place(package: str) -> None:
-    files = {
-        name for name in _files(package) if name.split(".")[-1] not in ("__init__", "__main__")
-    }
-    assert sorted(files) == sorted(ORDER[package])
+def test_folders_import_only_earlier_ones(imports: "nx.DiGraph[str]") -> None:
+    place = {folder: at for at, folder in enumerate(FOLDERS)}
+    ours = imports.subgraph(_modules())
+    assert sorted(set(map(_folder, ours)) ^ set(FOLDERS)) == []
+    up = [(a, b) for a, b in ours.edges if place[_folder(a)] < place[_folder(b)]]
+    assert up == []
+
+
+def test_no_file_imports_itself_in_a_circle(imports: "nx.DiGraph[str]") -> None:
+    ours = imports.subgraph(_modules())
+    circles = [sorted(part) for part in nx.strongly_connected_components(ours) if len(part) > 1]
+    assert circles == []
+
+
+def test_no_chain_of_imports_is_long(imports: "nx.DiGraph[str]") -> None:
+    core = [name for name in _modules() if not name.startswith("differentials")]
+    chain = nx.dag_longest_path(imports.subgraph(core))
+    assert len(chain) <= LONGEST, chain
+
+
+def test_no_folder_has_many_files(imports: "nx.DiGraph[str]") -> None:
+    counts = Counter(_folder(name) for name in _modules())
+    assert {folder: count for folder, count in counts.items() if count > MOST_FILES} == {}

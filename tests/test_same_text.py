@@ -30,7 +30,7 @@ say(bg.drawing(differentials.graph("stationary_tvd"), powers=True).svg())
 """,
     "program": """
 import networkx as nx, bondgraph as bg
-from codegen.program import lower
+from codegen.program.lower import lower
 g = nx.DiGraph()
 laws = {"a": "p*v + q*f_a", "b": "p*e_a + r*tanh(s*f_b)", "c": "s*e_b + w_1 + w_2"}
 g.add_nodes_from([bg.One("n"), bg.I("m", "m + n_1/n_2", flow="v")])

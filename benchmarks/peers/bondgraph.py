@@ -5,7 +5,8 @@ from typing import Any
 import sympy as sp
 from bondgraph.core import Bond, BondGraph
 
-from bondgraph import elements, junctions
+from bondgraph import junctions
+from bondgraph.declare import elements
 
 ONE_PORTS = {
     "Se": elements.Source_effort, "R": elements.Element_R, "I": elements.Element_I,

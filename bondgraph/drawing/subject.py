@@ -6,13 +6,13 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.causality import CausalGraph, assign_causality
+from bondgraph.causality.assign import CausalGraph, assign_causality
+from bondgraph.declare.elements import JUNCTIONS, TWO_PORTS, Element, Kind
+from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.declare.switching import switches
+from bondgraph.declare.validate import Bond, validate
 from bondgraph.drawing.rich import MOST, Rich, Run, formula, length, named
-from bondgraph.elements import JUNCTIONS, TWO_PORTS, Element, Kind
 from bondgraph.errors import AlgebraicLoopError, CausalityError
-from bondgraph.graph import Bond, validate
-from bondgraph.laws import ExpressionLaw
-from bondgraph.switching import switches
 
 
 @dataclass(frozen=True)

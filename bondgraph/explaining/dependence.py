@@ -7,10 +7,10 @@ import sympy as sp
 from bondgraph.explaining.elimination import reading_terms, row_terms
 from bondgraph.explaining.momenta import Momenta
 from bondgraph.explaining.records import Equation, Step, equation
-from bondgraph.modulation import Reading
-from bondgraph.sorting import Reduction
-from bondgraph.stored import stored_rate
-from bondgraph.sums import Term, rate, total
+from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.sorting import Reduction
+from bondgraph.reduce.storages import stored_rate
+from bondgraph.show.sums import Term, rate, total
 
 
 def dependent_step(reduction: Reduction, held: Momenta) -> Step:

@@ -4,15 +4,15 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import sympy as sp
 
-from bondgraph.assignments import Assignment
-from bondgraph.causal_order import CausalEquations, causal_groups
-from bondgraph.exact import combined
+from bondgraph.algebra.exact import combined
+from bondgraph.algebra.tidy import tidy
+from bondgraph.causality.assignments import Assignment
+from bondgraph.causality.signals import CausalEquations, causal_groups
 from bondgraph.explaining.records import Equation, Step, equation
-from bondgraph.modulation import Reading
-from bondgraph.resistances import ResistiveGroup, resistive_groups
-from bondgraph.sorting import Reduction, detects
-from bondgraph.sums import Term, rate
-from bondgraph.tidy import tidy
+from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.resistances import ResistiveGroup, resistive_groups
+from bondgraph.reduce.sorting import Reduction, detects
+from bondgraph.show.sums import Term, rate
 
 LARGEST_TIDIED = 100
 """Entries of graphs with more ports are shown as they were derived."""

@@ -4,10 +4,9 @@ from collections.abc import Hashable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from bondgraph.assignments import assignments
-from bondgraph.causal_order import causal_equations
-from bondgraph.causality import CausalGraph, assign_causality
-from bondgraph.display import rows_of_terms
+from bondgraph.causality.assign import CausalGraph, assign_causality
+from bondgraph.causality.assignments import assignments
+from bondgraph.causality.signals import causal_equations
 from bondgraph.equations import StateEquations, state_equations
 from bondgraph.explaining.dependence import balances_step, dependent_step
 from bondgraph.explaining.elimination import loops_step, received_step, resistances_step
@@ -19,7 +18,8 @@ from bondgraph.explaining.records import Step, equation, numbered
 from bondgraph.explaining.strokes_told import causality_step
 from bondgraph.explaining.text import text_of
 from bondgraph.explaining.typesetting import latex_of, markdown_of
-from bondgraph.junction import junction_structure
+from bondgraph.reduce.junction import junction_structure
+from bondgraph.show.display import rows_of_terms
 
 
 @dataclass(frozen=True)

@@ -4,12 +4,12 @@ from collections.abc import Mapping, Sequence
 
 import sympy as sp
 
+from bondgraph.algebra.exact import Row, combined, matrix_of
+from bondgraph.algebra.residues import is_zero
 from bondgraph.equations import StateEquations
-from bondgraph.exact import Row, combined, matrix_of
 from bondgraph.explaining.records import Factor, Formula, Step
-from bondgraph.residues import is_zero
-from bondgraph.sorting import Reduction
-from bondgraph.stored import field_row, stored_rate
+from bondgraph.reduce.sorting import Reduction
+from bondgraph.reduce.storages import field_row, stored_rate
 
 
 def inertia_step(equations: StateEquations) -> Step:

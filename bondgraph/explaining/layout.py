@@ -5,10 +5,10 @@ from typing import TypeVar
 
 import sympy as sp
 
-from bondgraph.display import counted, listed
-from bondgraph.display import structure as formula
 from bondgraph.equations import StateEquations
-from bondgraph.sums import Sum
+from bondgraph.show.display import counted, listed
+from bondgraph.show.display import structure as formula
+from bondgraph.show.sums import Sum
 
 MOST_LINES = 40
 """A step of more lines than this, unless told otherwise, shows its first few."""

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from bondgraph.elements import Kind
-from bondgraph.exact import Row
-from bondgraph.expressions import TIME
-from bondgraph.laws import ExpressionLaw
-from bondgraph.sorting import Reduction
-from bondgraph.stored import field_row
-from bondgraph.sums import Sum
+from bondgraph.algebra.exact import Row
+from bondgraph.algebra.expressions import TIME
+from bondgraph.declare.elements import Kind
+from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.reduce.sorting import Reduction
+from bondgraph.reduce.storages import field_row
+from bondgraph.show.sums import Sum
 
 
 @dataclass(frozen=True)

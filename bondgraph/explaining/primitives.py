@@ -4,16 +4,16 @@ from collections.abc import Hashable, Sequence
 
 import sympy as sp
 
-from bondgraph.assignments import Assignment
-from bondgraph.causal_order import CausalEquations
-from bondgraph.elements import Kind
+from bondgraph.causality.assignments import Assignment
+from bondgraph.causality.signals import CausalEquations
+from bondgraph.causality.strokes import Strokes
+from bondgraph.declare.elements import Kind
+from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.explaining.momenta import Momenta
 from bondgraph.explaining.records import Equation, Step, equation
-from bondgraph.laws import DryFriction, ExpressionLaw
-from bondgraph.sorting import Reduction, detects
-from bondgraph.strokes import Strokes
-from bondgraph.sums import rate, split
+from bondgraph.reduce.sorting import Reduction, detects
+from bondgraph.show.sums import rate, split
 
 
 def storages_step(reduction: Reduction, momenta: Momenta) -> Step:

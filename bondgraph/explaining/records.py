@@ -6,7 +6,7 @@ from typing import Literal
 
 import sympy as sp
 
-from bondgraph.sums import Sum, Term, total
+from bondgraph.show.sums import Sum, Term, total
 
 Topic = Literal[
     "causality", "storages", "laws", "junctions", "loops", "received", "resistances", "dependent",

@@ -5,14 +5,14 @@ from typing import Literal
 
 import sympy as sp
 
-from bondgraph.assignments import Assignment
-from bondgraph.causality import CausalGraph
-from bondgraph.elements import JUNCTIONS, Kind
+from bondgraph.causality.assign import CausalGraph
+from bondgraph.causality.assignments import Assignment
+from bondgraph.causality.stories import deciding_nodes
+from bondgraph.causality.strokes import Reason, Strokes
+from bondgraph.declare.elements import JUNCTIONS, Kind
+from bondgraph.declare.validate import Bond
 from bondgraph.explaining.records import Step
-from bondgraph.graph import Bond
-from bondgraph.sorting import Reduction
-from bondgraph.stories import deciding_nodes
-from bondgraph.strokes import Reason, Strokes
+from bondgraph.reduce.sorting import Reduction
 
 Symbols = Mapping[tuple[Bond, Literal["effort", "flow"]], sp.Symbol]
 """The symbol of each bond's effort and flow."""

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 
-from bondgraph.blocks import Block, beside, matrix_block
-from bondgraph.display import WIDTH, counted, equations_shown, wrapped
 from bondgraph.equations import StateEquations
 from bondgraph.explaining.layout import first_few, fits, heading, shortened
 from bondgraph.explaining.records import Equation, Factor, Formula, Step
-from bondgraph.sums import Sum, text_pieces
+from bondgraph.show.blocks import Block, beside, matrix_block
+from bondgraph.show.display import WIDTH, counted, equations_shown, wrapped
+from bondgraph.show.sums import Sum, text_pieces
 
 WIDEST_MATRIX = 120
 """Wider matrices are told by their size."""

@@ -5,12 +5,12 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import sympy as sp
 
-from bondgraph.display import MOST_STATES
 from bondgraph.equations import StateEquations
 from bondgraph.explaining.layout import first_few, fits, heading, shortened
 from bondgraph.explaining.records import Equation, Formula, Step
-from bondgraph.latex import latex, notebook_latex
-from bondgraph.sums import Sum, latex_pieces, typeset
+from bondgraph.show.display import MOST_STATES
+from bondgraph.show.latex import latex, notebook_latex
+from bondgraph.show.sums import Sum, latex_pieces, typeset
 
 LONGEST_LINE = 6
 """Terms on one line of a formula."""

@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bondgraph import SignalError
-from codegen.arrays import Array
+from bondgraph.errors import SignalError
+from codegen.numbers.arrays import Array
+from bondgraph.show.blocks import aligned
 from codegen.pictures.labels import measured, plain
 from codegen.pictures.marks import Marks
 from codegen.pictures.stacked import Line, Panel, stacked
+from codegen.record.result import Result, values_of
 from codegen.runs.events import Event
-from codegen.runs.result import Result, values_of
-from codegen.runs.summary import aligned
 
 
 class Difference(NamedTuple):

@@ -6,12 +6,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.signal import detrend, find_peaks, periodogram
 
-from bondgraph import SignalError
-from codegen.arrays import Array
+from bondgraph.errors import SignalError
+from codegen.numbers.arrays import Array
 from codegen.pictures.canvas import rule, stack
 from codegen.pictures.labels import measured
 from codegen.pictures.style import QUIET, SMALL, TEXT, curve
-from codegen.runs.result import Result, values_of
+from codegen.record.result import Result, values_of
 
 FEWEST = 8
 """Samples; fewer have no spectrum worth the name."""

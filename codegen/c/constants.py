@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from codegen.program import Block
+from codegen.program.lower import Block
 
 
 def expanded(code: Block) -> list[sp.Expr]:

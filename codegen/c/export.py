@@ -5,7 +5,8 @@ from importlib.metadata import version
 from importlib.resources import files
 from typing import Any
 
-from bondgraph import ParameterError, StateEquations
+from bondgraph.equations import StateEquations
+from bondgraph.errors import ParameterError
 from codegen.c.blocks import function, operations, places
 from codegen.c.prefix import external_symbols, renamed
 from codegen.c.rates import plain_rates, straight_rates
@@ -14,9 +15,9 @@ from codegen.c.scenario import scenario_text
 from codegen.c.structure import structures
 from codegen.c.tables import config, group_tables, name_tables, program_tables, structure_table
 from codegen.c.text import comment
-from codegen.model.closed import ClosedModel
 from codegen.model.energies import warn_of_energies
-from codegen.program import Block, Program, lower
+from codegen.modes.closed import ClosedModel
+from codegen.program.lower import Block, Program, lower
 from codegen.runs.arguments import initial_values, signals_for
 from codegen.runs.steps import step_at_start
 

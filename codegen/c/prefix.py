@@ -3,8 +3,8 @@
 import re
 from collections.abc import Iterable
 
-from bondgraph import ParameterError
-from codegen.identifiers import RESERVED
+from bondgraph.errors import ParameterError
+from codegen.program.identifiers import RESERVED
 
 _FUNCTION = re.compile(r"^(?!static |typedef |extern )[a-z][^;{}()=]*?\b(bg_\w+)\([^;{}]*\);", re.M)
 _DATA = re.compile(r"^extern ([^;()]*);", re.M)

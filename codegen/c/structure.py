@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from bondgraph import StructureError
-from codegen.model.slips import SlipRows, independence
-from codegen.program import Program
+from bondgraph.errors import StructureError
+from codegen.ports.slips import SlipRows, independence
+from codegen.program.lower import Program
 
 MOST_PORTS = 6
 """A table has an entry for every set of sticking ports: two to the power of this at most."""

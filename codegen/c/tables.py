@@ -4,13 +4,13 @@ from collections.abc import Iterable, Sequence
 
 import sympy as sp
 
-from bondgraph import StateEquations
+from bondgraph.equations import StateEquations
 from codegen.c.rhs import Straight
 from codegen.c.structure import Structure
 from codegen.c.text import array, comment, doubles, integers, quoted, strings
-from codegen.program import Group, Program
+from codegen.program.lower import Group, Program
+from codegen.program.units import units
 from codegen.runs.steps import told_step
-from codegen.units import units
 
 MOST_HOLDS = 4
 """Holding equations of all sets of so many friction ports are kept once they are found."""

@@ -7,14 +7,15 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from bondgraph import StateEquations, StructureError
-from bondgraph.elements import SOURCES, STORAGES
-from bondgraph.exact import add_scaled
-from bondgraph.expressions import TIME
-from bondgraph.junction import Port
-from bondgraph.modulation import Reading
-from bondgraph.sorting import is_storage
-from bondgraph.stored import field_row
+from bondgraph.algebra.exact import add_scaled
+from bondgraph.algebra.expressions import TIME
+from bondgraph.declare.elements import SOURCES, STORAGES
+from bondgraph.equations import StateEquations
+from bondgraph.errors import StructureError
+from bondgraph.reduce.junction import Port
+from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.sorting import is_storage
+from bondgraph.reduce.storages import field_row
 
 
 class Product(NamedTuple):

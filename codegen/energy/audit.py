@@ -3,7 +3,7 @@
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field
 
-from codegen.runs.summary import aligned
+from bondgraph.show.blocks import aligned
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,12 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from bondgraph import SignalError, StateEquations
-from bondgraph.elements import DETECTORS, SOURCES, STORAGES
-from codegen.arrays import Array
+from bondgraph.declare.elements import DETECTORS, SOURCES, STORAGES
+from bondgraph.equations import StateEquations
+from bondgraph.errors import SignalError
 from codegen.energy.accounts import Account, Accounts, Product, accounts, with_signals
 from codegen.energy.audit import Audit, turned_over
+from codegen.numbers.arrays import Array
 
 GAVE, TOOK, LOST = "gave", "took", "lost"
 """The sides of a balance."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 
-from codegen.arrays import Array
+from codegen.numbers.arrays import Array
 
 POINTS = 8
 """Of Gauss's formula: exact to degree 15, twice that of any method's interpolant."""

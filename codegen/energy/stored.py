@@ -4,11 +4,12 @@ from collections.abc import Hashable, Mapping, Sequence
 
 import sympy as sp
 
-from bondgraph import SignalError, StateEquations, StructureError
-from bondgraph.elements import STORAGES, Kind
-from bondgraph.expressions import TIME
-from bondgraph.junction import Port
-from bondgraph.laws import ExpressionLaw
+from bondgraph.algebra.expressions import TIME
+from bondgraph.declare.elements import STORAGES, Kind
+from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.equations import StateEquations
+from bondgraph.errors import SignalError, StructureError
+from bondgraph.reduce.junction import Port
 from codegen.model.numbers import at_parameters
 
 

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from codegen.arrays import Array
 from codegen.energy.quadrature import NODES, exact_integrals, gauss_sum, rows_over
 from codegen.inputs.generators import generator
 from codegen.inputs.pieces import Piece
-from codegen.model.closed import RATE, ClosedModel, Mode, Snapshot
+from codegen.modes.closed import RATE, ClosedModel, Mode, Snapshot
+from codegen.numbers.arrays import Array
 
 Dense = Callable[[float | Array], Array]
 

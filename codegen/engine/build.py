@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from bondgraph import MissingExtraError, SimulationError, WriteError
+from bondgraph.errors import MissingExtraError, SimulationError, WriteError
 from bondgraph.writing import made_folder, telling
 from codegen.engine.cache import cache_folder, keep, kept, temporary, workshop
 from codegen.engine.compiler import call, compiler, machine, version, words

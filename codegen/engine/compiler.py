@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
-from bondgraph import MissingExtraError, SimulationError
+from bondgraph.errors import MissingExtraError, SimulationError
 
 
 def compiler() -> tuple[str, ...]:

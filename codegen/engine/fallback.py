@@ -4,7 +4,7 @@ import warnings
 from collections import Counter
 from dataclasses import dataclass
 
-from bondgraph import ModelWarning
+from bondgraph.errors import ModelWarning
 
 
 class BackendWarning(ModelWarning):

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from codegen.arrays import Array
 from codegen.engine.sizes import Engine
 from codegen.inputs.pieces import Piece, collected
 from codegen.inputs.signal import Signal
+from codegen.numbers.arrays import Array
 
 Chain = tuple[int, complex, int]
 """An input, a rate [1/s] and how many coefficients the polynomial at that rate has."""

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SimulationError
 from codegen.c.export import runtime_file, texts
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
 from codegen.engine.fallback import Stopped
@@ -16,10 +15,11 @@ from codegen.engine.runs import KINDS, not_affine
 from codegen.engine.sizes import aligned, declarations
 from codegen.inputs.signal import Signal
 from codegen.inputs.tables import SignalTable, signal_table
-from codegen.model.closed import ClosedModel
+from codegen.modes.closed import ClosedModel
+from codegen.numbers.arrays import Array
+from codegen.record.snapshots import Snapshots
 from codegen.runs.events import Event
 from codegen.runs.legs import Settings
-from codegen.runs.snapshots import Snapshots
 
 FILES = (
     "model_rows.h", "model_rows.c", "bg_extremes.h", "batch_measure.h", "batch_measure.c",

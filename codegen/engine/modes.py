@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SimulationError
 from codegen.engine.sizes import Engine, view
-from codegen.model.affine import AffineMap
-from codegen.model.closed import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, ClosedModel, Mode
-from codegen.model.friction import SlopeNeededError
+from codegen.modes.closed import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, ClosedModel, Mode
+from codegen.numbers.arrays import Array
+from codegen.ports.friction import SlopeNeededError
+from codegen.program.affine import AffineMap
 
 STATES = 0
 """Where the states stand in an affine map."""

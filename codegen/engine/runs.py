@@ -7,18 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SimulationError
 from codegen.engine.build import FLAGS, check_tools
 from codegen.engine.fallback import Stopped
 from codegen.engine.inputs import Packed, Segments, segments
 from codegen.engine.modes import Tables, mode_of
 from codegen.engine.sizes import MOST_PORTS, Engine, aligned, engine, sizes
-from codegen.gains import written_out
 from codegen.inputs.signal import Signal
-from codegen.model.affine import is_affine
-from codegen.model.closed import ClosedModel
-from codegen.program import Program
+from codegen.modes.closed import ClosedModel
+from codegen.numbers.arrays import Array
+from codegen.program.affine import is_affine
+from codegen.program.gains import written_out
+from codegen.program.lower import Program
 from codegen.runs.events import Event
 from codegen.runs.legs import Track
 

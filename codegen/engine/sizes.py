@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SimulationError
 from codegen.c.export import runtime_file
 from codegen.engine.build import FLAGS, compiled, loaded
-from codegen.model.closed import ClosedModel
+from codegen.modes.closed import ClosedModel
+from codegen.numbers.arrays import Array
 
 MOST_PORTS = 6
 """Friction ports; a mode's place in the table is one of three to this power."""

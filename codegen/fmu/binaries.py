@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from bondgraph import MissingExtraError, SignalError, SimulationError
+from bondgraph.errors import MissingExtraError, SignalError, SimulationError
 from bondgraph.writing import telling
 from codegen.engine.cache import workshop
 from codegen.engine.compiler import call, system_compiler

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping
 
 import sympy as sp
 
-from bondgraph.expressions import TIME
+from bondgraph.algebra.expressions import TIME
 from codegen.fmu.model import FmuModel
 from codegen.fmu.variables import moved
-from codegen.program import Program
+from codegen.program.lower import Program
 
 Place = tuple[str, int]
 """A kind of variable (as `Variable.kind`) and its index."""

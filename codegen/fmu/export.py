@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from bondgraph import BondGraphError, SignalError, StateEquations
-from bondgraph.expressions import normal
+from bondgraph.algebra.expressions import normal
+from bondgraph.equations import StateEquations
+from bondgraph.errors import BondGraphError, SignalError
 from bondgraph.writing import write_bytes
 from codegen.c.export import runtime_file, stepped, to_c
 from codegen.fmu.binaries import binaries, chosen_platforms, headers
@@ -20,11 +21,11 @@ from codegen.fmu.model import FmuModel, config_text, model_text
 from codegen.fmu.switches import switching
 from codegen.fmu.variables import Starts, variables
 from codegen.fmu.xml import build_description, description
-from codegen.identifiers import identifiers
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, as_signal
-from codegen.model.pace import time_constant
-from codegen.program import Program
+from codegen.modes.pace import time_constant
+from codegen.program.identifiers import identifiers
+from codegen.program.lower import Program
 from codegen.runs.arguments import initial_values
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import Leg, Settings

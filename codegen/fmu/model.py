@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from bondgraph import StateEquations
+from bondgraph.equations import StateEquations
 from codegen.c.blocks import function, places
 from codegen.c.scenario import signal_lines
 from codegen.c.text import array, comment, doubles, integers, quoted
@@ -13,7 +13,7 @@ from codegen.fmu.resolution import resolution_text
 from codegen.fmu.variables import Starts, Variable
 from codegen.inputs.signal import Signal
 from codegen.inputs.tables import signal_table
-from codegen.program import Program, block
+from codegen.program.lower import Program, block
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from bondgraph import StateEquations
-from codegen.program import Program
-from codegen.units import units
+from bondgraph.equations import StateEquations
+from codegen.program.lower import Program
+from codegen.program.units import units
 
 STEP = "fixed_internal_step"
 """The parameter that is the length of co-simulation's internal steps [s]."""

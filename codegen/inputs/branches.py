@@ -6,12 +6,12 @@ from itertools import combinations, pairwise
 import numpy as np
 import sympy as sp
 
-from bondgraph.expressions import TIME
-from codegen.arrays import Array
+from bondgraph.algebra.expressions import TIME
 from codegen.inputs.discs import disc_of
 from codegen.inputs.discs import known as analytic
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.inputs.segments import DEGREE, polynomial_segments
+from codegen.numbers.arrays import Array
 
 CORNERED = (
     sp.Abs, sp.sign, sp.Heaviside, sp.Max, sp.Min, sp.floor, sp.ceiling, sp.frac, sp.Mod,

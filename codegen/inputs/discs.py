@@ -11,8 +11,8 @@ import sympy as sp
 from numpy.typing import NDArray
 from scipy.special import erf
 
-from bondgraph.expressions import TIME
-from codegen.arrays import Array
+from bondgraph.algebra.expressions import TIME
+from codegen.numbers.arrays import Array
 
 Disc = tuple[Array, Array]
 """Centres and radii of many discs; a radius is infinite where a function need not be analytic."""

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from codegen.arrays import Array
 from codegen.inputs.pieces import Piece, moved
+from codegen.numbers.arrays import Array
 
 
 class Chain(NamedTuple):

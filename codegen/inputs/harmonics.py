@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from bondgraph.expressions import TIME
+from bondgraph.algebra.expressions import TIME
 from codegen.inputs.pieces import Term
 
 Waves = Mapping[sp.Expr, tuple[complex, ...]]

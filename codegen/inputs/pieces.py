@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from codegen.arrays import Array
+from codegen.numbers.arrays import Array
 
 Term = tuple[complex, tuple[complex, ...]]
 """A rate [1/s] and a polynomial's coefficients, lowest power first."""

@@ -5,8 +5,8 @@ from math import comb
 
 import numpy as np
 
-from codegen.arrays import Array
-from codegen.roots import root
+from codegen.numbers.arrays import Array
+from codegen.numbers.roots import root
 
 NARROW = 2.0**-44
 """Intervals are not divided further."""

@@ -6,10 +6,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bondgraph import SignalError
-from codegen.arrays import real_array
+from bondgraph.errors import SignalError
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signal import Signal
+from codegen.numbers.arrays import real_array
 
 
 @dataclass(frozen=True, init=False)

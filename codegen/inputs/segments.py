@@ -15,9 +15,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SimulationError
 from codegen.inputs.discs import disc_of
+from codegen.numbers.arrays import Array
 
 Flags = NDArray[np.bool_]
 

@@ -15,9 +15,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from bondgraph import SignalError
-from codegen.arrays import is_finite, is_number
+from bondgraph.errors import SignalError
 from codegen.inputs.pieces import Piece, collected, moved
+from codegen.numbers.arrays import is_finite, is_number
 
 
 class Signal(ABC):

@@ -5,10 +5,10 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from bondgraph import SignalError
-from codegen.arrays import is_finite, is_number
+from bondgraph.errors import SignalError
 from codegen.inputs.pieces import Piece, collected, constant_piece, lagged_terms, moved
 from codegen.inputs.signal import Signal
+from codegen.numbers.arrays import is_finite, is_number
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,9 @@ from collections.abc import Hashable, Iterator, Mapping
 import numpy as np
 import sympy as sp
 
-from bondgraph import ModelWarning, StateEquations
-from bondgraph.elements import STORAGES, Element
+from bondgraph.declare.elements import STORAGES, Element
+from bondgraph.equations import StateEquations
+from bondgraph.errors import ModelWarning
 from codegen.model.numbers import at_parameters
 
 ROUNDING = 1e-12

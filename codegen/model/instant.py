@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from bondgraph import ParameterError, SimulationError
-from bondgraph.expressions import TIME
-from codegen.arrays import Array, real_values
+from bondgraph.algebra.expressions import TIME
+from bondgraph.errors import ParameterError, SimulationError
 from codegen.model.numbers import Numbers
 from codegen.model.numpy_backend import compiled
-from codegen.program import Block, Program
+from codegen.numbers.arrays import Array, real_values
+from codegen.program.lower import Block, Program
 
 
 @dataclass

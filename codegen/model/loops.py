@@ -5,10 +5,10 @@ from collections.abc import Callable, Hashable, Iterator, Sequence
 import numpy as np
 import scipy.optimize
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SimulationError
 from codegen.model.instant import Instant
-from codegen.roots import root
+from codegen.numbers.arrays import Array
+from codegen.numbers.roots import root
 
 RESIDUAL = 1e-9
 """A solution must satisfy its laws to this fraction of their magnitude."""

@@ -6,16 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from bondgraph import ParameterError, StateEquations
-from bondgraph.elements import Kind
-from bondgraph.elimination import ResidueRows
-from bondgraph.exact import Row, rows_of
-from bondgraph.expressions import normal, number
-from bondgraph.residues import residues
-from bondgraph.resistances import resistive_loops
-from codegen.arrays import Array, real_values
+from bondgraph.algebra.elimination import ResidueRows
+from bondgraph.algebra.exact import Row, rows_of
+from bondgraph.algebra.expressions import normal, number
+from bondgraph.algebra.residues import residues
+from bondgraph.declare.elements import Kind
+from bondgraph.equations import StateEquations
+from bondgraph.errors import ParameterError
+from bondgraph.reduce.resistances import resistive_loops
 from codegen.model.numpy_backend import compiled
-from codegen.program import Program
+from codegen.numbers.arrays import Array, real_values
+from codegen.program.lower import Program
 
 
 @dataclass(frozen=True)

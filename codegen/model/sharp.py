@@ -10,9 +10,9 @@ from math import prod
 
 import sympy as sp
 
-from bondgraph.expressions import TIME
-from codegen.pairs import Pair, from_decimals
-from codegen.records import Block, Program
+from bondgraph.algebra.expressions import TIME
+from codegen.numbers.pairs import Pair, from_decimals
+from codegen.program.records import Block, Program
 
 DIGITS = 120
 """Of all numbers here; pairs have 32."""

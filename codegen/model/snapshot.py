@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from codegen.arrays import Array
 from codegen.model.numbers import Numbers
+from codegen.numbers.arrays import Array
 
 Mode = tuple[int, ...]
 """For each friction port: 0 sticking, +1 or -1 the sign of its slip."""

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SimulationError
 from codegen.model.instant import Binding, Instant
-from codegen.program import Block, Program
+from codegen.numbers.arrays import Array
+from codegen.program.lower import Block, Program
 
 STEP = 2.0**-20
 """Relative change of what a block reads; its effect, divided by it, is a term."""

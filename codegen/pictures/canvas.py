@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from bondgraph import MissingExtraError
+from bondgraph.errors import MissingExtraError
 from codegen.pictures.style import TEXT
 
 WIDTH = 7.2

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from codegen.arrays import Array
+from codegen.numbers.arrays import Array
 from codegen.pictures.canvas import name_curves, rule, stack
 from codegen.pictures.marks import Marks, draw
 from codegen.pictures.style import TEXT, curve

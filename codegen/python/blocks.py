@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from bondgraph import ExpressionError
-from bondgraph.expressions import TIME
-from codegen.identifiers import identifiers
-from codegen.printing import printed
-from codegen.program import Block, Group, Pattern, Program
+from bondgraph.algebra.expressions import TIME
+from bondgraph.errors import ExpressionError
+from codegen.program.identifiers import identifiers
+from codegen.program.lower import Block, Group, Pattern, Program
+from codegen.program.printing import printed
 from codegen.python.text import WIDTH, assignment, plain, quoted
 
 TAKEN = ("parameters", "now", "matrix", "l", "O", "I")

@@ -5,11 +5,12 @@ from importlib.metadata import version
 from importlib.resources import files
 from typing import Any
 
-from bondgraph import ParameterError, StateEquations
-from codegen.model.closed import ClosedModel
+from bondgraph.equations import StateEquations
+from bondgraph.errors import ParameterError
 from codegen.model.energies import warn_of_energies
 from codegen.model.numbers import exact_parameters
-from codegen.program import Program, lower
+from codegen.modes.closed import ClosedModel
+from codegen.program.lower import Program, lower
 from codegen.python.blocks import (
     Names,
     coefficients_function,

@@ -5,12 +5,13 @@ from itertools import combinations
 
 import sympy as sp
 
-from bondgraph import ParameterError, StateEquations, StructureError
-from bondgraph.elimination import ResidueRows
-from bondgraph.residues import residues
+from bondgraph.algebra.elimination import ResidueRows
+from bondgraph.algebra.residues import residues
+from bondgraph.equations import StateEquations
+from bondgraph.errors import ParameterError, StructureError
 from codegen.model.numbers import at_parameters
-from codegen.model.slips import moved_laws
-from codegen.program import Program
+from codegen.ports.slips import moved_laws
+from codegen.program.lower import Program
 
 Ports = tuple[int, ...]
 

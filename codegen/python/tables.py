@@ -3,10 +3,10 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from bondgraph import StateEquations
-from codegen.model.slips import moved_laws
-from codegen.model.stability import FARTHEST, IMAGINARY_LIMIT, NEAREST, REAL_LIMIT
-from codegen.program import Program
+from bondgraph.equations import StateEquations
+from codegen.modes.stability import FARTHEST, IMAGINARY_LIMIT, NEAREST, REAL_LIMIT
+from codegen.ports.slips import moved_laws
+from codegen.program.lower import Program
 from codegen.python.sticking import beside_resistance
 from codegen.python.text import listing, names_tuple
 from codegen.runs.steps import round_step, told_step

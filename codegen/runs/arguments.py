@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bondgraph import SignalError
-from bondgraph.expressions import normal
-from codegen.arrays import Array, is_finite, is_number, real_array
+from bondgraph.algebra.expressions import normal
+from bondgraph.errors import SignalError
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import as_signal
+from codegen.numbers.arrays import Array, is_finite, is_number, real_array
 from codegen.runs.legs import CHOICES, Settings
 
 

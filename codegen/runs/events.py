@@ -6,14 +6,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
-from codegen.model.closed import CAPS, INPUTS, READINGS, ClosedModel, Mode, Snapshot
-from codegen.model.guards import guard_rounding
-from codegen.model.pace import moment
-from codegen.model.rounding import Peaks, scales
-from codegen.model.verdicts import Look, room
-from codegen.roots import root
+from codegen.modes.closed import CAPS, INPUTS, READINGS, ClosedModel, Mode, Snapshot
+from codegen.modes.guards import guard_rounding
+from codegen.modes.pace import moment
+from codegen.modes.rounding import Peaks, scales
+from codegen.modes.verdicts import Look, room
+from codegen.numbers.arrays import Array
+from codegen.numbers.roots import root
 
 CHECKS = 6
 """Points inside each step at which events are looked for."""

@@ -5,17 +5,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SimulationError
 from codegen.inputs.generators import generator
 from codegen.inputs.pieces import Piece
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
-from codegen.model.affine import AffineMap
-from codegen.model.closed import ClosedModel, Mode
-from codegen.model.pace import moment
-from codegen.model.rounding import Peaks, scales
 from codegen.model.terms import without_rounding
-from codegen.model.verdicts import LEFT, Look
+from codegen.modes.closed import ClosedModel, Mode
+from codegen.modes.pace import moment
+from codegen.modes.rounding import Peaks, scales
+from codegen.modes.verdicts import LEFT, Look
+from codegen.numbers.arrays import Array
+from codegen.program.affine import AffineMap
 from codegen.runs.legs import Ended, Track
 from codegen.runs.watched import DEGREE, Steps, exponential, lasting, series, watched
 

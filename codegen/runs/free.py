@@ -5,10 +5,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from codegen.arrays import Array
 from codegen.inputs.generators import generator
 from codegen.inputs.pieces import Piece
-from codegen.pairs import Pair, matmul, pair, stacked
+from codegen.numbers.arrays import Array
+from codegen.numbers.pairs import Pair, matmul, pair, stacked
 from codegen.runs.ladder import Ladder, rows_by_doubling
 from codegen.runs.legs import Ended, Track
 from codegen.runs.watched import balanced_norm

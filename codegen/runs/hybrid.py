@@ -7,16 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.inputs.signal import Signal
-from codegen.model.closed import ClosedModel, Mode
-from codegen.model.guards import fallen_guards
-from codegen.model.modes import decide
-from codegen.model.pace import STALLED, hardly_apart, look_ahead, time_constant
-from codegen.model.rounding import Peaks, scales
-from codegen.model.trials import evaluated
+from codegen.modes.choose import decide
+from codegen.modes.closed import ClosedModel, Mode
+from codegen.modes.guards import fallen_guards
+from codegen.modes.pace import STALLED, hardly_apart, look_ahead, time_constant
+from codegen.modes.rounding import Peaks, scales
+from codegen.modes.trials import evaluated
+from codegen.numbers.arrays import Array
 from codegen.runs.events import Event
 from codegen.runs.exact import ExactLeg
 from codegen.runs.free import FreeLeg

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SimulationError
 from codegen.inputs.signal import Signal, first_step
-from codegen.model.closed import ClosedModel
-from codegen.program import Program
+from codegen.modes.closed import ClosedModel
+from codegen.numbers.arrays import Array
+from codegen.program.lower import Program
 
 
 def refuse_impulses(model: ClosedModel, signals: Sequence[Signal], times: Array) -> None:

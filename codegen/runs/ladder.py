@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
-from codegen.pairs import Pair, matmul, pair, plus, stacked, times
+from bondgraph.errors import SimulationError
+from codegen.numbers.arrays import Array
+from codegen.numbers.pairs import Pair, matmul, pair, plus, stacked, times
 
 DEGREE = 21
 """Of the series; over times of ``|M| h <= 1/4`` what is left out is below 1e-32."""

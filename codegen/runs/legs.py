@@ -8,12 +8,12 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.integrate import DOP853, Radau
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
-from codegen.model.closed import ClosedModel, Mode
-from codegen.model.pace import longest_step
-from codegen.model.rounding import Peaks
+from codegen.modes.closed import ClosedModel, Mode
+from codegen.modes.pace import longest_step
+from codegen.modes.rounding import Peaks
+from codegen.numbers.arrays import Array
 from codegen.runs.events import Dense, Event, Watch
 from codegen.runs.progress import Progress, difference, no_progress
 from codegen.runs.sundials import Cvode

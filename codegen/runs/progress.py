@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
-from codegen.model.pace import longest_step
+from bondgraph.errors import SimulationError
+from codegen.modes.pace import longest_step
+from codegen.numbers.arrays import Array
 
 MANY = 200
 """Steps that are looked at together."""

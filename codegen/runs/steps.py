@@ -5,11 +5,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bondgraph import BondGraphError
-from codegen.arrays import Array
+from bondgraph.errors import BondGraphError
 from codegen.inputs.signal import Signal
-from codegen.model.closed import ClosedModel
-from codegen.model.stability import longest_stable_step
+from codegen.modes.closed import ClosedModel
+from codegen.modes.stability import longest_stable_step
+from codegen.numbers.arrays import Array
 
 
 def step_at_start(model: ClosedModel, states: Array, signals: Sequence[Signal]) -> float:

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from bondgraph import MissingExtraError
-from codegen.arrays import Array
+from bondgraph.errors import MissingExtraError
+from codegen.numbers.arrays import Array
 
 TIGHTER = 0.01
 """What a step may err by, of the tolerance: multistep errors add up where a model rings."""

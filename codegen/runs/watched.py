@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 
-from codegen.arrays import Array
 from codegen.inputs.generators import Generator
-from codegen.model.affine import AffineMap
-from codegen.model.closed import CAPS, INPUTS, RATE, READINGS, ClosedModel, Mode
+from codegen.modes.closed import CAPS, INPUTS, RATE, READINGS, ClosedModel, Mode
+from codegen.numbers.arrays import Array
+from codegen.program.affine import AffineMap
 
 DEGREE = 18
 """Of power series; over a step of ``|M| h <= 1`` what is left out is below rounding."""

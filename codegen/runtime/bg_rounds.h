@@ -13,7 +13,7 @@ typedef struct {
 } bg_rounds;
 
 /* The shortest time constant at the largest rate; what has none of its own is as slow as a run is
- * old, which is `elapsed`. As codegen/model/pace.py. */
+ * old, which is `elapsed`. As codegen/modes/pace.py. */
 double bg_time_constant(double fastest, double elapsed);
 
 /* How much later ties at t are decided: never beyond `following`, the inputs' next breakpoint. */

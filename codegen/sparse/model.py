@@ -11,10 +11,11 @@ from typing import Any
 
 import scipy.sparse as sps
 
-from bondgraph import CausalGraph, StructureError, assign_causality
-from bondgraph.elements import JUNCTIONS, Kind
-from bondgraph.laws import ExpressionLaw
-from bondgraph.lines import variable_of
+from bondgraph.causality.assign import CausalGraph, assign_causality
+from bondgraph.causality.lines import variable_of
+from bondgraph.declare.elements import JUNCTIONS, Kind
+from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.errors import StructureError
 from codegen.inputs.signals import Constant
 from codegen.sparse.signal_rows import Matrix, Row, SignalRows, matrix
 from codegen.sparse.valued import valued_graph

@@ -7,13 +7,13 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bondgraph import SignalError, SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SignalError, SimulationError
 from codegen.energy.audit import Audit
 from codegen.inputs.signal import Signal, first_step
+from codegen.numbers.arrays import Array
+from codegen.record.result import Result
 from codegen.runs.arguments import checked_times, initial_values, settings_of, signals_for
 from codegen.runs.legs import EXACT
-from codegen.runs.result import Result
 from codegen.sparse.model import SparseModel
 from codegen.sparse.steps import SparseSystem, integrate
 

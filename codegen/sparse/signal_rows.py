@@ -12,14 +12,14 @@ import scipy.sparse as sps
 import scipy.sparse.linalg as spl
 import sympy as sp
 
-from bondgraph import AlgebraicLoopError
-from bondgraph.causal_order import causal_equations, causal_groups
-from bondgraph.elements import STORAGES
-from bondgraph.elimination import ResidueRows
-from bondgraph.lines import is_independent, signal_lines, variable_of
-from bondgraph.residues import PRIME, residues
-from bondgraph.strokes import Strokes
-from codegen.arrays import Array
+from bondgraph.algebra.elimination import ResidueRows
+from bondgraph.algebra.residues import PRIME, residues
+from bondgraph.causality.lines import is_independent, signal_lines, variable_of
+from bondgraph.causality.signals import causal_equations, causal_groups
+from bondgraph.causality.strokes import Strokes
+from bondgraph.declare.elements import STORAGES
+from bondgraph.errors import AlgebraicLoopError
+from codegen.numbers.arrays import Array
 
 Matrix = sps.csr_array
 

@@ -8,8 +8,8 @@ import scipy.sparse as sps
 import scipy.sparse.linalg as spl
 from scipy.integrate import DOP853, OdeSolver, Radau
 
-from bondgraph import SimulationError
-from codegen.arrays import Array
+from bondgraph.errors import SimulationError
+from codegen.numbers.arrays import Array
 
 STIFF = 2e3
 """Length of a stretch over the shortest time constant from which the implicit method is chosen."""

@@ -6,11 +6,11 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph import ParameterError, SingularStorageError, StructureError, validate
-from bondgraph.elements import SOURCES, STORAGES, Element, Kind
-from bondgraph.graph import with_elements
-from bondgraph.laws import ExpressionLaw
-from bondgraph.names import named_by
+from bondgraph.declare.elements import SOURCES, STORAGES, Element, Kind
+from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.declare.names import named_by
+from bondgraph.declare.validate import validate, with_elements
+from bondgraph.errors import ParameterError, SingularStorageError, StructureError
 from codegen.model.numbers import at_parameters, exact_parameters
 
 

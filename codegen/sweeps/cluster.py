@@ -4,10 +4,10 @@ import uuid
 from contextlib import suppress
 from typing import Any
 
-from bondgraph import MissingExtraError, SignalError, SimulationError
+from bondgraph.errors import MissingExtraError, SignalError, SimulationError
 from codegen.sweeps.crews import Lost
 from codegen.sweeps.job import Chunk, Outcome, measured_remotely
-from codegen.sweeps.packing import packed
+from codegen.packing import packed
 
 RETRIES = 3
 """How often a task is sent again that got lost between the machines."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.arrays import Array
+from codegen.numbers.arrays import Array
 
 Found = tuple[Array, ...] | str
 """A run's measures, or why there are none."""

@@ -16,7 +16,7 @@ from concurrent.futures import (
 from contextlib import contextmanager
 from typing import NamedTuple, Protocol
 
-from bondgraph import SimulationError
+from bondgraph.errors import SimulationError
 from codegen.sweeps.job import Chunk, Job, Outcome, measured
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")

@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bondgraph import SignalError
-from bondgraph.expressions import normal
-from codegen.arrays import Array, real_array
+from bondgraph.algebra.expressions import normal
+from bondgraph.errors import SignalError
+from codegen.numbers.arrays import Array, real_array
 
 Draw = Callable[[np.random.Generator], float]
 """Draws one number from a random generator."""

@@ -13,16 +13,16 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from bondgraph import BondGraphError, SignalError
-from codegen.arrays import Array
+from bondgraph.errors import BondGraphError, SignalError
+from codegen.batch.batch import Asked, Batch, Given, batch
+from codegen.family import Family
+from codegen.inputs.swept import settled
+from codegen.numbers.arrays import Array
+from codegen.record.result import Result
 from codegen.runs.legs import Settings
-from codegen.runs.result import Result
 from codegen.simulate import Simulator
-from codegen.sweeps.batch import Asked, Batch, Given, batch
 from codegen.sweeps.columns import Columns
-from codegen.sweeps.family import Family
-from codegen.sweeps.packing import packed
-from codegen.sweeps.swept import settled
+from codegen.packing import packed
 
 
 class Runner(Protocol):

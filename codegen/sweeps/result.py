@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bondgraph import MissingExtraError
-from codegen.arrays import Array
+from bondgraph.errors import MissingExtraError
+from codegen.numbers.arrays import Array
 from codegen.sweeps.columns import Columns
 from codegen.sweeps.design import Table
 from codegen.sweeps.job import Outcome

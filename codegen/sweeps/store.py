@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from bondgraph import StoreError
+from bondgraph.errors import StoreError
 from bondgraph.writing import made_folder, replacing, write_bytes
-from codegen.arrays import Array
+from codegen.numbers.arrays import Array
 from codegen.sweeps.job import Outcome
 
 FORMAT = {"format": "bondgraph-sweep", "version": 1}

@@ -9,22 +9,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bondgraph import SignalError
-from bondgraph.expressions import normal
+from bondgraph.algebra.expressions import normal
+from bondgraph.errors import SignalError
+from codegen.batch.batch import Given
 from codegen.engine.fallback import tell_all
 from codegen.inputs.signal import Signal
+from codegen.inputs.swept import Swept, settled
+from codegen.record.measures import Measure
+from codegen.record.result import Result
 from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
-from codegen.runs.result import Result
-from codegen.sweeps.batch import Given
 from codegen.sweeps.cluster import Cluster
 from codegen.sweeps.crews import Crew, Here, Processes, Threads
 from codegen.sweeps.design import Table, design
 from codegen.sweeps.drive import QUICK, STEADY, Pace, Work, drive
 from codegen.sweeps.job import Job, Model, Outcome, batch_of, sent
-from codegen.sweeps.measures import Measure
 from codegen.sweeps.result import Collected, Sweep, SweepInterrupted
 from codegen.sweeps.store import Store
-from codegen.sweeps.swept import Swept, settled
 
 RESERVED = ("run", "time")
 """Names of axes."""

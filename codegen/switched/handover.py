@@ -10,16 +10,17 @@ from types import MappingProxyType
 import numpy as np
 import sympy as sp
 
-from bondgraph import StateEquations, StructureError
-from bondgraph.exact import Row
-from bondgraph.junction import JunctionStructure
-from bondgraph.modulation import Reading
-from bondgraph.sorting import is_storage
-from codegen.arrays import Array
-from codegen.model.closed import ClosedModel, Snapshot
+from bondgraph.algebra.exact import Row
+from bondgraph.equations import StateEquations
+from bondgraph.errors import StructureError
+from bondgraph.reduce.junction import JunctionStructure
+from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.sorting import is_storage
 from codegen.model.instant import Binding, Evaluation, Instant
 from codegen.model.numbers import at_parameters, scaled_solve
-from codegen.program import block
+from codegen.modes.closed import ClosedModel, Snapshot
+from codegen.numbers.arrays import Array
+from codegen.program.lower import block
 
 _NONE: Array = np.zeros(0)
 _NOWHERE = Instant(

@@ -11,29 +11,31 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bondgraph import SimulationError, StateEquations, StructureError, validate
-from bondgraph.elements import STORAGES
-from bondgraph.switching import checked_modes
-from codegen.arrays import Array
+from bondgraph.declare.elements import STORAGES
+from bondgraph.declare.switching import checked_modes
+from bondgraph.declare.validate import validate
+from bondgraph.equations import StateEquations
+from bondgraph.errors import SimulationError, StructureError
 from codegen.energy.accounts import Account, accounts, with_signals
 from codegen.energy.ledger import Integrated, Ledger
-from codegen.energy.replay import shares, tally_of
 from codegen.energy.tally import Tally
 from codegen.inputs.signal import Signal
-from codegen.model.closed import Snapshot
 from codegen.model.energies import warn_of_energies
-from codegen.model.pace import STALLED, hardly_apart
+from codegen.modes.closed import Snapshot
+from codegen.modes.pace import STALLED, hardly_apart
+from codegen.numbers.arrays import Array
+from codegen.program.units import told_units
+from codegen.record.columns import named_columns
+from codegen.record.replay import shares, tally_of
+from codegen.record.result import Result
+from codegen.record.snapshots import snapshots
 from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
-from codegen.runs.columns import named_columns
 from codegen.runs.events import Event
 from codegen.runs.hybrid import run_hybrid
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import Settings
-from codegen.runs.result import Result
-from codegen.runs.snapshots import snapshots
 from codegen.switched.phases import Held, Keeping, Moment, On, Phase, Phases
 from codegen.switched.spliced import Spliced
-from codegen.units import told_units
 
 
 @dataclass(frozen=True)

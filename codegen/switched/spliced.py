@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from codegen.arrays import Array
-from codegen.runs.result import Result
+from codegen.numbers.arrays import Array
+from codegen.record.result import Result
 
 
 @dataclass(frozen=True)

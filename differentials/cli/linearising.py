@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import bondgraph as bg
 import differentials.cli.options as options
-from bondgraph.response import StateSpace
+from bondgraph.analyse.state_space import StateSpace
 from differentials.cli.names import check_names
 from differentials.cli.options import START, Command
 from differentials.cli.printing import print_json

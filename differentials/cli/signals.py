@@ -8,7 +8,7 @@ from typing import Any
 
 import bondgraph as bg
 import codegen
-from bondgraph.expressions import expression
+from bondgraph.algebra.expressions import expression
 
 SIGNALS: Mapping[str, type[codegen.Signal]] = MappingProxyType(
     {

@@ -11,7 +11,7 @@ import bondgraph as bg
 import codegen
 import differentials.cli.options as options
 from bondgraph.writing import write_bytes
-from codegen.runs.tables import write_columns
+from codegen.record.tables import write_columns
 from differentials.cli.grids import FORM, GRID, measure_options, measures
 from differentials.cli.names import FileOf, check_names
 from differentials.cli.options import Asked

@@ -14,7 +14,7 @@ from references.random_graphs import chain, random_graph
 from soak.families import seeds
 
 import bondgraph as bg
-from bondgraph.modulation import Reading
+from bondgraph.reduce.motion import Reading
 
 REFUSALS = (bg.CausalityError, bg.AlgebraicLoopError)
 

@@ -4,7 +4,7 @@ import random
 
 import sympy as sp
 
-from bondgraph.causal_order import causal_groups
+from bondgraph.causality.signals import causal_groups
 
 ONE = sp.Integer(1)
 

@@ -11,8 +11,8 @@ from references.random_graphs import chain
 
 import bondgraph as bg
 import differentials
-from bondgraph.display import equations_shown
-from bondgraph.expressions import expression
+from bondgraph.algebra.expressions import expression
+from bondgraph.show.display import equations_shown
 
 ALSD = """\
                                                                           [ tau_e]

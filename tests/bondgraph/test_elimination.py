@@ -5,8 +5,8 @@ import random
 import pytest
 import sympy as sp
 
-from bondgraph.elimination import ResidueRows
-from bondgraph.residues import PRIME
+from bondgraph.algebra.elimination import ResidueRows
+from bondgraph.algebra.residues import PRIME
 
 
 def _matrix(seed: int) -> sp.Matrix:

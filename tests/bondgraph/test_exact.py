@@ -5,7 +5,7 @@ import random
 import pytest
 import sympy as sp
 
-from bondgraph.exact import (
+from bondgraph.algebra.exact import (
     SingularError,
     add_scaled,
     cancelled,

@@ -8,7 +8,7 @@ import pytest
 import sympy as sp
 
 import bondgraph as bg
-from bondgraph.expressions import number, symbol
+from bondgraph.algebra.expressions import number, symbol
 
 x, y = sp.symbols("x y")
 tenth = sp.Rational(1, 10)

@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from bondgraph.residues import PRIME, is_rational_function, is_zero, residues
+from bondgraph.algebra.residues import PRIME, is_rational_function, is_zero, residues
 
 a, b, h, x = sp.symbols("a b h x")
 

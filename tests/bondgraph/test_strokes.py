@@ -4,7 +4,7 @@ from references.alsd import alsd_graph
 from references.build import Graph, bond_graph
 
 import bondgraph as bg
-from bondgraph.strokes import Contradiction, Reason, Strokes
+from bondgraph.causality.strokes import Contradiction, Reason, Strokes
 
 
 def _strokes(graph: Graph) -> Strokes:

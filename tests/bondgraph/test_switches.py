@@ -9,7 +9,7 @@ import sympy as sp
 from references.build import bond_graph
 
 import bondgraph as bg
-from bondgraph.renaming import Part
+from bondgraph.declare.renaming import Part
 
 C, E, L, R = sp.symbols("C E L R")
 FORMS = {"json": (bg.to_json, bg.from_json), "graphml": (bg.to_graphml, bg.from_graphml)}

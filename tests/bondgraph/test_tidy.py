@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from bondgraph.tidy import MOST_TERMS, by_linear_symbols, tidy
+from bondgraph.algebra.tidy import MOST_TERMS, by_linear_symbols, tidy
 
 a, b, c, x, h, I_1, I_2 = sp.symbols("a b c x h I_1 I_2")
 one = sp.Integer(1)

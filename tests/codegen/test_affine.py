@@ -6,9 +6,9 @@ import sympy as sp
 from references.build import bond_graph
 
 import bondgraph as bg
-from bondgraph.expressions import expression
+from bondgraph.algebra.expressions import expression
 from codegen import simulator
-from codegen.model.affine import AffineMap, is_affine
+from codegen.program.affine import AffineMap, is_affine
 
 PARAMETERS = {"k", "b", "x_0"}
 AFFINE = [

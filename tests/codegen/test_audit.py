@@ -7,7 +7,7 @@ from references.cases import CASES as TEXTBOOKS
 from soak.families import seeds
 
 from codegen import balance, integral, work
-from codegen.arrays import Array
+from codegen.numbers.arrays import Array
 
 SEEDS = {
     "linear": seeds("audits-linear"), "rubbing": seeds("audits-rubbing"),

@@ -27,7 +27,7 @@ from codegen import (
     smallest,
     sweep,
 )  # fmt: skip
-from codegen.arrays import Array
+from codegen.numbers.arrays import Array
 from codegen.sweeps.job import Job, batch_of
 from differentials.scenarios import prepared
 

@@ -7,8 +7,8 @@ from references.build import bond_graph
 
 import bondgraph as bg
 from codegen import Family, Sine, Step, balance, final, integral, peak, samples, sweep, work
-from codegen.sweeps.batch_exact import ExactLoop
-from codegen.sweeps.batch_located import LocatedLoop
+from codegen.batch.exact import ExactLoop
+from codegen.batch.located import LocatedLoop
 from codegen.sweeps.job import Job, batch_of
 
 QUIET = {"progress": False, "workers": 2}

@@ -30,10 +30,10 @@ from codegen import (
     smallest,
     sweep,
 )  # fmt: skip
+from codegen.batch.exact import ExactLoop
+from codegen.batch.located import LocatedLoop
 from codegen.engine.located import LocatedLibrary
 from codegen.inputs.pieces import Piece
-from codegen.sweeps.batch_exact import ExactLoop
-from codegen.sweeps.batch_located import LocatedLoop
 from codegen.sweeps.job import Job, batch_of
 from differentials.laws import magic_formula_tire, stribeck_clutch
 from differentials.scenarios import prepared

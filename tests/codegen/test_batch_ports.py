@@ -21,10 +21,10 @@ from codegen import (
     peak,
     samples,
 )  # fmt: skip
+from codegen.batch.engine import batch_engine
 from codegen.c.export import to_c
 from codegen.engine.sizes import sizes
-from codegen.runs.result import Result
-from codegen.sweeps.batch_engine import batch_engine
+from codegen.record.result import Result
 from codegen.sweeps.job import Job, batch_of
 from differentials.scenarios import prepared
 

@@ -12,7 +12,7 @@ from references.build import bond_graph
 import bondgraph as bg
 from codegen import to_c
 from codegen.c.structure import MOST_PORTS
-from codegen.printing import printed
+from codegen.program.printing import printed
 from differentials.model import model
 
 GOLDEN = Path(__file__).parent / "golden" / "alsd"

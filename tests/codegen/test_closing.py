@@ -4,8 +4,8 @@ import pytest
 from references.build import bond_graph
 
 import bondgraph as bg
-from codegen.closing import Closing, close_ports
-from codegen.program import lower
+from codegen.program.closing import Closing, close_ports
+from codegen.program.lower import lower
 
 
 def _mass(*ports: tuple, more: str = "") -> bg.StateEquations:

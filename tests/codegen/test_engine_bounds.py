@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 
 import bondgraph as bg
 from codegen import Constant, Family, Ramp, Sine, event_count, final, first_event, peak, sweep
-from codegen.runs.result import Result
+from codegen.record.result import Result
 
 BLOCK = bg.derive(block(bg.DryFriction("L")))
 

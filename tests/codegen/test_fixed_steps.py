@@ -14,7 +14,7 @@ from references.build import bond_graph
 
 import bondgraph as bg
 from codegen import to_c, to_python
-from codegen.model.stability import stable_step
+from codegen.modes.stability import stable_step
 
 COUNT = 600
 """So many steps until all is at rest that comes to rest."""

@@ -12,7 +12,7 @@ from soak.families import seeds
 
 import bondgraph as bg
 from codegen import Family, Sampled, Simulator, simulator, sweep
-from codegen.sweeps.measures import event_count, final, first_event
+from codegen.record.measures import event_count, final, first_event
 
 CURVED = bg.DryFriction("level*(1 + s**2/10**9)")
 """A level that reads a signal: steps with control instead of exponentials."""

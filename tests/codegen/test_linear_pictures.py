@@ -9,7 +9,7 @@ import pytest
 from oracles.slides import oscillator, two_masses
 
 import bondgraph as bg
-from bondgraph.response import StateSpace
+from bondgraph.analyse.state_space import StateSpace
 from codegen import bode, mode_shapes, pole_map
 
 pytest.importorskip("matplotlib")

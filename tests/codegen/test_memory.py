@@ -13,9 +13,10 @@ from oracles.memcheck import check_program, check_script, complaints
 from soak.families import whole
 
 from codegen import to_c
+from codegen.batch import engine as batch_engine
+from codegen.batch import located as batch_located
 from codegen.c.export import runtime_file
 from codegen.engine import located, runs, sizes
-from codegen.sweeps import batch_engine, batch_located
 
 ALL = whole("memory")
 """Whether every small model and textbook case is run, not the few that have sizes of zero."""

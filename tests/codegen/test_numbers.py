@@ -12,7 +12,7 @@ from references.build import bond_graph
 import bondgraph as bg
 from codegen import simulator
 from codegen.model.numbers import exact_parameters, numbers
-from codegen.program import lower
+from codegen.program.lower import lower
 
 CIRCUIT = bg.derive(series_circuit())
 GOOD = {"R": 5.0, "L": 0.3, "C": 0.02}

@@ -9,7 +9,7 @@ from references.build import bond_graph
 from references.random_graphs import random_graph
 
 import bondgraph as bg
-from bondgraph.elements import Kind
+from bondgraph.declare.elements import Kind
 from codegen import Ramp, Result, Sine, simulator
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 import bondgraph as bg
 from codegen import simulator
-from codegen.pairs import Pair, from_decimals, matmul, pair, plus, times
+from codegen.numbers.pairs import Pair, from_decimals, matmul, pair, plus, times
 from codegen.runs.ladder import Ladder
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.polynomial import polynomial as npp
 
-from codegen.arrays import Array
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
+from codegen.numbers.arrays import Array
 
 
 def _with_roots(rng: np.random.Generator) -> tuple[Array, list[float]]:

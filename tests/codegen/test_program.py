@@ -1,13 +1,12 @@
 """`lower`: names sorted, expressions shared, nothing lost, and always the same program."""
 
-
 import pytest
 import sympy as sp
 from oracles.models import oscillator, series_circuit
 from references.build import bond_graph
 
 import bondgraph as bg
-from codegen.program import Block, block, lower
+from codegen.program.lower import Block, block, lower
 
 CIRCUIT = bg.derive(series_circuit())
 SLIDER = bg.derive(oscillator(bg.Se("push", "P")))

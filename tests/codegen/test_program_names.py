@@ -7,7 +7,7 @@ from references.build import bond_graph
 
 import bondgraph as bg
 from codegen import simulator
-from codegen.program import lower
+from codegen.program.lower import lower
 
 AWKWARD = [
     ("c0", "c1", "c2"), ("c1", "c0", "x0"), ("x0", "x1", "c0"), ("exp", "array", "select"),

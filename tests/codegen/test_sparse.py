@@ -15,7 +15,7 @@ from references.random_graphs import random_graph
 from soak.families import seeds
 
 import bondgraph as bg
-from bondgraph.elements import STORAGES
+from bondgraph.declare.elements import STORAGES
 from codegen import SparseModel, simulator, sparse_model
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 import bondgraph as bg
-from bondgraph.renaming import Part
+from bondgraph.declare.renaming import Part
 from codegen import Constant, Result, Signal, Sine, Step, switched_simulator
 
 Array = NDArray[np.floating[Any]]

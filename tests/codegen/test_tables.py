@@ -100,7 +100,7 @@ def test_csv_is_read_back_digit_for_digit(tmp_path: Path) -> None:
 def test_missing_packages_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     run = slide()
     with monkeypatch.context() as patch:
-        patch.setattr("codegen.runs.tables.find_spec", lambda name: None)
+        patch.setattr("codegen.record.tables.find_spec", lambda name: None)
         with pytest.raises(bg.MissingExtraError, match=r"h5netcdf.*bondgraph-toolkit\[tables\]"):
             run.write_netcdf(tmp_path / "run.nc")
     for name in ("xarray", "pandas"):

@@ -8,7 +8,7 @@ import pytest
 from references.random_graphs import random_graph
 
 import bondgraph as bg
-from bondgraph.elements import STORAGES
+from bondgraph.declare.elements import STORAGES
 from codegen import Result, Sine, simulator
 
 STEP = 1e-3

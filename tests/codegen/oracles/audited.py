@@ -23,9 +23,9 @@ from codegen import (
     simulator,
     switched_simulator,
 )
-from codegen.arrays import Array
+from codegen.numbers.arrays import Array
+from codegen.record.measures import Measure
 from codegen.sweeps.job import Job, batch_of
-from codegen.sweeps.measures import Measure
 from oracles.chains import random_chain
 from oracles.circuits import as_graph
 

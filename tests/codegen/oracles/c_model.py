@@ -11,8 +11,8 @@ import pytest
 
 from codegen import to_c
 from codegen.c.export import stepped
-from codegen.model.closed import ClosedModel
-from codegen.program import Program, lower
+from codegen.modes.closed import ClosedModel
+from codegen.program.lower import Program, lower
 
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
 HARNESS = Path(__file__).parent / "harness.c"

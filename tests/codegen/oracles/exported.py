@@ -12,9 +12,9 @@ import bondgraph as bg
 import differentials
 from codegen import Simulator
 from codegen.inputs.pieces import Piece
-from codegen.model.modes import decide
-from codegen.model.pace import LOOK_AHEAD
-from codegen.model.rounding import Peaks
+from codegen.modes.choose import decide
+from codegen.modes.pace import LOOK_AHEAD
+from codegen.modes.rounding import Peaks
 from differentials.model import Model, model
 from oracles.models import belt, clutches, oscillator, stacked_blocks
 

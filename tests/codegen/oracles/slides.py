@@ -4,7 +4,7 @@ import numpy as np
 from references.build import bond_graph
 
 import bondgraph as bg
-from bondgraph.response import StateSpace
+from bondgraph.analyse.state_space import StateSpace
 from codegen import Result, Sine, simulator
 
 

@@ -13,7 +13,7 @@ from references.build import bond_graph
 
 import bondgraph as bg
 from codegen import Family, Lag, Result, Step, final, first_event, peak
-from codegen.arrays import Array
+from codegen.numbers.arrays import Array
 
 TIMES = np.linspace(0.0, 2.0, 21)
 

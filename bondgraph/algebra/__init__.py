@@ -1,0 +1,1 @@
+"""Exact algebra: expressions, rows of them, residues and ranks; floats decide nothing."""

@@ -1,0 +1,49 @@
+"""Laws put over ports after the derivation: which port is meant, and whether the law may close it."""
+
+from collections.abc import Hashable, Mapping, Sequence
+
+from bondgraph.algebra.exact import rows_of
+from bondgraph.declare.elements import Kind
+from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, law
+from bondgraph.equations import StateEquations
+from bondgraph.errors import StructureError
+from bondgraph.reduce.junction import Port
+from bondgraph.reduce.readings import check_laws
+
+
+def merged_laws(
+    equations: StateEquations, overrides: Mapping[Hashable, object]
+) -> dict[Hashable, Law]:
+    """Every closed port's law; a key of the overrides is a node, or the input it gives."""
+    if not isinstance(overrides, Mapping):
+        raise StructureError(f"laws must map nodes to laws, not be {overrides!r}")
+    merged = dict(equations.laws)
+    for key, value in overrides.items():
+        port = port_called(equations.ports, key)
+        name = port.element.name
+        declared = equations.laws.get(name)
+        state = declared.state if isinstance(declared, ExpressionLaw) else None
+        closed = law(value, f"law at {name!r}", state)
+        if isinstance(closed, DryFriction) and (
+            port.gives != "effort" or port.element.kind is not Kind.R
+        ):
+            raise StructureError(f"law at {name!r}: dry friction closes an R that gives an effort")
+        merged[name] = closed
+    matrix_rows = rows_of(equations.E)
+    check_laws(merged, equations.signals, equations.ports, matrix_rows, equations.readings)
+    return merged
+
+
+def port_called(ports: Sequence[Port], key: Hashable) -> Port:
+    """The port of that node, or the one that gives the input of that name."""
+    named = [port for port in ports if port.element.name == key]
+    giving = [port for port in ports if port.given.name == str(key)]
+    found = named or giving
+    if not found:
+        raise StructureError(
+            f"no open port or source is called {key!r}; there are "
+            f"{', '.join(repr(port.element.name) for port in ports) or 'none'}"
+        )
+    if named and giving and named != giving:
+        raise StructureError(f"law at {key!r}: that names a node and another node's input")
+    return found[0]

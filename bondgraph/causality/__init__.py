@@ -1,0 +1,1 @@
+"""Causal strokes: assigned, told as stories, refused with the expression that vanishes."""

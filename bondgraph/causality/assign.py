@@ -1,0 +1,237 @@
+"""`assign_causality`: strokes by trial and propagation, each with its reason; refusals told as a story."""
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+import networkx as nx
+
+from bondgraph.causality.regularity import regular_ports
+from bondgraph.causality.signals import causal_equations, causal_groups, loop_rows
+from bondgraph.causality.stories import contradiction_story, stroke_story
+from bondgraph.causality.strokes import Contradiction, Reason, Strokes
+from bondgraph.causality.vanishing import elements_in, generic, told
+from bondgraph.declare.elements import SOURCES, STORAGES, TWO_PORTS, Kind
+from bondgraph.declare.switching import refuse_switches
+from bondgraph.declare.validate import Bond, validate, with_elements
+from bondgraph.errors import AlgebraicLoopError, BondGraphError, CausalityError
+
+TRIALS_PER_BOND = 20
+"""Beyond this the search for strokes stops and exact rank decides the ports first."""
+
+
+@dataclass(frozen=True)
+class CausalGraph:
+    """A validated graph with a causal stroke on every bond.
+
+    ``strokes``: bond, as declared, to the node that receives its effort. ``integral`` and
+    ``derivative``: the storages' names, in declaration order.
+    """
+
+    graph: "nx.DiGraph[Hashable]"
+    strokes: Mapping[Bond, Hashable]
+    integral: tuple[Hashable, ...]
+    derivative: tuple[Hashable, ...]
+    #: The numbered form that later stages follow; complete, and not changed any more.
+    assignment: Strokes = field(repr=False, compare=False)
+
+    def why(self, node: Hashable) -> tuple[str, ...]:
+        """The story of a one-port's causality, one sentence a line, choices first.
+
+        Raises `KeyError` for a name that is not a node.
+        """
+        if node not in self.graph:
+            raise KeyError(node)
+        return stroke_story(self.assignment, self.assignment.names.index(node))
+
+    def _repr_svg_(self) -> str:
+        """The drawn graph, for notebooks."""
+        from bondgraph.drawing.picture import drawing
+
+        return drawing(self).svg()
+
+
+def assign_causality(graph: Any) -> CausalGraph:
+    """Give every bond its causal stroke; storages get integral causality wherever that is possible.
+
+    Order: sources and ports of fixed causality; storages by ``priority``, then declaration; linear
+    resistances; what is left. Accepts a declared or a validated graph.
+
+    Raises `CausalityError` when sources and fixed ports contradict each other, `AlgebraicLoopError`
+    when the structure is singular under every causality. Both are genuine: a graph is refused only
+    if the determinant of its bond equations vanishes identically. `StructureError` for a graph with
+    switches, which has a causality in each of its modes: see `in_mode`.
+    """
+    checked = validate(graph)
+    refuse_switches(checked)
+    try:
+        return _assigned(checked)
+    except AlgebraicLoopError as error:
+        raise AlgebraicLoopError(f"{error}{_vanishing(checked)}") from None
+
+
+def _assigned(checked: "nx.DiGraph[Hashable]") -> CausalGraph:
+    strokes = Strokes(checked)
+    order, preferred = _preferences(strokes)
+    _impose_fixed(strokes, order)
+    found = _search(strokes, order, preferred)
+    if not found or _has_loop(strokes):
+        chosen = regular_ports(strokes, order, preferred)
+        if not found or any(strokes.gives(node) != gives for node, gives in chosen.items()):
+            _search_with(strokes, order, preferred, chosen)
+    return _causal_graph(checked, strokes)
+
+
+def _vanishing(checked: "nx.DiGraph[Hashable]") -> str:
+    """The determinant that vanishes: of a loop of a causality that the graph has with other ratios."""
+    made, values = generic({n: e for n, e in elements_in(checked).items() if e.kind in TWO_PORTS})
+    try:
+        equations = causal_equations(_assigned(with_elements(checked, made)).assignment)
+    except BondGraphError:
+        return "; so it is with any ratios"
+    for group in causal_groups(equations.terms):
+        text = told(loop_rows(equations, group), values) if len(group) > 1 else None
+        if text is not None:
+            return f"; {text}"
+    return ""
+
+
+def _preferences(strokes: Strokes) -> tuple[list[int], dict[int, str]]:
+    """The one-ports in the order of their importance, and what each should give."""
+    preferred: dict[int, str] = {}
+    ranks: dict[int, tuple[int, float, int]] = {}
+    for node, element in enumerate(strokes.elements):
+        if not element.one_port:
+            continue
+        if element.gives is not None:
+            preferred[node] = element.gives
+            ranks[node] = (0 if element.kind in SOURCES else 1, 0, node)
+        elif element.kind in STORAGES:
+            preferred[node] = "flow" if element.kind is Kind.I else "effort"
+            ranks[node] = (2, -element.priority, node)
+        else:
+            preferred[node] = "effort"
+            ranks[node] = (3, 0, node)
+    return sorted(ranks, key=ranks.__getitem__), preferred
+
+
+def _impose_fixed(strokes: Strokes, order: list[int]) -> None:
+    for node in order:
+        gives = strokes.elements[node].gives
+        if gives is None:
+            return
+        reason = Reason(node, f"imposes its {gives}")
+        conflict = strokes.assign(strokes.at[node][0], strokes.end_for(node, gives), reason)
+        if conflict:
+            raise CausalityError(contradiction_story(strokes, conflict))
+
+
+def _search(strokes: Strokes, order: list[int], preferred: dict[int, str]) -> bool:
+    """Complete the strokes by trials that backtrack; False if there is no way or it takes too long."""
+    items = [(strokes.at[node][0], strokes.end_for(node, preferred[node]), node) for node in order]
+    items += [(bond, head, tail) for bond, (tail, head) in enumerate(strokes.bonds)]
+    limit = TRIALS_PER_BOND * len(strokes.bonds) + 1_000
+    open_choices: list[tuple[int, int]] = []
+    at = trials = 0
+    while at < len(items):
+        if strokes.end[items[at][0]] is None:
+            trials += 1
+            length = len(strokes.trail)
+            conflict = _try(strokes, items[at])
+            if conflict is None:
+                open_choices.append((at, length))
+            elif _try_other(strokes, items[at], conflict):
+                turned = _turn_back(strokes, items, open_choices)
+                if turned is None or trials > limit:
+                    return False
+                at = turned
+        at += 1
+    return True
+
+
+Choice = tuple[int, int, int]
+"""A bond, the end its stroke should lie at, and the node that wants it there."""
+
+
+def _try(strokes: Strokes, choice: Choice) -> Contradiction | None:
+    """Set the preferred stroke and all that follows; on a contradiction leave no trace and tell it."""
+    bond, end, node = choice
+    storage = strokes.elements[node].kind in STORAGES
+    text = "is tried in integral causality first" if storage else "is free to choose"
+    return _assign_or_undo(strokes, bond, end, Reason(node, text))
+
+
+def _try_other(
+    strokes: Strokes, choice: Choice, conflict: Contradiction | None
+) -> Contradiction | None:
+    """The same for the other side of a choice, whose preferred side met a conflict, if it is known."""
+    bond, end, node = choice
+    text = "takes the other causality, since its first choice leads to a contradiction further on"
+    if conflict is not None:
+        name = strokes.names[conflict.node]
+        text = f"cannot have its preferred causality: {name!r} {conflict.text}"
+    return _assign_or_undo(strokes, bond, strokes.other(bond, end), Reason(node, text))
+
+
+def _assign_or_undo(strokes: Strokes, bond: int, end: int, reason: Reason) -> Contradiction | None:
+    length = len(strokes.trail)
+    conflict = strokes.assign(bond, end, reason)
+    if conflict is not None:
+        strokes.undo(length)
+    return conflict
+
+
+def _turn_back(
+    strokes: Strokes, items: list[Choice], open_choices: list[tuple[int, int]]
+) -> int | None:
+    """Take the other side of the last open choice where that works, and tell which choice it was."""
+    while open_choices:
+        at, length = open_choices.pop()
+        strokes.undo(length)
+        if _try_other(strokes, items[at], None) is None:
+            return at
+    return None
+
+
+def _has_loop(strokes: Strokes) -> bool:
+    return any(len(group) > 1 for group in causal_groups(causal_equations(strokes).terms))
+
+
+def _search_with(
+    strokes: Strokes, order: list[int], preferred: dict[int, str], chosen: dict[int, str]
+) -> None:
+    """Strokes again, with every port's causality given."""
+    strokes.undo(0)
+    conflict: Contradiction | None = None
+    for node in order:
+        if node not in chosen:
+            continue
+        text = f"gives its {chosen[node]}: otherwise its loop would be singular"
+        if strokes.elements[node].gives is not None:
+            text = f"imposes its {chosen[node]}"
+        end = strokes.end_for(node, chosen[node])
+        conflict = conflict or strokes.assign(strokes.at[node][0], end, Reason(node, text))
+    if conflict or not _search(strokes, order, preferred | chosen):
+        raise CausalityError(
+            "no complete set of causal strokes was found, though the equations are regular; "
+            "please report this graph"
+        )
+
+
+def _causal_graph(graph: "nx.DiGraph[Hashable]", strokes: Strokes) -> CausalGraph:
+    declared = nx.get_edge_attributes(graph, "declared")
+    storages = {
+        strokes.names[node]: strokes.gives(node) == ("flow" if element.kind is Kind.I else "effort")
+        for node, element in enumerate(strokes.elements)
+        if element.kind in STORAGES
+    }
+    owners = [element.owner or strokes.names[at] for at, element in enumerate(strokes.elements)]
+    ends = [owners[end] for end in strokes.end if end is not None]
+    return CausalGraph(
+        graph=graph,
+        strokes=MappingProxyType(dict(zip(declared.values(), ends, strict=True))),
+        integral=tuple(name for name, integral in storages.items() if integral),
+        derivative=tuple(name for name, integral in storages.items() if not integral),
+        assignment=strokes,
+    )

@@ -1,0 +1,193 @@
+"""Nodes as checked elements: which kind of element the attributes of a node declare."""
+
+from collections.abc import Hashable, Mapping
+from typing import Any
+
+import sympy as sp
+
+from bondgraph.algebra.expressions import TIME, expression, symbol
+from bondgraph.declare import fields
+from bondgraph.declare.attributes import (
+    check_keys,
+    check_node_name,
+    energy_of,
+    gives_of,
+    inverse_of,
+    kind_of,
+    law_of,
+    port_variables,
+    priority_of,
+    switch_of,
+    unit_of,
+    value_of,
+    variable,
+)
+from bondgraph.declare.elements import (
+    DETECTORS,
+    JUNCTIONS,
+    SOURCES,
+    STORAGES,
+    TWO_PORTS,
+    Element,
+    Kind,
+)
+from bondgraph.declare.laws import ExpressionLaw, law
+from bondgraph.errors import StructureError
+
+
+def elements_of(name: Hashable, attributes: Mapping[str, Any]) -> dict[Hashable, Element]:
+    """The element that a node's attributes declare; of a field one per port, called ``<name>.<port>``.
+
+    Raises `StructureError` or `ExpressionError`, naming the node.
+    """
+    if attributes.get("ports") is None:
+        made = [_element(name, attributes)]
+        if made[0].kind in JUNCTIONS and (attributes.keys() & {"on", "off"}):
+            made.append(_control(made[0], attributes))
+        return {element.name: element for element in made}
+    where = f"node {name!r}"
+    check_node_name(name)
+    kind = kind_of(attributes, where)
+    check_keys(kind, attributes, where)
+    ports = fields.port_names(attributes["ports"], where)
+    build = _energy_field if attributes.get("energy") is not None else _matrix_field
+    return {element.name: element for element in build(name, kind, ports, attributes)}
+
+
+def _matrix_field(
+    name: Hashable, kind: Kind, ports: tuple[str, ...], attributes: Mapping[str, Any]
+) -> list[Element]:
+    """A field by its matrix: each port with its row."""
+    where = f"node {name!r}"
+    for key in ("law", "gives"):
+        if attributes.get(key) is not None:
+            raise StructureError(
+                f"{where}: with ports, give a matrix as value, or an energy, not {key}"
+            )
+    if attributes.get("value") is None:
+        raise StructureError(f"{where}: a field needs a matrix as value, or an energy")
+    rows = fields.matrix(attributes["value"], ports, kind in STORAGES, where)
+    parts = [fields.part(name, port) for port in ports]
+    return [
+        Element(
+            parts[at], kind, rows[at][at], *port_variables(name, port, attributes),
+            priority=priority_of(attributes, where), unit=unit_of(attributes, where),
+            row=tuple(zip(parts, rows[at], strict=True)), owner=name,
+        )
+        for at, port in enumerate(ports)
+    ]  # fmt: skip
+
+
+def _energy_field(
+    name: Hashable, kind: Kind, ports: tuple[str, ...], attributes: Mapping[str, Any]
+) -> list[Element]:
+    """A field by its energy: each port a storage whose law is the energy's slope along its state."""
+    where = f"node {name!r}"
+    for key in ("law", "value"):
+        if attributes.get(key) is not None:
+            raise StructureError(f"{where}: it has both an energy and a {key}; give one of them")
+    letter = "p" if kind is Kind.I else "q"
+    states = [symbol(f"{letter}_{name}_{port}", where) for port in ports]
+    energy, slopes = fields.gradient(attributes["energy"], states, where)
+    return [
+        Element(
+            fields.part(name, port), kind, None, *port_variables(name, port, attributes),
+            law=ExpressionLaw(slope, state), priority=priority_of(attributes, where),
+            gives="flow" if kind is Kind.I else "effort", unit=unit_of(attributes, where),
+            owner=name, energy=energy,
+        )
+        for port, state, slope in zip(ports, states, slopes, strict=True)
+    ]  # fmt: skip
+
+
+def _element(name: Hashable, attributes: Mapping[str, Any]) -> Element:
+    check_node_name(name)
+    where = f"node {name!r}"
+    kind = kind_of(attributes, where)
+    check_keys(kind, attributes, where)
+    unit = unit_of(attributes, where)
+    if kind in JUNCTIONS:
+        common = "effort" if kind is Kind.ZERO else "flow"
+        own = variable(attributes, common, name, strict=False)
+        effort, flow = (own, None) if kind is Kind.ZERO else (None, own)
+        return Element(name, kind, None, effort, flow)
+    if kind in TWO_PORTS:
+        return Element(name, kind, value_of(attributes, where), None, None, unit=unit)
+    if kind in SOURCES:
+        return _source(name, kind, attributes, unit)
+    if kind in DETECTORS:
+        return _detector(name, kind, attributes, unit)
+    if kind is Kind.SW:
+        switch = switch_of(name, attributes, "effort")
+        effort, flow = (variable(attributes, key, name) for key in ("effort", "flow"))
+        return Element(name, kind, None, effort, flow, switch=switch)
+    return _passive(name, kind, attributes, unit)
+
+
+def _source(name: Hashable, kind: Kind, attributes: Mapping[str, Any], unit: str | None) -> Element:
+    """A source: a bare name is an input of that name, another expression a known source's law."""
+    where = f"node {name!r}"
+    if attributes.get("value") is None:
+        raise StructureError(f"{where} has no value; give the input's name or an expression")
+    gives, receives = ("effort", "flow") if kind is Kind.SE else ("flow", "effort")
+    value = expression(attributes["value"], where)
+    bare = isinstance(value, sp.Symbol) and value != TIME
+    given = sp.Symbol(value.name) if bare else variable({}, gives, name)
+    if bare and value != given:
+        raise StructureError(f"{where}: the input {value} must be a symbol without assumptions")
+    received = variable(attributes, receives, name)
+    effort, flow = (given, received) if kind is Kind.SE else (received, given)
+    known = None if bare else law(value, where)
+    return Element(name, kind, None, effort, flow, law=known, gives=gives, unit=unit)
+
+
+def _detector(
+    name: Hashable, kind: Kind, attributes: Mapping[str, Any], unit: str | None
+) -> Element:
+    """A port that gives nothing and reads one variable, or that variable's integral too."""
+    integral = attributes.get("integrate")
+    if integral is not None:
+        text = integral.name if isinstance(integral, sp.Symbol) else integral
+        integral = symbol(text, f"node {name!r}, integrate")
+    effort, flow = (variable(attributes, key, name) for key in ("effort", "flow"))
+    gives = "flow" if kind is Kind.DE else "effort"
+    return Element(name, kind, None, effort, flow, gives=gives, unit=unit, integral=integral)
+
+
+def _passive(
+    name: Hashable, kind: Kind, attributes: Mapping[str, Any], unit: str | None
+) -> Element:
+    """An I, C or R: linear by its value, nonlinear by its law, or (R) an open port."""
+    where = f"node {name!r}"
+    given = [key for key in ("value", "law", "energy") if attributes.get(key) is not None]
+    if len(given) > 1:
+        raise StructureError(f"{where} has both a {given[0]} and a {given[1]}; give one of them")
+    if kind in STORAGES and not given:
+        raise StructureError(f"{where} has no value; give a number, a name, an expression or a law")
+    valued = given == ["value"]
+    gives = gives_of(kind, attributes, where, valued)
+    effort, flow = (variable(attributes, key, name) for key in ("effort", "flow"))
+    closed = law_of(name, kind, attributes, gives)
+    inverse = inverse_of(attributes, closed, flow if kind is Kind.I else effort, where)
+    return Element(
+        name,
+        kind,
+        value_of(attributes, where) if valued else None,
+        effort,
+        flow,
+        law=closed,
+        priority=priority_of(attributes, where),
+        gives=gives if inverse is None else None,
+        unit=unit,
+        energy=energy_of(name, kind, attributes)[0] if given == ["energy"] else None,
+        inverse=inverse,
+    )
+
+
+def _control(junction: Element, attributes: Mapping[str, Any]) -> Element:
+    """The switch that makes a junction a controlled one: a port of its own, ``<name>_switch``."""
+    gives = "effort" if junction.kind is Kind.ONE else "flow"
+    switch = switch_of(junction.name, attributes, gives)
+    name = f"{junction.name}_switch"
+    effort, flow = (variable({}, key, name) for key in ("effort", "flow"))
+    return Element(name, Kind.SW, None, effort, flow, switch=switch)

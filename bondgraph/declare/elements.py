@@ -1,0 +1,242 @@
+"""The kinds of node, their constructors, and what each kind is, as data."""
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+from enum import StrEnum
+
+import sympy as sp
+
+from bondgraph.declare.laws import Law
+
+Node = tuple[Hashable, dict[str, object]]
+"""What networkx's ``add_nodes_from`` takes: a name and its attributes."""
+
+
+class Kind(StrEnum):
+    """The kinds of node; the plain-dict form has their text as ``kind``."""
+
+    SE = "Se"
+    SF = "Sf"
+    I = "I"  # noqa: E741  the field's own letter
+    C = "C"
+    R = "R"
+    TF = "TF"
+    GY = "GY"
+    ZERO = "Zero"
+    ONE = "One"
+    DE = "De"
+    DF = "Df"
+    SW = "Sw"
+
+
+SOURCES = frozenset({Kind.SE, Kind.SF})
+STORAGES = frozenset({Kind.I, Kind.C})
+TWO_PORTS = frozenset({Kind.TF, Kind.GY})
+JUNCTIONS = frozenset({Kind.ZERO, Kind.ONE})
+DETECTORS = frozenset({Kind.DE, Kind.DF})
+POWER_INTO = frozenset({Kind.I, Kind.C, Kind.R, Kind.SW, *DETECTORS})
+"""Power counts into these whichever way the arrow points."""
+
+KEYS: dict[Kind, frozenset[str]] = {
+    Kind.SE: frozenset({"value", "flow", "unit"}),
+    Kind.SF: frozenset({"value", "effort", "unit"}),
+    Kind.I: frozenset(
+        {"value", "effort", "flow", "law", "inverse", "energy", "ports", "priority", "unit"}
+    ),
+    Kind.C: frozenset(
+        {"value", "effort", "flow", "law", "inverse", "energy", "ports", "priority", "unit"}
+    ),
+    Kind.R: frozenset({"value", "effort", "flow", "law", "ports", "gives", "unit"}),
+    Kind.TF: frozenset({"value", "unit"}),
+    Kind.GY: frozenset({"value", "unit"}),
+    Kind.ZERO: frozenset({"effort", "on", "off"}),
+    Kind.ONE: frozenset({"flow", "on", "off"}),
+    Kind.DE: frozenset({"effort", "integrate", "unit"}),
+    Kind.DF: frozenset({"flow", "integrate", "unit"}),
+    Kind.SW: frozenset({"effort", "flow", "on", "off"}),
+}
+"""The attributes a node of each kind may carry beside ``kind``."""
+
+
+@dataclass(frozen=True)
+class Switch:
+    """When a switch or a controlled junction of this name changes over.
+
+    Off, it turns on as ``on`` rises above zero; on, it turns off as ``off`` does. While on, its port
+    gives zero effort, or zero flow, as ``gives`` says; while off it gives zero of the other.
+    """
+
+    name: Hashable
+    on: sp.Expr
+    off: sp.Expr
+    gives: str
+
+
+@dataclass(frozen=True)
+class Element:
+    """One node, checked: what it is, its value or law, and the names of its effort and flow.
+
+    A source's ``value`` is None: what it gives is its input, closed by ``law`` if it is known.
+    ``gives`` is "effort" or "flow" where the causality is fixed: sources, open ports, laws, detectors.
+    ``integral``: the state that a detector makes of what it reads. ``row``: of a port of a field, what
+    it has per unit of each port's variable, by the ports' names; ``owner``: the field's node.
+    ``energy``: of a storage with an energy function, that function. ``inverse``: of one with a law, its
+    state as a function of what the law gives, so that it may have derivative causality. ``switch``: of an
+    ideal switch, when it turns on and off.
+    """
+
+    name: Hashable
+    kind: Kind
+    value: sp.Expr | None
+    effort: sp.Symbol | None
+    flow: sp.Symbol | None
+    law: Law | None = None
+    priority: float = 0
+    gives: str | None = None
+    unit: str | None = None
+    integral: sp.Symbol | None = None
+    row: tuple[tuple[Hashable, sp.Expr], ...] = ()
+    owner: Hashable | None = None
+    energy: sp.Expr | None = None
+    inverse: sp.Expr | None = None
+    switch: Switch | None = None
+
+    @property
+    def one_port(self) -> bool:
+        """True for everything but transformers, gyrators and junctions."""
+        return self.kind not in JUNCTIONS and self.kind not in TWO_PORTS
+
+    @property
+    def constant(self) -> sp.Expr:
+        """The value of an element that has one: a linear storage or resistance, TF, GY."""
+        if self.value is None:
+            raise AttributeError(f"{self.kind} {self.name!r} has no constant value")
+        return self.value
+
+    @property
+    def given(self) -> sp.Symbol | None:
+        """The variable the element imposes, where that is fixed: an input of the equations."""
+        return {"effort": self.effort, "flow": self.flow, None: None}[self.gives]
+
+    @property
+    def received(self) -> sp.Symbol | None:
+        """The variable the structure imposes on the element, where that is fixed."""
+        return {"effort": self.flow, "flow": self.effort, None: None}[self.gives]
+
+
+def Se(name: Hashable, value: object, **more: object) -> Node:
+    """An effort source. A bare name as value is an input of that name, anything else is known.
+
+    >>> Se("engine", "tau_e")
+    ('engine', {'kind': 'Se', 'value': 'tau_e'})
+    """
+    return _node(name, Kind.SE, value=value, **more)
+
+
+def Sf(name: Hashable, value: object, **more: object) -> Node:
+    """A flow source. A bare name as value is an input of that name, anything else is known."""
+    return _node(name, Kind.SF, value=value, **more)
+
+
+def I(  # noqa: E743
+    name: Hashable, value: object = None, flow: object = None, law: object = None,
+    priority: float = 0, **more: object,
+) -> Node:  # fmt: skip
+    """An inertia ``e = (value * f)'``, or the law ``f = law(p_<name>)`` of its momentum.
+
+    The higher ``priority`` is tried first for integral causality. ``energy=``: a function of ``p_<name>``
+    whose slope is the law. ``ports=``: names of several ports, each bond's given as ``port=`` on the edge;
+    ``value`` is then their symmetric matrix, or ``energy`` a function of all ``p_<name>_<port>``.
+    """
+    return _node(name, Kind.I, value=value, flow=flow, law=law, priority=priority, **more)
+
+
+def C(
+    name: Hashable, value: object = None, effort: object = None, law: object = None,
+    priority: float = 0, **more: object,
+) -> Node:  # fmt: skip
+    """A compliance ``f = (value * e)'``, value = 1/stiffness, or the law ``e = law(q_<name>)``.
+
+    ``energy=`` and ``ports=`` as for `I`, with ``q_<name>`` and ``q_<name>_<port>``.
+    """
+    return _node(name, Kind.C, value=value, effort=effort, law=law, priority=priority, **more)
+
+
+def R(
+    name: Hashable, value: object = None, effort: object = None, flow: object = None,
+    law: object = None, gives: str = "effort", **more: object,
+) -> Node:  # fmt: skip
+    """A resistance ``e = value * f``; a law; or, with neither, an open port.
+
+    An open port gives an input (its effort, or its flow with ``gives="flow"``) and receives an
+    output. With ``ports=`` (see `I`) the value is a matrix, efforts over flows.
+    """
+    return _node(
+        name, Kind.R, value=value, effort=effort, flow=flow, law=law, gives=gives, **more
+    )  # fmt: skip
+
+
+def TF(name: Hashable, m: object, **more: object) -> Node:
+    """A transformer: ``e_in = m e_out``, ``f_out = m f_in``; a gear of ratio w_in/w_out is m = 1/ratio."""
+    return _node(name, Kind.TF, value=m, **more)
+
+
+def GY(name: Hashable, r: object, **more: object) -> Node:
+    """A gyrator: ``e_in = r f_out``, ``e_out = r f_in``."""
+    return _node(name, Kind.GY, value=r, **more)
+
+
+def Zero(name: Hashable, effort: object = None, **more: object) -> Node:
+    """A 0-junction: one effort, flows that sum to zero. ``effort`` names the common effort.
+
+    With ``on=`` (and ``off=``, see `Sw`) it is a controlled junction: off, its effort is zero. What it
+    then takes to keep it there are ``e_<name>_switch`` and ``f_<name>_switch``.
+    """
+    return _node(name, Kind.ZERO, effort=effort, **more)
+
+
+def One(name: Hashable, flow: object = None, **more: object) -> Node:
+    """A 1-junction: one flow, efforts that sum to zero. ``flow`` names the common flow.
+
+    With ``on=`` (and ``off=``, see `Sw`) it is a controlled junction: off, its flow is zero. What it
+    then takes to keep it there are ``e_<name>_switch`` and ``f_<name>_switch``.
+    """
+    return _node(name, Kind.ONE, flow=flow, **more)
+
+
+def De(name: Hashable, effort: object = None, integrate: object = None, **more: object) -> Node:
+    """A detector of an effort: it draws no flow. ``integrate`` names the effort's integral, a state."""
+    return _node(name, Kind.DE, effort=effort, integrate=integrate, **more)
+
+
+def Df(name: Hashable, flow: object = None, integrate: object = None, **more: object) -> Node:
+    """A detector of a flow: it takes no effort. ``integrate`` names the flow's integral, a state.
+
+    So an angle becomes a state that moduli can use:
+
+    >>> Df("sensor", integrate="theta")
+    ('sensor', {'kind': 'Df', 'integrate': 'theta'})
+    """
+    return _node(name, Kind.DF, flow=flow, integrate=integrate, **more)
+
+
+def Sw(name: Hashable, on: object, off: object = None, **more: object) -> Node:
+    """An ideal switch: zero effort while it is on (closed), zero flow while it is off (open).
+
+    Off, it turns on as the expression ``on`` rises above zero; on, it turns off as ``off`` does, which
+    is ``-on`` unless given. They may use any signal, its own effort and flow among them; so a diode is
+
+    >>> Sw("d", on="e_d", off="-f_d")
+    ('d', {'kind': 'Sw', 'on': 'e_d', 'off': '-f_d'})
+    """
+    return _node(name, Kind.SW, on=on, off=off, **more)
+
+
+def _node(name: Hashable, kind: Kind, **attributes: object) -> Node:
+    """The node with the attributes that say something; defaults are left out."""
+    if attributes.get("priority") == 0:
+        del attributes["priority"]
+    if attributes.get("gives") == "effort":
+        del attributes["gives"]
+    given = {key: value for key, value in attributes.items() if value is not None}
+    return name, {"kind": str(kind), **given}

@@ -1,0 +1,120 @@
+"""Rules that hold between elements: names that must differ, and parts that must belong together."""
+
+from collections.abc import Hashable, Iterable, Sequence
+from typing import Any
+
+import networkx as nx
+import sympy as sp
+
+from bondgraph.algebra.expressions import TIME
+from bondgraph.declare.elements import SOURCES, Element
+from bondgraph.declare.laws import ExpressionLaw, Law
+from bondgraph.errors import StructureError
+
+
+def check_names(elements: Sequence[Element]) -> None:
+    """Refuse one name for two things: two quantities, a quantity and a value, two sets of assumptions."""
+    owners: dict[sp.Symbol, Element] = {}
+    for element in elements:
+        for name in _owned(element):
+            _check_owner(owners, name, element)
+    signals = set(owners) | {name for element in elements for name in named_by(element)}
+    if TIME in signals:
+        owner = next(element for element in elements if TIME in named_by(element))
+        raise StructureError(
+            f"node {owner.name!r}: 't' is the time; give its variable another name"
+        )
+    _check_own_names(elements)
+    _check_assumptions(elements, signals)
+
+
+def _owned(element: Element) -> Iterable[sp.Symbol]:
+    """The quantities that this element alone imposes or keeps: its input and its law's state."""
+    own = [element.given] if element.given is not None else []
+    if element.switch is not None:
+        own += [name for name in (element.effort, element.flow) if name is not None]
+    if element.integral is not None:
+        own.append(element.integral)
+    if isinstance(element.law, ExpressionLaw) and element.law.state is not None:
+        own.append(element.law.state)
+    return own
+
+
+def _check_owner(owners: dict[sp.Symbol, Element], name: sp.Symbol, element: Element) -> None:
+    other = owners.setdefault(name, element)
+    shared_input = all(one.kind in SOURCES and one.law is None for one in (other, element))
+    if other is not element and not shared_input:
+        raise StructureError(
+            f"nodes {other.name!r} and {element.name!r} both impose a variable {name}; "
+            "two names may be equal only where the quantities are"
+        )
+
+
+def named_by(element: Element) -> tuple[sp.Symbol, ...]:
+    """The signals an element names: its effort, its flow, and the state its law or itself owns."""
+    named = [n for n in (element.effort, element.flow, element.integral) if n is not None]
+    if isinstance(element.law, ExpressionLaw) and element.law.state is not None:
+        named.append(element.law.state)
+    return tuple(named)
+
+
+def _check_own_names(elements: Sequence[Element]) -> None:
+    """Refuse a value that is nothing but the element's own variable: it was meant as a parameter."""
+    for element in elements:
+        if element.value is not None and element.value in named_by(element):
+            raise StructureError(
+                f"node {element.name!r}: its value is {element.value}, the name of its own variable; "
+                "a parameter needs a name of its own"
+            )
+
+
+def _check_assumptions(elements: Sequence[Element], signals: set[sp.Symbol]) -> None:
+    seen: dict[str, sp.Symbol] = {name.name: name for name in signals}
+    for element in elements:
+        used: set[sp.Symbol] = set()
+        for part in _read(element):
+            used |= part.free_symbols
+        for name in sorted(used, key=str):
+            if seen.setdefault(name.name, name) != name:
+                raise StructureError(
+                    f"node {element.name!r}: the symbol {name} is used elsewhere with different "
+                    "assumptions; use one symbol for one name, or plain text"
+                )
+
+
+def _read(element: Element) -> list[Law | sp.Expr]:
+    """What an element reads names in."""
+    conditions = (element.switch.on, element.switch.off) if element.switch else ()
+    return [part for part in (element.value, element.law, *conditions) if part is not None]
+
+
+def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:
+    """Refuse parts that share neither a bond nor a signal: most often a bond was forgotten.
+
+    A signal is shared where a law or value reads it, or where both have an input of its name.
+    """
+    joined: nx.Graph[Any] = nx.Graph()
+    joined.add_nodes_from(("node", name) for name in graph)
+    joined.add_edges_from((("node", tail), ("node", head)) for tail, head in graph.edges)
+    owned: set[sp.Symbol] = set()
+    for name in graph:
+        owned |= set(named_by(graph.nodes[name]["element"]))
+    for name in graph:
+        element = graph.nodes[name]["element"]
+        if element.owner is not None:
+            joined.add_edge(("node", name), ("field", element.owner))
+        used = {symbol for part in _read(element) for symbol in part.free_symbols & owned}
+        for _, entry in element.row:
+            used |= entry.free_symbols & owned
+        joined.add_edges_from((("node", name), ("signal", s)) for s in {*used, *named_by(element)})
+    position = {name: at for at, name in enumerate(graph)}
+    first = sorted(
+        min(position[name] for kind, name in part if kind == "node")
+        for part in nx.connected_components(joined)
+    )
+    if len(first) > 1:
+        names = [list(graph)[at] for at in first[:2]]
+        raise StructureError(
+            f"the part of node {names[0]!r} and the part of node {names[1]!r} share neither a bond "
+            "nor a signal; bond them, or derive each on its own"
+        )

@@ -1,0 +1,80 @@
+"""Switches and controlled junctions: a graph without them for every mode that they can be in."""
+
+from collections.abc import Hashable, Iterable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import networkx as nx
+import sympy as sp
+
+from bondgraph.declare.elements import Element, Kind, Switch
+from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.declare.validate import validate, with_elements
+from bondgraph.errors import StructureError
+
+
+def switches(graph: Any) -> tuple[Switch, ...]:
+    """When each switch and each controlled junction of a graph changes over, in declaration order."""
+    return tuple(element.switch for element in _elements(validate(graph)) if element.switch)
+
+
+def in_mode(graph: Any, on: Iterable[Hashable] = ()) -> "nx.DiGraph[Hashable]":
+    """The graph in one mode: the switches and controlled junctions in ``on`` are on, the others off.
+
+    A switch that is on gives zero effort, one that is off zero flow; so each mode has a causality and
+    equations of its own. The names of efforts and flows are the same in all modes.
+
+    Raises `StructureError` for a name that is neither a switch nor a controlled junction.
+
+    >>> import bondgraph as bg, networkx as nx
+    >>> g = nx.DiGraph()
+    >>> g.add_nodes_from([bg.Se("battery", "E"), bg.One("wire"), bg.Sw("key", on="gate"), bg.C("cap", "C")])
+    >>> g.add_edges_from([("battery", "wire"), ("wire", "key"), ("wire", "cap")])
+    >>> open_circuit, charging = bg.derive(bg.in_mode(g)), bg.derive(bg.in_mode(g, on=["key"]))
+    >>> open_circuit.states, charging.states, [str(port.given) for port in open_circuit.ports]
+    ((e_cap,), (), ['E', 'f_key'])
+    """
+    checked = validate(graph)
+    chosen = checked_modes([switch.name for switch in switches(checked)], on)
+    settled = {
+        element.name: _settled(element, element.switch, element.switch.name in chosen)
+        for element in _elements(checked)
+        if element.switch is not None
+    }
+    return with_elements(checked, settled)
+
+
+def checked_modes(known: Sequence[Hashable], on: Any) -> frozenset[Hashable]:
+    """The switches that are told to be on; `StructureError` for others than the ``known``."""
+    if isinstance(on, str) or not isinstance(on, Iterable):
+        raise StructureError(f"on must be a list of switches, not {on!r}")
+    chosen = list(on)
+    for name in chosen:
+        if name not in known:
+            listed = ", ".join(map(repr, known)) or "none"
+            raise StructureError(f"{name!r} is no switch of this graph; there are {listed}")
+    return frozenset(chosen)
+
+
+def refuse_switches(graph: "nx.DiGraph[Hashable]") -> None:
+    """Refuse a validated graph whose switches are in no mode."""
+    names = [switch.name for switch in switches(graph)]
+    if names:
+        listed = ", ".join(map(repr, names))
+        raise StructureError(
+            f"the graph has the switches {listed} and other equations in each of their modes: tell one "
+            "with in_mode(graph, on=[...]), or simulate them all with switched_simulator"
+        )
+
+
+def _elements(graph: "nx.DiGraph[Hashable]") -> list[Element]:
+    return [graph.nodes[name]["element"] for name in graph]
+
+
+def _settled(element: Element, switch: Switch, on: bool) -> Element:
+    """What is left of a switch in one mode: a port that gives zero."""
+    other = "flow" if switch.gives == "effort" else "effort"
+    gives = switch.gives if on else other
+    return replace(
+        element, kind=Kind.R, gives=gives, law=ExpressionLaw(sp.Integer(0)), switch=None
+    )  # fmt: skip

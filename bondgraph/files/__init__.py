@@ -1,0 +1,1 @@
+"""Bond graphs as files: written whole, read without trust."""

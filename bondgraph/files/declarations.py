@@ -1,0 +1,155 @@
+"""A bond graph as plain data: texts, numbers and small objects that a file can hold, and back."""
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+from sympy.core.relational import Relational
+from sympy.logic.boolalg import BooleanAtom, BooleanFunction
+
+from bondgraph.algebra.expressions import MAX_DIGITS, expression, number
+from bondgraph.declare.elements import STORAGES
+from bondgraph.declare.laws import DryFriction, ExpressionLaw
+from bondgraph.declare.validate import validate
+from bondgraph.errors import ExpressionError, FileFormatError
+
+FRICTION = ("breakaway", "curve", "level")
+"""The parts of a dry friction, in a file's order."""
+
+NAMES = frozenset(
+    {"kind", "effort", "flow", "gives", "integrate", "unit", "port", "tail_port", "head_port"}
+)
+"""Attributes of nodes and bonds that are mere names."""
+
+_AS_CALL = {sp.pi: sp.Symbol("acos(-1)"), sp.E: sp.Symbol("exp(1)")}
+"""Text has no names for these numbers, but calls that give them."""
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """A graph's name, its nodes and bonds in their order, and their attributes as plain data."""
+
+    name: str | None
+    nodes: tuple[tuple[Hashable, dict[str, Any]], ...]
+    bonds: tuple[tuple[Hashable, Hashable, dict[str, Any]], ...]
+
+
+def declaration(graph: Any) -> Declaration:
+    """The graph as plain data from which `restored` makes a graph of the same equations.
+
+    Text, int and float stay as they are; other numbers and expressions become text that
+    `expression` reads as the same. Attributes come as ``kind`` and the rest sorted.
+
+    Raises what `validate` raises, and `FileFormatError`, naming the node, for what text cannot say.
+    """
+    if validate(graph) is graph:
+        raise FileFormatError("this is the checked copy that validate made; write the graph itself")
+    unknown = sorted(repr(key) for key in graph.graph if key != "name")
+    name = graph.graph.get("name") or None
+    if unknown or not isinstance(name, str | None):
+        which = unknown[0] if unknown else f"'name' = {name!r}"
+        raise FileFormatError(f"graph attribute {which}: a file keeps a name, a text; remove it")
+    check_text(name or "", "the graph's name")
+    nodes = []
+    for node, attributes in graph.nodes(data=True):
+        where = f"node {node!r}"
+        if isinstance(node, int) and node.bit_length() > 4 * MAX_DIGITS:
+            raise FileFormatError(f"a node's name is a number of more than {MAX_DIGITS} digits")
+        check_text(node, where)
+        nodes.append((node, _all_plain(attributes, attributes.get("kind"), where)))
+    bonds = [
+        (tail, head, _all_plain(attributes, None, f"bond {tail!r} -> {head!r}"))
+        for tail, head, attributes in graph.edges(data=True)
+    ]
+    return Declaration(name, tuple(nodes), tuple(bonds))
+
+
+def _all_plain(attributes: Mapping[str, Any], kind: object, where: str) -> dict[str, Any]:
+    given = {key: value for key, value in attributes.items() if value is not None}
+    keys = sorted(given, key=lambda key: (key != "kind", key))
+    return {key: _plain(key, given[key], kind, f"{where}, {key}") for key in keys}
+
+
+def _plain(key: str, value: Any, kind: object, where: str) -> Any:
+    """One attribute as a text, a number or, where that is not enough, a list or an object of such."""
+    if key == "priority":
+        return _priority(value, where)
+    if key == "law":
+        return _law(value, kind, where)
+    if key in ("value", "energy", "inverse", "on", "off"):
+        rows = value.tolist() if isinstance(value, sp.MatrixBase) else value
+        if isinstance(rows, Sequence) and not isinstance(rows, str):
+            return [[_written(entry, where) for entry in row] for row in rows]
+        return _written(rows, where)
+    if key == "ports":
+        return [_name(port, where) for port in value]
+    if key in ("effort", "flow") and isinstance(value, Mapping):
+        names = {_name(port, where): _name(given, where) for port, given in value.items()}
+        return dict(sorted(names.items()))
+    if key in NAMES:
+        return _name(value, where)
+    raise FileFormatError(f"{where}: files do not know this attribute")
+
+
+def _law(value: Any, kind: object, where: str) -> Any:
+    if isinstance(value, DryFriction):
+        return {part: _written(getattr(value, part), where) for part in FRICTION}
+    if isinstance(value, ExpressionLaw):
+        text = _written(value.expression, where)
+        if value.state is None or kind in STORAGES:
+            return text
+        return {"expression": text, "state": _written(value.state, where)}
+    return _written(value, where)
+
+
+def _name(value: Any, where: str) -> str:
+    text = value.name if isinstance(value, sp.Symbol) else str(value)
+    check_text(text, where)
+    return text
+
+
+def _priority(value: object, where: str) -> float:
+    exact = float(number(value, where))
+    if abs(exact) == float("inf"):
+        raise FileFormatError(f"{where}: {value!r} is beyond what a file can hold")
+    return int(exact) if exact.is_integer() and abs(exact) < 2**53 else exact
+
+
+def _written(value: Any, where: str) -> str | int | float:
+    """The number or text that stands for this value; text that reads back as another is refused."""
+    if isinstance(value, str):
+        check_text(value, where)
+    if isinstance(value, str | int | float):
+        return value
+    exact = expression(value, where)
+    strange = sorted(s.name for s in exact.free_symbols if s != sp.Symbol(s.name))
+    if strange:
+        raise FileFormatError(
+            f"{where}: the symbol {strange[0]} has assumptions, which text cannot say; "
+            f"use a plain Symbol({strange[0]!r})"
+        )
+    if exact.has(sp.Piecewise, Relational, BooleanFunction, BooleanAtom):
+        raise FileFormatError(
+            f"{where}: text cannot say a piecewise expression; keep the law in code and write the "
+            "graph without it, or use min, max, abs and sign"
+        )
+    text = str(sp.sstr(exact.xreplace(_AS_CALL), order="lex"))
+    try:
+        back = expression(text, where)
+    except ExpressionError as error:
+        raise FileFormatError(f"{error}; it cannot be written as text") from None
+    if back != exact:
+        raise FileFormatError(f"{where}: {text!r} would be read as {back}, which is not the same")
+    return text
+
+
+def check_text(text: object, where: str) -> None:
+    """Refuse text that no UTF-8 file can hold."""
+    try:
+        if isinstance(text, str):
+            text.encode("utf-8")
+    except UnicodeEncodeError:
+        raise FileFormatError(
+            f"{where}: half a character (a surrogate) has no place in a file"
+        ) from None

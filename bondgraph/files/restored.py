@@ -1,0 +1,115 @@
+"""Plain data of a file, of which nothing is certain, become a validated graph."""
+
+from collections.abc import Hashable, Iterable, Mapping
+from typing import Any
+
+import networkx as nx
+
+from bondgraph.algebra.expressions import expression, symbol
+from bondgraph.declare.laws import DryFriction, ExpressionLaw
+from bondgraph.declare.validate import validate
+from bondgraph.errors import BondGraphError, FileFormatError
+from bondgraph.files.declarations import FRICTION, Declaration, check_text
+
+SCALARS = (str, int, float)
+TYPES: Mapping[str, tuple[type, ...]] = {
+    "value": (*SCALARS, list),
+    "energy": SCALARS,
+    "inverse": SCALARS,
+    "on": SCALARS,
+    "off": SCALARS,
+    "law": (*SCALARS, dict),
+    "priority": (int, float),
+    "effort": (str, dict),
+    "flow": (str, dict),
+    "ports": (list,),
+}
+"""What a file may hold for an attribute; where nothing is said here, a text."""
+
+OWN_STATE = frozenset({"expression", "state"})
+
+
+def restored(declaration: Declaration) -> "nx.DiGraph[Hashable]":
+    """The graph of a declaration that came from a file, validated.
+
+    Raises `FileFormatError` for attributes of a wrong type, nodes and bonds that come twice and bonds
+    to nodes that are not there, and what `validate` raises.
+    """
+    graph: nx.DiGraph[Hashable] = nx.DiGraph()
+    if declaration.name is not None:
+        check_type(declaration.name, (str,), "the graph's name")
+        graph.graph["name"] = declaration.name
+    for name, attributes in declaration.nodes:
+        check_type(name, (str, int), "the id of a node")
+        if name in graph:
+            raise FileFormatError(f"node {name!r} is there twice; give each node an id of its own")
+        graph.add_node(name)
+        graph.nodes[name].update(_attributes(attributes, f"node {name!r}"))
+    for tail, head, attributes in declaration.bonds:
+        for end in (tail, head):
+            check_type(end, (str, int), "the end of a bond")
+            if end not in graph:
+                raise FileFormatError(f"bond {tail!r} -> {head!r}: there is no node {end!r}")
+        where = f"bond {tail!r} -> {head!r}"
+        if graph.has_edge(tail, head):
+            raise FileFormatError(f"{where} is there twice; keep one")
+        graph.add_edge(tail, head)
+        graph.edges[tail, head].update(_attributes(attributes, where))
+    validate(graph)
+    return graph
+
+
+def check_type(value: object, types: Iterable[type], where: str) -> None:
+    """Refuse a value that is of none of the types; true and false are no numbers.
+
+    >>> check_type(True, (int,), "version")
+    Traceback (most recent call last):
+    bondgraph.errors.FileFormatError: version: True must be of type int
+    """
+    if type(value) not in types:
+        allowed = ", ".join(one.__name__ for one in types)
+        text = repr(value) if isinstance(value, SCALARS) else f"a {type(value).__name__}"
+        short = text if len(text) <= 60 else text[:57] + "..."
+        raise FileFormatError(f"{where}: {short} must be of type {allowed}")
+    check_text(value, where)
+
+
+def _attributes(attributes: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """The attributes, checked for their types; a law of parts becomes a law."""
+    result = {}
+    for key, value in attributes.items():
+        place = f"{where}, {key[:60]}"
+        check_text(key, where)
+        check_type(value, TYPES.get(key, (str,)), place)
+        if isinstance(value, list):
+            _check_list(value, place, rows=key == "value")
+        elif isinstance(value, dict) and key != "law":
+            _check_list([*value, *value.values()], place, rows=False)
+        result[key] = _law(value, place) if key == "law" and isinstance(value, dict) else value
+    return result
+
+
+def _check_list(values: Iterable[Any], where: str, rows: bool) -> None:
+    """Refuse what is not a list of names or, with ``rows``, of lists of numbers and texts."""
+    for value in values:
+        check_type(value, (list,) if rows else (str,), where)
+        for entry in value if rows else ():
+            check_type(entry, SCALARS, where)
+
+
+def _law(parts: Mapping[str, Any], where: str) -> DryFriction | ExpressionLaw:
+    for key, value in parts.items():
+        check_type(value, SCALARS, f"{where}, {key[:60]}")
+    try:
+        if set(parts) == OWN_STATE:
+            state = symbol(parts["state"], where)
+            return ExpressionLaw(expression(parts["expression"], where), state)
+        if "level" in parts and set(parts) <= {*FRICTION}:
+            return DryFriction(**parts)
+    except BondGraphError as error:
+        text = str(error)
+        raise type(error)(text if text.startswith(where) else f"{where}: {text}") from None
+    raise FileFormatError(
+        f"{where}: a law of parts has level, curve and breakaway, or expression and state, "
+        f"not {', '.join(sorted(parts))[:60] or 'nothing'}"
+    )

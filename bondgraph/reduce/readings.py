@@ -1,0 +1,70 @@
+"""What laws may close: no port whose effort would have to be differentiated, or is read by itself."""
+
+from collections.abc import Hashable, Mapping, Sequence
+
+import sympy as sp
+
+from bondgraph.algebra.exact import Row
+from bondgraph.declare.elements import STORAGES
+from bondgraph.declare.laws import DryFriction, Law
+from bondgraph.errors import DependentSourceError, StructureError
+from bondgraph.reduce.junction import Port
+from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.outputs import PortRow
+
+
+def check_laws(
+    laws: Mapping[Hashable, Law],
+    known: Mapping[sp.Symbol, PortRow],
+    ports: Sequence[Port],
+    E: Sequence[Row],
+    readings: Mapping[sp.Symbol, Reading],
+) -> None:
+    """Refuse dry friction that reads its own effort, and a law whose slope in time would be needed.
+
+    The slope is needed where a port drives a dependent storage.
+
+    A law of time, parameters and inputs alone may drive one: it is a known source. ``known``: every
+    signal of the graph, open inputs included, as a row over what ports give.
+    """
+    inputs = list(dict.fromkeys(port.given for port in ports))
+    signals = set(known) - {port.given for port in ports if port.element.name not in laws}
+    for port in ports:
+        law = laws.get(port.element.name)
+        if law is None or not depends_on_signals(law, signals):
+            continue
+        _check_friction(law, port, known)
+        column = inputs.index(port.given)
+        reading = readings[port.received]
+        if reading.H or reading.K or any(column in row for row in E):
+            other = "flow" if port.gives == "effort" else "effort"
+            way = f"let it give its {other} (gives={other!r})"
+            if port.element.kind in STORAGES:
+                way = "put a resistance between"
+            raise DependentSourceError(
+                f"the law at {port.element.name!r} drives a dependent storage, so its slope in time "
+                f"would be needed; {way}, or put a storage that can be independent beside it"
+            )
+
+
+def _check_friction(law: Law, port: Port, known: Mapping[sp.Symbol, PortRow]) -> None:
+    """Refuse friction whose level, curve or breakaway is told by the effort that it gives itself."""
+    if not isinstance(law, DryFriction):
+        return
+    parts = (("level", law.level), ("curve", law.curve), ("breakaway", law.breakaway))
+    for what, part in parts:
+        for name in sorted(part.free_symbols, key=str):
+            # A signal of one term, at the place of the effort, is the effort under another name.
+            if name == port.given or (name in known and {*known[name]} == {*known[port.given]}):
+                raise StructureError(
+                    f"law at {port.element.name!r}: the {what} of dry friction uses {name}, the effort "
+                    "that this port gives itself; give the effort another name (effort=...), or what "
+                    f"the {what} uses"
+                )
+
+
+def depends_on_signals(law: Law, signals: set[sp.Symbol]) -> bool:
+    """Whether a law reads anything that the system itself rules."""
+    if isinstance(law, DryFriction) or law.state is not None:
+        return True
+    return bool(law.free_symbols & signals)

@@ -1,0 +1,66 @@
+"""`Reduction`: the ports of a junction structure, sorted into states, inputs and what follows from them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import sympy as sp
+
+from bondgraph.algebra.exact import combined
+from bondgraph.declare.elements import DETECTORS, STORAGES
+from bondgraph.reduce.junction import JunctionStructure, Port
+from bondgraph.reduce.motion import Motion, Reading
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """The ports of a junction structure, sorted into states, inputs and what follows from them.
+
+    ``states``, ``dependent``, ``resistive``, ``imposed``: port numbers. ``inputs``: the symbols that
+    imposed ports give, each once.
+    """
+
+    structure: JunctionStructure
+    states: tuple[int, ...]
+    dependent: tuple[int, ...]
+    resistive: tuple[int, ...]
+    imposed: tuple[int, ...]
+    inputs: tuple[sp.Symbol, ...]
+    #: The names in values that change in time; None where all values are constant.
+    motion: Motion | None
+    columns: Mapping[int, Reading]
+
+    @cached_property
+    def columns_of_states(self) -> Mapping[int, int]:
+        """Each state's column by its port's number."""
+        return {port: at for at, port in enumerate(self.states)}
+
+    @cached_property
+    def names(self) -> tuple[sp.Symbol, ...]:
+        """The symbols of the states."""
+        return tuple(self.structure.ports[port].given for port in self.states)
+
+    def reading(self, row: Mapping[int, sp.Expr]) -> Reading:
+        """A row over what the ports give, rewritten over states, inputs and their rates."""
+        used = [(self.columns[port].parts, factor) for port, factor in row.items()]
+        F, D, H, K = (combined((parts[at], factor) for parts, factor in used) for at in range(4))
+        return Reading(F, D, H, K)
+
+
+def is_storage(port: Port) -> bool:
+    """Whether the port is a storage whose causality is free: linear, or with a law and its inverse."""
+    return port.element.kind in STORAGES and not _is_fixed(port)
+
+
+def detects(port: Port) -> bool:
+    """Whether the port only reads."""
+    return port.element.kind in DETECTORS
+
+
+def _is_fixed(port: Port) -> bool:
+    return port.element.gives is not None
+
+
+def imposes(port: Port) -> bool:
+    """Whether what the port gives is an input: of fixed causality, or a law's in integral causality."""
+    return _is_fixed(port) or (port.element.law is not None and port.integral)

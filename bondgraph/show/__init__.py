@@ -1,0 +1,1 @@
+"""Equations as a person reads them: text and LaTeX."""

@@ -1,0 +1,224 @@
+"""A sweep's runs in one call of C for many, where the backend is C and the measures are ready ones."""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from threading import Lock
+from typing import Any, Protocol
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from bondgraph.algebra.expressions import normal
+from bondgraph.errors import BondGraphError
+from bondgraph.reduce.resistances import resistive_loops
+from codegen.batch.energy import ENERGETIC, plan, telling
+from codegen.batch.exact import ExactLoop
+from codegen.batch.located import LocatedLoop
+from codegen.batch.model import BatchModel, Flags, batch_model
+from codegen.batch.plan import Plan
+from codegen.engine.located import METHODS as LOCATED_METHODS
+from codegen.family import Family
+from codegen.inputs.signal import Signal
+from codegen.inputs.swept import Swept, settled
+from codegen.model.numbers import exact_parameters
+from codegen.model.sources import source_signals
+from codegen.numbers.arrays import Array
+from codegen.program.lower import Program
+from codegen.record.measures import READY, Measure
+from codegen.runs.arguments import named_numbers, signals_for
+from codegen.runs.legs import EXACT, Settings
+
+Given = Mapping[str, Any] | Callable[[Mapping[str, float]], Mapping[str, Any]] | None
+"""Initial states or inputs, or a function of a run's numbers that gives them."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A sweep as the loop needs it; ``names``: what each run has numbers for."""
+
+    family: Family
+    names: tuple[str, ...]
+    time: Array
+    measures: Mapping[str, Callable[..., Any]]
+    initial: Given
+    inputs: Given
+    settings: Settings
+
+
+class Loop(Protocol):
+    """Many runs in one call of C; ``shared`` and inputs are the loop's own records."""
+
+    def shared(self, signals: Sequence[Signal], /) -> Any:
+        """Inputs of all runs."""
+
+    def alike(
+        self, shared: Any, places: Sequence[int], factors: Array, indices: NDArray[np.intp], /
+    ) -> Any:
+        """The same inputs for these runs, but those at ``places`` times ``factors``."""
+
+    def different(self, found: Sequence[tuple[int, Sequence[Signal]]], /) -> Sequence[Any]:
+        """The inputs of each run by its index, in groups that are run together."""
+
+    def run(
+        self, inputs: Any, parameters: Array, states: Array, /
+    ) -> tuple[Array, NDArray[np.intc]]:
+        """A row of results for each run, and its status: not 0 where it has to be done another way."""
+
+
+class Batch:
+    """The loop for one sweep; calls may come from several threads."""
+
+    def __init__(self, asked: Asked, kept: Plan, model: BatchModel, loop: Loop) -> None:
+        self.asked, self.plan, self.loop = asked, kept, loop
+        self._model, self._shared = model, None
+        self._lock = Lock()
+        self.statuses: Counter[int] = Counter()
+
+    def __call__(
+        self, rows: Sequence[Sequence[float]] | Array
+    ) -> tuple[tuple[Array, ...], list[int]]:
+        """A column for each measure, and which runs have to be done another way."""
+        table = np.asarray(rows, dtype=float).reshape(len(rows), len(self.asked.names))
+        found = np.empty((len(table), self.plan.width))
+        done = np.zeros(len(table), dtype=bool)
+        with self._lock:
+            parameters, usable = self._parameters(table)
+            states, settled = self._states(table)
+            groups = self._inputs(table, np.flatnonzero(usable & settled))
+        for inputs in groups:
+            indices = inputs.indices
+            results, status = self.loop.run(inputs, parameters[indices], states[indices])
+            with self._lock:
+                kinds, counts = np.unique(status, return_counts=True)
+                self.statuses.update(dict(zip(kinds.tolist(), counts.tolist(), strict=True)))
+            found[indices], done[indices] = results, status == 0
+        return self.plan.told(found, self._numbers(table)), np.flatnonzero(~done).tolist()
+
+    def _numbers(self, table: Array) -> Mapping[str, Array]:
+        """The parameters of each run by name."""
+        exact = exact_parameters(self.asked.family.parameters)
+        known = {name: np.full(len(table), float(value)) for name, value in exact.items()}
+        swept = {name: table[:, at] for at, name in enumerate(self.asked.names) if name in known}
+        return known | swept
+
+    def _parameters(self, table: Array) -> tuple[Array, Flags]:
+        """The parameters of each run, and which runs' elements have values that can be used."""
+        model = self._model
+        parameters = np.tile(model.defaults, (len(table), 1))
+        for column, name in enumerate(self.asked.names):
+            for at, symbol in enumerate(model.program.parameters):
+                if symbol.name == name:
+                    parameters[:, at] = table[:, column]
+        with np.errstate(all="ignore"):
+            usable = model.usable(parameters)
+        return np.ascontiguousarray(parameters), usable
+
+    def _states(self, table: Array) -> tuple[Array, Flags]:
+        """The states at the start of each run, and which of them can be used."""
+        asked, names = self.asked, self.asked.family.states
+        states, usable = np.zeros((len(table), len(names))), np.ones(len(table), dtype=bool)
+        if callable(asked.initial):
+            for k, values in enumerate(self._named(table)):
+                try:
+                    numbers = named_numbers(dict(asked.initial(values) or {}), names)
+                except Exception:  # noqa: BLE001 - told by whoever does the run then
+                    usable[k] = False
+                    continue
+                states[k] = [numbers.get(name, 0.0) for name in names]
+        else:
+            numbers = named_numbers(asked.initial or {}, names)
+            states[:] = [numbers.get(name, 0.0) for name in names]
+        for column, name in enumerate(asked.names):
+            if name in names:
+                states[:, names.index(name)] = table[:, column]
+        return states, usable & np.isfinite(states).all(axis=1)
+
+    def _inputs(self, table: Array, indices: NDArray[np.intp]) -> Sequence[Any]:
+        """The inputs of these runs, in groups that are run together."""
+        asked, names = self.asked, self.asked.family.inputs
+        swept = [name for name in asked.names if name in names]
+        if not callable(asked.inputs) and not self._sources_differ:
+            given = {**(asked.inputs or {}), **{name: Swept(name) for name in swept}}
+            sized = {name: one for name, one in given.items() if isinstance(one, Swept)}
+            if self._shared is None:
+                units = {name: one.signal for name, one in sized.items()}
+                signals = signals_for({**given, **units}, names)
+                self._shared = self.loop.shared([*signals, *self._sources({})])
+            factors = table[:, [asked.names.index(one.name) for one in sized.values()]]
+            places = [names.index(str(normal(name))) for name in sized]
+            indices = indices[np.isfinite(factors[indices]).all(axis=1)]
+            if not len(indices):
+                return []
+            with np.errstate(all="ignore"):
+                return [self.loop.alike(self._shared, places, factors, indices)]
+        found: list[tuple[int, Sequence[Signal]]] = []
+        for k, values in zip(indices.tolist(), self._named(table[indices]), strict=True):
+            try:
+                told = asked.inputs(values) if callable(asked.inputs) else asked.inputs
+                given = settled(told or {}, values)
+                given |= {name: values[name] for name in swept}
+                found.append((k, [*signals_for(given, names), *self._sources(values)]))
+            except Exception:  # noqa: BLE001 - told by whoever does the run then
+                continue
+        return self.loop.different(found)
+
+    @property
+    def _sources_differ(self) -> bool:
+        """Whether numbers that differ from run to run tell what known sources do."""
+        sources = self._model.program.sources
+        return any(s.name in self.asked.names for expr in sources for s in expr.free_symbols)
+
+    def _sources(self, values: Mapping[str, float]) -> list[Signal]:
+        """What known sources do in a run with these numbers."""
+        program, family, time = self._model.program, self.asked.family, self.asked.time
+        numbers = {
+            **family.parameters,
+            **{k: v for k, v in values.items() if k in family.parameters},
+        }
+        return source_signals(program, exact_parameters(numbers), float(time[0]), float(time[-1]))
+
+    def _named(self, table: Array) -> list[dict[str, float]]:
+        return [dict(zip(self.asked.names, row, strict=True)) for row in table.tolist()]
+
+
+def batch(asked: Asked) -> Batch | None:
+    """The loop for a sweep; None where the model or a measure is none that one can do."""
+    try:
+        family = asked.family
+        if family.backend != "c" or not _can(family, family.program, asked.names):
+            return None
+        measures = [m for m in asked.measures.values() if isinstance(m, Measure)]
+        if len(measures) < len(asked.measures) or any(m.function not in READY for m in measures):
+            return None
+        told, made = family, None
+        if any(READY[m.function] in ENERGETIC for m in measures):
+            told, made = telling(family, measures)
+        kept = plan(measures, told, made, asked.time, asked.names)
+        return None if kept is None else _looped(replace(asked, family=told), kept)
+    except BondGraphError:
+        return None
+
+
+def _looped(asked: Asked, kept: Plan) -> Batch | None:
+    family, method = asked.family, asked.settings.method
+    model, time = batch_model(family), np.ascontiguousarray(asked.time)
+    library = family.library
+    if library.affine and method in ("auto", EXACT):
+        return Batch(asked, kept, model, ExactLoop(model, time, kept))
+    if method in LOCATED_METHODS:
+        return Batch(asked, kept, model, LocatedLoop(library, time, kept, asked.settings))
+    return None
+
+
+def _can(family: Family, program: Program, names: Sequence[str]) -> bool:
+    """Whether there are states, steps of inputs show no impulses, and ranks are certain."""
+    layout = program.layout
+    driven = layout["E"].rows and (layout["H"].rows or program.varying)
+    if not program.states or layout["K"].rows or driven:
+        return False
+    reduction = family.equations.reduction
+    loops = [*reduction.structure.loops, *(rows for _, rows in resistive_loops(reduction))]
+    entries = [sp.sympify(entry) for rows in loops for row in rows for entry in row.values()]
+    return not any(s.name in names for entry in entries for s in entry.free_symbols)

@@ -1,0 +1,111 @@
+"""One library of a generated model, the engine and the loop over runs; and room to run in."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from numpy.typing import NDArray
+
+from bondgraph.errors import SimulationError
+from codegen.c.export import runtime_file
+from codegen.engine.build import FLAGS, compiled, loaded
+from codegen.engine.sizes import Engine, Sizes, aligned, declarations, engine_declarations, sources
+from codegen.program.lower import Program
+
+FILES = (
+    "batch.h", "batch_internal.h", "batch.c", "batch_advance.c", "batch_doubt.h", "batch_gauss.h",
+    "batch_integral.c", "batch_leap.c",
+    "batch_measure.h", "batch_measure.c",
+    "batch_mode.c", "batch_model.h", "batch_model.c", "batch_signal.c", "batch_table.c",
+)  # fmt: skip
+
+CAPACITY = 256
+"""Events of a run; one with more is done without the loop."""
+
+MOST_MODES = 27
+"""Of one run."""
+
+STRIDE = 8
+"""Steps that are taken from one state."""
+
+SQUARES = 4
+"""Matrices that integrals are worked out in."""
+
+
+def batch_engine(
+    model: Mapping[str, str], program: Program, wanted: Sizes, flags: tuple[str, ...] = FLAGS
+) -> Engine:
+    """The library for a model that `codegen.to_c` wrote, compiled if need be."""
+    files = {**model, **sources(), **{name: runtime_file(name) for name in FILES}}
+    files["config.h"] = _config(model["config.h"], program, wanted)
+    library = compiled(files, flags)
+    numbers = wanted.numbers
+    text = engine_declarations(numbers)
+    shared = {"MODES": min(numbers["MODES"], MOST_MODES), "STRIDE": STRIDE, "SQUARES": SQUARES}
+    text += declarations("batch_measure.h", {}) + declarations("batch.h", shared, "BATCH")
+    for name in ("MODES", "ROW", "L"):
+        text = text.replace(f"[BG_{name}]", f"[{numbers[name]}]")
+    ffi, opened = loaded(library, text)
+    found = ffi.new("unsigned long[5]")
+    opened.batch_sizes(found)
+    if ffi.sizeof("batch_room") != found[0]:
+        raise SimulationError(f"the library {library} was compiled for other sizes; delete it")
+    return Engine(wanted, ffi, opened)
+
+
+def _config(model: str, program: Program, wanted: Sizes) -> str:
+    """Both headers in one: the names of the engine's sizes are not those of the model's."""
+    shared = {
+        "STATES": len(program.states), "LAW_STATES": len(program.law_states),
+        "INPUTS": len(program.inputs), "EXTERNAL": len(program.external),
+        "READINGS": len(program.readings), "PARAMETERS": len(program.parameters),
+    }  # fmt: skip
+    lines = ",\n".join(f"    BATCH_{name} = {value}" for name, value in shared.items())
+    batch = f"#ifndef BATCH_SIZES_H\n#define BATCH_SIZES_H\nenum {{\n{lines}\n}};\n#endif\n"
+    return f"#ifdef BG_ENGINE_H\n{wanted.config}{batch}#else\n{model}#endif\n"
+
+
+@dataclass
+class Room:
+    """Where one thread does its runs; keeps all that the record points to."""
+
+    engine: Engine
+    samples: int
+    signals: int
+    factors: int
+    products: int
+    record: Any = field(init=False)
+    kept: list[Any] = field(init=False, default_factory=list)
+
+    def __post_init__(self) -> None:
+        ffi, numbers, signals = self.engine.ffi, self.engine.sizes.numbers, max(self.signals, 1)
+        readers = MOST_MODES * (signals + self.factors)
+        sizes = ffi.new("unsigned long[5]")
+        self.engine.library.batch_sizes(sizes)
+        _, model, table, of_signal, tables = sizes
+        self.record = self.engine.new("batch_room")
+        context, self.record.context = self.engine.context()
+        self.kept.append(context)
+        self.record.capacity, self.record.pitch = CAPACITY, self.samples + STRIDE
+        events = ffi.new("bg_event[]", CAPACITY)
+        self.kept.append(events)
+        self.record.events = events
+        for name, kind, array in (
+            ("model", "void *", aligned(model // 8 + 1)),
+            (
+                "readers",
+                f"double(*)[{numbers['L']}]",
+                aligned(readers, numbers["L"]),
+            ),
+            ("tables", "double *", aligned(tables * (table + signals * of_signal))),
+            ("values", "double *", aligned(signals, self.record.pitch)),
+            ("levels", "double *", aligned(signals)),
+            ("totals", "double *", aligned(self.products + 1)),
+            ("squares", "double *", aligned(SQUARES * (numbers["N"] + numbers["G"] + 1) ** 2)),
+            ("constants", f"double(*)[{STRIDE}]", aligned(4 * numbers["K"] + signals, STRIDE)),
+        ):
+            self._point(name, kind, array)
+
+    def _point(self, name: str, kind: str, array: NDArray[Any]) -> None:
+        self.kept.append(array)
+        setattr(self.record, name, self.engine.ffi.cast(kind, array.ctypes.data))

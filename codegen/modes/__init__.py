@@ -1,0 +1,1 @@
+"""A closed model in its modes: which ports stick, and what counts as zero."""

@@ -1,0 +1,84 @@
+"""What counts as zero: slips, efforts and accelerations to the rounding of the terms that make them up."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from codegen.inputs.pieces import Piece
+from codegen.model.terms import TOLERANCE
+from codegen.modes.closed import ClosedModel, Mode, Snapshot
+from codegen.modes.sizes import input_terms
+from codegen.modes.trials import evaluated
+from codegen.numbers.arrays import Array
+
+ROUNDING = 1e-4
+"""A little later, an acceleration above this fraction of what counts as zero is a real one."""
+
+
+@dataclass
+class Peaks:
+    """What rounding is relative to: the largest magnitudes of states and inputs that a run has seen.
+
+    ``time`` [s] is the shortest time constant: forces that cancel leave slips of their rounding times it.
+    """
+
+    x: Array
+    u: Array
+    time: float = 0.0
+
+    @classmethod
+    def none(cls, model: ClosedModel) -> "Peaks":
+        """Nothing seen yet."""
+        return cls(np.zeros(len(model.program.states)), np.zeros(len(model.program.inputs)))
+
+    def see(
+        self, model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode
+    ) -> None:
+        """Take an instant into account, friction slipping in the given directions or forwards."""
+        slipping, now = evaluated(model, t, s, pieces, mode)
+        self.x = np.maximum(self.x, np.abs(now.x))
+        self.u = np.maximum(self.u, input_terms(model, t, s, pieces, slipping))
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Below these a slip, an effort margin or a slip acceleration counts as zero, port by port."""
+
+    slip: Array
+    effort: Array
+    acceleration: Array
+
+
+def scales(model: ClosedModel, now: Snapshot, t: float = 0.0, peaks: Peaks | None = None) -> Scales:
+    """The rounding to be expected, from the magnitude of the terms that cancel, and of the time's."""
+    readings, numbers = model.friction_readings, now.numbers
+    peaks = peaks or Peaks.none(model)
+    x, u = np.maximum(np.abs(now.x), peaks.x), np.maximum(np.abs(now.u), peaks.u)
+    late = 16 * np.spacing(abs(t)) * np.abs(slip_rates(model, now))
+    slip = np.abs(numbers.F[readings]) @ x + np.abs(numbers.D[readings]) @ u
+    # At rest states are rounding themselves: of what moves them within a time constant.
+    x = np.maximum(x, peaks.time * (np.abs(numbers.P) @ x + np.abs(numbers.Q) @ u))
+    moved = (
+        np.abs(numbers.F[readings] @ numbers.P) @ x + np.abs(numbers.F[readings] @ numbers.Q) @ u
+    )
+    efforts = np.abs(now.u[model.friction_inputs]) + now.caps
+    inertia = np.array([
+        abs(numbers.F[r] @ numbers.Q[:, c]) + abs(numbers.D[r, c])
+        for r, c in zip(readings, model.friction_inputs, strict=True)
+    ])  # fmt: skip
+    driven = np.divide(moved, inertia, out=np.zeros_like(moved), where=inertia > 0)
+    tiny = np.finfo(float).tiny
+    return Scales(
+        TOLERANCE * (slip + moved * peaks.time) + late + tiny,
+        TOLERANCE * (efforts + driven) + tiny,
+        TOLERANCE * 10 * moved + tiny,
+    )
+
+
+def slip_rates(model: ClosedModel, now: Snapshot) -> Array:
+    """How fast each friction port's slip changes, inputs that cannot be differentiated held."""
+    readings, numbers = model.friction_readings, now.numbers
+    x_rate = numbers.P @ now.x + numbers.Q @ now.u + numbers.R @ now.du
+    result: Array = numbers.F[readings] @ x_rate + numbers.D[readings] @ now.du
+    return result

@@ -1,0 +1,117 @@
+"""Whether a friction port goes with a mode, and whether what only sources rule lets a set of ports hold."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from codegen.modes.closed import ClosedModel, Mode, Snapshot
+from codegen.modes.rounding import ROUNDING, Scales, slip_rates
+from codegen.numbers.arrays import Array
+
+SEEN = 1e-2
+"""A slip that efforts change at once moves if it does by this fraction of what counts as zero."""
+
+LEFT = 10.0
+"""Slips that sources rule have left zero at so many times what counts as zero."""
+
+NOTHING: Array = np.zeros(0)
+
+
+@dataclass(frozen=True)
+class Look:
+    """A mode at an instant, with what counts as zero there."""
+
+    model: ClosedModel
+    mode: Mode
+    now: Snapshot
+    size: Scales
+
+    def slip(self, port: int) -> float:
+        """The port's slip."""
+        return float(self.now.y[self.model.friction_readings[port]])
+
+    def margin(self, port: int) -> float:
+        """How far what the port gives is below its breakaway effort."""
+        return float(self.now.caps[port] - abs(self.now.u[self.model.friction_inputs[port]]))
+
+    def verdict(self, port: int) -> int:
+        """1: the port goes with the mode; -1: it contradicts it; 0: a tie."""
+        sign = self.mode[port]
+        if sign == 0:
+            return _sign(self.margin(port), self.size.effort[port])
+        if not self.model.coupled_directly(port):
+            return _sign(sign * self.rates[port], self.size.acceleration[port])
+        return _sign(sign * self.slip(port), self.size.slip[port])
+
+    def later_verdict(self, port: int, later: Snapshot) -> int:
+        """A tie decided a little later: still holding to rounding, or really moving off."""
+        then, sign = Look(self.model, self.mode, later, self.size), self.mode[port]
+        if sign == 0:
+            return 1 if then.margin(port) >= -self.size.effort[port] else -1
+        if self.model.coupled_directly(port):
+            moved = sign * (then.slip(port) - self.slip(port))
+            if abs(moved) > SEEN * self.size.slip[port]:
+                return 1 if moved > 0 else -1
+            if pushed := _sign(sign * self.rates[port], self.size.acceleration[port]):
+                return pushed
+        rounding = ROUNDING * self.size.acceleration[port]
+        moving = sign * then.rates[port] > rounding
+        return 1 if moving or sign * then.slip(port) > self.size.slip[port] else -1
+
+    @cached_property
+    def rates(self) -> Array:
+        """How fast slips change."""
+        return slip_rates(self.model, self.now)
+
+    @cached_property
+    def ruling(self) -> Array:
+        """Combinations of the ports' slips, by rows, that must be zero as only other inputs rule them."""
+        held = [i for i, sign in enumerate(self.mode) if sign == 0]
+        found = self.model.hold(self.mode, self.now.numbers).ruled if held else np.zeros((0, 0))
+        rows = np.zeros((len(found), len(self.mode)))
+        rows[:, held] = found
+        return rows
+
+    @cached_property
+    def ruled(self) -> tuple[Array, Array, Array, Array]:
+        """What these are, how fast they change, and what counts as zero of both."""
+        if not len(rows := self.ruling):
+            return NOTHING, NOTHING, NOTHING, NOTHING
+        size = np.abs(rows)
+        slips = rows @ self.now.y[self.model.friction_readings]
+        return slips, rows @ self.rates, size @ self.size.slip, size @ self.size.acceleration
+
+
+def _sign(value: float, least: float) -> int:
+    return 0 if abs(value) <= least else (1 if value > 0 else -1)
+
+
+def ruled_out(look: Look) -> str | None:
+    """Why other inputs do not let the ports hold at this instant: what they rule moves, or is not zero."""
+    slips, rates, near, slow = look.ruled
+    for k in range(len(slips)):
+        if abs(slips[k]) > near[k]:
+            return f"a slip of {slips[k]:.6g} that only sources rule would have to be zero"
+        if abs(rates[k]) > slow[k]:
+            return f"a slip that only sources rule would have to stay zero, not change by {rates[k]:.6g}"
+    return None
+
+
+def ruled_out_later(look: Look, later: Snapshot) -> str | None:
+    """The same from a little later, where the instant itself is a tie."""
+    slips, _, near, slow = look.ruled
+    then, rates, *_ = Look(look.model, look.mode, later, look.size).ruled
+    moved = (np.abs(then - slips) > ROUNDING * near) | (np.abs(rates) > ROUNDING * slow)
+    return "a slip that only sources rule is about to leave zero" if moved.any() else None
+
+
+def room(look: Look, slips: Array) -> Array:
+    """Port by port, for slips by rows: 1 at zero, 0 where what other inputs rule of them has left zero."""
+    rows, (*_, near, _) = look.ruling, look.ruled
+    result = np.ones(slips.shape)
+    for row, least in zip(rows, near, strict=True):
+        left = 1 - np.minimum(np.abs(slips @ row) / (LEFT * least), 2.0)
+        for i in np.flatnonzero(row):
+            result[:, i] = np.minimum(result[:, i], left)
+    return result

@@ -1,0 +1,1 @@
+"""Numbers: arrays, pairs of doubles, roots."""

@@ -1,0 +1,1 @@
+"""Pictures of results: panels, poles, frequency responses, mode shapes."""

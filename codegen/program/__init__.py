@@ -1,0 +1,1 @@
+"""Equations and laws as named assignments that every backend prints."""

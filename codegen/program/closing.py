@@ -1,0 +1,201 @@
+"""Which law closes which port, and in which order laws can be evaluated."""
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
+
+import networkx as nx
+import sympy as sp
+
+from bondgraph.algebra.expressions import TIME
+from bondgraph.analyse.closures import merged_laws
+from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
+from bondgraph.equations import StateEquations
+from bondgraph.errors import ParameterError, StructureError
+from bondgraph.reduce.readings import depends_on_signals
+
+
+@dataclass(frozen=True)
+class Closing:
+    """The laws by the input they give, sorted by what they depend on.
+
+    ``known``: of time, parameters and external inputs. ``order``: groups of the others in the order of
+    their evaluation, with whether each is a loop. ``friction``: inputs given by dry friction.
+    ``coupled``: laws that depend on friction, solved together with it. ``law_states``: each law's own
+    state and the reading that is its rate.
+    """
+
+    #: The equations, with every signal that a law reads among their readings.
+    equations: StateEquations
+    laws: Mapping[sp.Symbol, Law]
+    port_names: Mapping[sp.Symbol, Hashable]
+    received: Mapping[sp.Symbol, sp.Symbol]
+    law_states: Mapping[sp.Symbol, sp.Symbol]
+    external: tuple[sp.Symbol, ...]
+    known: tuple[sp.Symbol, ...]
+    order: tuple[tuple[tuple[sp.Symbol, ...], bool], ...]
+    friction: tuple[sp.Symbol, ...]
+    coupled: tuple[sp.Symbol, ...]
+    #: Whether friction efforts act back at once on friction, by way of slips, levels or other laws.
+    joint: bool
+
+
+def close_ports(
+    equations: StateEquations,
+    overrides: Mapping[Hashable, object],
+    parameters: set[str],
+    watched: frozenset[sp.Symbol] = frozenset(),
+) -> Closing:
+    """Merge declared and given laws, sort their names, and find an order of evaluation.
+
+    ``watched``: names that are asked for beside those that laws read.
+    """
+    by_port = merged_laws(equations, overrides)
+    _check_assumptions(equations, by_port)
+    read = {name for closed in by_port.values() for name in closed.free_symbols} | watched
+    equations = equations.with_readings({*read, *equations.integrals.values()})
+    ports = {port.element.name: port for port in equations.ports}
+    _check_parameters(equations, by_port, parameters)
+    for name, port in ports.items():
+        # An open input that parameters name is held at that number.
+        if name not in by_port and port.given.name in parameters:
+            by_port[name] = ExpressionLaw(port.given)
+    laws: dict[sp.Symbol, Law] = {}
+    for name, closed in by_port.items():
+        if laws.setdefault(ports[name].given, closed) != closed:
+            raise StructureError(f"input {ports[name].given} is closed by two different laws")
+    owner = {ports[name].given: name for name in by_port}
+    received = {given: ports[name].received for given, name in owner.items()}
+    states = {
+        closed.state: received[given]
+        for given, closed in laws.items()
+        if isinstance(closed, ExpressionLaw) and closed.state is not None
+    }
+    states = {**states, **equations.integrals}
+    sorted_laws = _sort(equations, laws, set(states), parameters)
+    known, order, friction, coupled, joint = sorted_laws
+    return Closing(
+        equations,
+        laws,
+        owner,
+        received,
+        states,
+        _external(equations, laws, watched, set(states), parameters),
+        known,
+        order,
+        friction,
+        coupled,
+        joint,
+    )
+
+
+def _check_assumptions(equations: StateEquations, laws: Mapping[Hashable, Law]) -> None:
+    """Refuse a law whose symbol only looks like another: same name, other assumptions."""
+    known = {name.name: name for name in (*equations.parameters, *equations.signals)}
+    for port, closed in laws.items():
+        for name in sorted(closed.free_symbols, key=str):
+            if known.setdefault(name.name, name) != name:
+                raise StructureError(
+                    f"law at {port!r}: the symbol {name} is used elsewhere with different "
+                    "assumptions; use one symbol for one name, or plain text"
+                )
+
+
+def _check_parameters(
+    equations: StateEquations, laws: Mapping[Hashable, Law], parameters: set[str]
+) -> None:
+    """Refuse a parameter that names a signal, or an input that a law gives already."""
+    closed = {port.given for port in equations.ports if port.element.name in laws}
+    own = {part.state for part in laws.values() if isinstance(part, ExpressionLaw) and part.state}
+    own |= set(equations.integrals)
+    signals = set(equations.signals) - set(equations.inputs)
+    taken = {*signals, *closed, *own, TIME}
+    for name in sorted(taken, key=str):
+        if name.name in parameters:
+            raise ParameterError(f"parameter {name} names a signal of the model; rename it")
+
+
+def _external(
+    equations: StateEquations,
+    laws: Mapping[sp.Symbol, Law],
+    watched: frozenset[sp.Symbol],
+    law_states: set[sp.Symbol],
+    parameters: set[str],
+) -> tuple[sp.Symbol, ...]:
+    """Inputs nothing in the model gives: open ports and sources first, then what else is asked for."""
+    known = {*equations.signals, *law_states, TIME}
+    names = watched.union(*(closed.free_symbols for closed in laws.values()))
+    asked = {name for name in names - known if name.name not in parameters}
+    return tuple(name for name in equations.inputs if name not in laws) + tuple(
+        sorted(asked, key=str)
+    )
+
+
+Sorted = tuple[
+    tuple[sp.Symbol, ...],
+    tuple[tuple[tuple[sp.Symbol, ...], bool], ...],
+    tuple[sp.Symbol, ...],
+    tuple[sp.Symbol, ...],
+    bool,
+]
+
+
+def _sort(
+    equations: StateEquations,
+    laws: Mapping[sp.Symbol, Law],
+    law_states: set[sp.Symbol],
+    parameters: set[str],
+) -> Sorted:
+    held = {name for name, law in laws.items() if law == ExpressionLaw(name)}
+    held = {name for name in held if name.name in parameters}
+    signals = (set(equations.signals) | law_states) - (set(equations.inputs) - set(laws)) - held
+    friction = tuple(name for name in laws if isinstance(laws[name], DryFriction))
+    known = tuple(name for name in laws if not depends_on_signals(laws[name], signals))
+    needs: nx.DiGraph[sp.Symbol] = nx.DiGraph()
+    needs.add_nodes_from(name for name in laws if name not in known)
+    for name in needs:
+        for source in _reads(equations, laws, name):
+            if source in needs:
+                needs.add_edge(source, name)
+    after: set[sp.Symbol] = set().union(*(nx.descendants(needs, name) for name in friction))
+    coupled = tuple(name for name in laws if name in after and name not in friction)
+    rest = needs.subgraph(set(needs) - set(friction) - set(coupled))
+    solved = {*friction, *coupled}
+    joint = bool(coupled) or any(a in solved and b in friction for a, b in needs.edges)
+    return known, _groups(rest, list(laws)), friction, coupled, joint
+
+
+def _reads(
+    equations: StateEquations, laws: Mapping[sp.Symbol, Law], name: sp.Symbol
+) -> set[sp.Symbol]:
+    """The inputs a law's value depends on, by name or through the readings it uses."""
+    used = laws[name].free_symbols
+    if isinstance(laws[name], DryFriction):
+        used = used | {port.received for port in equations.ports if port.given == name}
+    result = {symbol for symbol in used if symbol in laws}
+    for symbol in used & set(equations.readings):
+        reading = equations.readings[symbol]
+        # A reading of x' depends on whatever drives the storages: on every input, to be safe.
+        result |= set(laws) if reading.H else {equations.inputs[j] for j in reading.D}
+    return result
+
+
+def _groups(
+    needs: "nx.DiGraph[sp.Symbol]", order: Sequence[sp.Symbol]
+) -> tuple[tuple[tuple[sp.Symbol, ...], bool], ...]:
+    """Laws that determine one another together, each group after those it needs."""
+    position = {name: at for at, name in enumerate(order)}
+    condensed = nx.condensation(needs)
+    members = {
+        group: tuple(sorted(condensed.nodes[group]["members"], key=position.__getitem__))
+        for group in condensed
+    }
+    in_turn = nx.lexicographical_topological_sort(
+        condensed, lambda group: position[members[group][0]]
+    )
+    return tuple(
+        (
+            members[group],
+            len(members[group]) > 1 or needs.has_edge(members[group][0], members[group][0]),
+        )
+        for group in in_turn
+    )

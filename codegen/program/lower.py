@@ -1,0 +1,143 @@
+"""`lower`: equations and laws as named assignments that every backend prints the same way."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import sympy as sp
+
+from bondgraph.algebra.expressions import TIME
+from bondgraph.declare.laws import DryFriction, ExpressionLaw
+from bondgraph.equations import StateEquations
+from bondgraph.errors import ParameterError, StructureError
+from codegen.program.affine import is_affine
+from codegen.program.closing import Closing, close_ports
+from codegen.program.gains import check_gains
+from codegen.program.records import Block, FrictionPort, Group, Pattern, Program, block
+from codegen.program.sections import coefficients, friction, group, known_rates, uses
+from codegen.program.timed import Sources
+
+__all__ = ["Block", "FrictionPort", "Group", "Pattern", "Program", "block", "lower"]
+
+
+def lower(
+    equations: StateEquations,
+    laws: Mapping[Any, object] | None = None,
+    parameters: Iterable[str] = (),
+    guards: Sequence[sp.Expr] = (),
+    timed: bool = False,
+) -> Program:
+    """Sort names into parameters and inputs, order the laws, and share common subexpressions.
+
+    ``laws``: node (or the input it gives) to the law that closes its port, over those declared.
+    ``parameters``: the names that will be given numbers; any other name in a law is an input.
+    ``guards``: expressions that end a run where one of them falls below zero. ``timed``: what holds the
+    time and parameters alone becomes an input of its own, one of ``Program.sources``.
+
+    Raises `ParameterError` if the matrices use a name that is no parameter, `DependentSourceError`
+    if a law would have to be differentiated.
+    """
+    given = set(parameters)
+    missing = [name.name for name in equations.parameters if name.name not in given]
+    if missing:
+        raise ParameterError(
+            f"missing parameter(s) {', '.join(missing)}; give each a number in parameters"
+        )
+    watched = frozenset[sp.Symbol]().union(*(guard.free_symbols for guard in guards))
+    closing = close_ports(equations, {} if laws is None else laws, given, watched)
+    equations = closing.equations
+    _check_varying(closing)
+    taken = _all_names(equations, closing) | watched
+    expressions, layout = coefficients(equations)
+    sources = Sources(closing, given, taken)
+    if timed:
+        expressions = [sources.parted(entry) for entry in expressions]
+        guards = [sources.parted(guard) for guard in guards]
+        closing = sources.told(closing)
+        taken |= set(closing.external)
+    rubbing, values = friction(closing)
+    readings = tuple(equations.readings)
+    external_rates = _rate_names(closing.external, taken)
+    program = Program(
+        parameters=tuple(sorted((n for n in taken if n.name in given), key=str)),
+        states=equations.states,
+        law_states=tuple(closing.law_states),
+        law_rates=tuple(readings.index(name) for name in closing.law_states.values()),
+        inputs=equations.inputs,
+        external=closing.external,
+        sources=tuple(sources.found),
+        external_rates=external_rates,
+        readings=readings,
+        outputs=equations.outputs,
+        coefficients=block(expressions, taken),
+        layout=layout,
+        known=group(closing, closing.known, False, taken),
+        known_uses=tuple(uses(closing, name) for name in closing.known),
+        known_rates=block(known_rates(closing, external_rates), taken),
+        groups=tuple(group(closing, names, loop, taken) for names, loop in closing.order),
+        friction=rubbing,
+        friction_values=block(values, taken),
+        coupled=group(closing, closing.coupled, True, taken),
+        joint=closing.joint,
+        read=_read(closing),
+        guards=block(guards, taken),
+        varying=bool(equations.varying),
+        affine=_is_affine(closing, values, given),
+    )
+    check_gains(program)
+    return program
+
+
+def _check_varying(closing: Closing) -> None:
+    """Refuse values that depend on what laws give, and friction whose slip is a varying sum of speeds."""
+    equations = closing.equations
+    for name in equations.varying:
+        if name in closing.laws and name not in closing.known:
+            raise StructureError(
+                f"a value depends on {name}, which a law gives; let it use what that law reads"
+            )
+    for name in closing.friction:
+        row = equations.readings[closing.received[name]]
+        used = {
+            s
+            for part in (row.F, row.D, row.H, row.K)
+            for e in part.values()
+            for s in e.free_symbols
+        }
+        if used & set(equations.varying):
+            raise StructureError(
+                f"the slip at {closing.port_names[name]!r} is a sum of speeds whose factors change in time; "
+                "dry friction needs constant ones there: put a stiff spring between, or use a smooth law"
+            )
+
+
+def _all_names(equations: StateEquations, closing: Closing) -> set[sp.Symbol]:
+    names = {*equations.parameters, *equations.signals, *closing.laws}
+    names |= {*closing.law_states, *closing.external, TIME}
+    for law in closing.laws.values():
+        names |= law.free_symbols
+    return names
+
+
+def _rate_names(names: Sequence[sp.Symbol], taken: set[sp.Symbol]) -> tuple[sp.Symbol, ...]:
+    """A name for each external input's rate that nothing else has."""
+    prefix = "d_"
+    while any(sp.Symbol(f"{prefix}{name}") in taken for name in names):
+        prefix += "_"
+    return tuple(sp.Symbol(f"{prefix}{name}") for name in names)
+
+
+def _read(closing: Closing) -> tuple[int, ...]:
+    used = set(closing.equations.outputs)
+    for law in closing.laws.values():
+        used |= law.free_symbols
+    return tuple(at for at, name in enumerate(closing.equations.readings) if name in used)
+
+
+def _is_affine(closing: Closing, friction: list[sp.Expr], parameters: set[str]) -> bool:
+    """Whether all laws are affine and none has to be solved for; curves must be constant."""
+    if closing.equations.varying or closing.joint or any(loop for _, loop in closing.order):
+        return False
+    given = [law.expression for law in closing.laws.values() if isinstance(law, ExpressionLaw)]
+    rubbing = [law for law in closing.laws.values() if isinstance(law, DryFriction)]
+    constant = all(law.curve.is_number and law.breakaway.is_number for law in rubbing)
+    return constant and is_affine([*given, *friction], parameters)

@@ -1,0 +1,98 @@
+"""The sections of a program: matrices, groups of laws and their rates, friction."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
+
+import sympy as sp
+
+from bondgraph.algebra.expressions import TIME
+from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
+from bondgraph.equations import StateEquations
+from codegen.program.closing import Closing
+from codegen.program.records import FrictionPort, Group, Pattern, block
+
+
+def coefficients(
+    equations: StateEquations,
+) -> tuple[list[sp.Expr], Mapping[str, Pattern]]:
+    """The nonzero entries of all matrices in one list, and where each stands."""
+    expressions: list[sp.Expr] = []
+    layout: dict[str, Pattern] = {}
+    for name in "AJBE":
+        matrix = getattr(equations, name)
+        entries = sorted(matrix.todok().items())
+        expressions += [entry for _, entry in entries]
+        layout[name] = _pattern(matrix.shape, [place for place, _ in entries])
+    n, m, rows = len(equations.states), len(equations.inputs), list(equations.readings.values())
+    for name, width in (("F", n), ("D", m), ("H", n), ("K", m)):
+        found = [
+            (i, j, entry)
+            for i, reading in enumerate(rows)
+            for j, entry in sorted(getattr(reading, name).items())
+        ]
+        expressions += [entry for *_, entry in found]
+        layout[name] = _pattern((len(rows), width), [(i, j) for i, j, _ in found])
+    return expressions, MappingProxyType(layout)
+
+
+def _pattern(shape: tuple[int, int], places: Sequence[tuple[int, int]]) -> Pattern:
+    return Pattern(shape, tuple(i for i, _ in places), tuple(j for _, j in places))
+
+
+def group(
+    closing: Closing, names: Sequence[sp.Symbol], loop: bool, taken: Iterable[sp.Symbol]
+) -> Group:
+    """Laws that are evaluated together, as a block."""
+    inputs = tuple(closing.equations.inputs.index(name) for name in names)
+    expressions = [expression(closing.laws[name]) for name in names]
+    ports = tuple(closing.port_names[name] for name in names)
+    known = list(closing.equations.readings)
+    readings = tuple(known.index(closing.received[name]) for name in names)
+    return Group(inputs, ports, readings, loop, block(expressions, taken))
+
+
+def uses(closing: Closing, name: sp.Symbol) -> tuple[int, ...]:
+    """Which external inputs a law uses."""
+    used = closing.laws[name].free_symbols
+    return tuple(at for at, external in enumerate(closing.external) if external in used)
+
+
+def known_rates(closing: Closing, rates: Sequence[sp.Symbol]) -> list[sp.Expr]:
+    """The rate of each known law: its slope in time and along the external inputs."""
+    result = []
+    for name in closing.known:
+        law = expression(closing.laws[name])
+        slope = sp.diff(law, TIME)
+        for external, rate in zip(closing.external, rates, strict=True):
+            slope += sp.diff(law, external) * rate
+        result.append(slope)
+    return result
+
+
+def expression(law: Law) -> sp.Expr:
+    """What a law gives that is no friction."""
+    if not isinstance(law, ExpressionLaw):
+        raise TypeError(f"{law} is not an expression")
+    return law.expression
+
+
+def friction(closing: Closing) -> tuple[tuple[FrictionPort, ...], list[sp.Expr]]:
+    """Friction ports; level, breakaway level, curve and curve at rest of each in turn."""
+    readings = list(closing.equations.readings)
+    ports: list[FrictionPort] = []
+    values: list[sp.Expr] = []
+    for name in closing.friction:
+        law = closing.laws[name]
+        if not isinstance(law, DryFriction):
+            continue
+        received = closing.received[name]
+        ports.append(
+            FrictionPort(
+                closing.port_names[name],
+                closing.equations.inputs.index(name),
+                readings.index(received),
+            )
+        )
+        curves = [law.curve.subs(SLIP, slip) for slip in (sp.Abs(received), 0)]
+        values += [law.level, law.breakaway * law.level, *curves]
+    return tuple(ports), values

@@ -1,0 +1,1 @@
+"""What a run leaves behind: columns, signals, measures, tables."""

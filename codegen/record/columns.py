@@ -1,0 +1,49 @@
+"""Samples as columns by name."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from bondgraph.errors import SimulationError
+from codegen.modes.closed import ClosedModel
+from codegen.numbers.arrays import Array
+from codegen.record.observer import Observer
+from codegen.record.snapshots import Snapshots
+
+
+def named_columns(
+    model: ClosedModel, times: Array, found: Snapshots
+) -> tuple[dict[str, Array], Observer]:
+    """The samples of what a run records, by name, and what works out all other signals.
+
+    Raises `SimulationError`, with the time, where one is not finite.
+    """
+    program = model.program
+    groups = (
+        (program.states, found.x),
+        (program.law_states, found.z),
+        (program.inputs, found.u),
+        (program.asked, found.external),
+        (program.readings, found.y),
+    )
+    columns: dict[str, Array] = {}
+    for names, table in groups:
+        for at, name in enumerate(names):
+            columns.setdefault(name.name, table[:, at].copy())
+    _check_finite(times, columns)
+    dx = found.rate[:, : len(program.states)]
+    if not program.varying:
+        dx = dx + found.du @ model.constant.R.T
+    return columns, Observer(times, model, columns, found.x, dx, found.u, found.du)
+
+
+def _check_finite(times: Array, columns: Mapping[str, Array]) -> None:
+    """Refuse numbers that are not finite, by the first that is none."""
+    wrong = {name: ~np.isfinite(column) for name, column in columns.items()}
+    first = {name: int(np.argmax(flags)) for name, flags in wrong.items() if flags.any()}
+    if first:
+        name = min(first, key=lambda one: first[one])
+        raise SimulationError(
+            f"at t = {times[first[name]]:.9g} {name} is not finite: it has grown past the largest number "
+            "in double precision; run it for a shorter time, or in larger units"
+        )

@@ -1,0 +1,145 @@
+"""What a sweep keeps of each run: functions of a `Result` that give a number or an array.
+
+The ready ones here can be sent to other processes; so can any function at the top of a module.
+"""
+
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from codegen.numbers.arrays import Array
+from codegen.record.result import Result
+
+
+@dataclass(frozen=True, repr=False)
+class Measure:
+    """A function of a run, with what it is asked for; its text is how it was made."""
+
+    function: Callable[..., float | Array]
+    arguments: tuple[Any, ...]
+    #: Whether it gives a number for each point in time.
+    over_time: bool = False
+
+    def __call__(self, result: Result) -> float | Array:
+        """The number or the array for one run."""
+        return self.function(result, *self.arguments)
+
+    def __repr__(self) -> str:
+        name = self.function.__name__.removeprefix("_")
+        return f"{name}({', '.join(map(repr, self.arguments))})"
+
+
+def peak(signal: str) -> Measure:
+    """The largest magnitude of a signal at the samples.
+
+    >>> peak("tau_k1")
+    peak('tau_k1')
+    """
+    return Measure(_peak, (signal,))
+
+
+def largest(signal: str) -> Measure:
+    """The largest value of a signal at the samples."""
+    return Measure(_largest, (signal,))
+
+
+def smallest(signal: str) -> Measure:
+    """The smallest value of a signal at the samples."""
+    return Measure(_smallest, (signal,))
+
+
+def final(signal: str) -> Measure:
+    """A signal's value at the last point in time."""
+    return Measure(_final, (signal,))
+
+
+def integral(signal: str) -> Measure:
+    """A signal integrated through the run, however few its samples; see `Result.integral`."""
+    return Measure(_integral, (signal,))
+
+
+def samples(signal: str) -> Measure:
+    """The whole signal, a number for each point in time."""
+    return Measure(_samples, (signal,), over_time=True)
+
+
+def first_event(port: Hashable, kind: str) -> Measure:
+    """The time [s] of the first event of that kind at a port, such as "stick"; NaN if there is none."""
+    return Measure(_first_event, (port, kind))
+
+
+def event_count(port: Hashable, kind: str) -> Measure:
+    """How many events of that kind a port has."""
+    return Measure(_event_count, (port, kind))
+
+
+def work(node: Hashable) -> Measure:
+    """The energy that an element absorbs, or a source supplies, through the run; see `Result.work`."""
+    return Measure(_work, (node,))
+
+
+def balance() -> Measure:
+    """What the power balance of a run leaves open, of the energy turned over; see `Result.audit`.
+
+    >>> balance()
+    balance()
+    """
+    return Measure(_balance, ())
+
+
+def _peak(result: Result, signal: str) -> float:
+    return float(np.abs(result[signal]).max())
+
+
+def _largest(result: Result, signal: str) -> float:
+    return float(result[signal].max())
+
+
+def _smallest(result: Result, signal: str) -> float:
+    return float(result[signal].min())
+
+
+def _final(result: Result, signal: str) -> float:
+    return float(result[signal][-1])
+
+
+def _integral(result: Result, signal: str) -> float:
+    return float(result.integral(signal)[-1])
+
+
+def _samples(result: Result, signal: str) -> Array:
+    return result[signal]
+
+
+def _first_event(result: Result, port: Hashable, kind: str) -> float:
+    return min(
+        (event.time for event in result.events if (event.port, event.kind) == (port, kind)),
+        default=float("nan"),
+    )
+
+
+def _event_count(result: Result, port: Hashable, kind: str) -> float:
+    return float(sum((event.port, event.kind) == (port, kind) for event in result.events))
+
+
+def _work(result: Result, node: Hashable) -> float:
+    return float(result.work(node)[-1])
+
+
+def _balance(result: Result) -> float:
+    audit = result.audit()
+    left = abs(audit.residual)
+    return left / audit.turned_over if audit.turned_over > 0 else left
+
+
+READY: Mapping[Callable[..., float | Array], str] = MappingProxyType(
+    {
+        _peak: "peak", _largest: "largest", _smallest: "smallest", _final: "final",
+        _integral: "integral", _samples: "samples", _first_event: "first_event",
+        _event_count: "event_count", _work: "work", _balance: "balance",
+    }
+)  # fmt: skip
+"""What loops in C can do, too."""

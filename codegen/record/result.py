@@ -1,0 +1,208 @@
+"""`Result`: the record of a run, and every effort, flow, power and energy in it."""
+
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from os import PathLike
+from types import MappingProxyType
+from typing import Any, Protocol
+
+from bondgraph.errors import SignalError
+from codegen.energy.audit import Audit
+from codegen.numbers.arrays import Array
+from codegen.record.summary import summary
+from codegen.pictures.labels import common, measured, pretty
+from codegen.pictures.marks import Marks, stuck_spans
+from codegen.pictures.stacked import Line, Panel, along, fill, stacked
+from codegen.record.tables import dataset, frame, write_columns, write_netcdf
+from codegen.runs.events import Event
+
+
+class Accountant(Protocol):
+    """What integrates a run's powers and signals."""
+
+    def work(self, node: Hashable) -> Array:
+        """What a one-port absorbs, or a source supplies, up to each sample."""
+
+    def integral(self, name: str) -> Array:
+        """A signal integrated up to each sample."""
+
+    def audit(self) -> Audit:
+        """The power balance of the run."""
+
+
+class Watcher(Protocol):
+    """What works out a run's signals, bonds, powers and energies."""
+
+    def signal(self, name: str) -> Array:
+        """A named effort or flow."""
+
+    def bond(self, tail: Hashable, head: Hashable) -> tuple[Array, Array]:
+        """Effort and flow of a bond."""
+
+    def power(self, node: Hashable) -> Array:
+        """Effort times flow of a one-port."""
+
+    def energy(self, node: Hashable) -> Array:
+        """What a storage holds."""
+
+
+def _no_units() -> Mapping[str, str]:
+    return MappingProxyType({})
+
+
+@dataclass(frozen=True)
+class Result:
+    """The record of a run: ``result["omega_1"]`` is any named signal of the graph over ``result.time``.
+
+    ``events``: what happened at friction ports and switches, in order. At a step or an event a sample
+    shows the instant just after. ``columns``: the signals that a table of the run holds: states, inputs,
+    outputs and what laws read. ``units``: of those signals of which elements tell it. ``backend``: what
+    ran it; what the C of a simulator cannot go on with is run by "numpy" from the start.
+    """
+
+    time: Array = field(repr=False)
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    events: tuple[Event, ...]
+    columns: Mapping[str, Array] = field(repr=False)
+    observer: Watcher = field(repr=False, compare=False)
+    ledger: Accountant = field(repr=False, compare=False)
+    units: Mapping[str, str] = field(repr=False, default_factory=_no_units)
+    backend: str = "numpy"
+
+    def __getitem__(self, name: str) -> Array:
+        """The values of one signal; `KeyError` naming what there is."""
+        if name in self.columns:
+            return self.columns[name]
+        return self.observer.signal(name)
+
+    def __iter__(self) -> Iterator[str]:
+        """The names of the columns."""
+        return iter(self.columns)
+
+    def bond(self, tail: Hashable, head: Hashable) -> tuple[Array, Array]:
+        """Effort and flow of a bond, as declared; see `StateEquations.bond`."""
+        return self.observer.bond(tail, head)
+
+    def power(self, node: Hashable) -> Array:
+        """Power that an I, C or R absorbs, or that a source supplies."""
+        return self.observer.power(node)
+
+    def energy(self, node: Hashable) -> Array:
+        """Energy stored in an I or C, 0 where its state is 0."""
+        return self.observer.energy(node)
+
+    def work(self, node: Hashable) -> Array:
+        """Energy that an I, C or R has absorbed, or a source has supplied, up to each sample.
+
+        Integrated with the run, however few the samples: when first asked for, the same run is done again
+        for that. Impulses are in it.
+        """
+        return self.ledger.work(node)
+
+    def integral(self, name: str) -> Array:
+        """A signal integrated up to each sample, as `work` is; `SignalError` for one that there is not."""
+        return self.ledger.integral(name)
+
+    def audit(self) -> Audit:
+        """What sources gave, storages took, resistances and laws lost, and jumps took; see `Audit`.
+
+        It closes to the run's tolerance, and to 1e-9 of the energy turned over at the default one.
+        """
+        return self.ledger.audit()
+
+    def write_csv(self, path: str | PathLike[str]) -> None:
+        """Write time and every column as comma-separated columns with one line of names.
+
+        Raises `WriteError` where that cannot be; what was there is kept.
+        """
+        write_columns(path, ["t", *self.columns], [self.time, *self.columns.values()])
+
+    def to_xarray(self) -> Any:
+        """An `xarray.Dataset` of every column over "time" [s], with units and roles as attributes.
+
+        Events are the coordinates ``event_time``, ``event_port`` and ``event_kind`` along "event". Where
+        a signal has such a name, an underscore is appended. Raises `MissingExtraError` without xarray.
+        """
+        roles = (("output", self.outputs), ("input", self.inputs), ("state", self.states))
+        attributes: dict[str, dict[str, str]] = {name: {} for name in self.columns}
+        for role, names in roles:
+            for name in names:
+                attributes.setdefault(name, {})["role"] = role
+        for name, unit in self.units.items():
+            attributes.setdefault(name, {})["units"] = unit
+        return dataset(self.time, self.columns, attributes, self.events)
+
+    def to_pandas(self) -> Any:
+        """A `pandas.DataFrame` of every column over time [s]; `MissingExtraError` without pandas."""
+        return frame(self.time, self.columns)
+
+    def write_netcdf(self, path: str | PathLike[str]) -> None:
+        """Write `to_xarray` as a netCDF file, which ``xarray.open_dataset`` reads back digit for digit.
+
+        Raises `MissingExtraError` without xarray or h5netcdf, `WriteError` where the file cannot be written.
+        """
+        write_netcdf(self.to_xarray(), path)
+
+    def summary(self) -> str:
+        """Samples, where states begin, end and turn, and events, as a short text."""
+        states = {name: self.columns[name] for name in self.states}
+        return summary(self.time, states, self.units, self.events)
+
+    def __str__(self) -> str:
+        return self.summary()
+
+    def plot(
+        self, *names: str, title: str | None = None, ax: Any = None,
+        units: Mapping[str, str] | None = None,
+    ) -> Any:  # fmt: skip
+        """A `matplotlib.figure.Figure` of signals, the states if none are named, with events marked.
+
+        ``ax``: an axis to draw into. ``units``: of signals of which elements tell none.
+
+        Raises `SignalError` for unknown names, `MissingExtraError` without matplotlib.
+        """
+        panel = panel_of(self, names or self.states, units=units)
+        marks = marks_of(self)
+        if ax is None:
+            return stacked([panel], marks, title or "", tall=3.0)
+        fill(ax, panel)
+        height = along([ax], [panel], marks)
+        if title:
+            ax.set_title(title, pad=6 + height)
+        return ax.figure
+
+
+def values_of(result: Result, name: str) -> Array:
+    """A signal of a run; `SignalError` naming what there is."""
+    try:
+        return result[name]
+    except KeyError as error:
+        raise SignalError(error.args[0]) from None
+
+
+def panel_of(
+    result: Result, names: Sequence[str], label: str | None = None,
+    units: Mapping[str, str] | None = None,
+) -> Panel:  # fmt: skip
+    """Signals of a run as a panel, labelled with their names and units."""
+    if not names:
+        raise SignalError("a panel needs at least one signal")
+    told = {**result.units, **({} if units is None else units)}
+    shared = len({told.get(name, "") for name in names}) == 1
+    lines = tuple(
+        Line(
+            result.time,
+            values_of(result, name),
+            pretty(name) if shared else measured(name, told.get(name, "")),
+        )
+        for name in names
+    )
+    own = common(names, [told.get(name, "") for name in names]) if label is None else label
+    return Panel(own, lines)
+
+
+def marks_of(result: Result) -> Marks:
+    """A run's events and the spans in which its ports stick."""
+    return Marks(result.events, tuple(stuck_spans(result.events, float(result.time[-1]))))

@@ -1,0 +1,82 @@
+"""Everything at the samples of a run, as tables with a row for each of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from codegen.inputs.signal import Signal, sampled_rates, sampled_values
+from codegen.model.terms import without_rounding
+from codegen.modes.closed import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, ClosedModel
+from codegen.numbers.arrays import Array
+from codegen.program.affine import AffineMap
+from codegen.runs.legs import Track
+
+STATES, LAW_STATES = 0, 1
+"""Where the parts stand in an affine map, as in a `Snapshot`."""
+
+
+@dataclass(frozen=True)
+class Snapshots:
+    """The parts of a `Snapshot`, for all samples."""
+
+    x: Array
+    z: Array
+    u: Array
+    du: Array
+    y: Array
+    rate: Array
+    external: Array
+
+
+def snapshots(
+    model: ClosedModel, times: Array, signals: Sequence[Signal], track: Track
+) -> Snapshots:
+    """Everything at the samples: of affine modes in one product each, else one by one."""
+    found = _by_modes(model, times, signals, track)
+    if found is not None:
+        return found
+    shots = [
+        model.at(t, s, [signal.piece(t) for signal in signals], mode)
+        for t, s, mode in zip(times.tolist(), track.vectors, track.modes, strict=True)
+    ]
+    names = ("x", "z", "u", "du", "y", "rate", "external")
+    return Snapshots(*(np.array([getattr(shot, name) for shot in shots]) for name in names))
+
+
+def _by_modes(
+    model: ClosedModel, times: Array, signals: Sequence[Signal], track: Track
+) -> Snapshots | None:
+    """None where a mode is not affine or a friction level is below zero."""
+    if not model.program.affine:
+        return None
+    modes = list(dict.fromkeys(track.modes))
+    number = {mode: at for at, mode in enumerate(modes)}
+    which = np.array([number[mode] for mode in track.modes])
+    w = np.array([sampled_values(signal, times) for signal in signals]).reshape(-1, len(times))
+    dw = np.zeros_like(w)
+    if model.rated and len(signals):
+        dw[:] = [sampled_rates(signal, times) for signal in signals]
+    vectors = np.column_stack([track.vectors, w.T, dw.T, np.ones(len(times))])
+    tables: Array | None = None
+    for mode in modes:
+        affine = model.affine_map(mode, len(signals))
+        if affine is None:
+            return None
+        if tables is None:
+            tables = np.zeros((len(times), len(affine.matrix)))
+        tables[which == number[mode]] = vectors[which == number[mode]] @ affine.matrix.T
+    if affine is None or tables is None or (mode and _refused(affine, tables, vectors)):
+        return None
+    kept = (STATES, LAW_STATES, INPUTS, RATES_OF_INPUTS, READINGS, RATE)
+    x, z, u, du, y, rate = (tables[:, affine.parts[part]] for part in kept)
+    return Snapshots(x, z, u, du, y, rate, w.T)
+
+
+def _refused(affine: AffineMap, tables: Array, vectors: Array) -> bool:
+    """Whether a friction level is below zero, by more than the rounding of its terms."""
+    caps = tables[:, affine.parts[CAPS]]
+    if caps.min() >= 0:
+        return False
+    terms = np.abs(vectors) @ np.abs(affine.rows(CAPS)).T
+    return bool(without_rounding(caps, terms).min() < 0)
