@@ -5,15 +5,17 @@ from bondgraph.analyse.explicit import explicit
 from bondgraph.analyse.holding import holding_efforts
 from bondgraph.analyse.linearize import LinearModel, linearize
 from bondgraph.analyse.loops import Loop, loops
-from bondgraph.causality.assign import CausalGraph, assign_causality
+from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.assignments import Assignment, assignments
+from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.declare.composition import assemble, prefixed
 from bondgraph.declare.elements import GY, TF, C, De, Df, I, Kind, One, R, Se, Sf, Sw, Switch, Zero
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.declare.switching import in_mode, switches
 from bondgraph.declare.validate import validate
+from bondgraph.derive import derive, state_equations
 from bondgraph.drawing.picture import Drawing, drawing
-from bondgraph.equations import StateEquations, derive, state_equations
+from bondgraph.equations import StateEquations
 from bondgraph.errors import (
     AlgebraicLoopError,
     BondGraphError,
@@ -36,7 +38,8 @@ from bondgraph.explaining.records import Equation, Factor, Formula, Step
 from bondgraph.files.disk import read_graphml, read_json, write_graphml, write_json
 from bondgraph.files.graphml import from_graphml, to_graphml
 from bondgraph.files.nodelink import from_json, to_json
-from bondgraph.reduce.junction import JunctionStructure, junction_structure
+from bondgraph.reduce.junction import junction_structure
+from bondgraph.reduce.structure import JunctionStructure
 from bondgraph.show.latex import latex
 
 __all__ = [

@@ -1,26 +1,18 @@
-"""`state_equations` and `derive`: the graph as ``A x' = J x + B u + E u'``, ``y = F x + D u + G u'``."""
+"""`StateEquations`: a graph as ``A x' = J x + B u + E u'``, ``y = F x + D u + G u'``."""
 
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any
 
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.algebra.tidy import tidy_matrices
-from bondgraph.causality.assign import assign_causality
 from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import Law
 from bondgraph.errors import StructureError
-from bondgraph.reduce.inertia import check_regular, inertia
-from bondgraph.reduce.junction import JunctionStructure, Port, junction_structure
 from bondgraph.reduce.motion import Reading
-from bondgraph.reduce.outputs import PortRow, named_signals, shown_signals
-from bondgraph.reduce.ports import reduce_ports
-from bondgraph.reduce.rates import resolved
-from bondgraph.reduce.readings import check_laws
 from bondgraph.reduce.sorting import Reduction
+from bondgraph.reduce.structure import Port, PortRow
 from bondgraph.show.display import equations_text
 from bondgraph.show.latex import notebook_latex
 
@@ -145,71 +137,3 @@ class StateEquations:
             return self
         more = {name: self.reduction.reading(self.signals[name]) for name in new}
         return replace(self, readings=MappingProxyType({**self.readings, **more}))
-
-
-def derive(graph: Any, outputs: Iterable[Hashable] | None = None) -> StateEquations:
-    """The equations of a declared graph, with causality assigned and dependent storages resolved.
-
-    ``outputs``: nodes whose signal the rows of F, D and G show: of a one-port the variable it
-    receives, of a junction its common variable; left out, all open ports.
-
-    Raises the `BondGraphError` of the stage that refuses.
-
-    >>> import bondgraph as bg
-    >>> import networkx as nx
-    >>> g = nx.DiGraph()
-    >>> g.add_nodes_from([bg.Se("force", "F_0"), bg.One("mass"), bg.I("m", "m", flow="v"),
-    ...                   bg.C("spring", "1/k", effort="F_s"), bg.R("damper", "b")])
-    >>> g.add_edges_from([("force", "mass"), ("mass", "m"), ("mass", "spring"), ("mass", "damper")])
-    >>> equations = derive(g, outputs=["damper"])
-    >>> equations.states, equations.J, equations.B
-    ((v, F_s), Matrix([
-    [-b, -1],
-    [ 1,  0]]), Matrix([
-    [1],
-    [0]]))
-    """
-    return state_equations(junction_structure(assign_causality(graph)), outputs)
-
-
-def state_equations(
-    structure: JunctionStructure, outputs: Iterable[Hashable] | None = None
-) -> StateEquations:
-    """Fold resistances and dependent storages into A, J, B, E and the outputs' F, D, G.
-
-    With the ports' laws ``w_x = M_x x'``, ``z_d = (M_d w_d)'``, ``z_r = L w_r`` this gives
-    ``A = M_x + S_xd M_d S_xd^T``.
-
-    Raises `SingularStorageError` if A is singular, `DependentSourceError` if a law would have to be
-    differentiated, `StructureError` for an output that does not exist.
-    """
-    reduction = reduce_ports(structure)
-    structure, ports = reduction.structure, reduction.structure.ports
-    A, balances = inertia(reduction)
-    states = reduction.names
-    check_regular(reduction, A)
-    signals = named_signals(reduction)
-    shown = shown_signals(structure, outputs)
-    rows = [(ports[port].received, structure.rows[port]) for port in reduction.imposed]
-    readings = {symbol: reduction.reading(row) for symbol, row in [*rows, *shown]}
-    resolved_rows = [resolved(A, balances, readings[symbol]) for symbol, _ in shown]
-    imposed = tuple(ports[port] for port in reduction.imposed)
-    E = [row.K for row in balances]
-    laws = {port.element.name: port.element.law for port in imposed if port.element.law is not None}
-    check_laws(laws, signals, imposed, E, readings)
-    n, m = len(states), len(reduction.inputs)
-    parts = [
-        (A, n), ([row.F for row in balances], n), ([row.D for row in balances], m), (E, m),
-        ([row.F for row in resolved_rows], n), ([row.D for row in resolved_rows], m),
-        ([row.K for row in resolved_rows], m),
-    ]  # fmt: skip
-    matrices = tidy_matrices(parts)
-    shown_names = tuple(symbol for symbol, _ in shown)
-    named = dict(zip("AJBEFDG", matrices, strict=True))
-    detectors = [port for port in ports if port.element.integral is not None]
-    return StateEquations(
-        states, reduction.inputs, shown_names, **named,
-        integrals=MappingProxyType({port.element.integral: port.received for port in detectors}),
-        laws=MappingProxyType(laws), ports=imposed, readings=MappingProxyType(readings),
-        signals=MappingProxyType(signals), reduction=reduction,
-    )  # fmt: skip

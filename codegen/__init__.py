@@ -15,7 +15,8 @@ from codegen.plots.bode import bode
 from codegen.plots.panels import panels
 from codegen.plots.poles import pole_map
 from codegen.plots.shapes import mode_shapes
-from codegen.program.lower import Block, Program, lower
+from codegen.program.lower import lower
+from codegen.program.records import Block, Program
 from codegen.python.export import to_python
 from codegen.record.measures import (
     balance,
@@ -30,7 +31,7 @@ from codegen.record.measures import (
     work,
 )
 from codegen.record.result import Result
-from codegen.runs.events import Event
+from codegen.runs.track import Event
 from codegen.simulate import Simulator, simulator
 from codegen.sparse.model import SparseModel, sparse_model
 from codegen.sparse.run import run_sparse

@@ -17,9 +17,10 @@ from bondgraph.errors import ParameterError, SignalError
 from codegen.engine.located import LocatedLibrary
 from codegen.model.energies import warn_of_energies
 from codegen.model.numbers import exact_parameters
-from codegen.program.lower import Program, lower
-from codegen.simulate import BACKENDS, Simulator, bound, with_engine
 from codegen.packing import packed
+from codegen.program.lower import lower
+from codegen.program.records import Program
+from codegen.simulate import BACKENDS, Simulator, bound, with_engine
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,7 +26,8 @@ from codegen.modes.closed import ClosedModel
 from codegen.modes.pace import LOOK_AHEAD
 from codegen.modes.rounding import Peaks
 from codegen.numbers.arrays import Array, is_finite, is_number
-from codegen.program.lower import Program, lower
+from codegen.program.lower import lower
+from codegen.program.records import Program
 from codegen.program.units import told_units
 from codegen.record.columns import named_columns
 from codegen.record.replay import Run
@@ -41,7 +42,8 @@ from codegen.runs.arguments import (
 )
 from codegen.runs.hybrid import run_hybrid
 from codegen.runs.impulses import refuse_impulses
-from codegen.runs.legs import EXACT, Settings, Track
+from codegen.runs.methods import EXACT
+from codegen.runs.track import Settings, Track
 
 BACKENDS = ("numpy", "c")
 """What runs models."""

@@ -7,7 +7,8 @@ import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
-from codegen.modes.closed import ClosedModel, Mode, Snapshot
+from codegen.model.snapshot import Mode, Snapshot
+from codegen.modes.closed import ClosedModel
 from codegen.modes.trials import evaluated
 from codegen.numbers.arrays import Array
 from codegen.simulate import Simulator

@@ -2,7 +2,7 @@
 
 import pytest
 
-pytest_plugins = ["rig.guard", "rig.compilers", "rig.summary", "rig.needs"]
+pytest_plugins = ["rig.needs", "rig.used", "rig.guard", "rig.compilers", "rig.summary"]
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

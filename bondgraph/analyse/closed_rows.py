@@ -13,9 +13,9 @@ from bondgraph.analyse.slopes import Point, slopes
 from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, SignalError, SingularStorageError
-from bondgraph.reduce.junction import Port
 from bondgraph.reduce.motion import Reading, slope_of
 from bondgraph.reduce.readings import depends_on_signals
+from bondgraph.reduce.structure import Port
 
 
 class ClosedRows:

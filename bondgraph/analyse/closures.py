@@ -7,8 +7,8 @@ from bondgraph.declare.elements import Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
-from bondgraph.reduce.junction import Port
 from bondgraph.reduce.readings import check_laws
+from bondgraph.reduce.structure import Port
 
 
 def merged_laws(

@@ -10,9 +10,9 @@ from bondgraph.algebra.tidy import tidy
 from bondgraph.analyse.constrained import echelon
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, StructureError
-from bondgraph.reduce.junction import Port
 from bondgraph.reduce.motion import Reading
 from bondgraph.reduce.rates import resolved
+from bondgraph.reduce.structure import Port
 
 
 def holding_efforts(

@@ -17,9 +17,9 @@ from bondgraph.analyse.slopes import operating_point, with_given
 from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, SignalError, SingularStorageError, StructureError
-from bondgraph.reduce.junction import Port
 from bondgraph.reduce.motion import Reading
 from bondgraph.reduce.rates import resolved
+from bondgraph.reduce.structure import Port
 
 if TYPE_CHECKING:
     from bondgraph.analyse.state_space import StateSpace

@@ -8,7 +8,8 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph.algebra.exact import Row, determinant
-from bondgraph.causality.assign import CausalGraph, assign_causality
+from bondgraph.causality.assign import assign_causality
+from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.signals import causal_equations, causal_groups, loop_rows
 from bondgraph.causality.vanishing import MOST
 from bondgraph.reduce.inertia import inertia

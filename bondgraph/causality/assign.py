@@ -1,55 +1,25 @@
 """`assign_causality`: strokes by trial and propagation, each with its reason; refusals told as a story."""
 
-from collections.abc import Hashable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Hashable
 from types import MappingProxyType
 from typing import Any
 
 import networkx as nx
 
+from bondgraph.causality.causal_graph import CausalGraph
+from bondgraph.causality.record import Contradiction, Reason
 from bondgraph.causality.regularity import regular_ports
 from bondgraph.causality.signals import causal_equations, causal_groups, loop_rows
-from bondgraph.causality.stories import contradiction_story, stroke_story
-from bondgraph.causality.strokes import Contradiction, Reason, Strokes
+from bondgraph.causality.stories import contradiction_story
+from bondgraph.causality.strokes import StrokeSearch
 from bondgraph.causality.vanishing import elements_in, generic, told
 from bondgraph.declare.elements import SOURCES, STORAGES, TWO_PORTS, Kind
 from bondgraph.declare.switching import refuse_switches
-from bondgraph.declare.validate import Bond, validate, with_elements
+from bondgraph.declare.validate import validate, with_elements
 from bondgraph.errors import AlgebraicLoopError, BondGraphError, CausalityError
 
 TRIALS_PER_BOND = 20
 """Beyond this the search for strokes stops and exact rank decides the ports first."""
-
-
-@dataclass(frozen=True)
-class CausalGraph:
-    """A validated graph with a causal stroke on every bond.
-
-    ``strokes``: bond, as declared, to the node that receives its effort. ``integral`` and
-    ``derivative``: the storages' names, in declaration order.
-    """
-
-    graph: "nx.DiGraph[Hashable]"
-    strokes: Mapping[Bond, Hashable]
-    integral: tuple[Hashable, ...]
-    derivative: tuple[Hashable, ...]
-    #: The numbered form that later stages follow; complete, and not changed any more.
-    assignment: Strokes = field(repr=False, compare=False)
-
-    def why(self, node: Hashable) -> tuple[str, ...]:
-        """The story of a one-port's causality, one sentence a line, choices first.
-
-        Raises `KeyError` for a name that is not a node.
-        """
-        if node not in self.graph:
-            raise KeyError(node)
-        return stroke_story(self.assignment, self.assignment.names.index(node))
-
-    def _repr_svg_(self) -> str:
-        """The drawn graph, for notebooks."""
-        from bondgraph.drawing.picture import drawing
-
-        return drawing(self).svg()
 
 
 def assign_causality(graph: Any) -> CausalGraph:
@@ -72,12 +42,12 @@ def assign_causality(graph: Any) -> CausalGraph:
 
 
 def _assigned(checked: "nx.DiGraph[Hashable]") -> CausalGraph:
-    strokes = Strokes(checked)
+    strokes = StrokeSearch(checked)
     order, preferred = _preferences(strokes)
     _impose_fixed(strokes, order)
     found = _search(strokes, order, preferred)
     if not found or _has_loop(strokes):
-        chosen = regular_ports(strokes, order, preferred)
+        chosen = regular_ports(strokes.found, order, preferred)
         if not found or any(strokes.gives(node) != gives for node, gives in chosen.items()):
             _search_with(strokes, order, preferred, chosen)
     return _causal_graph(checked, strokes)
@@ -97,7 +67,7 @@ def _vanishing(checked: "nx.DiGraph[Hashable]") -> str:
     return ""
 
 
-def _preferences(strokes: Strokes) -> tuple[list[int], dict[int, str]]:
+def _preferences(strokes: StrokeSearch) -> tuple[list[int], dict[int, str]]:
     """The one-ports in the order of their importance, and what each should give."""
     preferred: dict[int, str] = {}
     ranks: dict[int, tuple[int, float, int]] = {}
@@ -116,7 +86,7 @@ def _preferences(strokes: Strokes) -> tuple[list[int], dict[int, str]]:
     return sorted(ranks, key=ranks.__getitem__), preferred
 
 
-def _impose_fixed(strokes: Strokes, order: list[int]) -> None:
+def _impose_fixed(strokes: StrokeSearch, order: list[int]) -> None:
     for node in order:
         gives = strokes.elements[node].gives
         if gives is None:
@@ -124,10 +94,10 @@ def _impose_fixed(strokes: Strokes, order: list[int]) -> None:
         reason = Reason(node, f"imposes its {gives}")
         conflict = strokes.assign(strokes.at[node][0], strokes.end_for(node, gives), reason)
         if conflict:
-            raise CausalityError(contradiction_story(strokes, conflict))
+            raise CausalityError(contradiction_story(strokes.found, conflict))
 
 
-def _search(strokes: Strokes, order: list[int], preferred: dict[int, str]) -> bool:
+def _search(strokes: StrokeSearch, order: list[int], preferred: dict[int, str]) -> bool:
     """Complete the strokes by trials that backtrack; False if there is no way or it takes too long."""
     items = [(strokes.at[node][0], strokes.end_for(node, preferred[node]), node) for node in order]
     items += [(bond, head, tail) for bond, (tail, head) in enumerate(strokes.bonds)]
@@ -154,7 +124,7 @@ Choice = tuple[int, int, int]
 """A bond, the end its stroke should lie at, and the node that wants it there."""
 
 
-def _try(strokes: Strokes, choice: Choice) -> Contradiction | None:
+def _try(strokes: StrokeSearch, choice: Choice) -> Contradiction | None:
     """Set the preferred stroke and all that follows; on a contradiction leave no trace and tell it."""
     bond, end, node = choice
     storage = strokes.elements[node].kind in STORAGES
@@ -163,7 +133,7 @@ def _try(strokes: Strokes, choice: Choice) -> Contradiction | None:
 
 
 def _try_other(
-    strokes: Strokes, choice: Choice, conflict: Contradiction | None
+    strokes: StrokeSearch, choice: Choice, conflict: Contradiction | None
 ) -> Contradiction | None:
     """The same for the other side of a choice, whose preferred side met a conflict, if it is known."""
     bond, end, node = choice
@@ -174,7 +144,9 @@ def _try_other(
     return _assign_or_undo(strokes, bond, strokes.other(bond, end), Reason(node, text))
 
 
-def _assign_or_undo(strokes: Strokes, bond: int, end: int, reason: Reason) -> Contradiction | None:
+def _assign_or_undo(
+    strokes: StrokeSearch, bond: int, end: int, reason: Reason
+) -> Contradiction | None:
     length = len(strokes.trail)
     conflict = strokes.assign(bond, end, reason)
     if conflict is not None:
@@ -183,7 +155,7 @@ def _assign_or_undo(strokes: Strokes, bond: int, end: int, reason: Reason) -> Co
 
 
 def _turn_back(
-    strokes: Strokes, items: list[Choice], open_choices: list[tuple[int, int]]
+    strokes: StrokeSearch, items: list[Choice], open_choices: list[tuple[int, int]]
 ) -> int | None:
     """Take the other side of the last open choice where that works, and tell which choice it was."""
     while open_choices:
@@ -194,12 +166,12 @@ def _turn_back(
     return None
 
 
-def _has_loop(strokes: Strokes) -> bool:
-    return any(len(group) > 1 for group in causal_groups(causal_equations(strokes).terms))
+def _has_loop(strokes: StrokeSearch) -> bool:
+    return any(len(group) > 1 for group in causal_groups(causal_equations(strokes.found).terms))
 
 
 def _search_with(
-    strokes: Strokes, order: list[int], preferred: dict[int, str], chosen: dict[int, str]
+    strokes: StrokeSearch, order: list[int], preferred: dict[int, str], chosen: dict[int, str]
 ) -> None:
     """Strokes again, with every port's causality given."""
     strokes.undo(0)
@@ -219,7 +191,7 @@ def _search_with(
         )
 
 
-def _causal_graph(graph: "nx.DiGraph[Hashable]", strokes: Strokes) -> CausalGraph:
+def _causal_graph(graph: "nx.DiGraph[Hashable]", strokes: StrokeSearch) -> CausalGraph:
     declared = nx.get_edge_attributes(graph, "declared")
     storages = {
         strokes.names[node]: strokes.gives(node) == ("flow" if element.kind is Kind.I else "effort")
@@ -233,5 +205,5 @@ def _causal_graph(graph: "nx.DiGraph[Hashable]", strokes: Strokes) -> CausalGrap
         strokes=MappingProxyType(dict(zip(declared.values(), ends, strict=True))),
         integral=tuple(name for name, integral in storages.items() if integral),
         derivative=tuple(name for name, integral in storages.items() if not integral),
-        assignment=strokes,
+        assignment=strokes.found,
     )

@@ -8,13 +8,13 @@ from typing import Any, Literal
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME, normal
-from bondgraph.causality.assign import CausalGraph, assign_causality
+from bondgraph.causality.assign import assign_causality
+from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.lines import Line, Rule, is_independent, owner, signal_lines, variable_of
+from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations, Term, causal_equations, causal_groups
-from bondgraph.causality.strokes import Strokes
-from bondgraph.declare.elements import JUNCTIONS, Kind
+from bondgraph.declare.elements import JUNCTIONS, Bond, Kind
 from bondgraph.declare.names import named_by
-from bondgraph.declare.validate import Bond
 
 
 @dataclass(frozen=True)

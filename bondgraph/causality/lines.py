@@ -6,8 +6,8 @@ from typing import Literal
 import sympy as sp
 
 from bondgraph.algebra.exact import Row, SingularError, solve
+from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations, Term
-from bondgraph.causality.strokes import Strokes
 from bondgraph.declare.elements import DETECTORS, JUNCTIONS, STORAGES, Element, Kind
 from bondgraph.errors import AlgebraicLoopError
 

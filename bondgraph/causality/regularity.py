@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 
 from bondgraph.algebra.elimination import ResidueRows, Row
 from bondgraph.algebra.residues import PRIME, residues
-from bondgraph.causality.strokes import Strokes
+from bondgraph.causality.record import Strokes
 from bondgraph.declare.elements import Kind
 from bondgraph.errors import AlgebraicLoopError, CausalityError
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import networkx as nx
 import sympy as sp
 
-from bondgraph.causality.strokes import Strokes
+from bondgraph.causality.record import Strokes
 from bondgraph.declare.elements import POWER_INTO, Kind
 
 Term = tuple[int, sp.Expr]

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from bondgraph.causality.strokes import Contradiction, Reason, Strokes
+from bondgraph.causality.record import Contradiction, Reason, Strokes
 from bondgraph.declare.elements import SOURCES, Kind
 
 LONGEST_STORY = 12

@@ -2,33 +2,14 @@
 
 from collections import deque
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
 
 import networkx as nx
 
+from bondgraph.causality.record import Contradiction, Reason, Strokes
 from bondgraph.declare.elements import Element, Kind
 
 
-@dataclass(frozen=True)
-class Reason:
-    """Why a bond has its stroke: the node that decided, in which words, and the bonds it followed from."""
-
-    node: int
-    text: str
-    causes: tuple[int, ...] = ()
-
-
-@dataclass(frozen=True)
-class Contradiction:
-    """A node whose rule two chains of strokes break: the bonds at which they arrive."""
-
-    node: int
-    text: str
-    bonds: tuple[int, ...]
-    attempt: Reason | None = None
-
-
-class Strokes:
+class StrokeSearch:
     """A partial assignment of strokes with a trail, so that trials can be undone.
 
     Nodes and bonds are numbered in declaration order. ``end[b]`` is the number of the node that
@@ -63,6 +44,15 @@ class Strokes:
     def gives(self, node: int) -> str:
         """What a one-port gives, "effort" or "flow", once its bond has a stroke."""
         return "flow" if self.end[self.at[node][0]] == node else "effort"
+
+    @property
+    def found(self) -> Strokes:
+        """The strokes as they are now, for good."""
+        return Strokes(
+            tuple(self.names), tuple(self.elements), tuple(self.bonds), tuple(self.declared),
+            tuple(map(tuple, self.at)), tuple(self.end), tuple(self.reason),
+            tuple(self.trail),
+        )  # fmt: skip
 
     def assign(self, bond: int, end: int, reason: Reason) -> Contradiction | None:
         """Set one stroke and all that follow from it; stop at the first contradiction."""

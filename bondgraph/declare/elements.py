@@ -11,6 +11,8 @@ from bondgraph.declare.laws import Law
 Node = tuple[Hashable, dict[str, object]]
 """What networkx's ``add_nodes_from`` takes: a name and its attributes."""
 
+Bond = tuple[Hashable, Hashable]
+
 
 class Kind(StrEnum):
     """The kinds of node; the plain-dict form has their text as ``kind``."""

@@ -6,13 +6,10 @@ from typing import TYPE_CHECKING, Any
 import networkx as nx
 
 from bondgraph.declare.declared import elements_of
-from bondgraph.declare.elements import JUNCTIONS, POWER_INTO, TWO_PORTS, Element
+from bondgraph.declare.elements import JUNCTIONS, POWER_INTO, TWO_PORTS, Bond, Element
 from bondgraph.declare.fields import part
 from bondgraph.declare.names import check_names, check_one_whole
 from bondgraph.errors import StructureError
-
-Bond = tuple[Hashable, Hashable]
-
 
 if TYPE_CHECKING:
     _DiGraph = nx.DiGraph[Hashable]

@@ -6,11 +6,12 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.causality.assign import CausalGraph, assign_causality
-from bondgraph.declare.elements import JUNCTIONS, TWO_PORTS, Element, Kind
+from bondgraph.causality.assign import assign_causality
+from bondgraph.causality.causal_graph import CausalGraph
+from bondgraph.declare.elements import JUNCTIONS, TWO_PORTS, Bond, Element, Kind
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.switching import switches
-from bondgraph.declare.validate import Bond, validate
+from bondgraph.declare.validate import validate
 from bondgraph.drawing.rich import MOST, Rich, Run, formula, length, named
 from bondgraph.errors import AlgebraicLoopError, CausalityError
 

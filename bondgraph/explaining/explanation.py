@@ -4,10 +4,12 @@ from collections.abc import Hashable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from bondgraph.causality.assign import CausalGraph, assign_causality
+from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.assignments import assignments
+from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.signals import causal_equations
-from bondgraph.equations import StateEquations, state_equations
+from bondgraph.derive import state_equations
+from bondgraph.equations import StateEquations
 from bondgraph.explaining.dependence import balances_step, dependent_step
 from bondgraph.explaining.elimination import loops_step, received_step, resistances_step
 from bondgraph.explaining.inertias import inertia_step

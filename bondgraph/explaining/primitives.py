@@ -5,8 +5,8 @@ from collections.abc import Hashable, Sequence
 import sympy as sp
 
 from bondgraph.causality.assignments import Assignment
+from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations
-from bondgraph.causality.strokes import Strokes
 from bondgraph.declare.elements import Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.equations import StateEquations

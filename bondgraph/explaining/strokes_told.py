@@ -5,12 +5,11 @@ from typing import Literal
 
 import sympy as sp
 
-from bondgraph.causality.assign import CausalGraph
 from bondgraph.causality.assignments import Assignment
+from bondgraph.causality.causal_graph import CausalGraph
+from bondgraph.causality.record import Reason, Strokes
 from bondgraph.causality.stories import deciding_nodes
-from bondgraph.causality.strokes import Reason, Strokes
-from bondgraph.declare.elements import JUNCTIONS, Kind
-from bondgraph.declare.validate import Bond
+from bondgraph.declare.elements import JUNCTIONS, Bond, Kind
 from bondgraph.explaining.records import Step
 from bondgraph.reduce.sorting import Reduction
 

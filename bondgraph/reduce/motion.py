@@ -9,7 +9,7 @@ import sympy as sp
 from bondgraph.algebra.exact import Row, add_scaled
 from bondgraph.algebra.expressions import TIME
 from bondgraph.errors import AlgebraicLoopError, DependentSourceError
-from bondgraph.reduce.junction import JunctionStructure, Port
+from bondgraph.reduce.structure import JunctionStructure, Port
 
 
 @dataclass(frozen=True)

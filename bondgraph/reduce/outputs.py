@@ -1,18 +1,15 @@
 """Named signals: what each node's variables are over the ports, and which of them are shown."""
 
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Hashable, Iterable
 
 import sympy as sp
 
 from bondgraph.algebra.residues import is_zero
 from bondgraph.declare.elements import Kind
 from bondgraph.errors import StructureError
-from bondgraph.reduce.junction import JunctionStructure
 from bondgraph.reduce.motion import Reading
 from bondgraph.reduce.sorting import Reduction
-
-PortRow = Mapping[int, sp.Expr]
-"""A signal over what the ports give."""
+from bondgraph.reduce.structure import JunctionStructure, PortRow
 
 
 def named_signals(reduction: Reduction) -> dict[sp.Symbol, PortRow]:

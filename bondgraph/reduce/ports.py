@@ -9,11 +9,11 @@ import sympy as sp
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.elements import Kind
 from bondgraph.errors import DependentSourceError
-from bondgraph.reduce.junction import JunctionStructure
 from bondgraph.reduce.motion import Motion, Reading, moving_names, settled
 from bondgraph.reduce.resistances import resistances
 from bondgraph.reduce.sorting import Reduction, detects, imposes, is_storage
 from bondgraph.reduce.storages import stored_rate
+from bondgraph.reduce.structure import JunctionStructure
 
 
 def reduce_ports(structure: JunctionStructure) -> Reduction:

@@ -8,9 +8,8 @@ from bondgraph.algebra.exact import Row
 from bondgraph.declare.elements import STORAGES
 from bondgraph.declare.laws import DryFriction, Law
 from bondgraph.errors import DependentSourceError, StructureError
-from bondgraph.reduce.junction import Port
 from bondgraph.reduce.motion import Reading
-from bondgraph.reduce.outputs import PortRow
+from bondgraph.reduce.structure import Port, PortRow
 
 
 def check_laws(

@@ -9,9 +9,9 @@ import sympy as sp
 from bondgraph.algebra.exact import Row, SingularError, add_scaled, solve
 from bondgraph.causality.vanishing import generic, told
 from bondgraph.errors import AlgebraicLoopError
-from bondgraph.reduce.junction import JunctionStructure, Port
 from bondgraph.reduce.motion import Reading
 from bondgraph.reduce.sorting import Reduction
+from bondgraph.reduce.structure import JunctionStructure, Port
 
 
 def resistances(reduction: Reduction) -> dict[int, Reading]:

@@ -8,8 +8,8 @@ import sympy as sp
 
 from bondgraph.algebra.exact import combined
 from bondgraph.declare.elements import DETECTORS, STORAGES
-from bondgraph.reduce.junction import JunctionStructure, Port
 from bondgraph.reduce.motion import Motion, Reading
+from bondgraph.reduce.structure import JunctionStructure, Port
 
 
 @dataclass(frozen=True)

@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bondgraph.errors import SignalError
-from codegen.numbers.arrays import Array
 from bondgraph.show.blocks import aligned
+from codegen.numbers.arrays import Array
 from codegen.pictures.labels import measured, plain
 from codegen.pictures.marks import Marks
 from codegen.pictures.stacked import Line, Panel, stacked
 from codegen.record.result import Result, values_of
-from codegen.runs.events import Event
+from codegen.runs.track import Event
 
 
 class Difference(NamedTuple):

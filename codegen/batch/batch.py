@@ -25,10 +25,11 @@ from codegen.inputs.swept import Swept, settled
 from codegen.model.numbers import exact_parameters
 from codegen.model.sources import source_signals
 from codegen.numbers.arrays import Array
-from codegen.program.lower import Program
+from codegen.program.records import Program
 from codegen.record.measures import READY, Measure
 from codegen.runs.arguments import named_numbers, signals_for
-from codegen.runs.legs import EXACT, Settings
+from codegen.runs.methods import EXACT
+from codegen.runs.track import Settings
 
 Given = Mapping[str, Any] | Callable[[Mapping[str, float]], Mapping[str, Any]] | None
 """Initial states or inputs, or a function of a run's numbers that gives them."""

@@ -7,10 +7,10 @@ from typing import Any
 from numpy.typing import NDArray
 
 from bondgraph.errors import SimulationError
-from codegen.c.export import runtime_file
+from codegen.c.runtime import runtime_file
 from codegen.engine.build import FLAGS, compiled, loaded
 from codegen.engine.sizes import Engine, Sizes, aligned, declarations, engine_declarations, sources
-from codegen.program.lower import Program
+from codegen.program.records import Program
 
 FILES = (
     "batch.h", "batch_internal.h", "batch.c", "batch_advance.c", "batch_doubt.h", "batch_gauss.h",

@@ -16,7 +16,7 @@ from codegen.engine.sizes import aligned
 from codegen.inputs.signal import Signal
 from codegen.inputs.tables import SignalTable, signal_table
 from codegen.numbers.arrays import Array
-from codegen.runs.legs import Settings
+from codegen.runs.track import Settings
 
 
 class Shared(NamedTuple):

@@ -18,7 +18,7 @@ from codegen.engine.sizes import Engine, sizes
 from codegen.family import Family
 from codegen.model.numbers import check_values, exact_parameters
 from codegen.numbers.arrays import Array
-from codegen.program.lower import Program
+from codegen.program.records import Program
 
 Flags = NDArray[np.bool_]
 

@@ -10,7 +10,7 @@ from codegen.energy.accounts import Account, Product
 from codegen.engine.runs import KINDS
 from codegen.numbers.arrays import Array
 from codegen.program.layout import places
-from codegen.program.lower import Program
+from codegen.program.records import Program
 from codegen.record.measures import READY, Measure
 
 WHATS = (

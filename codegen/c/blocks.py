@@ -9,8 +9,8 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.errors import ExpressionError
 from codegen.c.text import comment, statement
 from codegen.program.identifiers import identifiers
-from codegen.program.lower import Block, Program
 from codegen.program.printing import printed
+from codegen.program.records import Block, Program
 
 _MACROS = """
     M_E M_LOG2E M_LOG10E M_LN2 M_LN10 M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2 M_SQRT1_2

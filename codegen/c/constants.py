@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from codegen.program.lower import Block
+from codegen.program.records import Block
 
 
 def expanded(code: Block) -> list[sp.Expr]:

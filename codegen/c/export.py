@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
-from importlib.resources import files
 from typing import Any
 
 from bondgraph.equations import StateEquations
@@ -11,13 +10,15 @@ from codegen.c.blocks import function, operations, places
 from codegen.c.prefix import external_symbols, renamed
 from codegen.c.rates import plain_rates, straight_rates
 from codegen.c.rhs import straight
+from codegen.c.runtime import runtime_file
 from codegen.c.scenario import scenario_text
 from codegen.c.structure import structures
 from codegen.c.tables import config, group_tables, name_tables, program_tables, structure_table
 from codegen.c.text import comment
 from codegen.model.energies import warn_of_energies
 from codegen.modes.closed import ClosedModel
-from codegen.program.lower import Block, Program, lower
+from codegen.program.lower import lower
+from codegen.program.records import Block, Program
 from codegen.runs.arguments import initial_values, signals_for
 from codegen.runs.steps import step_at_start
 
@@ -159,11 +160,6 @@ def texts(
 def stepped(files: Mapping[str, str]) -> dict[str, str]:
     """An export without what only event-located runs need."""
     return {name: text for name, text in files.items() if name not in LOCATED}
-
-
-def runtime_file(name: str) -> str:
-    """The text of a hand-written file."""
-    return files("codegen").joinpath("runtime", name).read_text(encoding="utf-8")
 
 
 def _head(program: Program, name: str, prefix: str) -> list[str]:

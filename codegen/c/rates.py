@@ -7,7 +7,7 @@ from bondgraph.algebra.expressions import TIME
 from codegen.c.blocks import body, function, operations, places
 from codegen.c.rhs import Straight
 from codegen.c.text import comment, integers
-from codegen.program.lower import Block, Program
+from codegen.program.records import Block, Program
 
 _SIGNATURE = (
     "int bg_model_rhs(bg_model *m, double time, const double *s, const double *w,",

@@ -7,7 +7,7 @@ import networkx as nx
 import sympy as sp
 
 from codegen.c.constants import Constants, expanded, needed
-from codegen.program.lower import Block, Group, Program
+from codegen.program.records import Block, Group, Program
 
 MOST_INVERSES = 4096
 """Beyond this many entries of A^-1 straight-line code is no gain."""

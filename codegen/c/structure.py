@@ -6,7 +6,7 @@ import sympy as sp
 
 from bondgraph.errors import StructureError
 from codegen.ports.slips import SlipRows, independence
-from codegen.program.lower import Program
+from codegen.program.records import Program
 
 MOST_PORTS = 6
 """A table has an entry for every set of sticking ports: two to the power of this at most."""

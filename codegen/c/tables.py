@@ -8,7 +8,7 @@ from bondgraph.equations import StateEquations
 from codegen.c.rhs import Straight
 from codegen.c.structure import Structure
 from codegen.c.text import array, comment, doubles, integers, quoted, strings
-from codegen.program.lower import Group, Program
+from codegen.program.records import Group, Program
 from codegen.program.units import units
 from codegen.runs.steps import told_step
 

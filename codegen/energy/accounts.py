@@ -12,10 +12,10 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.elements import SOURCES, STORAGES
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
-from bondgraph.reduce.junction import Port
 from bondgraph.reduce.motion import Reading
 from bondgraph.reduce.sorting import is_storage
 from bondgraph.reduce.storages import field_row
+from bondgraph.reduce.structure import Port
 
 
 class Product(NamedTuple):

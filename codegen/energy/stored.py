@@ -9,7 +9,7 @@ from bondgraph.declare.elements import STORAGES, Kind
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, StructureError
-from bondgraph.reduce.junction import Port
+from bondgraph.reduce.structure import Port
 from codegen.model.numbers import at_parameters
 
 

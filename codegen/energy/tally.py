@@ -8,7 +8,8 @@ import numpy as np
 from codegen.energy.quadrature import NODES, exact_integrals, gauss_sum, rows_over
 from codegen.inputs.generators import generator
 from codegen.inputs.pieces import Piece
-from codegen.modes.closed import RATE, ClosedModel, Mode, Snapshot
+from codegen.model.snapshot import RATE, Mode, Snapshot
+from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 
 Dense = Callable[[float | Array], Array]

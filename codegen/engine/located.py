@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from bondgraph.errors import SimulationError
-from codegen.c.export import runtime_file, texts
+from codegen.c.export import texts
+from codegen.c.runtime import runtime_file
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
 from codegen.engine.fallback import Stopped
 from codegen.engine.runs import KINDS, not_affine
@@ -18,8 +19,7 @@ from codegen.inputs.tables import SignalTable, signal_table
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.record.snapshots import Snapshots
-from codegen.runs.events import Event
-from codegen.runs.legs import Settings
+from codegen.runs.track import Event, Settings
 
 FILES = (
     "model_rows.h", "model_rows.c", "bg_extremes.h", "batch_measure.h", "batch_measure.c",

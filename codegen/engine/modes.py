@@ -7,7 +7,8 @@ import scipy.linalg
 
 from bondgraph.errors import SimulationError
 from codegen.engine.sizes import Engine, view
-from codegen.modes.closed import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, ClosedModel, Mode
+from codegen.model.snapshot import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, Mode
+from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.ports.friction import SlopeNeededError
 from codegen.program.affine import AffineMap

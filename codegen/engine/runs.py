@@ -18,9 +18,8 @@ from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.affine import is_affine
 from codegen.program.gains import written_out
-from codegen.program.lower import Program
-from codegen.runs.events import Event
-from codegen.runs.legs import Track
+from codegen.program.records import Program
+from codegen.runs.track import Event, Track
 
 KINDS = ("stick", "slip", "cross")
 

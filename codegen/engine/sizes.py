@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from bondgraph.errors import SimulationError
-from codegen.c.export import runtime_file
+from codegen.c.runtime import runtime_file
 from codegen.engine.build import FLAGS, compiled, loaded
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array

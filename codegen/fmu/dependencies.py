@@ -7,7 +7,7 @@ import sympy as sp
 from bondgraph.algebra.expressions import TIME
 from codegen.fmu.model import FmuModel
 from codegen.fmu.variables import moved
-from codegen.program.lower import Program
+from codegen.program.records import Program
 
 Place = tuple[str, int]
 """A kind of variable (as `Variable.kind`) and its index."""

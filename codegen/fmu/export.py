@@ -15,7 +15,8 @@ from bondgraph.algebra.expressions import normal
 from bondgraph.equations import StateEquations
 from bondgraph.errors import BondGraphError, SignalError
 from bondgraph.writing import write_bytes
-from codegen.c.export import runtime_file, stepped, to_c
+from codegen.c.export import stepped, to_c
+from codegen.c.runtime import runtime_file
 from codegen.fmu.binaries import binaries, chosen_platforms, headers
 from codegen.fmu.model import FmuModel, config_text, model_text
 from codegen.fmu.switches import switching
@@ -25,11 +26,12 @@ from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, as_signal
 from codegen.modes.pace import time_constant
 from codegen.program.identifiers import identifiers
-from codegen.program.lower import Program
+from codegen.program.records import Program
 from codegen.runs.arguments import initial_values
 from codegen.runs.impulses import refuse_impulses
-from codegen.runs.legs import Leg, Settings
+from codegen.runs.legs import Leg
 from codegen.runs.steps import round_step, step_at_start
+from codegen.runs.track import Settings
 from codegen.simulate import Simulator, guarded_simulator
 
 _COMMON = (

@@ -13,7 +13,7 @@ from codegen.fmu.resolution import resolution_text
 from codegen.fmu.variables import Starts, Variable
 from codegen.inputs.signal import Signal
 from codegen.inputs.tables import signal_table
-from codegen.program.lower import Program, block
+from codegen.program.records import Program, block
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import sympy as sp
 from bondgraph.algebra.expressions import TIME
 from codegen.c.blocks import names_for, places, text_of
 from codegen.c.text import statement
-from codegen.program.lower import Program
+from codegen.program.records import Program
 
 TURNING = (sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc, sp.sinh, sp.cosh, sp.atan, sp.asin, sp.acos,
            sp.asinh, sp.floor, sp.ceiling, sp.frac)  # fmt: skip

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from codegen.program.lower import Block, Program
+from codegen.program.records import Block, Program
 
 MOST_CHOICES = 4
 """The least or largest of more values is not looked into."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from bondgraph.equations import StateEquations
-from codegen.program.lower import Program
+from codegen.program.records import Program
 from codegen.program.units import units
 
 STEP = "fixed_internal_step"

@@ -11,7 +11,7 @@ from bondgraph.errors import ParameterError, SimulationError
 from codegen.model.numbers import Numbers
 from codegen.model.numpy_backend import compiled
 from codegen.numbers.arrays import Array, real_values
-from codegen.program.lower import Block, Program
+from codegen.program.records import Block, Program
 
 
 @dataclass

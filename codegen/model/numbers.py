@@ -16,7 +16,7 @@ from bondgraph.errors import ParameterError
 from bondgraph.reduce.resistances import resistive_loops
 from codegen.model.numpy_backend import compiled
 from codegen.numbers.arrays import Array, real_values
-from codegen.program.lower import Program
+from codegen.program.records import Program
 
 
 @dataclass(frozen=True)

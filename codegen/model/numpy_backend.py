@@ -6,7 +6,7 @@ from typing import Any
 
 import sympy as sp
 
-from codegen.program.lower import Block
+from codegen.program.records import Block
 
 
 @lru_cache(maxsize=256)

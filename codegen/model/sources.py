@@ -7,7 +7,7 @@ import sympy as sp
 from codegen.inputs.known import known_signal
 from codegen.inputs.signal import Signal
 from codegen.model.numbers import at_parameters
-from codegen.program.lower import Program
+from codegen.program.records import Program
 
 
 def source_signals(

@@ -5,7 +5,7 @@ import numpy as np
 from bondgraph.errors import SimulationError
 from codegen.model.instant import Binding, Instant
 from codegen.numbers.arrays import Array
-from codegen.program.lower import Block, Program
+from codegen.program.records import Block, Program
 
 STEP = 2.0**-20
 """Relative change of what a block reads; its effect, divided by it, is a term."""

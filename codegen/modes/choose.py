@@ -5,7 +5,8 @@ from itertools import product
 
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
-from codegen.modes.closed import ClosedModel, Mode, Snapshot
+from codegen.model.snapshot import Mode, Snapshot
+from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.trials import evaluated
 from codegen.modes.verdicts import Look, ruled_out, ruled_out_later

@@ -25,7 +25,7 @@ from codegen.ports.rubbing import Rubbing
 from codegen.ports.slips import SlipRows
 from codegen.program.affine import AffineMap, check_finite, probed
 from codegen.program.gains import check_gains
-from codegen.program.lower import Group, Program
+from codegen.program.records import Group, Program
 
 __all__ = [
     "CAPS", "INPUTS", "RATE", "RATES_OF_INPUTS", "READINGS", "ClosedModel", "Mode", "Snapshot",

@@ -5,8 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from codegen.inputs.pieces import Piece
+from codegen.model.snapshot import Mode
 from codegen.model.terms import STEP, TOLERANCE
-from codegen.modes.closed import ClosedModel, Mode
+from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks
 from codegen.numbers.arrays import Array
 

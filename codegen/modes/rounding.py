@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from codegen.inputs.pieces import Piece
+from codegen.model.snapshot import Mode, Snapshot
 from codegen.model.terms import TOLERANCE
-from codegen.modes.closed import ClosedModel, Mode, Snapshot
+from codegen.modes.closed import ClosedModel
 from codegen.modes.sizes import input_terms
 from codegen.modes.trials import evaluated
 from codegen.numbers.arrays import Array

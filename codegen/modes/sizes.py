@@ -6,8 +6,9 @@ import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
+from codegen.model.snapshot import INPUTS, Mode
 from codegen.model.terms import STEP
-from codegen.modes.closed import INPUTS, ClosedModel, Mode
+from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 
 

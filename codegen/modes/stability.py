@@ -12,7 +12,8 @@ from itertools import product
 import numpy as np
 
 from bondgraph.errors import SimulationError
-from codegen.modes.closed import RATE, ClosedModel, Mode
+from codegen.model.snapshot import RATE, Mode
+from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 
 REAL_LIMIT, IMAGINARY_LIMIT = 2.785293563405282, 2.0 * math.sqrt(2.0)

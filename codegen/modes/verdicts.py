@@ -5,7 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from codegen.modes.closed import ClosedModel, Mode, Snapshot
+from codegen.model.snapshot import Mode, Snapshot
+from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import ROUNDING, Scales, slip_rates
 from codegen.numbers.arrays import Array
 

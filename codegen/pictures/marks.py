@@ -6,7 +6,7 @@ from typing import Any
 
 from codegen.pictures.flags import Flag, raise_flags
 from codegen.pictures.style import FAINT, SHADE, curve
-from codegen.runs.events import Event
+from codegen.runs.track import Event
 
 MOST = 40
 """With more marks than that only those are drawn that stand apart."""

@@ -18,7 +18,7 @@ from codegen.model.numbers import Numbers, scaled_solve
 from codegen.numbers.arrays import Array
 from codegen.ports.sharing import fair_share
 from codegen.ports.slips import SlipRows, independence
-from codegen.program.lower import Program
+from codegen.program.records import Program
 
 
 class SlopeNeededError(SimulationError):

@@ -16,7 +16,7 @@ from codegen.numbers.arrays import Array
 from codegen.ports.friction import Hold, SlopeNeededError, hold
 from codegen.ports.sharing import fair_share
 from codegen.ports.slips import slip_rows
-from codegen.program.lower import Program
+from codegen.program.records import Program
 
 
 class Rubbing:

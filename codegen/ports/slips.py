@@ -8,7 +8,7 @@ import sympy as sp
 from bondgraph.equations import StateEquations
 from codegen.model.numbers import at_parameters
 from codegen.program.gains import written_out
-from codegen.program.lower import Program
+from codegen.program.records import Program
 
 
 @dataclass(frozen=True)

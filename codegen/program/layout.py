@@ -1,6 +1,6 @@
 """Where every signal of a program stands in a snapshot: one order for numpy, C and sweeps."""
 
-from codegen.program.lower import Program
+from codegen.program.records import Program
 
 
 def places(program: Program) -> dict[str, int]:

@@ -12,11 +12,9 @@ from bondgraph.errors import ParameterError, StructureError
 from codegen.program.affine import is_affine
 from codegen.program.closing import Closing, close_ports
 from codegen.program.gains import check_gains
-from codegen.program.records import Block, FrictionPort, Group, Pattern, Program, block
+from codegen.program.records import Program, block
 from codegen.program.sections import coefficients, friction, group, known_rates, uses
 from codegen.program.timed import Sources
-
-__all__ = ["Block", "FrictionPort", "Group", "Pattern", "Program", "block", "lower"]
 
 
 def lower(

@@ -10,8 +10,8 @@ import sympy as sp
 from bondgraph.algebra.expressions import TIME
 from bondgraph.errors import ExpressionError
 from codegen.program.identifiers import identifiers
-from codegen.program.lower import Block, Group, Pattern, Program
 from codegen.program.printing import printed
+from codegen.program.records import Block, Group, Pattern, Program
 from codegen.python.text import WIDTH, assignment, plain, quoted
 
 TAKEN = ("parameters", "now", "matrix", "l", "O", "I")

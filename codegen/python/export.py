@@ -10,7 +10,8 @@ from bondgraph.errors import ParameterError
 from codegen.model.energies import warn_of_energies
 from codegen.model.numbers import exact_parameters
 from codegen.modes.closed import ClosedModel
-from codegen.program.lower import Program, lower
+from codegen.program.lower import lower
+from codegen.program.records import Program
 from codegen.python.blocks import (
     Names,
     coefficients_function,

@@ -11,7 +11,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError
 from codegen.model.numbers import at_parameters
 from codegen.ports.slips import moved_laws
-from codegen.program.lower import Program
+from codegen.program.records import Program
 
 Ports = tuple[int, ...]
 

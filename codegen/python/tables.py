@@ -6,7 +6,7 @@ from typing import Any
 from bondgraph.equations import StateEquations
 from codegen.modes.stability import FARTHEST, IMAGINARY_LIMIT, NEAREST, REAL_LIMIT
 from codegen.ports.slips import moved_laws
-from codegen.program.lower import Program
+from codegen.program.records import Program
 from codegen.python.sticking import beside_resistance
 from codegen.python.text import listing, names_tuple
 from codegen.runs.steps import round_step, told_step

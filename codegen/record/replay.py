@@ -15,15 +15,16 @@ from codegen.energy.ledger import Integrated
 from codegen.energy.stored import stored_energy
 from codegen.energy.tally import Tally, vector_of
 from codegen.inputs.signal import Signal
+from codegen.model.snapshot import Snapshot
 from codegen.model.sources import source_signals
-from codegen.modes.closed import ClosedModel, Snapshot
+from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.layout import places
 from codegen.program.lower import lower
 from codegen.record.columns import named_columns
 from codegen.record.snapshots import snapshots
 from codegen.runs.hybrid import run_hybrid
-from codegen.runs.legs import Settings
+from codegen.runs.track import Settings
 
 
 @dataclass(frozen=True)

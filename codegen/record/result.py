@@ -9,12 +9,12 @@ from typing import Any, Protocol
 from bondgraph.errors import SignalError
 from codegen.energy.audit import Audit
 from codegen.numbers.arrays import Array
-from codegen.record.summary import summary
 from codegen.pictures.labels import common, measured, pretty
 from codegen.pictures.marks import Marks, stuck_spans
 from codegen.pictures.stacked import Line, Panel, along, fill, stacked
+from codegen.record.summary import summary
 from codegen.record.tables import dataset, frame, write_columns, write_netcdf
-from codegen.runs.events import Event
+from codegen.runs.track import Event
 
 
 class Accountant(Protocol):

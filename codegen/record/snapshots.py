@@ -6,11 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from codegen.inputs.signal import Signal, sampled_rates, sampled_values
+from codegen.model.snapshot import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS
 from codegen.model.terms import without_rounding
-from codegen.modes.closed import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, ClosedModel
+from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
-from codegen.runs.legs import Track
+from codegen.runs.track import Track
 
 STATES, LAW_STATES = 0, 1
 """Where the parts stand in an affine map, as in a `Snapshot`."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from bondgraph.show.blocks import aligned
 from codegen.numbers.arrays import Array
-from codegen.runs.events import Event
+from codegen.runs.track import Event
 
 MOST = 20
 """Signals or events; more are counted."""
@@ -27,7 +27,6 @@ def summary(
         lines += aligned(rows) + _rest(len(signals), "states")
     lines += [f"  {event.time:.6g} s  {event.port}: {event.kind}" for event in events[:MOST]]
     return "\n".join(lines + _rest(len(events), "events"))
-
 
 
 def _rest(count: int, what: str) -> list[str]:

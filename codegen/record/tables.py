@@ -11,7 +11,7 @@ import numpy as np
 from bondgraph.errors import MissingExtraError
 from bondgraph.writing import replacing, write_bytes
 from codegen.numbers.arrays import Array
-from codegen.runs.events import Event
+from codegen.runs.track import Event
 
 INSTALL = "install the optional extra: pip install bondgraph-toolkit[tables]"
 

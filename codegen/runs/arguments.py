@@ -10,7 +10,8 @@ from bondgraph.errors import SignalError
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import as_signal
 from codegen.numbers.arrays import Array, is_finite, is_number, real_array
-from codegen.runs.legs import CHOICES, Settings
+from codegen.runs.methods import CHOICES
+from codegen.runs.track import Settings
 
 
 def numbers_of(values: ArrayLike, what: str) -> Array:

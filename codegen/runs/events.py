@@ -1,36 +1,23 @@
 """Events inside one integration step: where a slip, a margin or a guard falls through zero."""
 
-from collections.abc import Callable, Hashable, Sequence
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from codegen.inputs.pieces import Piece
-from codegen.modes.closed import CAPS, INPUTS, READINGS, ClosedModel, Mode, Snapshot
+from codegen.model.snapshot import CAPS, INPUTS, READINGS, Mode, Snapshot
+from codegen.modes.closed import ClosedModel
 from codegen.modes.guards import guard_rounding
 from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.verdicts import Look, room
 from codegen.numbers.arrays import Array
 from codegen.numbers.roots import root
+from codegen.runs.track import Dense
 
 CHECKS = 6
 """Points inside each step at which events are looked for."""
-
-Dense = Callable[[float | Array], Array]
-"""The integrated vector anywhere inside a step; for several times its columns."""
-
-
-class Event(NamedTuple):
-    """What happened: at a friction port "stick", "slip" (it was released) or "cross" (through zero).
-
-    At a switch or a controlled junction "on" or "off".
-    """
-
-    time: float
-    port: Hashable
-    kind: str
 
 
 class Watch:

@@ -9,14 +9,15 @@ from bondgraph.errors import SimulationError
 from codegen.inputs.generators import generator
 from codegen.inputs.pieces import Piece
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
+from codegen.model.snapshot import Mode
 from codegen.model.terms import without_rounding
-from codegen.modes.closed import ClosedModel, Mode
+from codegen.modes.closed import ClosedModel
 from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.verdicts import LEFT, Look
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
-from codegen.runs.legs import Ended, Track
+from codegen.runs.track import Ended, Track
 from codegen.runs.watched import DEGREE, Steps, exponential, lasting, series, watched
 
 MOST_LENGTHS = 8

@@ -10,7 +10,7 @@ from codegen.inputs.pieces import Piece
 from codegen.numbers.arrays import Array
 from codegen.numbers.pairs import Pair, matmul, pair, stacked
 from codegen.runs.ladder import Ladder, rows_by_doubling
-from codegen.runs.legs import Ended, Track
+from codegen.runs.track import Ended, Track
 from codegen.runs.watched import balanced_norm
 
 FEW = 3

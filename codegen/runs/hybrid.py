@@ -10,17 +10,19 @@ import numpy as np
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.inputs.signal import Signal
+from codegen.model.snapshot import Mode
 from codegen.modes.choose import decide
-from codegen.modes.closed import ClosedModel, Mode
+from codegen.modes.closed import ClosedModel
 from codegen.modes.guards import fallen_guards
 from codegen.modes.pace import STALLED, hardly_apart, look_ahead, time_constant
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.trials import evaluated
 from codegen.numbers.arrays import Array
-from codegen.runs.events import Event
 from codegen.runs.exact import ExactLeg
 from codegen.runs.free import FreeLeg
-from codegen.runs.legs import EXACT, Accumulating, Leg, Settings, Track
+from codegen.runs.legs import Leg
+from codegen.runs.methods import EXACT
+from codegen.runs.track import Accumulating, Event, Settings, Track
 
 ROUNDED = 1e4
 """So many steps in double precision leave all digits that count, of slow motions beside fast ones, too."""

@@ -8,7 +8,7 @@ from bondgraph.errors import SimulationError
 from codegen.inputs.signal import Signal, first_step
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
-from codegen.program.lower import Program
+from codegen.program.records import Program
 
 
 def refuse_impulses(model: ClosedModel, signals: Sequence[Signal], times: Array) -> None:

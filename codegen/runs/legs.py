@@ -1,36 +1,22 @@
 """One smooth stretch of a run in one friction mode, up to a breakpoint or the first event."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from scipy.integrate import DOP853, Radau
 
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
-from codegen.modes.closed import ClosedModel, Mode
+from codegen.model.snapshot import Mode
+from codegen.modes.closed import ClosedModel
 from codegen.modes.pace import longest_step
 from codegen.modes.rounding import Peaks
 from codegen.numbers.arrays import Array
-from codegen.runs.events import Dense, Event, Watch
+from codegen.runs.events import Watch
+from codegen.runs.methods import METHODS
 from codegen.runs.progress import Progress, difference, no_progress
-from codegen.runs.sundials import Cvode
-
-METHODS: dict[str, tuple[Any, Any]] = {
-    "auto": (DOP853, Radau),
-    "DOP853": (DOP853, DOP853),
-    "Radau": (Radau, Radau),
-    "CVODE": (partial(Cvode, "Adams"), partial(Cvode, "BDF")),
-}
-"""The integrator of each method: where the model is not stiff, and where it is."""
-
-EXACT = "exact"
-"""The method of models that are affine in each friction mode: no integrator, matrix exponentials."""
-
-CHOICES = (EXACT, *METHODS)
-"""What a run's method may be."""
+from codegen.runs.track import Dense, Ended, Settings, Track
 
 STIFF = 2e5
 """Time span over shortest time constant from which a model is stiff."""
@@ -44,71 +30,6 @@ FOLLOWED = 0.1
 
 REFRESH = 50
 """Steps after which a nonlinear model's time constants are looked at again."""
-
-
-Ended = tuple[float, Array, frozenset[int]]
-"""How a stretch ended: time, integrated vector, and the ports and guards whose event it was."""
-
-
-class Accumulating(Protocol):
-    """What is integrated with a run, such as work; see `codegen.energy.tally.Tally`."""
-
-    def smooth(
-        self, begin: float, end: float, dense: Dense, pieces: Sequence[Piece], mode: Mode
-    ) -> None:
-        """A step of an integrator, with its interpolant."""
-
-    def exact(self, pieces: Sequence[Piece], mode: Mode, points: Array, vectors: Array) -> None:
-        """A stretch of an affine mode: its begin, samples and end, with the vector at each."""
-
-    def step(
-        self, t: float, before: Sequence[Piece], after: Sequence[Piece], s: Array, mode: Mode
-    ) -> None:
-        """Inputs that may step at t."""
-
-    def rest(
-        self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, after: Array
-    ) -> None:
-        """Ports that may have come to rest at t."""
-
-    def record(self) -> None:
-        """The next sample."""
-
-
-@dataclass
-class Track:
-    """What a run has recorded: the integrated vector and the mode at each sample, and the events.
-
-    ``largest``: the magnitudes that the vector's components have reached, between samples, too.
-    ``tally``: what is integrated on the way, if anything is.
-    """
-
-    vectors: Array
-    modes: list[Mode]
-    largest: Array
-    events: list[Event] = field(default_factory=list)
-    recorded: int = 0
-    tally: Accumulating | None = None
-
-    def see(self, vectors: Array) -> None:
-        """Take the magnitudes of some vectors, the rows, into account."""
-        if len(vectors):
-            self.largest = np.maximum(self.largest, np.abs(vectors).max(axis=0))
-
-    def record(self, vector: Array, mode: Mode) -> None:
-        """The next sample."""
-        self.vectors[self.recorded] = vector
-        self.modes.append(mode)
-        self.recorded += 1
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How to integrate: method, relative and absolute tolerance."""
-
-    method: str = "auto"
-    rtol: float = 1e-10
-    atol: float = 1e-11
 
 
 class Leg:

@@ -6,7 +6,8 @@ import numpy as np
 import scipy.linalg
 
 from codegen.inputs.generators import Generator
-from codegen.modes.closed import CAPS, INPUTS, RATE, READINGS, ClosedModel, Mode
+from codegen.model.snapshot import CAPS, INPUTS, RATE, READINGS, Mode
+from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
 

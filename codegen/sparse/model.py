@@ -11,7 +11,8 @@ from typing import Any
 
 import scipy.sparse as sps
 
-from bondgraph.causality.assign import CausalGraph, assign_causality
+from bondgraph.causality.assign import assign_causality
+from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.lines import variable_of
 from bondgraph.declare.elements import JUNCTIONS, Kind
 from bondgraph.declare.laws import ExpressionLaw

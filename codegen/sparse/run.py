@@ -13,7 +13,7 @@ from codegen.inputs.signal import Signal, first_step
 from codegen.numbers.arrays import Array
 from codegen.record.result import Result
 from codegen.runs.arguments import checked_times, initial_values, settings_of, signals_for
-from codegen.runs.legs import EXACT
+from codegen.runs.methods import EXACT
 from codegen.sparse.model import SparseModel
 from codegen.sparse.steps import SparseSystem, integrate
 

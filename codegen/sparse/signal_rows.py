@@ -15,8 +15,8 @@ import sympy as sp
 from bondgraph.algebra.elimination import ResidueRows
 from bondgraph.algebra.residues import PRIME, residues
 from bondgraph.causality.lines import is_independent, signal_lines, variable_of
+from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import causal_equations, causal_groups
-from bondgraph.causality.strokes import Strokes
 from bondgraph.declare.elements import STORAGES
 from bondgraph.errors import AlgebraicLoopError
 from codegen.numbers.arrays import Array

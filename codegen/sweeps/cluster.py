@@ -5,9 +5,9 @@ from contextlib import suppress
 from typing import Any
 
 from bondgraph.errors import MissingExtraError, SignalError, SimulationError
+from codegen.packing import packed
 from codegen.sweeps.crews import Lost
 from codegen.sweeps.job import Chunk, Outcome, measured_remotely
-from codegen.packing import packed
 
 RETRIES = 3
 """How often a task is sent again that got lost between the machines."""

@@ -18,11 +18,11 @@ from codegen.batch.batch import Asked, Batch, Given, batch
 from codegen.family import Family
 from codegen.inputs.swept import settled
 from codegen.numbers.arrays import Array
+from codegen.packing import packed
 from codegen.record.result import Result
-from codegen.runs.legs import Settings
+from codegen.runs.track import Settings
 from codegen.simulate import Simulator
 from codegen.sweeps.columns import Columns
-from codegen.packing import packed
 
 
 class Runner(Protocol):

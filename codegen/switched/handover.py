@@ -13,14 +13,15 @@ import sympy as sp
 from bondgraph.algebra.exact import Row
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
-from bondgraph.reduce.junction import JunctionStructure
 from bondgraph.reduce.motion import Reading
 from bondgraph.reduce.sorting import is_storage
+from bondgraph.reduce.structure import JunctionStructure
 from codegen.model.instant import Binding, Evaluation, Instant
 from codegen.model.numbers import at_parameters, scaled_solve
-from codegen.modes.closed import ClosedModel, Snapshot
+from codegen.model.snapshot import Snapshot
+from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
-from codegen.program.lower import block
+from codegen.program.records import block
 
 _NONE: Array = np.zeros(0)
 _NOWHERE = Instant(

@@ -10,17 +10,19 @@ import networkx as nx
 import numpy as np
 
 from bondgraph.declare.switching import in_mode, switches
-from bondgraph.equations import StateEquations, derive
+from bondgraph.derive import derive
+from bondgraph.equations import StateEquations
 from bondgraph.errors import BondGraphError, SimulationError
 from codegen.inputs.pieces import Piece
+from codegen.model.snapshot import Mode
 from codegen.model.terms import TOLERANCE
 from codegen.modes.choose import a_moment_later, decide
-from codegen.modes.closed import Mode
 from codegen.modes.guards import guard_values
 from codegen.modes.pace import LOOK_AHEAD, look_ahead, time_constant
 from codegen.modes.rounding import Peaks
 from codegen.numbers.arrays import Array
-from codegen.runs.legs import Leg, Settings
+from codegen.runs.legs import Leg
+from codegen.runs.track import Settings
 from codegen.simulate import Simulator, guarded_simulator
 from codegen.switched.handover import Handover
 

@@ -21,7 +21,7 @@ from codegen.energy.ledger import Integrated, Ledger
 from codegen.energy.tally import Tally
 from codegen.inputs.signal import Signal
 from codegen.model.energies import warn_of_energies
-from codegen.modes.closed import Snapshot
+from codegen.model.snapshot import Snapshot
 from codegen.modes.pace import STALLED, hardly_apart
 from codegen.numbers.arrays import Array
 from codegen.program.units import told_units
@@ -30,10 +30,9 @@ from codegen.record.replay import shares, tally_of
 from codegen.record.result import Result
 from codegen.record.snapshots import snapshots
 from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
-from codegen.runs.events import Event
 from codegen.runs.hybrid import run_hybrid
 from codegen.runs.impulses import refuse_impulses
-from codegen.runs.legs import Settings
+from codegen.runs.track import Event, Settings
 from codegen.switched.phases import Held, Keeping, Moment, On, Phase, Phases
 from codegen.switched.spliced import Spliced
 

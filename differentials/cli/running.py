@@ -7,7 +7,7 @@ import click
 
 import differentials.cli.options as options
 from codegen import Result
-from codegen.runs.legs import CHOICES
+from codegen.runs.methods import CHOICES
 from differentials.cli.names import FileOf, OneOf
 from differentials.cli.options import Asked
 from differentials.cli.pictures import FORMATS, picture, save, save_all, told

@@ -4,21 +4,22 @@ from references.alsd import alsd_graph
 from references.build import Graph, bond_graph
 
 import bondgraph as bg
-from bondgraph.causality.strokes import Contradiction, Reason, Strokes
+from bondgraph.causality.record import Contradiction, Reason
+from bondgraph.causality.strokes import StrokeSearch
 
 
-def _strokes(graph: Graph) -> Strokes:
-    return Strokes(bg.validate(graph))
+def _strokes(graph: Graph) -> StrokeSearch:
+    return StrokeSearch(bg.validate(graph))
 
 
-def _set(strokes: Strokes, name: str, gives: str) -> Contradiction | None:
+def _set(strokes: StrokeSearch, name: str, gives: str) -> Contradiction | None:
     node = strokes.names.index(name)
     return strokes.assign(
         strokes.at[node][0], strokes.end_for(node, gives), Reason(node, "chooses")
     )
 
 
-def _ends(strokes: Strokes) -> dict[str, str | None]:
+def _ends(strokes: StrokeSearch) -> dict[str, str | None]:
     return {
         f"{strokes.names[tail]}>{strokes.names[head]}": None if end is None else strokes.names[end]
         for (tail, head), end in zip(strokes.bonds, strokes.end, strict=True)

@@ -31,7 +31,7 @@ from codegen import (
 from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
 from codegen.inputs.tables import signal_table
 from codegen.runs.arguments import initial_values, signals_for
-from codegen.runs.legs import Settings
+from codegen.runs.track import Settings
 from differentials.laws import magic_formula_tire, stribeck_clutch
 from differentials.scenarios import prepared
 

@@ -15,7 +15,7 @@ from soak.families import whole
 from codegen import to_c
 from codegen.batch import engine as batch_engine
 from codegen.batch import located as batch_located
-from codegen.c.export import runtime_file
+from codegen.c.runtime import runtime_file
 from codegen.engine import located, runs, sizes
 
 ALL = whole("memory")

@@ -6,7 +6,8 @@ from oracles.models import oscillator, series_circuit
 from references.build import bond_graph
 
 import bondgraph as bg
-from codegen.program.lower import Block, block, lower
+from codegen.program.lower import lower
+from codegen.program.records import Block, block
 
 CIRCUIT = bg.derive(series_circuit())
 SLIDER = bg.derive(oscillator(bg.Se("push", "P")))

@@ -14,7 +14,7 @@ from oracles.methods import EVERY, LOCATED, OWN, STEPPED, Made, Outcome, changes
 from soak.families import whole
 
 from codegen.fmu import binaries
-from codegen.runs.events import Event
+from codegen.runs.track import Event
 from differentials.scenarios import SAMPLE
 
 CHOSEN = EVERY if whole("agreements") else tuple(OWN.items())

@@ -1,6 +1,7 @@
 """Which tests need a compiler, decided here alone, and `--quick`, which leaves those and slow ones out.
 
 Files in which nearly everything is compiled are named; what else starts a compiler is skipped when it does.
+Which tests are slow stands in `slow.txt`, so that the same ones run on every machine.
 """
 
 import os
@@ -18,6 +19,9 @@ FILES = (
     "docs/test_commands.py", "test_notebooks.py",
 )  # fmt: skip
 """Below `tests`."""
+
+SLOW = Path(__file__).with_name("slow.txt")
+"""Tests that take more than a fifth of a second, averaged over what they are given; `used.py` writes it."""
 
 COMPILERS = ("cc", "gcc", "clang")
 
@@ -44,9 +48,21 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if needs_compiler(item.path):
             item.add_marker("needs_compiler")
     if config.getoption("--quick"):
-        out = [one for one in items if any(map(one.get_closest_marker, ("needs_compiler", "slow")))]
+        slow = set(SLOW.read_text("utf-8").splitlines())
+        out = [
+            one
+            for one in items
+            if one.get_closest_marker("needs_compiler")
+            or one.get_closest_marker("slow")
+            or function(one.nodeid) in slow
+        ]
         config.hook.pytest_deselected(items=out)
         items[:] = [one for one in items if one not in set(out)]
+
+
+def function(nodeid: str) -> str:
+    """A test's name without what it is parametrized with."""
+    return nodeid.partition("[")[0]
 
 
 def needs_compiler(path: Path) -> bool:

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from rig.compilers import counted
+from rig.used import used
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -27,7 +28,7 @@ class Summary:
         """Tell the first process what this one and those that it started have used."""
         told = getattr(session.config, "workeroutput", None)
         if told is not None:
-            told["seconds"] = _used(resource.RUSAGE_SELF) + _used(resource.RUSAGE_CHILDREN)
+            told["seconds"] = used(resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_testnodedown(self, node: Any) -> None:
@@ -37,15 +38,10 @@ class Summary:
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         """Print it; pytest's own line comes after."""
         # Children of this process are those that have told already, if there are any.
-        own = _used(resource.RUSAGE_SELF)
-        used = own + (self.elsewhere or _used(resource.RUSAGE_CHILDREN))
+        own = used(resource.RUSAGE_SELF)
+        whole = own + (self.elsewhere or used(resource.RUSAGE_CHILDREN))
         lasted, units = time.monotonic() - self.began, counted()
         terminalreporter.write_line(
-            f"{lasted / 60:.1f} minutes, {used / 60:.1f} of a processor ({os.cpu_count()} here); "
+            f"{lasted / 60:.1f} minutes, {whole / 60:.1f} of a processor ({os.cpu_count()} here); "
             f"C units: {units['compiled']} compiled, {units['shared']} shared"
         )
-
-
-def _used(whose: int) -> float:
-    used = resource.getrusage(whose)
-    return used.ru_utime + used.ru_stime

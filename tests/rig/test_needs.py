@@ -16,6 +16,14 @@ def test_every_pattern_names_a_file() -> None:
     assert not needs.needs_compiler(TESTS.parent / "codegen" / "test_fmu_runs.py")
 
 
+def test_every_slow_test_is_there() -> None:
+    """Documents are tests by themselves; a function of a file is found in its text."""
+    for name in needs.SLOW.read_text("utf-8").splitlines():
+        path, _, test = name.partition("::")
+        text = (TESTS.parent / path).read_text("utf-8")
+        assert path.endswith(".md") or test.rpartition(".")[2] in text, name
+
+
 def test_compilers_are_told_from_other_programs() -> None:
     assert needs.compiles(["/usr/bin/gcc", "-c", "x.c"])
     assert needs.compiles(["python", "-m", "ziglang", "cc"])

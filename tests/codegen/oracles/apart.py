@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from codegen.runs.events import Event
+from codegen.runs.track import Event
 from oracles.methods import Outcome
 
 

@@ -12,7 +12,8 @@ import pytest
 from codegen import to_c
 from codegen.c.export import stepped
 from codegen.modes.closed import ClosedModel
-from codegen.program.lower import Program, lower
+from codegen.program.lower import lower
+from codegen.program.records import Program
 
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
 HARNESS = Path(__file__).parent / "harness.c"

@@ -32,7 +32,7 @@ def as_graph(network: Network) -> "nx.DiGraph[Hashable]":
     return graph
 
 
-def _element(b: Branch) -> bg.elements.Node:
+def _element(b: Branch) -> bg.declare.elements.Node:
     if b.kind == "S":
         return bg.Se(b.name, f"u_{b.name}")
     if b.kind == "D":

@@ -13,7 +13,7 @@ import numpy as np
 
 import codegen
 from codegen.runs.arguments import signals_for
-from codegen.runs.events import Event
+from codegen.runs.track import Event
 from differentials.figures import figures
 from differentials.scenarios import SAMPLE, prepared
 from differentials.topologies import catalog

@@ -1,0 +1,90 @@
+"""Records of a run: how it is integrated, what it has recorded, what happened in it."""
+
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from codegen.inputs.pieces import Piece
+from codegen.model.snapshot import Mode
+from codegen.numbers.arrays import Array
+
+Dense = Callable[[float | Array], Array]
+"""The integrated vector anywhere inside a step; for several times its columns."""
+
+
+class Event(NamedTuple):
+    """What happened: at a friction port "stick", "slip" (it was released) or "cross" (through zero).
+
+    At a switch or a controlled junction "on" or "off".
+    """
+
+    time: float
+    port: Hashable
+    kind: str
+
+
+Ended = tuple[float, Array, frozenset[int]]
+"""How a stretch ended: time, integrated vector, and the ports and guards whose event it was."""
+
+
+class Accumulating(Protocol):
+    """What is integrated with a run, such as work; see `codegen.energy.tally.Tally`."""
+
+    def smooth(
+        self, begin: float, end: float, dense: Dense, pieces: Sequence[Piece], mode: Mode
+    ) -> None:
+        """A step of an integrator, with its interpolant."""
+
+    def exact(self, pieces: Sequence[Piece], mode: Mode, points: Array, vectors: Array) -> None:
+        """A stretch of an affine mode: its begin, samples and end, with the vector at each."""
+
+    def step(
+        self, t: float, before: Sequence[Piece], after: Sequence[Piece], s: Array, mode: Mode
+    ) -> None:
+        """Inputs that may step at t."""
+
+    def rest(
+        self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, after: Array
+    ) -> None:
+        """Ports that may have come to rest at t."""
+
+    def record(self) -> None:
+        """The next sample."""
+
+
+@dataclass
+class Track:
+    """What a run has recorded: the integrated vector and the mode at each sample, and the events.
+
+    ``largest``: the magnitudes that the vector's components have reached, between samples, too.
+    ``tally``: what is integrated on the way, if anything is.
+    """
+
+    vectors: Array
+    modes: list[Mode]
+    largest: Array
+    events: list[Event] = field(default_factory=list)
+    recorded: int = 0
+    tally: Accumulating | None = None
+
+    def see(self, vectors: Array) -> None:
+        """Take the magnitudes of some vectors, the rows, into account."""
+        if len(vectors):
+            self.largest = np.maximum(self.largest, np.abs(vectors).max(axis=0))
+
+    def record(self, vector: Array, mode: Mode) -> None:
+        """The next sample."""
+        self.vectors[self.recorded] = vector
+        self.modes.append(mode)
+        self.recorded += 1
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to integrate: method, relative and absolute tolerance."""
+
+    method: str = "auto"
+    rtol: float = 1e-10
+    atol: float = 1e-11
