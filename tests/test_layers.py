@@ -37,8 +37,8 @@ ORDER = {
         "model.affine", "closing", "timed", "records", "gains", "sections", "program", "identifiers",
         "printing", "units",
         *_room("model", "numpy_backend numbers energies sharp sources pace snapshot sharing slips "
-               "friction instant loops terms rubbing closed stability sizes trials rounding verdicts modes "
-               "guards places"),
+               "friction instant loops real_roots solutions doubts terms rubbing closed stability sizes "
+               "trials rounding verdicts modes guards places"),
         *_room("energy", "stored quadrature accounts tally"),
         *_room("runs", "events sundials progress legs watched exact ladder free hybrid arguments steps "
                "impulses observer tables summary"),

@@ -14,7 +14,7 @@ import numpy as np
 from bondgraph import BondGraphError, SignalError, StateEquations
 from bondgraph.expressions import normal
 from bondgraph.writing import write_bytes
-from codegen.c.export import runtime_file, stepped, to_c
+from codegen.c.export import exported, runtime_file, stepped
 from codegen.fmu.binaries import binaries, chosen_platforms, headers
 from codegen.fmu.model import FmuModel, config_text, model_text
 from codegen.fmu.switches import switching
@@ -23,6 +23,7 @@ from codegen.fmu.xml import build_description, description
 from codegen.identifiers import identifiers
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, as_signal
+from codegen.model.doubts import warn_of_doubts
 from codegen.model.pace import time_constant
 from codegen.program import Program
 from codegen.runs.arguments import initial_values
@@ -81,7 +82,8 @@ def write_fmu(
     chosen = chosen_platforms(platforms)
     official = headers(version)
     model = _model(name or target.stem, equations, parameters, laws, initial or {}, inputs or {})
-    code = to_c(equations, parameters, laws, name=model.name)
+    closed, code = exported(equations, parameters, laws, name=model.name)
+    warn_of_doubts(closed.program, equations, closed.parameters)
     sources = stepped(code) | {file: runtime_file(file) for file in GLUE[version]}
     sources |= {"fmu_model.c": model_text(model), **official}
     units = sorted(file for file in sources if file.endswith(".c"))

@@ -7,7 +7,7 @@ from typing import Any
 
 from bondgraph import ParameterError, StateEquations
 from codegen.model.closed import ClosedModel
-from codegen.model.energies import warn_of_energies
+from codegen.model.doubts import warn_of_doubts
 from codegen.model.numbers import exact_parameters
 from codegen.program import Program, lower
 from codegen.python.blocks import (
@@ -77,8 +77,8 @@ def to_python(
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
     program = lower(equations, laws, parameters)
     exact = exact_parameters(parameters)
-    warn_of_energies(equations, exact)
     closed = ClosedModel(program, equations, parameters)
+    warn_of_doubts(program, equations, exact)
     states = [symbol.name for symbol in (*program.states, *program.law_states)]
     external = [symbol.name for symbol in program.external]
     signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from bondgraph import ParameterError, StateEquations
 from bondgraph.elements import Kind
 from codegen.arrays import Array
-from codegen.c.export import stepped, to_c
+from codegen.c.export import exported, stepped
 from codegen.engine.sizes import Engine, sizes
 from codegen.model.numbers import check_values, exact_parameters
 from codegen.program import Program
@@ -41,7 +41,7 @@ class BatchModel:
 
     @cached_property
     def _sources(self) -> dict[str, str]:
-        return stepped(to_c(*self._exported))
+        return stepped(exported(*self._exported)[1])
 
     def engine(self, slots: int) -> Engine:
         """The library of an affine model for inputs whose generators have so many slots."""

@@ -14,7 +14,7 @@ from bondgraph import ParameterError, SignalError, StateEquations
 from bondgraph.closures import merged_laws
 from bondgraph.expressions import normal
 from codegen.engine.located import LocatedLibrary
-from codegen.model.energies import warn_of_energies
+from codegen.model.doubts import warn_of_doubts
 from codegen.model.numbers import exact_parameters
 from codegen.program import Program, lower
 from codegen.simulate import BACKENDS, Simulator, bound, with_engine
@@ -62,7 +62,7 @@ class Family:
         """The equations lowered, for parameters of these names."""
         program = lower(self.equations, self.laws, self.parameters, timed=True)
         # Once for the family's own numbers, not for every run's.
-        warn_of_energies(self.equations, exact_parameters(self.parameters))
+        warn_of_doubts(program, self.equations, exact_parameters(self.parameters))
         return program
 
     @property

@@ -20,6 +20,7 @@ from bondgraph import (
 from codegen.arrays import Array
 from codegen.inputs.pieces import Piece
 from codegen.model.closed import Mode
+from codegen.model.doubts import warn_of_doubts
 from codegen.model.guards import guard_values
 from codegen.model.modes import a_moment_later, decide
 from codegen.model.pace import LOOK_AHEAD, look_ahead, time_constant
@@ -89,6 +90,7 @@ class Phases:
         self._outputs, self._told = outputs, told
         self.switches = switches(graph)
         self._known: dict[On, Phase | BondGraphError] = {}
+        self._warned: tuple[str, ...] = ()
 
     @cached_property
     def names(self) -> tuple[Hashable, ...]:
@@ -127,6 +129,10 @@ class Phases:
             equations = self._told(equations)
         guards = [-(s.off if s.name in on else s.on) for s in self.switches]
         simulator = guarded_simulator(equations, self._parameters, self._laws, guards)
+        if self._told is None:
+            # What one mode was told for need not be said of the next.
+            model = simulator.closed
+            self._warned += warn_of_doubts(model.program, equations, model.parameters, self._warned)
         return Phase(on, simulator, Handover(simulator.closed))
 
     def begin(self, now: Moment, held: Keeping, last: On, changed: On) -> tuple[Phase, Array]:

@@ -21,7 +21,6 @@ from codegen.energy.replay import shares, tally_of
 from codegen.energy.tally import Tally
 from codegen.inputs.signal import Signal
 from codegen.model.closed import Snapshot
-from codegen.model.energies import warn_of_energies
 from codegen.model.pace import STALLED, hardly_apart
 from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
 from codegen.runs.columns import named_columns
@@ -315,7 +314,6 @@ def switched_simulator(
     first = phases.any()
     _check_names(names, first)
     handover, model = first.handover, first.simulator.closed
-    warn_of_energies(model.equations, model.parameters)
     own = tuple(name.name for name in model.program.law_states)
     return SwitchedSimulator(
         (*handover.variables, *own), first.simulator.inputs, names, phases
