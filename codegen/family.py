@@ -15,7 +15,7 @@ from bondgraph.analyse.closures import merged_laws
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, SignalError
 from codegen.engine.located import LocatedLibrary
-from codegen.model.energies import warn_of_energies
+from codegen.model.doubts import warn_of_doubts
 from codegen.model.numbers import exact_parameters
 from codegen.packing import packed
 from codegen.program.lower import lower
@@ -64,7 +64,7 @@ class Family:
         """The equations lowered, for parameters of these names."""
         program = lower(self.equations, self.laws, self.parameters, timed=True)
         # Once for the family's own numbers, not for every run's.
-        warn_of_energies(self.equations, exact_parameters(self.parameters))
+        warn_of_doubts(program, self.equations, exact_parameters(self.parameters))
         return program
 
     @property

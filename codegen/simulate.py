@@ -19,7 +19,7 @@ from codegen.engine.runs import CRuns, Status
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
-from codegen.model.energies import warn_of_energies
+from codegen.model.doubts import warn_of_doubts
 from codegen.model.sources import source_signals
 from codegen.modes.choose import decide
 from codegen.modes.closed import ClosedModel
@@ -237,7 +237,8 @@ def simulator(
     an input. ``backend``: "numpy", or "c", whose runs are generated C and much faster; it needs a C
     compiler and the extra ``c``.
 
-    Warns (`ModelWarning`) of storages whose energy is not positive at these numbers, by name.
+    Warns (`ModelWarning`) of storages whose energy is not positive at these numbers, and of laws that give
+    a signal from itself with several solutions, by name.
 
     Raises `ParameterError`, `StructureError` or `DependentSourceError` for what cannot be used,
     `SignalError` for what the backend cannot run, `MissingExtraError` for what it needs.
@@ -245,7 +246,7 @@ def simulator(
     if backend not in BACKENDS:
         raise SignalError(f"unknown backend {backend!r}; there is {', '.join(BACKENDS)}")
     ready = guarded_simulator(equations, parameters, laws, ())
-    warn_of_energies(equations, ready.closed.parameters)
+    warn_of_doubts(ready.closed.program, equations, ready.closed.parameters)
     return with_engine(ready, backend)
 
 

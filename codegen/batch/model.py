@@ -13,7 +13,7 @@ from bondgraph.declare.elements import Kind
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from codegen.batch.engine import batch_engine
-from codegen.c.export import stepped, to_c
+from codegen.c.export import exported, stepped
 from codegen.engine.sizes import Engine, sizes
 from codegen.family import Family
 from codegen.model.numbers import check_values, exact_parameters
@@ -42,7 +42,7 @@ class BatchModel:
 
     @cached_property
     def _sources(self) -> dict[str, str]:
-        return stepped(to_c(*self._exported))
+        return stepped(exported(*self._exported)[1])
 
     def engine(self, slots: int) -> Engine:
         """The library of an affine model for inputs whose generators have so many slots."""

@@ -15,7 +15,7 @@ from codegen.c.scenario import scenario_text
 from codegen.c.structure import structures
 from codegen.c.tables import config, group_tables, name_tables, program_tables, structure_table
 from codegen.c.text import comment
-from codegen.model.energies import warn_of_energies
+from codegen.model.doubts import warn_of_doubts
 from codegen.modes.closed import ClosedModel
 from codegen.program.lower import lower
 from codegen.program.records import Block, Program
@@ -107,11 +107,26 @@ def to_c(
     Raises what `simulator` raises; `StructureError` for more than six friction ports; `ExpressionError` for
     functions C lacks; `ParameterError` for a prefix that no name in C can begin with.
     """
+    closed, files = exported(equations, parameters, laws, name, main, initial, inputs, prefix)
+    warn_of_doubts(closed.program, equations, closed.parameters)
+    return files
+
+
+def exported(
+    equations: StateEquations,
+    parameters: Mapping[str, object],
+    laws: Mapping[Any, object] | None = None,
+    name: str = "model",
+    main: bool = False,
+    initial: Mapping[str, float] | None = None,
+    inputs: Mapping[str, object] | None = None,
+    prefix: str = "",
+) -> tuple[ClosedModel, dict[str, str]]:
+    """As `to_c`, with the model in numbers; who asks for it tells what there is to be told of that."""
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
     program = lower(equations, laws, parameters)
     closed = ClosedModel(program, equations, parameters)
-    warn_of_energies(equations, closed.parameters)
     defaults = [float(closed.parameters[symbol.name]) for symbol in program.parameters]
     states = [symbol.name for symbol in (*program.states, *program.law_states)]
     external = [symbol.name for symbol in program.external]
@@ -119,10 +134,10 @@ def to_c(
     start = initial_values(initial or {}, states)
     longest = step_at_start(closed, start, signals)
     files = texts(closed, name, defaults, prefix, longest)
-    if not main:
-        return files
-    scenario = scenario_text(signals, start.tolist())
-    return {**files, "main.c": runtime_file("main.c"), "scenario.h": scenario}
+    if main:
+        scenario = scenario_text(signals, start.tolist())
+        files |= {"main.c": runtime_file("main.c"), "scenario.h": scenario}
+    return closed, files
 
 
 def texts(

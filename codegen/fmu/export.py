@@ -15,7 +15,7 @@ from bondgraph.algebra.expressions import normal
 from bondgraph.equations import StateEquations
 from bondgraph.errors import BondGraphError, SignalError
 from bondgraph.writing import write_bytes
-from codegen.c.export import stepped, to_c
+from codegen.c.export import exported, stepped
 from codegen.c.runtime import runtime_file
 from codegen.fmu.binaries import binaries, chosen_platforms, headers
 from codegen.fmu.model import FmuModel, config_text, model_text
@@ -24,6 +24,7 @@ from codegen.fmu.variables import Starts, variables
 from codegen.fmu.xml import build_description, description
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, as_signal
+from codegen.model.doubts import warn_of_doubts
 from codegen.modes.pace import time_constant
 from codegen.program.identifiers import identifiers
 from codegen.program.records import Program
@@ -84,7 +85,8 @@ def write_fmu(
     chosen = chosen_platforms(platforms)
     official = headers(version)
     model = _model(name or target.stem, equations, parameters, laws, initial or {}, inputs or {})
-    code = to_c(equations, parameters, laws, name=model.name)
+    closed, code = exported(equations, parameters, laws, name=model.name)
+    warn_of_doubts(closed.program, equations, closed.parameters)
     sources = stepped(code) | {file: runtime_file(file) for file in GLUE[version]}
     sources |= {"fmu_model.c": model_text(model), **official}
     units = sorted(file for file in sources if file.endswith(".c"))

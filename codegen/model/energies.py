@@ -1,6 +1,5 @@
 """Storages whose energy is not positive: they are run, with a warning that names them."""
 
-import warnings
 from collections.abc import Hashable, Iterator, Mapping
 
 import numpy as np
@@ -8,28 +7,25 @@ import sympy as sp
 
 from bondgraph.declare.elements import STORAGES, Element
 from bondgraph.equations import StateEquations
-from bondgraph.errors import ModelWarning
 from codegen.model.numbers import at_parameters
 
 ROUNDING = 1e-12
 """An eigenvalue of a field above minus this fraction of its largest entry is zero."""
 
 
-def warn_of_energies(
-    equations: StateEquations, parameters: Mapping[str, sp.Rational], level: int = 3
-) -> None:
-    """Warn of linear storages whose energy falls below zero: masses, stiffnesses, matrices of fields.
+def negative_energies(
+    equations: StateEquations, parameters: Mapping[str, sp.Rational]
+) -> Iterator[str]:
+    """What is to be told of linear storages whose energy falls below zero.
 
-    Values that change in time are left out. ``level``: how far up the line stands that is told.
+    Of masses, stiffnesses, matrices of fields; values that change in time are left out.
     """
     named = [repr(name) for name in _negative(equations, parameters)]
     if named:
-        warnings.warn(
+        yield (
             f"the energy stored in {', '.join(named)} is not positive at these parameters: a negative "
             "inertia or stiffness, or a field whose matrix is not positive definite, makes most models "
-            "unstable; check its value",
-            ModelWarning,
-            stacklevel=level,
+            "unstable; check its value"
         )
 
 

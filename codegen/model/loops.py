@@ -38,16 +38,27 @@ def solve_loop(
         now.give(columns, values, D)
         return np.nan_to_num(residual(now), nan=1e300, posinf=1e300, neginf=-1e300)
 
-    worst = np.inf
-    for values in _attempts(left, D[np.ix_(rows, columns)], y[list(rows)]):
-        worst = float(np.abs(left(values)).max(initial=0.0))
-        if worst <= RESIDUAL * (1e-3 + float(np.abs(values).max(initial=0.0))):
-            return
+    values, worst = searched(left, D[np.ix_(rows, columns)], y[list(rows)])
+    if values is not None:
+        return
     listed = ", ".join(repr(name) for name in names)
     raise SimulationError(
         f"at t = {now.t:g} the laws at {listed} depend on one another and no solution was found "
         f"(residual {worst:.3g}); check the laws, or put a storage between"
     )
+
+
+def searched(left: Residual, D: Array, open_y: Array) -> tuple[Array | None, float]:
+    """The solution that is found, the latest that ``left`` was asked for; and what is left of the laws.
+
+    ``open_y``: what the ports receive if the laws give nothing, ``D`` what they receive of each more.
+    """
+    worst = np.inf
+    for values in _attempts(left, D, open_y):
+        worst = float(np.abs(left(values)).max(initial=0.0))
+        if worst <= RESIDUAL * (1e-3 + float(np.abs(values).max(initial=0.0))):
+            return values, worst
+    return None, worst
 
 
 def _attempts(left: Residual, D: Array, open_y: Array) -> Iterator[Array]:

@@ -35,13 +35,13 @@ def check_gains(program: Program, parameters: Numbers | None = None) -> None:
 def _determined(program: Program, group: Group, known: Numbers) -> bool:
     """Whether the slopes of a loop have full rank for two random points."""
     laws = written_out(group.values)
-    shown = dict(_shown(program))
+    direct_rows = dict(shown(program, "D"))
     rows: list[dict[int, sp.Expr]] = []
     for at, law in enumerate(laws):
         own = {at: sp.Integer(1)}
         for name in sorted(law.free_symbols, key=str):
             direct = {j: sp.Integer(1)} if (j := _input(program, name)) is not None else {}
-            for column, factor in (shown.get(name) or direct).items():
+            for column, factor in (direct_rows.get(name) or direct).items():
                 if column in group.inputs:
                     place = group.inputs.index(column)
                     own[place] = own.get(place, sp.Integer(0)) - slope_of(law, name) * factor
@@ -71,13 +71,13 @@ def _input(program: Program, name: sp.Symbol) -> int | None:
     return program.inputs.index(name) if name in program.inputs else None
 
 
-def _shown(program: Program) -> Iterator[tuple[sp.Symbol, dict[int, sp.Expr]]]:
-    """Every reading's row over the inputs."""
+def shown(program: Program, letter: str) -> Iterator[tuple[sp.Symbol, dict[int, sp.Expr]]]:
+    """Every reading's row of one of the matrices F, D, H, K."""
     entries, start = written_out(program.coefficients), 0
     rows: list[dict[int, sp.Expr]] = [{} for _ in program.readings]
-    for letter, pattern in program.layout.items():
+    for one, pattern in program.layout.items():
         end = start + len(pattern.rows)
-        if letter == "D":
+        if one == letter:
             for i, j, entry in zip(pattern.rows, pattern.columns, entries[start:end], strict=True):
                 rows[i][j] = entry
         start = end

@@ -7,7 +7,7 @@ from typing import Any
 
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
-from codegen.model.energies import warn_of_energies
+from codegen.model.doubts import warn_of_doubts
 from codegen.model.numbers import exact_parameters
 from codegen.modes.closed import ClosedModel
 from codegen.program.lower import lower
@@ -79,8 +79,8 @@ def to_python(
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
     program = lower(equations, laws, parameters)
     exact = exact_parameters(parameters)
-    warn_of_energies(equations, exact)
     closed = ClosedModel(program, equations, parameters)
+    warn_of_doubts(program, equations, exact)
     states = [symbol.name for symbol in (*program.states, *program.law_states)]
     external = [symbol.name for symbol in program.external]
     signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)

@@ -43,9 +43,9 @@ static double rounding(const bg_signals *signals, int segment, int input, double
             continue;
         for (int i = term->count - 1; i >= 0; i--) {
             slope = slope * fabs(tau) + size;
-            size = size * fabs(tau) + hypot(c[i][0], c[i][1]);
+            size = size * fabs(tau) + fabs(c[i][0]) + fabs(c[i][1]);
         }
-        slope += hypot(term->rate[0], term->rate[1]) * size;
+        slope += (fabs(term->rate[0]) + fabs(term->rate[1])) * size;
         const double grown = term->rate[0] != 0.0 ? exp(term->rate[0] * tau) : 1.0;
         sum += grown * bg_cancelled(size, slope, fabs(t) + fabs(term->start));
     }

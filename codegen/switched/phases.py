@@ -14,6 +14,7 @@ from bondgraph.derive import derive
 from bondgraph.equations import StateEquations
 from bondgraph.errors import BondGraphError, SimulationError
 from codegen.inputs.pieces import Piece
+from codegen.model.doubts import warn_of_doubts
 from codegen.model.snapshot import Mode
 from codegen.model.terms import TOLERANCE
 from codegen.modes.choose import a_moment_later, decide
@@ -86,6 +87,7 @@ class Phases:
         self._outputs, self._told = outputs, told
         self.switches = switches(graph)
         self._known: dict[On, Phase | BondGraphError] = {}
+        self._warned: tuple[str, ...] = ()
 
     @cached_property
     def names(self) -> tuple[Hashable, ...]:
@@ -124,6 +126,10 @@ class Phases:
             equations = self._told(equations)
         guards = [-(s.off if s.name in on else s.on) for s in self.switches]
         simulator = guarded_simulator(equations, self._parameters, self._laws, guards)
+        if self._told is None:
+            # What one mode was told for need not be said of the next.
+            model = simulator.closed
+            self._warned += warn_of_doubts(model.program, equations, model.parameters, self._warned)
         return Phase(on, simulator, Handover(simulator.closed))
 
     def begin(self, now: Moment, held: Keeping, last: On, changed: On) -> tuple[Phase, Array]:

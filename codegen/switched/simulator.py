@@ -20,7 +20,6 @@ from codegen.energy.accounts import Account, accounts, with_signals
 from codegen.energy.ledger import Integrated, Ledger
 from codegen.energy.tally import Tally
 from codegen.inputs.signal import Signal
-from codegen.model.energies import warn_of_energies
 from codegen.model.snapshot import Snapshot
 from codegen.modes.pace import STALLED, hardly_apart
 from codegen.numbers.arrays import Array
@@ -316,7 +315,6 @@ def switched_simulator(
     first = phases.any()
     _check_names(names, first)
     handover, model = first.handover, first.simulator.closed
-    warn_of_energies(model.equations, model.parameters)
     own = tuple(name.name for name in model.program.law_states)
     return SwitchedSimulator(
         (*handover.variables, *own), first.simulator.inputs, names, phases

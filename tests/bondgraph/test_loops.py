@@ -107,7 +107,10 @@ SINGULAR = [
 
 @pytest.mark.parametrize(("nodes", "paths", "error", "text"), SINGULAR)
 def test_a_refusal_shows_what_vanishes(
-    nodes: list[bg.declare.elements.Node], paths: list[str], error: type[bg.BondGraphError], text: str
+    nodes: list[bg.declare.elements.Node],
+    paths: list[str],
+    error: type[bg.BondGraphError],
+    text: str,
 ) -> None:
     with pytest.raises(error) as found:
         bg.derive(_graph(nodes, *paths))
