@@ -199,7 +199,7 @@ class Simulator:
     def _recorded(
         self, times: Array, signals: Sequence[Signal], track: Track, backend: str
     ) -> Recorded:
-        shots = snapshots(self.closed, times, signals, track)
+        shots = snapshots(self.closed.within(track), times, signals, track)
         return Recorded(tuple(track.events), shots, backend)
 
     def steady(

@@ -8,7 +8,7 @@ import numpy as np
 from codegen.energy.quadrature import NODES, exact_integrals, gauss_sum, rows_over
 from codegen.inputs.generators import generator
 from codegen.inputs.pieces import Piece
-from codegen.model.snapshot import RATE, Mode, Snapshot
+from codegen.model.snapshot import RATE, Mode, Run, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 
@@ -36,6 +36,10 @@ class Tally:
 
     def __post_init__(self) -> None:
         self.total = np.zeros(len(self.one))
+
+    def within(self, run: Run) -> None:
+        """The run that it goes with."""
+        self.model = self.model.within(run)
 
     def smooth(
         self, begin: float, end: float, dense: Dense, pieces: Sequence[Piece], mode: Mode

@@ -33,6 +33,8 @@ class Instant:
     dw: Array
     caps: Array
     numbers: Numbers
+    #: The largest magnitudes that x and z have had, where a run is known: what they round by.
+    seen: Array | None = None
 
     def give(self, columns: Sequence[int], values: Array, D: Array) -> None:
         """Add to inputs, and to the readings that show them at once."""

@@ -1,6 +1,7 @@
 """Everything about a closed model at one instant."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 from codegen.model.numbers import Numbers
 from codegen.numbers.arrays import Array
@@ -10,6 +11,13 @@ Mode = tuple[int, ...]
 
 INPUTS, RATES_OF_INPUTS, READINGS, RATE, CAPS = 2, 3, 4, 5, 6
 """Where the parts of a `Snapshot` stand in an affine map."""
+
+
+class Run(Protocol):
+    """What a model need know of a run that it is in."""
+
+    #: The magnitudes that the integrated vector's components have reached.
+    largest: Array
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,9 @@ class LevelTerms:
         program = self._program
         pool = self._binding.pool(now)
         sizes, ends = np.abs(pool), np.cumsum([1, len(now.x), len(now.z), len(now.y), len(now.u)])
+        if now.seen is not None:
+            own = slice(1, ends[2])
+            sizes[own] = np.maximum(sizes[own], now.seen[: ends[2] - 1])
         x, y, u = slice(1, ends[1]), slice(ends[2], ends[3]), slice(ends[3], ends[4])
 
         def show() -> None:

@@ -5,6 +5,7 @@ drives a dependent storage steps; z are the states that laws own.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from functools import cached_property
 
 import numpy as np
@@ -16,7 +17,16 @@ from codegen.model.instant import Binding, Evaluation, Instant
 from codegen.model.loops import solve_loop
 from codegen.model.numbers import Numbers, assembled, check_values, exact_parameters, numbers
 from codegen.model.sharp import NotAffineError, sharp_rates
-from codegen.model.snapshot import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, Mode, Snapshot
+from codegen.model.snapshot import (
+    CAPS,
+    INPUTS,
+    RATE,
+    RATES_OF_INPUTS,
+    READINGS,
+    Mode,
+    Run,
+    Snapshot,
+)
 from codegen.model.terms import without_rounding
 from codegen.numbers.arrays import Array
 from codegen.numbers.pairs import Pair, pair
@@ -56,6 +66,13 @@ class ClosedModel:
             check_values(equations, exact)
         self._rated = any(program.layout[name].rows for name in "EDHK")
         self._maps: dict[Mode, AffineMap | None] = {}
+        self._run: Run | None = None
+
+    def within(self, run: Run) -> "ClosedModel":
+        """The same model in a run: a level that a state rules rounds by what that state has been there."""
+        made = copy(self)
+        made._run = run
+        return made
 
     @property
     def constant(self) -> Numbers:
@@ -108,7 +125,8 @@ class ClosedModel:
             if affine is not None:
                 x, z, u, du, y, rate, caps = affine(s, w, dw)
                 if mode and min(caps) < 0:
-                    caps = without_rounding(caps, affine.terms(CAPS, s, w, dw))
+                    most = s if self._run is None else np.maximum(np.abs(s), self._run.largest)
+                    caps = without_rounding(caps, affine.terms(CAPS, most, w, dw))
                 if not mode or min(caps) >= 0:
                     return Snapshot(x, z, u, du, y, rate, caps, w, self.constant)
         return self.evaluate(t, s, w, dw, mode)
@@ -174,6 +192,7 @@ class ClosedModel:
         xi, z = s[:n], s[n : n + own]
         u, du, y, caps = np.zeros(m), np.zeros(m), np.zeros(p), np.zeros(len(mode))
         now = Instant(t, xi, z, u, du, y, w, dw, caps, None)  # type: ignore[arg-type]
+        now.seen = None if self._run is None else self._run.largest
         now.u[self._outside], now.du[self._outside] = (
             w[: len(self._outside)],
             dw[: len(self._outside)],

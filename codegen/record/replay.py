@@ -48,7 +48,7 @@ class Run:
             run = run_hybrid(
                 model, self.times, self.start, signals, self.settings, begin, begin, tally
             )
-            shots = snapshots(model, self.times, signals, run.track)
+            shots = snapshots(model.within(run.track), self.times, signals, run.track)
         _, observer = named_columns(model, self.times, shots)
         rows = np.array(tally.rows)
         return Integrated(rows[:, :-1] @ shares(whole), rows[:, -1], observer)

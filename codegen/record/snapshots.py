@@ -67,17 +67,19 @@ def _by_modes(
         if tables is None:
             tables = np.zeros((len(times), len(affine.matrix)))
         tables[which == number[mode]] = vectors[which == number[mode]] @ affine.matrix.T
-    if affine is None or tables is None or (mode and _refused(affine, tables, vectors)):
+    if affine is None or tables is None or (mode and _refused(affine, tables, vectors, track)):
         return None
     kept = (STATES, LAW_STATES, INPUTS, RATES_OF_INPUTS, READINGS, RATE)
     x, z, u, du, y, rate = (tables[:, affine.parts[part]] for part in kept)
     return Snapshots(x, z, u, du, y, rate, w.T)
 
 
-def _refused(affine: AffineMap, tables: Array, vectors: Array) -> bool:
+def _refused(affine: AffineMap, tables: Array, vectors: Array, track: Track) -> bool:
     """Whether a friction level is below zero, by more than the rounding of its terms."""
     caps = tables[:, affine.parts[CAPS]]
     if caps.min() >= 0:
         return False
-    terms = np.abs(vectors) @ np.abs(affine.rows(CAPS)).T
+    sizes, n = np.abs(vectors), len(track.largest)
+    sizes[:, :n] = np.maximum(sizes[:, :n], track.largest)
+    terms = sizes @ np.abs(affine.rows(CAPS)).T
     return bool(without_rounding(caps, terms).min() < 0)

@@ -139,7 +139,9 @@ class ExactLeg:
         """Samples; where a friction level is below zero, let the model refuse it with its time."""
         caps = rows @ self._system.caps.T
         if (caps < 0).any():
-            caps = without_rounding(caps, np.abs(rows) @ np.abs(self._system.caps.T))
+            sizes = np.abs(rows)
+            sizes[:, : self._n] = np.maximum(sizes[:, : self._n], track.largest)
+            caps = without_rounding(caps, sizes @ np.abs(self._system.caps.T))
         for at in np.flatnonzero((caps < 0).any(axis=1)).tolist():
             if at < len(times):
                 self._model.at(float(times[at]), rows[at, : self._n], self._pieces, self._mode)

@@ -63,6 +63,8 @@ def run_hybrid(
     """
     course = _Course(model, times, start, signals, settings, begin, origin, before)
     course.track.tally = tally
+    if tally is not None:
+        tally.within(course.track)
     fallen = frozenset[int]()
     while course.unfinished and not fallen:
         fallen = course.settle()
@@ -86,7 +88,7 @@ class _Course:
         self.mode: Mode = tuple(1 for _ in model.friction_inputs) if before is None else before
         self._continued = before is not None
         self.track = Track(np.zeros((len(times), model.size)), [], np.abs(start))
-        self._model, self._times, self._signals = model, times, signals
+        self._model, self._times, self._signals = model.within(self.track), times, signals
         self._settings, self._origin = settings, origin
         points = {b for signal in signals for b in signal.breakpoints if begin < b <= self.end}
         self._breaks = sorted(points)

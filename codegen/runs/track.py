@@ -7,7 +7,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from codegen.inputs.pieces import Piece
-from codegen.model.snapshot import Mode
+from codegen.model.snapshot import Mode, Run
 from codegen.numbers.arrays import Array
 
 Dense = Callable[[float | Array], Array]
@@ -31,6 +31,9 @@ Ended = tuple[float, Array, frozenset[int]]
 
 class Accumulating(Protocol):
     """What is integrated with a run, such as work; see `codegen.energy.tally.Tally`."""
+
+    def within(self, run: Run) -> None:
+        """The run that it goes with, for what rounding is."""
 
     def smooth(
         self, begin: float, end: float, dense: Dense, pieces: Sequence[Piece], mode: Mode

@@ -56,7 +56,10 @@ static int is_rounding(const bg_context *c, double t, const double *v, const bg_
     bg_input_sizes(c->inputs, c->segment, t, w);
     for (int j = 0; j < BG_L; j++) {
         const int given = j >= BG_N && j < BG_N + BG_W;
-        sum += fabs(mode->shot[j][BG_AT_CAP + port]) * (given ? w[j - BG_N] : fabs(v[j]));
+        double size = given ? w[j - BG_N] : fabs(v[j]);
+        if (j < BG_N && j < BG_X) /* a state that comes down to zero rounds by what it was */
+            size = bg_greater(size, c->peaks.x[j]);
+        sum += fabs(mode->shot[j][BG_AT_CAP + port]) * size;
     }
     return level >= -BG_ROUNDING * sum;
 }

@@ -92,6 +92,7 @@ static fmu_error settle(fmu_instance *f, int *states_changed)
     fmu_error failed;
     fmu_pass(f, f->at.time);
     failed = fmu_apply(f);
+    bg_have_seen(&f->model, f->at.s);
     if (!failed)
         failed = fmu_decide(f);
     if (!failed)

@@ -134,6 +134,9 @@ void bg_note_stages(bg_model *m);
  * that are below by no more than the rounding of their terms. */
 void bg_without_rounding(bg_model *m, double *values);
 
+/* Takes a vector that a run has come to into account: where it comes down to zero, it rounds. */
+void bg_have_seen(bg_model *m, const double *s);
+
 /* model_evaluate.c */
 void bg_give(bg_model *m, int count, const int *columns, const double *values);
 int bg_residual(bg_model *m, const bg_loop *loop, double *left);

@@ -67,6 +67,10 @@ void bg_without_rounding(bg_model *m, double *values)
     double *const size = (double *)sizes, terms[BG_ROOM(MOST)] = {0};
     for (int j = 0; j < READ; j++)
         size[j] = fabs(read[j]);
+    for (int i = 0; i < N; i++)
+        sizes->x[i] = fmax(sizes->x[i], m->seen[i]);
+    for (int i = 0; i < BG_LAW_STATES; i++)
+        sizes->z[i] = fmax(sizes->z[i], m->seen[N + i]);
     give(m, &bg_known, sizes);
     for (int g = 0; g < BG_GROUPS; g++)
         give(m, &bg_groups[g], sizes);
@@ -76,4 +80,10 @@ void bg_without_rounding(bg_model *m, double *values)
     for (int i = 0; i < 4 * K; i++)
         if (values[i] < 0.0 && values[i] >= -BG_ROUNDING * terms[i])
             values[i] = 0.0;
+}
+
+void bg_have_seen(bg_model *m, const double *s)
+{
+    for (int i = 0; i < N + BG_LAW_STATES; i++)
+        m->seen[i] = fmax(m->seen[i], fabs(s[i]));
 }

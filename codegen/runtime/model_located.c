@@ -66,6 +66,7 @@ static int settle(bg_located *c, int started, int last)
     double fastest;
     if (K == 0)
         return BG_OK;
+    bg_have_seen(c->model, c->s);
     memcpy(before, c->mode, sizeof before);
     memcpy(usable, before, sizeof usable);
     int status = bg_located_usable(c, 1, usable);
@@ -150,6 +151,7 @@ static int step(bg_located *c, double stop, int *ended)
         return status;
     c->t = *ended ? until : c->solver.t;
     memcpy(c->s, *ended ? s : c->solver.y, sizeof c->s);
+    bg_have_seen(c->model, c->s);
     return BG_OK;
 }
 
@@ -189,6 +191,7 @@ static int begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_reque
     c->moment = 0.0;
     memset(c->touched, 0, sizeof c->touched);
     memset(c->mode, 1, sizeof c->mode);
+    memset(m->seen, 0, sizeof m->seen);
     memset(c->peak_x, 0, sizeof c->peak_x);
     memset(c->peak_u, 0, sizeof c->peak_u);
     c->segment = bg_signals_segment(signals, c->t);

@@ -114,6 +114,7 @@ typedef struct {
     int mode[BG_ROOM(BG_FRICTION)], started, where;
     bg_fastest fastest;
     bg_values now;
+    double seen[BG_SIZE]; /* the largest magnitudes of s at starts of steps: what it rounds by */
     double du[BG_ROOM(BG_INPUTS)], caps[BG_ROOM(BG_FRICTION)], constants[BG_ROOM(BG_CONSTANTS)];
     bg_numbers numbers;
     bg_hold holds[BG_HOLDS];

@@ -25,6 +25,7 @@ int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w)
         return BG_BAD_STEP;
     if (K == 0)
         return BG_OK;
+    bg_have_seen(m, s);
     if (BG_RATED)
         external_rates(h, w, m->work.rates);
     status = bg_stick(m, t, h, s, w);
