@@ -20,7 +20,8 @@ import floor
 
 import bondgraph as bg
 import codegen
-from codegen.engine.runs import Prepared, Status
+from codegen.engine.runs import Prepared
+from codegen.engine.status import Status
 from codegen.runs.arguments import initial_values, signals_for
 from differentials.scenarios import Prepared as Case
 from differentials.scenarios import prepared
@@ -110,7 +111,7 @@ def engine_run(simulator: codegen.Simulator, case: Case) -> Prepared:
 
 def often(ready: Prepared, anew: int) -> None:
     """Runs in one call of the engine."""
-    if ready.engine.library.bg_run_often(*ready.arguments, OFTEN, anew) != Status.OK:
+    if ready.engine.library.ex_run_often(*ready.arguments, OFTEN, anew) != Status.OK:
         raise RuntimeError("the engine did not run")
 
 

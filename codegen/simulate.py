@@ -15,7 +15,8 @@ from codegen.energy.ledger import Ledger
 from codegen.engine.fallback import Stopped, tell
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
-from codegen.engine.runs import CRuns, Status
+from codegen.engine.runs import CRuns
+from codegen.engine.status import Status
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
@@ -23,7 +24,6 @@ from codegen.model.doubts import warn_of_doubts
 from codegen.model.sources import source_signals
 from codegen.modes.choose import decide
 from codegen.modes.closed import ClosedModel
-from codegen.modes.pace import LOOK_AHEAD
 from codegen.modes.rounding import Peaks
 from codegen.numbers.arrays import Array, is_finite, is_number
 from codegen.program.lower import lower
@@ -44,6 +44,7 @@ from codegen.runs.hybrid import run_hybrid
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.methods import EXACT
 from codegen.runs.track import Settings, Track
+from codegen.tuning import TUNING
 
 BACKENDS = ("numpy", "c")
 """What runs models."""
@@ -91,7 +92,7 @@ class Simulator:
         with np.errstate(all="ignore"):
             peaks.see(self.closed, t, s, pieces, slipping)
             mode = decide(
-                self.closed, t, s, pieces, slipping, frozenset(), LOOK_AHEAD * 1e-3, peaks
+                self.closed, t, s, pieces, slipping, frozenset(), TUNING.look_ahead * 1e-3, peaks
             )
             now = self.closed.at(t, s, pieces, mode)
         n = len(self.closed.program.states)

@@ -10,7 +10,6 @@ from bondgraph.errors import SimulationError
 from codegen.c.runtime import runtime_file
 from codegen.engine.build import FLAGS, compiled, loaded
 from codegen.engine.sizes import Engine, Sizes, aligned, declarations, engine_declarations, sources
-from codegen.program.records import Program
 
 FILES = (
     "batch.h", "batch_internal.h", "batch.c", "batch_advance.c", "batch_doubt.h", "batch_gauss.h",
@@ -32,37 +31,23 @@ SQUARES = 4
 """Matrices that integrals are worked out in."""
 
 
-def batch_engine(
-    model: Mapping[str, str], program: Program, wanted: Sizes, flags: tuple[str, ...] = FLAGS
-) -> Engine:
+def batch_engine(model: Mapping[str, str], wanted: Sizes, flags: tuple[str, ...] = FLAGS) -> Engine:
     """The library for a model that `codegen.to_c` wrote, compiled if need be."""
     files = {**model, **sources(), **{name: runtime_file(name) for name in FILES}}
-    files["config.h"] = _config(model["config.h"], program, wanted)
+    files["config.h"] = model["config.h"] + wanted.config
     library = compiled(files, flags)
     numbers = wanted.numbers
     text = engine_declarations(numbers)
     shared = {"MODES": min(numbers["MODES"], MOST_MODES), "STRIDE": STRIDE, "SQUARES": SQUARES}
     text += declarations("batch_measure.h", {}) + declarations("batch.h", shared, "BATCH")
     for name in ("MODES", "ROW", "L"):
-        text = text.replace(f"[BG_{name}]", f"[{numbers[name]}]")
+        text = text.replace(f"[EX_{name}]", f"[{numbers[name]}]")
     ffi, opened = loaded(library, text)
     found = ffi.new("unsigned long[5]")
     opened.batch_sizes(found)
     if ffi.sizeof("batch_room") != found[0]:
         raise SimulationError(f"the library {library} was compiled for other sizes; delete it")
     return Engine(wanted, ffi, opened)
-
-
-def _config(model: str, program: Program, wanted: Sizes) -> str:
-    """Both headers in one: the names of the engine's sizes are not those of the model's."""
-    shared = {
-        "STATES": len(program.states), "LAW_STATES": len(program.law_states),
-        "INPUTS": len(program.inputs), "EXTERNAL": len(program.external),
-        "READINGS": len(program.readings), "PARAMETERS": len(program.parameters),
-    }  # fmt: skip
-    lines = ",\n".join(f"    BATCH_{name} = {value}" for name, value in shared.items())
-    batch = f"#ifndef BATCH_SIZES_H\n#define BATCH_SIZES_H\nenum {{\n{lines}\n}};\n#endif\n"
-    return f"#ifdef BG_ENGINE_H\n{wanted.config}{batch}#else\n{model}#endif\n"
 
 
 @dataclass

@@ -45,7 +45,7 @@ def varied(
     # Results of indexing need not lie in memory run by run.
     own = {name: np.ascontiguousarray(array) for name, array in own.items()}
     for name, array in own.items():
-        at = engine.ffi.offsetof("bg_inputs", name)
+        at = engine.ffi.offsetof("ex_inputs", name)
         addresses = array.ctypes.data + array[0].nbytes * np.arange(count, dtype=np.uintp)
         records[:, at : at + addresses.itemsize] = addresses[:, None].view(np.uint8)
     pointers[:] = records.ctypes.data + len(record) * np.arange(count, dtype=np.uintp)

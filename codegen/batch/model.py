@@ -49,7 +49,7 @@ class BatchModel:
         wanted = sizes(self.closed, slots)
         with self._lock:
             if wanted.G not in self._engines:
-                self._engines[wanted.G] = batch_engine(self._sources, self.program, wanted)
+                self._engines[wanted.G] = batch_engine(self._sources, wanted)
             return self._engines[wanted.G]
 
 

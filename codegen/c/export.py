@@ -10,7 +10,7 @@ from codegen.c.blocks import function, operations, places
 from codegen.c.prefix import external_symbols, renamed
 from codegen.c.rates import plain_rates, straight_rates
 from codegen.c.rhs import straight
-from codegen.c.runtime import runtime_file
+from codegen.c.runtime import runtime_file, runtime_names
 from codegen.c.scenario import scenario_text
 from codegen.c.structure import structures
 from codegen.c.tables import config, group_tables, name_tables, program_tables, structure_table
@@ -21,23 +21,15 @@ from codegen.program.lower import lower
 from codegen.program.records import Block, Program
 from codegen.runs.arguments import initial_values, signals_for
 from codegen.runs.steps import step_at_start
+from codegen.tuning import tuning_text
 
-STEPPED = (
-    "model_runtime.h", "model_internal.h", "model_linear.c", "model_numbers.c",
-    "model_independent.c", "model_hold.c", "model_ruling.h", "model_ruling.c", "bg_choose.h", "bg_choose.c",
-    "model_share.c", "model_roots.c", "model_loops.c", "model_level.c", "model_evaluate.c",
-    "model_instance.c", "model_region.c", "model_slope.c", "model_fastest.c", "model_stick.c", "model_step.c",
-    "model_signals.h", "model_signals.c",
-)  # fmt: skip
+STEPPED = (*runtime_names("model"), *runtime_names("ports"), *runtime_names("run"))
 """What is the same for every model."""
 
-LOCATED = (
-    "model_request.h", "model_located.h", "model_located_internal.h", "model_located.c",
-    "model_rounding.c", "model_progress.c", "model_decide.c",
-    "bg_events.h", "bg_events.c", "bg_rounds.h", "bg_rounds.c",
-    "model_watch.c", "model_solver.c", "model_explicit_table.h", "model_explicit.c",
-    "model_implicit.c",
-)  # fmt: skip
+CALLING = ("located_rows.h", "located_rows.c")
+"""What calls a model for a table of a run."""
+
+LOCATED = tuple(name for name in runtime_names("located") if name not in CALLING)
 """What event-located runs need beside that."""
 
 _HEAD = """\
@@ -169,7 +161,8 @@ def texts(
         *(straight_rates(program, fast) if fast else plain_rates()),
     ]
     sizes = config(program, fast, name, macros, longest)
-    return {"config.h": sizes, "model.c": "\n".join(lines) + "\n", **runtime}
+    model = {"config.h": sizes, "tuning.h": tuning_text(), "model.c": "\n".join(lines) + "\n"}
+    return {**model, **runtime}
 
 
 def stepped(files: Mapping[str, str]) -> dict[str, str]:

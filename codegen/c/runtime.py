@@ -1,8 +1,25 @@
-"""The hand-written C that every model comes with."""
+"""The hand-written C: its files by folder, each under a name of its own, as exports lie flat."""
 
+from functools import cache
 from importlib.resources import files
 
+FOLDERS = ("model", "ports", "run", "located", "exact", "batch", "fmu")
+"""Of `codegen/runtime`: what each may use comes before it, but that ``exact`` uses no ``located``."""
 
+
+SHARED = ("port_choose.h", "port_choose.c", "port_events.h", "port_events.c", "port_rounding.h")
+"""Of ``ports`` what needs no model."""
+
+
+@cache
+def runtime_names(folder: str) -> tuple[str, ...]:
+    """The files of a folder, in alphabetical order."""
+    found = files("codegen").joinpath("runtime", folder).iterdir()
+    return tuple(sorted(one.name for one in found if one.name.endswith((".c", ".h"))))
+
+
+@cache
 def runtime_file(name: str) -> str:
-    """The text of a hand-written file."""
-    return files("codegen").joinpath("runtime", name).read_text(encoding="utf-8")
+    """The text of a file, whatever folder it is in."""
+    folder = next((one for one in FOLDERS if name in runtime_names(one)), ".")
+    return files("codegen").joinpath("runtime", folder, name).read_text(encoding="utf-8")

@@ -11,6 +11,7 @@ import numpy as np
 import scipy.linalg
 
 from codegen.numbers.arrays import Array
+from codegen.tuning import TUNING
 
 POINTS = 8
 """Of Gauss's formula: exact to degree 15, twice that of any method's interpolant."""
@@ -18,9 +19,6 @@ POINTS = 8
 _roots, _weights = np.polynomial.legendre.leggauss(POINTS)
 NODES: Array = (_roots + 1) / 2
 WEIGHTS: Array = _weights / 2
-
-DEGREE = 18
-"""Of the power series; over a step of ``|M| h <= 1`` what is left out is below rounding."""
 
 ROOM = 1 << 22
 """So many numbers are worked on at once."""
@@ -69,7 +67,7 @@ def gauss_sum(values: Array, length: float) -> Array:
 def _short(rows: Rows, z: Array, lengths: Array) -> Array:
     """Steps of ``|M| h <= 1``, by the power series at Gauss's nodes."""
     terms = [z]
-    for k in range(1, DEGREE + 1):
+    for k in range(1, TUNING.degree + 1):
         terms.append((terms[-1] @ rows.M.T) * (lengths[:, None] / k))
     total = np.zeros((len(z), len(rows.one)))
     for node, weight in zip(NODES.tolist(), WEIGHTS.tolist(), strict=True):
@@ -116,6 +114,6 @@ def _between(W: Array, growth: Array) -> Array:
 def _growth(B: Array) -> Array:
     """``exp(B) - 1`` of a small matrix."""
     total = np.zeros_like(B)
-    for k in range(DEGREE, 0, -1):
+    for k in range(TUNING.degree, 0, -1):
         total = (np.eye(len(B)) + total) @ B / k
     return total

@@ -108,7 +108,7 @@ class Packed:
     """
 
     def __init__(self, engine: Engine, made: Segments) -> None:
-        self.record = engine.new("bg_inputs")
+        self.record = engine.new("ex_inputs")
         ffi, sizes = engine.ffi, engine.sizes
         self._kept: list[Any] = []
         self._structures(engine, made)
@@ -139,7 +139,7 @@ class Packed:
         self.record.segments = count
 
     def _structures(self, engine: Engine, made: Segments) -> None:
-        records = engine.ffi.new("bg_chains[]", len(made.structures))
+        records = engine.ffi.new("ex_chains[]", len(made.structures))
         for record, chains in zip(records, made.structures, strict=True):
             first = np.cumsum([0, *map(_slots, chains)]).tolist()
             record.count = len(chains)

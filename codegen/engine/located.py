@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from bondgraph.errors import SimulationError
-from codegen.c.export import texts
+from codegen.c.export import CALLING, texts
 from codegen.c.runtime import runtime_file
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
 from codegen.engine.fallback import Stopped
 from codegen.engine.runs import KINDS, not_affine
 from codegen.engine.sizes import aligned, declarations
+from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
 from codegen.inputs.tables import SignalTable, signal_table
 from codegen.modes.closed import ClosedModel
@@ -22,16 +23,13 @@ from codegen.record.snapshots import Snapshots
 from codegen.runs.track import Event, Settings
 
 FILES = (
-    "model_rows.h", "model_rows.c", "bg_extremes.h", "batch_measure.h", "batch_measure.c",
+    *CALLING, "batch_measure.h", "batch_measure.c",
     "batch_doubt.h", "batch_gauss.h", "batch_located.h", "batch_located.c",
 )  # fmt: skip
 """What calls a model: once for a table of a run, or once for many runs."""
 
 METHODS = ("auto", "DOP853", "Radau")
-"""In the order of ``model_located.h``."""
-
-EVENTS_STATUS = 15
-"""Of `bg_model_run`: more events than there is room for."""
+"""In the order of ``located_request.h``."""
 
 FEW, MANY = 256, 1 << 20
 """Events there is room for at first, and at most."""
@@ -121,8 +119,8 @@ class LocatedRuns:
         ffi, library = self.library.opened
         inputs, kept = packed_signals(ffi, table)
         instance, run = self._rooms
-        status, room = EVENTS_STATUS, FEW
-        while status == EVENTS_STATUS and room <= MANY:
+        status, room = int(Status.EVENTS), FEW
+        while status == Status.EVENTS and room <= MANY:
             events = ffi.new("bg_event[]", room)
             asked.events, asked.capacity = events, room
             status = library.bg_rows_run(
@@ -134,7 +132,7 @@ class LocatedRuns:
         del kept
         if status != 0:
             reason = ffi.string(library.bg_model_message(status)).decode()
-            return Stopped(reason, float(asked.time), status == EVENTS_STATUS)
+            return Stopped(reason, float(asked.time), status == Status.EVENTS)
         names = [port.name for port in self.model.program.friction]
         return tuple(Event(e.time, names[e.port], KINDS[e.kind]) for e in events[0 : asked.count])
 
@@ -192,7 +190,7 @@ def _declared() -> str:
     """What is called; records that only C looks into have names alone."""
     own = "".join(f"typedef struct {n} {n};\n" for n in ("bg_model", "bg_located", "bg_snapshot"))
     headers = (
-        "bg_events.h", "model_signals.h", "model_request.h", "model_rows.h", "batch_measure.h",
+        "port_events.h", "model_signals.h", "located_request.h", "located_rows.h", "batch_measure.h",
         "batch_located.h",
     )  # fmt: skip
     own += "const char *bg_model_message(int status);\n"

@@ -31,13 +31,13 @@ class Tables:
 
     def __init__(self, engine: Engine, model: ClosedModel) -> None:
         self.engine, self.model = engine, model
-        self.record = engine.new("bg_model")
+        self.record = engine.new("ex_model")
         self._modes: dict[int, Any] = {}
         self._magnitudes()
 
     def supply(self, number: int) -> None:
         """Work out a mode."""
-        made = self.engine.new("bg_mode")
+        made = self.engine.new("ex_mode")
         mode, inputs = mode_of(number, self.engine.sizes.K), len(self.model.program.external)
         try:
             affine = self.model.affine_map(mode, inputs)

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from enum import IntEnum
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from codegen.engine.fallback import Stopped
 from codegen.engine.inputs import Packed, Segments, segments
 from codegen.engine.modes import Tables, mode_of
 from codegen.engine.sizes import MOST_PORTS, Engine, aligned, engine, sizes
+from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
@@ -27,37 +27,20 @@ CAPACITY = 256
 """Events there is room for at first."""
 
 
-class Status(IntEnum):
-    """How a run of the engine ended; see ``bg_engine.h``."""
-
-    OK = 0
-    MISSING = 1
-    UNSUPPORTED = 2
-    NEGATIVE = 3
-    UNDECIDED = 4
-    STALLS = 5
-    STIFF = 6
-    FULL = 7
-    WORK = 8
-    UNUSABLE = 9
-    BLUNT = 10
-    ENDLESS = 11
-
-
 MEANINGS = {
-    Status.UNSUPPORTED: "a friction mode is not one affine map",
+    Status.NOT_AFFINE: "a friction mode is not one affine map",
     Status.NEGATIVE: "a friction level falls below zero",
     Status.UNDECIDED: "no way of sticking and slipping is consistent",
     Status.STALLS: "events follow one another and time makes no progress",
     Status.STIFF: "time constants are too short for the span",
-    Status.FULL: "more events than there is room for",
+    Status.EVENTS: "more events than there is room for",
     Status.WORK: "the search for an event has no end",
-    Status.UNUSABLE: "a number is not finite",
+    Status.NOT_FINITE: "a number is not finite",
     Status.ENDLESS: "it would take too many steps to look for events in",
 }
-"""What each status says but `Status.OK`, and `Status.MISSING` and `Status.BLUNT`, which ask for more."""
+"""What a run of the engine says beside `Status.MISSING` and `Status.BLUNT`, which ask for more."""
 
-LIMITS = frozenset({Status.UNSUPPORTED, Status.STIFF, Status.FULL, Status.WORK})
+LIMITS = frozenset({Status.NOT_AFFINE, Status.STIFF, Status.EVENTS, Status.WORK})
 """What is no fault of a model: C alone cannot go on."""
 
 
@@ -98,7 +81,7 @@ class Prepared:
 
     def __post_init__(self) -> None:
         ffi = self.engine.ffi
-        self.task = self.engine.new("bg_task")
+        self.task = self.engine.new("ex_task")
         width = self.engine.sizes.numbers["ROW"]
         self.task.times = ffi.cast("double *", self.times.ctypes.data)
         self.task.start = ffi.cast("double *", self.start.ctypes.data)
@@ -111,12 +94,12 @@ class Prepared:
         """Run, as often as it takes to supply modes and room for events."""
         library, arguments = self.engine.library, self.arguments
         while True:
-            status = Status(library.bg_run(*arguments))
+            status = Status(library.ex_run(*arguments))
             if status == Status.MISSING:
                 self.tables.supply(self.task.where)
             elif status == Status.BLUNT:
                 self.tables.sharpen(self.task.where)
-            elif status == Status.FULL:
+            elif status == Status.EVENTS:
                 self.capacity *= 8
                 self._room()
             else:

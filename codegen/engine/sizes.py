@@ -4,16 +4,16 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
 
 from bondgraph.errors import SimulationError
-from codegen.c.runtime import runtime_file
+from codegen.c.runtime import SHARED, runtime_file, runtime_names
 from codegen.engine.build import FLAGS, compiled, loaded
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
+from codegen.tuning import tuning_text
 
 MOST_PORTS = 6
 """Friction ports; a mode's place in the table is one of three to this power."""
@@ -40,8 +40,8 @@ class Sizes:
     def config(self) -> str:
         """The generated header."""
         named = {**vars(self), "MODES": 3**self.K}
-        lines = ",\n".join(f"    BG_{name} = {value}" for name, value in named.items())
-        guard = "#ifndef BG_SIZES_H\n#define BG_SIZES_H\n"
+        lines = ",\n".join(f"    EX_{name} = {value}" for name, value in named.items())
+        guard = "#ifndef EXACT_SIZES_H\n#define EXACT_SIZES_H\n"
         return f"/* The sizes of one model. */\n{guard}enum {{\n{lines}\n}};\n#endif\n"
 
     @property
@@ -84,18 +84,17 @@ class Engine:
     def context(self) -> tuple[Array, Any]:
         """Room for runs, one at a time, and where it is."""
         room = self.ffi.new("unsigned long[5]")
-        self.library.bg_sizes(room)
+        self.library.ex_sizes(room)
         context = aligned(room[0] // 8 + 1)
-        pointer = self.ffi.cast("bg_context *", context.ctypes.data)
-        self.library.bg_forget(pointer)
+        pointer = self.ffi.cast("ex_context *", context.ctypes.data)
+        self.library.ex_forget(pointer)
         return context, pointer
 
 
 def sources() -> dict[str, str]:
     """The engine's files, name to text."""
-    folder = files("codegen") / "runtime"
-    found = [entry for entry in folder.iterdir() if entry.name.startswith("bg_")]
-    return {entry.name: entry.read_text(encoding="utf-8") for entry in found}
+    names = (*SHARED, *runtime_names("run"), *runtime_names("exact"))
+    return {"tuning.h": tuning_text(), **{name: runtime_file(name) for name in names}}
 
 
 @cache
@@ -104,8 +103,8 @@ def engine(wanted: Sizes, flags: tuple[str, ...] = FLAGS) -> Engine:
     library = compiled({**sources(), "config.h": wanted.config}, flags)
     ffi, opened = loaded(library, engine_declarations(wanted.numbers))
     expected = ffi.new("unsigned long[5]")
-    opened.bg_sizes(expected)
-    here = [ffi.sizeof(name) for name in ("bg_model", "bg_mode", "bg_chains")]
+    opened.ex_sizes(expected)
+    here = [ffi.sizeof(name) for name in ("ex_model", "ex_mode", "ex_chains")]
     if [*here, 8 * wanted.numbers["ROW"]] != list(expected)[1:]:
         raise SimulationError(f"the library {library} was compiled for other sizes; delete it")
     return Engine(wanted, ffi, opened)
@@ -127,10 +126,10 @@ def view(engine: Engine, field: Any, *shape: int) -> Array:
 
 def engine_declarations(numbers: Mapping[str, int]) -> str:
     """What the engine is asked with, as cffi reads it."""
-    return declarations("bg_events.h", {}) + declarations("bg_engine.h", numbers)
+    return declarations("port_events.h", {}) + declarations("exact.h", numbers)
 
 
-def declarations(header: str, numbers: Mapping[str, int], prefix: str = "BG") -> str:
+def declarations(header: str, numbers: Mapping[str, int], prefix: str = "EX") -> str:
     """A header as cffi reads it: without comments, and with its sizes as numbers."""
     text = runtime_file(header)
     text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)

@@ -16,7 +16,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import BondGraphError, SignalError
 from bondgraph.writing import write_bytes
 from codegen.c.export import exported, stepped
-from codegen.c.runtime import runtime_file
+from codegen.c.runtime import runtime_file, runtime_names
 from codegen.fmu.binaries import binaries, chosen_platforms, headers
 from codegen.fmu.model import FmuModel, config_text, model_text
 from codegen.fmu.switches import switching
@@ -35,22 +35,9 @@ from codegen.runs.steps import round_step, step_at_start
 from codegen.runs.track import Settings
 from codegen.simulate import Simulator, guarded_simulator
 
-_COMMON = (
-    "common.c",
-    "calls.c",
-    "sources.c",
-    "scales.c",
-    "modes.c",
-    "events.c",
-    "step.c",
-    "derive.c",
-)
-
-_SHARED = ("fmu_common.h", "fmu_ranges.h", *(f"fmu_{name}" for name in _COMMON))
-
 GLUE: Mapping[str, tuple[str, ...]] = {
-    "2.0": (*_SHARED, "fmu2.h", "fmu2.c", "fmu2_modes.c"),
-    "3.0": (*_SHARED, "fmu3.h", "fmu3.c", "fmu3_modes.c", "fmu3_refused.c"),
+    version: tuple(name for name in runtime_names("fmu") if not name.startswith(f"fmu{other}"))
+    for version, other in (("2.0", 3), ("3.0", 2))
 }
 """C sources that are the same for every unit, by FMI version."""
 

@@ -7,9 +7,7 @@ import numpy as np
 
 from codegen.numbers.arrays import Array
 from codegen.numbers.roots import root
-
-NARROW = 2.0**-44
-"""Intervals are not divided further."""
+from codegen.tuning import TUNING
 
 
 @cache
@@ -44,7 +42,7 @@ def first_fall(powers: Array, begin: float = 0.0) -> float | None:
         if (np.diff(shape) >= 0).all():
             # It rises all the way: it was not above zero at the left end, where a fall would have ended.
             continue
-        if high - low <= NARROW:
+        if high - low <= TUNING.narrow:
             if shape[-1] <= 0:
                 return high
             continue

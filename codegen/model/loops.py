@@ -9,9 +9,7 @@ from bondgraph.errors import SimulationError
 from codegen.model.instant import Instant
 from codegen.numbers.arrays import Array
 from codegen.numbers.roots import root
-
-RESIDUAL = 1e-9
-"""A solution must satisfy its laws to this fraction of their magnitude."""
+from codegen.tuning import TUNING
 
 ITERATIONS = 60
 
@@ -36,7 +34,9 @@ def solve_loop(
     def left(values: Array) -> Array:
         now.u[:], now.y[:] = u, y
         now.give(columns, values, D)
-        return np.nan_to_num(residual(now), nan=1e300, posinf=1e300, neginf=-1e300)
+        return np.nan_to_num(
+            residual(now), nan=TUNING.huge, posinf=TUNING.huge, neginf=-TUNING.huge
+        )
 
     values, worst = searched(left, D[np.ix_(rows, columns)], y[list(rows)])
     if values is not None:
@@ -56,7 +56,9 @@ def searched(left: Residual, D: Array, open_y: Array) -> tuple[Array | None, flo
     worst = np.inf
     for values in _attempts(left, D, open_y):
         worst = float(np.abs(left(values)).max(initial=0.0))
-        if worst <= RESIDUAL * (1e-3 + float(np.abs(values).max(initial=0.0))):
+        if worst <= TUNING.residual * (
+            TUNING.residual_floor + float(np.abs(values).max(initial=0.0))
+        ):
             return values, worst
     return None, worst
 
@@ -97,7 +99,7 @@ def _newton(left: Residual, values: Array) -> Array:
             return values
         slopes = np.empty((len(values), len(values)))
         for j in range(len(values)):
-            step = 1e-7 * (abs(values[j]) + 1e-6)
+            step = TUNING.loop_difference * (abs(values[j]) + TUNING.loop_floor)
             moved = values.copy()
             moved[j] += step
             slopes[:, j] = (left(moved) - now) / step

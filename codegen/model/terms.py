@@ -6,18 +6,12 @@ from bondgraph.errors import SimulationError
 from codegen.model.instant import Binding, Instant
 from codegen.numbers.arrays import Array
 from codegen.program.records import Block, Program
-
-STEP = 2.0**-20
-"""Relative change of what a block reads; its effect, divided by it, is a term."""
-
-
-TOLERANCE = 1e-10
-"""Slips, efforts and levels count as zero below this fraction of the terms that make them up."""
+from codegen.tuning import TUNING
 
 
 def without_rounding(values: Array, terms: Array) -> Array:
     """Values of which those are zero that are below zero by no more than the rounding of their terms."""
-    return np.where((values < 0) & (values >= -TOLERANCE * terms), 0.0, values)
+    return np.where((values < 0) & (values >= -TUNING.rounding * terms), 0.0, values)
 
 
 class LevelTerms:
@@ -58,9 +52,9 @@ class LevelTerms:
         terms = np.abs(values)
         for at in self._binding.read(code):
             moved = pool.copy()
-            moved[at] += np.copysign(STEP * sizes[at], pool[at])
+            moved[at] += np.copysign(TUNING.term * sizes[at], pool[at])
             try:
-                change = np.abs(evaluate(moved) - values) / STEP
+                change = np.abs(evaluate(moved) - values) / TUNING.term
             except SimulationError:
                 continue
             terms += np.nan_to_num(change, nan=0.0, posinf=0.0)

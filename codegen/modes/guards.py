@@ -6,10 +6,10 @@ import numpy as np
 
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
-from codegen.model.terms import STEP, TOLERANCE
 from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks
 from codegen.numbers.arrays import Array
+from codegen.tuning import TUNING
 
 
 def guard_rounding(
@@ -36,17 +36,17 @@ def guard_rounding(
         sizes[:n] = np.where(sizes[:n] < 0, -1, 1) * np.maximum(np.abs(sizes[:n]), least)
     for j in np.flatnonzero(sizes):
         moved = s.copy()
-        moved[j] += STEP * sizes[j]
+        moved[j] += TUNING.term * sizes[j]
         change = model.guards(t, model.at(t, moved, pieces, mode)) - values
-        terms += np.nan_to_num(np.abs(change) / STEP, nan=0.0, posinf=0.0)
+        terms += np.nan_to_num(np.abs(change) / TUNING.term, nan=0.0, posinf=0.0)
     w = np.array([piece(t) for piece in pieces])
     for j in np.flatnonzero(w):
         given = w.copy()
-        given[j] *= 1 + STEP
+        given[j] *= 1 + TUNING.term
         change = model.guards(t, model.evaluate(t, s, given, np.zeros(len(w)), mode)) - values
-        terms += np.nan_to_num(np.abs(change) / STEP, nan=0.0, posinf=0.0)
+        terms += np.nan_to_num(np.abs(change) / TUNING.term, nan=0.0, posinf=0.0)
     late = 16 * np.spacing(abs(t)) * _slopes(model, t, s, pieces, mode)
-    return np.asarray(TOLERANCE * terms + late + np.finfo(float).tiny, dtype=float)
+    return np.asarray(TUNING.rounding * terms + late + np.finfo(float).tiny, dtype=float)
 
 
 def _slopes(model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode) -> Array:

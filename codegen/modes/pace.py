@@ -3,17 +3,7 @@
 So a run gives the same events however far it goes: what is told of an instant rests on what led to it.
 """
 
-SLOWEST = 100.0
-"""Rate [1/s] below which nothing is called fast while a run is young."""
-
-LOOK_AHEAD = 1e-4
-"""Ties are decided this fraction of the system's shortest time constant later."""
-
-COARSEST = 20.0
-"""No step is longer than what went before, or a second, divided by this."""
-
-STALLED = 60
-"""So many events in a row are a run that goes nowhere, if they are hardly apart."""
+from codegen.tuning import TUNING
 
 
 def time_constant(fastest: float, elapsed: float) -> float:
@@ -24,7 +14,7 @@ def time_constant(fastest: float, elapsed: float) -> float:
     >>> time_constant(1e3, 10.0), time_constant(0.0, 0.0), time_constant(0.0, 500.0)
     (0.001, 0.01, 5.0)
     """
-    return 1 / max(fastest, SLOWEST / max(elapsed, 1.0))
+    return 1 / max(fastest, TUNING.slowest / max(elapsed, 1.0))
 
 
 def look_ahead(time: float, t: float, following: float) -> float:
@@ -33,17 +23,17 @@ def look_ahead(time: float, t: float, following: float) -> float:
     >>> round(look_ahead(0.01, 1.0, 2.0), 9), look_ahead(1e4, 1.0, 2.0)
     (1e-06, 0.5)
     """
-    return min(LOOK_AHEAD * time, 0.5 * (following - t))
+    return min(TUNING.look_ahead * time, 0.5 * (following - t))
 
 
 def moment(time: float) -> float:
     """A time [s] too short to matter, in which what starts from complete rest gets going."""
-    return LOOK_AHEAD * min(time, 1 / SLOWEST)
+    return TUNING.look_ahead * min(time, 1 / TUNING.slowest)
 
 
 def hardly_apart(time: float) -> float:
-    """Within this time [s] as many events as `STALLED` are a run that goes nowhere."""
-    return 2 * STALLED * moment(time)
+    """Within this time [s] as many events as `TUNING.stalled` are a run that goes nowhere."""
+    return 2 * TUNING.stalled * moment(time)
 
 
 def longest_step(elapsed: float) -> float:
@@ -52,4 +42,4 @@ def longest_step(elapsed: float) -> float:
     >>> longest_step(0.0), longest_step(500.0)
     (0.05, 25.0)
     """
-    return max(elapsed, 1.0) / COARSEST
+    return max(elapsed, 1.0) / TUNING.coarsest

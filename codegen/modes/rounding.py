@@ -7,14 +7,11 @@ import numpy as np
 
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
-from codegen.model.terms import TOLERANCE
 from codegen.modes.closed import ClosedModel
 from codegen.modes.sizes import input_terms
 from codegen.modes.trials import evaluated
 from codegen.numbers.arrays import Array
-
-ROUNDING = 1e-4
-"""A little later, an acceleration above this fraction of what counts as zero is a real one."""
+from codegen.tuning import TUNING
 
 
 @dataclass
@@ -56,7 +53,7 @@ def scales(model: ClosedModel, now: Snapshot, t: float = 0.0, peaks: Peaks | Non
     readings, numbers = model.friction_readings, now.numbers
     peaks = peaks or Peaks.none(model)
     x, u = np.maximum(np.abs(now.x), peaks.x), np.maximum(np.abs(now.u), peaks.u)
-    late = 16 * np.spacing(abs(t)) * np.abs(slip_rates(model, now))
+    late = TUNING.late * np.spacing(abs(t)) * np.abs(slip_rates(model, now))
     slip = np.abs(numbers.F[readings]) @ x + np.abs(numbers.D[readings]) @ u
     # At rest states are rounding themselves: of what moves them within a time constant.
     x = np.maximum(x, peaks.time * (np.abs(numbers.P) @ x + np.abs(numbers.Q) @ u))
@@ -71,9 +68,9 @@ def scales(model: ClosedModel, now: Snapshot, t: float = 0.0, peaks: Peaks | Non
     driven = np.divide(moved, inertia, out=np.zeros_like(moved), where=inertia > 0)
     tiny = np.finfo(float).tiny
     return Scales(
-        TOLERANCE * (slip + moved * peaks.time) + late + tiny,
-        TOLERANCE * (efforts + driven) + tiny,
-        TOLERANCE * 10 * moved + tiny,
+        TUNING.rounding * (slip + moved * peaks.time) + late + tiny,
+        TUNING.rounding * (efforts + driven) + tiny,
+        TUNING.rounding * TUNING.pushes * moved + tiny,
     )
 
 

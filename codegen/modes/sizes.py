@@ -7,9 +7,9 @@ import numpy as np
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import INPUTS, Mode
-from codegen.model.terms import STEP
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
+from codegen.tuning import TUNING
 
 
 def input_terms(
@@ -30,9 +30,9 @@ def input_terms(
     terms = np.abs(now.u)
     for j in np.flatnonzero(s):
         moved = s.copy()
-        moved[j] *= 1 + STEP
+        moved[j] *= 1 + TUNING.term
         try:
-            change = np.abs(model.at(t, moved, pieces, mode).u - now.u) / STEP
+            change = np.abs(model.at(t, moved, pieces, mode).u - now.u) / TUNING.term
         except SimulationError:
             continue
         terms += np.nan_to_num(change, nan=0.0, posinf=0.0)

@@ -15,6 +15,7 @@ from bondgraph.errors import SimulationError
 from codegen.model.snapshot import RATE, Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
+from codegen.tuning import TUNING
 
 REAL_LIMIT, IMAGINARY_LIMIT = 2.785293563405282, 2.0 * math.sqrt(2.0)
 """How far the stable part of the negative real axis and of the imaginary one reaches."""
@@ -24,9 +25,6 @@ NEAREST, FARTHEST = 2.6156, 2.9603
 
 ALL_SIGNS = 3
 """Up to so many friction ports every mode is looked at; of more, every set that sticks."""
-
-DIFFERENCE, FARTHER = 1e-7, 8.0
-"""Of the states' magnitudes; a second one so many times as large must find a slope of like size."""
 
 
 def stable_step(rate: complex) -> float:
@@ -40,7 +38,7 @@ def stable_step(rate: complex) -> float:
     if rate.real >= 0:
         return IMAGINARY_LIMIT / abs(rate.imag) if rate.imag else math.inf
     ray = rate / abs(rate)
-    low, high = NEAREST - 1e-3, FARTHEST + 1e-3
+    low, high = NEAREST - TUNING.bracket, FARTHEST + TUNING.bracket
     for _ in range(50):
         middle = (low + high) / 2
         z = middle * ray
@@ -113,6 +111,6 @@ def _slope(rates: Callable[[Array], Array], s: Array, base: Array, j: int) -> Ar
         finite = [side for side in sides if np.isfinite(side).all()] or sides
         return np.asarray(np.mean(finite, axis=0), dtype=float)
 
-    step = DIFFERENCE * (1 + abs(float(s[j])))
-    near, far = at(step), at(FARTHER * step)
+    step = TUNING.difference * (1 + abs(float(s[j])))
+    near, far = at(step), at(TUNING.farther * step)
     return np.zeros_like(near) if np.abs(far).max() < 0.5 * np.abs(near).max() else near

@@ -7,14 +7,9 @@ import numpy as np
 
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.rounding import ROUNDING, Scales, slip_rates
+from codegen.modes.rounding import Scales, slip_rates
 from codegen.numbers.arrays import Array
-
-SEEN = 1e-2
-"""A slip that efforts change at once moves if it does by this fraction of what counts as zero."""
-
-LEFT = 10.0
-"""Slips that sources rule have left zero at so many times what counts as zero."""
+from codegen.tuning import TUNING
 
 NOTHING: Array = np.zeros(0)
 
@@ -52,11 +47,11 @@ class Look:
             return 1 if then.margin(port) >= -self.size.effort[port] else -1
         if self.model.coupled_directly(port):
             moved = sign * (then.slip(port) - self.slip(port))
-            if abs(moved) > SEEN * self.size.slip[port]:
+            if abs(moved) > TUNING.seen * self.size.slip[port]:
                 return 1 if moved > 0 else -1
             if pushed := _sign(sign * self.rates[port], self.size.acceleration[port]):
                 return pushed
-        rounding = ROUNDING * self.size.acceleration[port]
+        rounding = TUNING.moving * self.size.acceleration[port]
         moving = sign * then.rates[port] > rounding
         return 1 if moving or sign * then.slip(port) > self.size.slip[port] else -1
 
@@ -103,7 +98,7 @@ def ruled_out_later(look: Look, later: Snapshot) -> str | None:
     """The same from a little later, where the instant itself is a tie."""
     slips, _, near, slow = look.ruled
     then, rates, *_ = Look(look.model, look.mode, later, look.size).ruled
-    moved = (np.abs(then - slips) > ROUNDING * near) | (np.abs(rates) > ROUNDING * slow)
+    moved = (np.abs(then - slips) > TUNING.moving * near) | (np.abs(rates) > TUNING.moving * slow)
     return "a slip that only sources rule is about to leave zero" if moved.any() else None
 
 
@@ -112,7 +107,7 @@ def room(look: Look, slips: Array) -> Array:
     rows, (*_, near, _) = look.ruling, look.ruled
     result = np.ones(slips.shape)
     for row, least in zip(rows, near, strict=True):
-        left = 1 - np.minimum(np.abs(slips @ row) / (LEFT * least), 2.0)
+        left = 1 - np.minimum(np.abs(slips @ row) / (TUNING.left * least), 2.0)
         for i in np.flatnonzero(row):
             result[:, i] = np.minimum(result[:, i], left)
     return result

@@ -3,10 +3,9 @@
 import sys
 from collections.abc import Callable
 
-EPSILON = sys.float_info.epsilon
+from codegen.tuning import TUNING
 
-LEAST = 1e-30
-"""The part of the first interval below which nothing is divided further, where a root is at 0."""
+EPSILON = sys.float_info.epsilon
 
 SLOW = 3
 """After so many steps in which the interval was not halved, it is."""
@@ -28,7 +27,7 @@ def root(f: Callable[[float], float], a: float, b: float) -> float:
     at_a, at_b, share, slow = f(a), f(b), 0.5, 0
     if at_a == 0:
         return a
-    floor = LEAST * abs(b - a) + sys.float_info.min
+    floor = TUNING.least_interval * abs(b - a) + sys.float_info.min
     while at_b != 0:
         width = abs(b - a)
         t = a + share * (b - a)

@@ -17,6 +17,7 @@ from codegen.ports.friction import Hold, SlopeNeededError, hold
 from codegen.ports.sharing import fair_share
 from codegen.ports.slips import slip_rows
 from codegen.program.records import Program
+from codegen.tuning import TUNING
 
 
 class Rubbing:
@@ -105,7 +106,7 @@ class Rubbing:
         self, t: float, levels: Array, caps: Array, curves: Array, at_rest: Array
     ) -> None:
         """Refuse friction that would drive, or hold less than it brakes at standstill."""
-        wrong = (levels < 0) | (curves < 0) | (caps < levels * at_rest * (1 - 1e-12))
+        wrong = (levels < 0) | (curves < 0) | (caps < levels * at_rest * (1 - TUNING.breakaway))
         if wrong.any():
             at = int(np.argmax(wrong))
             raise SimulationError(
@@ -117,7 +118,9 @@ class Rubbing:
     def _check_differentiable(self, found: Hold) -> None:
         """Refuse to stick where the slope of a law that the system rules would be needed."""
         allowed = {*self._outside, *self._program.known.inputs, *self._inputs}
-        for column in np.flatnonzero(np.abs(found.V).max(axis=0, initial=0.0) > 1e-12):
+        for column in np.flatnonzero(
+            np.abs(found.V).max(axis=0, initial=0.0) > TUNING.nothing_held
+        ):
             if column not in allowed:
                 names = ", ".join(repr(self._program.friction[i].name) for i in found.ports)
                 raise SlopeNeededError(

@@ -12,11 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codegen.numbers.arrays import Array
+from codegen.tuning import TUNING
 
 Places = NDArray[np.intp]
-
-NOTHING = 1e-11
-"""Entries below this fraction of the largest are rounding."""
 
 
 def fair_share(efforts: Array, share: Array, caps: Array) -> Array:
@@ -29,15 +27,17 @@ def fair_share(efforts: Array, share: Array, caps: Array) -> Array:
     >>> fair_share(np.array([30.0, 0.0]), np.array([[1.0, -1.0]]), np.array([100.0, 200.0]))
     array([10., 20.])
     """
-    caps = np.maximum(caps, 1e-15 * np.abs(efforts).max(initial=0.0) + 1e-300)
+    caps = np.maximum(caps, TUNING.least_cap * np.abs(efforts).max(initial=0.0) + TUNING.tiny)
     efforts = np.array(efforts, dtype=float)
     while len(share):
-        least = NOTHING * np.abs(share).max()
+        least = TUNING.nothing * np.abs(share).max()
         moved = np.flatnonzero(np.abs(share).max(axis=0) > least)
         ports, fractions = _settled(efforts[moved], share[:, moved], caps[moved])
         ports = moved[ports]
         columns = share[:, ports].T
-        way = np.linalg.lstsq(columns, fractions * caps[ports] - efforts[ports], rcond=NOTHING)[0]
+        way = np.linalg.lstsq(
+            columns, fractions * caps[ports] - efforts[ports], rcond=TUNING.nothing
+        )[0]
         efforts += way @ share
         share = _unmoved(columns) @ share
     return efforts
@@ -52,10 +52,10 @@ def _settled(efforts: Array, share: Array, caps: Array) -> tuple[Places, Array]:
     _, sizes, right = np.linalg.svd(share[:, chosen].transpose(1, 0, 2))
     weights = np.zeros((len(chosen), count))
     np.put_along_axis(weights, chosen, right[:, -1], axis=1)
-    weights[np.abs(weights) <= NOTHING] = 0.0
+    weights[np.abs(weights) <= TUNING.nothing] = 0.0
     loads = weights @ efforts
     fractions = np.abs(loads) / (np.abs(weights) @ caps)
-    fractions[sizes[:, -1] <= NOTHING * sizes[:, 0]] = -1.0
+    fractions[sizes[:, -1] <= TUNING.nothing * sizes[:, 0]] = -1.0
     worst = int(np.argmax(fractions))
     ports = np.flatnonzero(weights[worst])
     signed: Array = fractions[worst] * np.sign(loads[worst]) * np.sign(weights[worst, ports])
@@ -65,6 +65,6 @@ def _settled(efforts: Array, share: Array, caps: Array) -> tuple[Places, Array]:
 def _unmoved(columns: Array) -> Array:
     """Combinations of directions that move none of these ports."""
     _, sizes, right = np.linalg.svd(columns)
-    rank = int((sizes > NOTHING * sizes[0]).sum())
+    rank = int((sizes > TUNING.nothing * sizes[0]).sum())
     found: Array = right[rank:]
     return found

@@ -9,9 +9,7 @@ import sympy as sp
 from bondgraph.algebra.expressions import TIME
 from bondgraph.errors import SimulationError
 from codegen.numbers.arrays import Array
-
-FAR = 2.0**30
-"""How far out affine models are probed; a power of two, so that dividing by it is exact."""
+from codegen.tuning import TUNING
 
 
 def is_affine(expressions: Iterable[sp.Expr], parameters: set[str]) -> bool:
@@ -90,7 +88,9 @@ def probed(point: Callable[[Array], list[Array]], length: int, rate: int) -> Aff
     parts = point(np.zeros(length))
     origin = np.concatenate(parts)
     # Far out the constant part of a law no longer swallows digits of its slope.
-    columns = [(np.concatenate(point(FAR * e)) - origin) / FAR for e in np.eye(length)]
+    columns = [
+        (np.concatenate(point(TUNING.far * e)) - origin) / TUNING.far for e in np.eye(length)
+    ]
     return AffineMap([len(part) for part in parts], np.column_stack([*columns, origin]), rate)
 
 

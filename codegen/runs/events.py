@@ -15,9 +15,7 @@ from codegen.modes.verdicts import Look, room
 from codegen.numbers.arrays import Array
 from codegen.numbers.roots import root
 from codegen.runs.track import Dense
-
-CHECKS = 6
-"""Points inside each step at which events are looked for."""
+from codegen.tuning import TUNING
 
 
 class Watch:
@@ -65,7 +63,7 @@ class Watch:
         """The first time in a step at which the mode ends, and the ports or guards that end it."""
         if not self._armed:
             return None
-        grid = np.linspace(t_old, t_new, CHECKS + 2).tolist()
+        grid = np.linspace(t_old, t_new, TUNING.checks + 2).tolist()
         values = [self._before, *self._series(grid[1:], dense)]
         self._before = values[-1]
         roots: dict[int, float] = {}
@@ -76,7 +74,7 @@ class Watch:
         if not roots:
             return None
         time = min(roots.values())
-        near = time + 1e-12 * max(abs(time), t_new - t_old)
+        near = time + TUNING.together * max(abs(time), t_new - t_old)
         return time, frozenset(i for i, root in roots.items() if root <= near)
 
     def _first_fall(

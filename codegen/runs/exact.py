@@ -14,23 +14,15 @@ from codegen.model.terms import without_rounding
 from codegen.modes.closed import ClosedModel
 from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks, scales
-from codegen.modes.verdicts import LEFT, Look
+from codegen.modes.verdicts import Look
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
 from codegen.runs.track import Ended, Track
-from codegen.runs.watched import DEGREE, Steps, exponential, lasting, series, watched
+from codegen.runs.watched import Steps, exponential, lasting, series, watched
+from codegen.tuning import TUNING
 
 MOST_LENGTHS = 8
 """So many different steps between samples each get an exponential of their own."""
-
-MANY = 300_000
-"""So many steps are always taken."""
-
-LEAST_PART = 0.01
-"""Of more steps: where a smaller part follows what has not decayed, step control is quicker."""
-
-MOST_STEPS = 1e9
-"""Some half an hour's; more are refused."""
 
 BLOCK = 256
 """So many steps are taken before events are looked for."""
@@ -56,7 +48,7 @@ class ExactLeg:
         size = scales(model, now, t, peaks)
         ruled = Look(model, mode, now, size).ruling.any(axis=0)
         limits = np.where((np.array(mode) == 0) & ~ruled, size.effort, size.slip)
-        rest = np.where(ruled, LEFT * size.slip, np.inf)
+        rest = np.where(ruled, TUNING.left * size.slip, np.inf)
         self._system = watched(model, affine, made, mode, len(s), rest)
         self._z = np.concatenate([s, made.start])
         self._blind = moment(peaks.time)
@@ -73,11 +65,11 @@ class ExactLeg:
         Raises `SimulationError` where there would be no end, of steps or of what step control has to follow.
         """
         steps = work = self.steps(stop)
-        if steps <= MANY:
+        if steps <= TUNING.many:
             return True
         if not exact:
-            work = min(steps, lasting(self._system.M, stop - self._t) / LEAST_PART)
-        if work <= MOST_STEPS:
+            work = min(steps, lasting(self._system.M, stop - self._t) / TUNING.least_part)
+        if work <= TUNING.most:
             return work == steps
         raise SimulationError(
             f"at t = {self._t:.9g} rates of the model or of its inputs reach "
@@ -184,7 +176,7 @@ class ExactLeg:
         if not len(self._limits):
             return None
         powers = np.einsum("krz,sz->srk", series, states)
-        least = (powers @ to_bernstein(DEGREE).T).min(axis=2)
+        least = (powers @ to_bernstein(TUNING.degree).T).min(axis=2)
         suspects = (least <= 0) | ~self._armed
         at = 0
         while at < len(states):
@@ -200,7 +192,7 @@ class ExactLeg:
                     roots[port] = min(root, roots.get(port, 2.0))
             if roots:
                 tau = min(roots.values())
-                near = tau + 1e-12 * max(1.0, (t + at * step) / step)
+                near = tau + TUNING.together * max(1.0, (t + at * step) / step)
                 return at, tau, frozenset(p for p, root in roots.items() if root <= near)
             at += 1
             suspects[at:] = (least[at:] <= 0) | ~self._armed
@@ -241,10 +233,10 @@ def _between(states: Array, series: Array, places: Array) -> Array:
 
 def _kinds(lengths: Array) -> int:
     """How many stretches of equal lengths there are."""
-    return 1 + int(np.count_nonzero(np.abs(np.diff(lengths)) > 1e-9 * lengths[1:]))
+    return 1 + int(np.count_nonzero(np.abs(np.diff(lengths)) > TUNING.alike * lengths[1:]))
 
 
 def _alike(lengths: Array, at: int) -> int:
     """How many steps from here on have the same length, but for the rounding of their ends."""
-    near = np.abs(lengths[at:] - lengths[at]) <= 1e-9 * lengths[at]
+    near = np.abs(lengths[at:] - lengths[at]) <= TUNING.alike * lengths[at]
     return int(np.argmin(near)) if not near.all() else len(near)

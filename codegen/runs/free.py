@@ -12,12 +12,10 @@ from codegen.numbers.pairs import Pair, matmul, pair, stacked
 from codegen.runs.ladder import Ladder, rows_by_doubling
 from codegen.runs.track import Ended, Track
 from codegen.runs.watched import balanced_norm
+from codegen.tuning import TUNING
 
 FEW = 3
 """Samples at equal distances from so many on are worth an exponential for the distance."""
-
-LARGE = 500
-"""Larger states than two to this power are scaled down: halves of doubles would overflow."""
 
 
 class FreeLeg:
@@ -44,7 +42,7 @@ class FreeLeg:
         # An event may lie a rounding behind a sample that shows the instant after it.
         points = np.maximum(np.append(times[first:last], stop), self._t)
         self._ladder.check(self._t, stop - self._t)
-        shrink = math.ldexp(1.0, min(0, LARGE - math.frexp(float(np.abs(self._z).max()))[1]))
+        shrink = math.ldexp(1.0, min(0, TUNING.large - math.frexp(float(np.abs(self._z).max()))[1]))
         rows = self._at(pair(self._z[None] * shrink), points)[:, : self._n] / shrink
         track.see(rows)
         track.vectors[first:last] = rows[:-1]

@@ -14,7 +14,7 @@ from codegen.model.snapshot import Mode
 from codegen.modes.choose import decide
 from codegen.modes.closed import ClosedModel
 from codegen.modes.guards import fallen_guards
-from codegen.modes.pace import STALLED, hardly_apart, look_ahead, time_constant
+from codegen.modes.pace import hardly_apart, look_ahead, time_constant
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.trials import evaluated
 from codegen.numbers.arrays import Array
@@ -23,9 +23,7 @@ from codegen.runs.free import FreeLeg
 from codegen.runs.legs import Leg
 from codegen.runs.methods import EXACT
 from codegen.runs.track import Accumulating, Event, Settings, Track
-
-ROUNDED = 1e4
-"""So many steps in double precision leave all digits that count, of slow motions beside fast ones, too."""
+from codegen.tuning import TUNING
 
 
 @dataclass(frozen=True)
@@ -95,7 +93,7 @@ class _Course:
         self._touched = frozenset[int]()
         self._settled: float | None = None
         self._before: list[Piece] | None = None
-        self._peaks, self._rounds = Peaks.none(model), deque[float](maxlen=STALLED)
+        self._peaks, self._rounds = Peaks.none(model), deque[float](maxlen=TUNING.stalled)
 
     @property
     def unfinished(self) -> bool:
@@ -190,7 +188,11 @@ class _Course:
             affine = model.affine_map(self.mode, len(pieces))
             if affine is not None:
                 leg = ExactLeg(model, affine, pieces, self.mode, self.t, self.s, self._peaks)
-                if not self.mode and leg.steps(stop) > ROUNDED and model.sharp_rates is not None:
+                if (
+                    not self.mode
+                    and leg.steps(stop) > TUNING.rounded
+                    and model.sharp_rates is not None
+                ):
                     return FreeLeg(model.sharp_rates, pieces, self.t, self.s)
                 return leg if leg.quick(stop, method == EXACT) else None
         if method == EXACT:
@@ -214,7 +216,7 @@ def _still(
         return frozenset()
     _, now = evaluated(model, t, s, pieces, mode)
     slips = np.abs(now.y[model.friction_readings])
-    limits = 1e3 * scales(model, now, t, peaks).slip
+    limits = TUNING.wide * scales(model, now, t, peaks).slip
     return frozenset(i for i in ports if slips[i] <= limits[i] or model.coupled_directly(i))
 
 
@@ -240,9 +242,9 @@ def _note(model: ClosedModel, events: list[Event], t: float, old: Mode, new: Mod
 def _check_progress(rounds: deque[float], t: float, least: float, events: list[Event]) -> None:
     """Refuse to go on when too many of the latest legs end in an event within ``least`` [s]."""
     rounds.append(t)
-    if len(rounds) == STALLED and t - rounds[0] < least:
+    if len(rounds) == TUNING.stalled and t - rounds[0] < least:
         latest = ", ".join(f"{e.kind} {e.port!r} at {e.time:.12g}" for e in events[-4:])
         raise SimulationError(
-            f"{STALLED} events within {least:.3g} s of t = {t:.12g}: the run makes no progress "
+            f"{TUNING.stalled} events within {least:.3g} s of t = {t:.12g}: the run makes no progress "
             f"(latest: {latest or 'none that changed a mode'})"
         )

@@ -11,12 +11,7 @@ import numpy as np
 from bondgraph.errors import SimulationError
 from codegen.numbers.arrays import Array
 from codegen.numbers.pairs import Pair, matmul, pair, plus, stacked, times
-
-DEGREE = 21
-"""Of the series; over times of ``|M| h <= 1/4`` what is left out is below 1e-32."""
-
-MOST_RUNGS = 62
-"""Beyond, rounding of the pairs would show: 2^62 of them are 1e-13."""
+from codegen.tuning import TUNING
 
 
 class Ladder:
@@ -34,7 +29,7 @@ class Ladder:
 
     def check(self, t: float, span: float) -> None:
         """Refuse a stretch over which even pairs would lose digits."""
-        if not span / self.unit < 2.0**MOST_RUNGS:
+        if not span / self.unit < 2.0**TUNING.rungs:
             raise SimulationError(
                 f"at t = {t:.9g} the rates of the model or of its inputs reach {self._norm:.3g} 1/s: over "
                 f"{span:.3g} s they leave no digit of the slow ones; leave the fastest out of the model"
@@ -66,7 +61,7 @@ class Ladder:
             return z
         start, over = z[moving], lengths[moving, None]
         total = start
-        for k in range(DEGREE, 0, -1):
+        for k in range(TUNING.pair_degree, 0, -1):
             # total = z + M h/k total (Horner's scheme)
             step = times(matmul(total, self._M.T), _ratio(over, k))
             total = plus(start, step)

@@ -17,19 +17,10 @@ from codegen.runs.events import Watch
 from codegen.runs.methods import METHODS
 from codegen.runs.progress import Progress, difference, no_progress
 from codegen.runs.track import Dense, Ended, Settings, Track
-
-STIFF = 2e5
-"""Time span over shortest time constant from which a model is stiff."""
+from codegen.tuning import TUNING
 
 STEP_BOUND = 1.0
 """An explicit step's length in shortest time constants: beyond, its interpolant is unreliable."""
-
-FOLLOWED = 0.1
-"""An implicit step's length in shortest time constants of the inputs."""
-
-
-REFRESH = 50
-"""Steps after which a nonlinear model's time constants are looked at again."""
 
 
 class Leg:
@@ -96,7 +87,7 @@ class Leg:
                 return until, dense(until), found[1]
             steps += 1
             progress.check(solver.t, solver.y)
-            if explicit and steps % REFRESH == 0 and not self._model.program.affine:
+            if explicit and steps % TUNING.refresh == 0 and not self._model.program.affine:
                 fastest = self.fastest(solver.t, solver.y)
             solver.max_step = self._bound(explicit, fastest, solver.t)
         return stop, solver.y, frozenset()
@@ -108,7 +99,7 @@ class Leg:
 
     def _integrator(self, fastest: float, span: float) -> Any:
         method = self._settings.method
-        stiff = fastest * span > STIFF
+        stiff = fastest * span > TUNING.stiff_span
         if method == "CVODE" and not self._model.program.affine:
             # Laws may grow stiff on the way; backward differences do not mind where they don't.
             stiff = True
@@ -121,7 +112,7 @@ class Leg:
         if explicit:
             return min(bound, STEP_BOUND / fastest) if fastest > 0 else bound
         # Implicit error estimates are blind to what follows an input at once.
-        return min(bound, FOLLOWED / driven) if driven > 0 else bound
+        return min(bound, TUNING.followed / driven) if driven > 0 else bound
 
     def _sample(self, times: Array, track: Track, until: float, dense: Dense) -> None:
         while track.recorded < len(times) and times[track.recorded] < until:

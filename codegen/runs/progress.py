@@ -9,27 +9,7 @@ import numpy as np
 from bondgraph.errors import SimulationError
 from codegen.modes.pace import longest_step
 from codegen.numbers.arrays import Array
-
-MANY = 200
-"""Steps that are looked at together."""
-
-SHORT = 1e-2
-"""Of what the model allows as a step: shorter steps, on the average, go nowhere where the state slides."""
-
-TINY = 1e-4
-"""Of the same: so short steps go nowhere at any jump, such as one where crossings accumulate."""
-
-REACH = 32
-"""So many such steps ahead a jump is looked for: integrators end in front of it, too."""
-
-BACK = 2.0**-10
-"""This part of the reach beyond a jump, the state has crossed it again if the rates push it back."""
-
-HALVES = 24
-"""A change of the rates that stays whole as its interval is halved so often is a jump."""
-
-WHOLE, FELT = 0.1, 1e-3
-"""The part of a change that is left of a jump; the least that it changes in tolerances."""
+from codegen.tuning import TUNING
 
 Rates = Callable[[float, Array], Array]
 
@@ -51,17 +31,17 @@ class Progress:
     def check(self, t: float, s: Array) -> None:
         """Take a step that ended here into account.
 
-        Raises `SimulationError` where two lots of `MANY` steps in a row went nowhere, at a jump.
+        Raises `SimulationError` where two lots of `TUNING.lot` steps in a row went nowhere, at a jump.
         """
         self.steps += 1
-        if self.steps % MANY:
+        if self.steps % TUNING.lot:
             return
-        mean, self.begin = (t - self.begin) / MANY, t
+        mean, self.begin = (t - self.begin) / TUNING.lot, t
         part = mean / longest_step(t - self.origin)
-        if part < SHORT:
+        if part < TUNING.short:
             part = max(part, mean * self._fastest(t, s))
-        idle = part < SHORT
-        if idle and self.idle and self._jumps(mean, t, s, slides=part >= TINY):
+        idle = part < TUNING.short
+        if idle and self.idle and self._jumps(mean, t, s, slides=part >= TUNING.shorter):
             raise no_progress(t)
         self.idle = idle
 
@@ -79,7 +59,7 @@ class Progress:
 
     def _jumps(self, mean: float, t: float, s: Array, slides: bool) -> bool:
         """Whether the rates jump just ahead, along their own direction; ``slides``: and push back beyond."""
-        reach = REACH * mean
+        reach = TUNING.reach * mean
         base = self.rates(t, s)
         size = reach / (self.atol + self.rtol * np.abs(s))
 
@@ -91,16 +71,18 @@ class Progress:
 
         low, high, at_low, at_high = 0.0, 1.0, base, ahead(1.0)
         first = changed(at_low, at_high)
-        for _ in range(HALVES):
+        for _ in range(TUNING.halves):
             middle = 0.5 * (low + high)
             at_middle = ahead(middle)
             if changed(at_low, at_middle) > changed(at_middle, at_high):
                 high, at_high = middle, at_middle
             else:
                 low, at_low = middle, at_middle
-        if not changed(at_low, at_high) > max(WHOLE * first, FELT):
+        if not changed(at_low, at_high) > max(TUNING.whole * first, TUNING.felt):
             return False
-        beyond = self.rates(t + (high + BACK) * reach, s + reach * (high * base + BACK * at_high))
+        beyond = self.rates(
+            t + (high + TUNING.back) * reach, s + reach * (high * base + TUNING.back * at_high)
+        )
         return not slides or changed(beyond, at_low) < changed(beyond, at_high)
 
 
@@ -117,12 +99,15 @@ def difference(rates: Rates, t: float, s: Array, j: int, base: Array, past: floa
 
     ``past`` [s]: a part of what went before; below zero the difference is taken downwards.
     """
-    step = np.copysign(1e-6 * abs(s[j]) + 1e-9 * abs(base[j] * past) + 1e-9, past)
+    step = np.copysign(
+        TUNING.slope * abs(s[j]) + TUNING.slope_floor * abs(base[j] * past) + TUNING.slope_floor,
+        past,
+    )
     for _ in range(12):
         moved = s.copy()
         moved[j] += step
         slope = (rates(t, moved) - base) / step
         if np.isfinite(slope).all():
             return np.asarray(slope, dtype=float)
-        step *= 1e-2
+        step *= TUNING.slope_shorter
     raise SimulationError(f"at t = {t:g} the rates are not finite beside the state {s.tolist()}")

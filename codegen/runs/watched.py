@@ -10,13 +10,7 @@ from codegen.model.snapshot import CAPS, INPUTS, RATE, READINGS, Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
-
-DEGREE = 18
-"""Of power series; over a step of ``|M| h <= 1`` what is left out is below rounding."""
-
-
-GONE = 40.0
-"""After so many of its time constants a motion is below rounding."""
+from codegen.tuning import TUNING
 
 
 @dataclass(frozen=True)
@@ -78,14 +72,14 @@ def lasting(M: Array, span: float) -> float:
     A motion that decays is over after some of its time constants, one that turns on goes on for ever.
     """
     rates = np.linalg.eigvals(scipy.linalg.matrix_balance(M, permute=False)[0])
-    ends = np.minimum(span, GONE / np.maximum(-rates.real, GONE / span))
+    ends = np.minimum(span, TUNING.gone / np.maximum(-rates.real, TUNING.gone / span))
     return float((np.abs(rates) * ends).max(initial=0.0))
 
 
 def series(M: Array, rows: Array, step: float) -> Array:
     """``rows (M step)^k / k!`` for each k: the coefficients of their power series over a step."""
     found = [rows]
-    for k in range(1, DEGREE + 1):
+    for k in range(1, TUNING.degree + 1):
         rows = rows @ M * (step / k)
         found.append(rows)
     return np.array(found)
@@ -95,7 +89,7 @@ def exponential(M: Array, step: float) -> tuple[Array, Array]:
     """``exp(M step)`` and its integral over the step, which has ``|M| step <= 1``."""
     size = len(M)
     total = term = np.eye(size)
-    for k in range(2, DEGREE + 2):
+    for k in range(2, TUNING.degree + 2):
         term = M @ term * (step / k)
         total = total + term
     gather = total * step

@@ -11,6 +11,7 @@
 
 #include "model_located.h"
 #include "scenario.h"
+#include "tuning.h"
 
 enum { STATES = BG_STATES + BG_LAW_STATES, EVENTS = 4096 };
 
@@ -111,7 +112,7 @@ static int run_stepped(bg_model *m, const command *asked, const bg_signals *sign
     static double w[3 * BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
     const long parts = (long)fmax(1.0, floor(asked->sample / asked->step + 0.5));
     const double h = asked->sample / (double)parts;
-    for (long k = 0; (double)k * h <= asked->end * (1 + 1e-12); k++) {
+    for (long k = 0; (double)k * h <= asked->end * (1 + BG_TOGETHER); k++) {
         const double t = (double)(k / parts) * asked->sample + (double)(k % parts) * h;
         for (int i = 2; i >= 0; i--)
             inputs_at(signals, t + 0.5 * i * h, w + i * BG_EXTERNAL, dw);
@@ -145,7 +146,7 @@ static int run_located(bg_model *m, const command *asked, const bg_signals *sign
     static const char *const kinds[] = {"stick", "slip", "cross"};
     static bg_located run;
     static bg_event events[EVENTS];
-    const int count = (int)floor(asked->end / asked->sample * (1 + 1e-12)) + 1;
+    const int count = (int)floor(asked->end / asked->sample * (1 + BG_TOGETHER)) + 1;
     double *const times = calloc((size_t)count, sizeof *times);
     bg_request request = {times, asked->states, count, BG_AUTO, 1e-10, 1e-11, times, record, events,
                           EVENTS, 0, 0.0, NULL};
@@ -166,7 +167,7 @@ static int read_command(int count, char **words, command *asked)
 {
     asked->end = count > 1 ? strtod(words[1], NULL) : 0.0;
     asked->sample = count > 2 ? strtod(words[2], NULL) : 0.0;
-    asked->band = 1e-6;
+    asked->band = BG_BAND;
     bg_model_parameters(asked->parameters);
     memcpy(asked->states, scenario_states, sizeof asked->states);
     memcpy(asked->terms, scenario_terms, sizeof asked->terms);

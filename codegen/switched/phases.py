@@ -16,16 +16,16 @@ from bondgraph.errors import BondGraphError, SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.model.doubts import warn_of_doubts
 from codegen.model.snapshot import Mode
-from codegen.model.terms import TOLERANCE
 from codegen.modes.choose import a_moment_later, decide
 from codegen.modes.guards import guard_values
-from codegen.modes.pace import LOOK_AHEAD, look_ahead, time_constant
+from codegen.modes.pace import look_ahead, time_constant
 from codegen.modes.rounding import Peaks
 from codegen.numbers.arrays import Array
 from codegen.runs.legs import Leg
 from codegen.runs.track import Settings
 from codegen.simulate import Simulator, guarded_simulator
 from codegen.switched.handover import Handover
+from codegen.tuning import TUNING
 
 On = frozenset[Hashable]
 """The switches that are on."""
@@ -220,9 +220,9 @@ def _pushed(
     seen = np.array([held.peaks.get(name, 0.0) for name in phase.handover.storages])
     size = np.maximum(seen, phase.handover.sizes(start.t, now))
     change = after - before
-    change[np.abs(change) <= TOLERANCE * (np.abs(before) + size)] = 0.0
+    change[np.abs(change) <= TUNING.rounding * (np.abs(before) + size)] = 0.0
     pushed = phase.handover.falling(start.t, now, change)
-    pushed[np.abs(pushed) <= TOLERANCE] = 0.0
+    pushed[np.abs(pushed) <= TUNING.rounding] = 0.0
     return pushed
 
 
@@ -231,7 +231,7 @@ def _friction_mode(phase: Phase, t: float, s: Array, pieces: Sequence[Piece]) ->
     model = phase.simulator.closed
     slipping, peaks = tuple(1 for _ in model.program.friction), Peaks.none(model)
     peaks.see(model, t, s, pieces, slipping)
-    return decide(model, t, s, pieces, slipping, frozenset(), LOOK_AHEAD * 1e-3, peaks)
+    return decide(model, t, s, pieces, slipping, frozenset(), TUNING.look_ahead * 1e-3, peaks)
 
 
 def _listed(on: On) -> str:

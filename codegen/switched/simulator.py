@@ -21,7 +21,7 @@ from codegen.energy.ledger import Integrated, Ledger
 from codegen.energy.tally import Tally
 from codegen.inputs.signal import Signal
 from codegen.model.snapshot import Snapshot
-from codegen.modes.pace import STALLED, hardly_apart
+from codegen.modes.pace import hardly_apart
 from codegen.numbers.arrays import Array
 from codegen.program.units import told_units
 from codegen.record.columns import named_columns
@@ -34,6 +34,7 @@ from codegen.runs.impulses import refuse_impulses
 from codegen.runs.track import Event, Settings
 from codegen.switched.phases import Held, Keeping, Moment, On, Phase, Phases
 from codegen.switched.spliced import Spliced
+from codegen.tuning import TUNING
 
 
 @dataclass(frozen=True)
@@ -139,7 +140,7 @@ class _Journey:
         """From phase to phase to the end."""
         phases, t, on = self._simulator.phases, float(self._times[0]), self._start.on
         held: Keeping = partial(self._started, t, self._start.initial)
-        changed, rounds = On(), deque[float](maxlen=STALLED)
+        changed, rounds = On(), deque[float](maxlen=TUNING.stalled)
         while True:
             pieces = {name: signal.piece(t) for name, signal in self._signals.items()}
             moment = Moment(t, pieces, self._settings, self._begin, self._end, self._following(t))
@@ -152,10 +153,10 @@ class _Journey:
             if not changed:
                 return self._result()
             rounds.append(t)
-            if len(rounds) == STALLED and t - rounds[0] < hardly_apart(time):
+            if len(rounds) == TUNING.stalled and t - rounds[0] < hardly_apart(time):
                 raise SimulationError(
-                    f"{STALLED} switchings within a moment of t = {t:.12g}: the run makes no progress; "
-                    f"the last were {', '.join(map(repr, changed))}"
+                    f"{TUNING.stalled} switchings within a moment of t = {t:.12g}: the run makes no "
+                    f"progress; the last were {', '.join(map(repr, changed))}"
                 )
 
     def _following(self, t: float) -> float:

@@ -140,7 +140,7 @@ def test_the_loop_compiles_without_warnings(monkeypatch: pytest.MonkeyPatch) -> 
     for family in (_stacked(), spring_mass()):
         model = to_c(family.equations, family.parameters, family.laws)
         wanted = sizes(family.simulator().closed, 2)
-        batch_engine(model, family.program, wanted, STRICT)
+        batch_engine(model, wanted, STRICT)
 
 
 SANITIZED = """

@@ -43,7 +43,7 @@ def test_exported_c_is_clean(name: str, tmp_path: Path) -> None:
     for how in ([], ["located"]):
         check_program([str(program), repr(case.end / 100), repr(case.end / 300), "step=1e-5", *how])
     del files["main.c"]
-    files |= {name: runtime_file(name) for name in ("model_rows.h", "model_rows.c")}
+    files |= {name: runtime_file(name) for name in ("located_rows.h", "located_rows.c")}
     sources = [*written(tmp_path, files), str(ORACLES / "memory.c")]
     printed = check_program([str(compiled(tmp_path, sources, "-O0", "-g")), repr(case.end)])
     assert printed.count("no failure") >= 9
@@ -113,7 +113,7 @@ def test_engines_are_clean_under_valgrind(tmp_path: Path) -> None:
 
 def test_a_complaint_about_a_library_is_told_from_others() -> None:
     log = (
-        "==1== \n==1== Conditional jump\n==1==    at 0x1: largest (model_rounding.c:155)\n"
+        "==1== \n==1== Conditional jump\n==1==    at 0x1: largest (located_rounding.c:155)\n"
         "==1== \n==1== Invalid read\n==1==    at 0x2: is_dst (dl-load.c:216)\n"
         "==1== \n==1== Use of uninitialised value\n==1==    at 0x3: ??? (in /cache/abc.so)\n"
     )

@@ -13,8 +13,8 @@ import differentials
 from codegen import Simulator
 from codegen.inputs.pieces import Piece
 from codegen.modes.choose import decide
-from codegen.modes.pace import LOOK_AHEAD
 from codegen.modes.rounding import Peaks
+from codegen.tuning import TUNING
 from differentials.model import Model, model
 from oracles.models import belt, clutches, oscillator, stacked_blocks
 
@@ -167,7 +167,7 @@ def instant(ready: Simulator, t: float, x: np.ndarray, u: np.ndarray, du: np.nda
     peaks = Peaks.none(closed)
     with np.errstate(all="ignore"):
         peaks.see(closed, t, s, pieces, slipping)
-        mode = decide(closed, t, s, pieces, slipping, frozenset(), 1e-3 * LOOK_AHEAD, peaks)
+        mode = decide(closed, t, s, pieces, slipping, frozenset(), 1e-3 * TUNING.look_ahead, peaks)
         now = closed.evaluate(t, s, u, du, mode)
     rate = now.rate[: len(x)].copy()
     if not program.varying:

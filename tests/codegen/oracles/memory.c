@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "model_rows.h"
+#include "located_rows.h"
 #include "scenario.h"
 
 static int shown(const char *what, int status, long count, const double *values)

@@ -1,0 +1,93 @@
+/* Many runs, one after the other: bind parameters, run, reduce. */
+#include "batch_internal.h"
+
+#include <string.h>
+
+void batch_sizes(unsigned long *sizes)
+{
+    const unsigned long row = EX_Z * (1 + BATCH_STRIDE);
+    sizes[0] = (unsigned long)sizeof(batch_room);
+    sizes[1] = (unsigned long)sizeof(batch_instance);
+    sizes[2] = BATCH_POWERS * EX_Z * EX_Z + BATCH_OWN * row;
+    sizes[3] = row;
+    sizes[4] = EX_ENTRIES;
+}
+
+/* The integrated vector at the start; a status. */
+static int start_of(const batch_room *room, const ex_inputs *inputs, const double *states,
+                    double *s)
+{
+    const double t = room->job->times[0];
+    const int segment = bg_segment(inputs->segments, inputs->breaks, t);
+    double g[EX_G], w[2 * EX_W];
+    ex_slots(inputs, segment, t, g);
+    ex_given(inputs, segment, g, w, w + EX_W);
+    batch_instance *const own = room->model;
+    return bg_model_vector(&own->m, t, states, w, s) ? BG_REFUSED : BG_OK;
+}
+
+/* Binds parameters. The modes that the run before needed are worked out at once; a status. */
+static int bind(batch_room *room, const double *parameters)
+{
+    batch_instance *const own = room->model;
+    ex_model *const record = &room->record;
+    const int expected = room->made;
+    int likely[BATCH_MODES];
+    memcpy(likely, room->number, sizeof likely);
+    room->made = 0;
+    if (batch_model_begin(own, parameters))
+        return BG_REFUSED;
+    memset(record, 0, sizeof *record);
+    bg_measure(&own->m.numbers, &(bg_magnitudes){record->F[0], record->D[0], record->FP[0],
+                                                 record->FQ[0], record->P[0], record->Q[0],
+                                                 record->inertia});
+    memcpy(record->coupled, bg_beside, sizeof(int) * EX_K);
+    ex_forget(room->context);
+    for (int k = 0; k < expected; k++)
+        batch_supply(room, likely[k]);
+    return BG_OK;
+}
+
+/* One run, modes supplied as it asks for them, which begins it again; a status. */
+static int run(batch_room *room, const ex_inputs *inputs, const double *states, double *results)
+{
+    double start[EX_N];
+    ex_task task = {
+        .times = room->job->times, .samples = room->job->samples, .grid = room->job->grid,
+        .start = start, .events = room->events, .capacity = room->capacity,
+    };
+    int status = start_of(room, inputs, states, start);
+    if (status)
+        return status;
+    status = BG_MISSING;
+    while (status == BG_MISSING) {
+        for (int k = 0; k < room->job->products; k++)
+            room->totals[k] = 0.0;
+        status = ex_run_by(room->context, &room->record, inputs, &task, batch_advance, room);
+        if (status == BG_MISSING && batch_supply(room, task.where))
+            return BG_NOT_AFFINE;
+    }
+    if (status)
+        return status;
+    batch_sample_last(room->context, room);
+    return batch_reduce(room->job, room->values, room->pitch, room->totals, task.events, task.count,
+                        results)
+               ? BG_OK
+               : BG_NOT_FINITE;
+}
+
+void batch_run(batch_room *room, const batch_job *job, const batch_runs *runs)
+{
+    const double *bound = 0;
+    int refused = 0;
+    room->job = job;
+    for (int k = 0; k < runs->runs; k++) {
+        const double *const own = runs->parameters + (long)k * BG_PARAMETERS;
+        if (!bound || memcmp(bound, own, sizeof(double) * BG_PARAMETERS) != 0)
+            refused = bind(room, own);
+        bound = own;
+        runs->status[k] = refused ? refused
+                                  : run(room, runs->inputs[k], runs->states + k * EX_N,
+                                        runs->results + (long)k * job->width);
+    }
+}

@@ -1,0 +1,92 @@
+/* Many event-located runs, one after the other: init, run, reduce. */
+#include "batch_located.h"
+
+#include "batch_doubt.h"
+#include "batch_gauss.h"
+#include "located_internal.h"
+
+enum { N = BG_STATES, OWN = BG_LAW_STATES, M = BG_INPUTS, OWN_PARAMETERS = BG_PARAMETERS };
+
+/* A signal by its place, see batch_measure.h. */
+static double value_of(int place, const double *w, const bg_snapshot *shot)
+{
+    if (place < 0)
+        return w[-1 - place];
+    if (place < N)
+        return shot->x[place];
+    if (place < N + OWN)
+        return shot->z[place - N];
+    if (place < N + OWN + M)
+        return shot->u[place - N - OWN];
+    return shot->y[place - N - OWN - 2 * M];
+}
+
+static void record(void *to, int sample, const double *w, const int *mode,
+                   const bg_snapshot *shot)
+{
+    const located_room *const room = to;
+    const batch_job *const job = room->job;
+    (void)mode;
+    for (int s = 0; s < job->signals; s++)
+        room->values[s * job->samples + sample] = value_of(job->signal[s], w, shot);
+}
+
+/* Adds to the totals what products make of a part of the latest step. */
+static int smooth(void *to, void *run, double begin, double end)
+{
+    const located_room *const room = to;
+    const batch_job *const job = room->job;
+    bg_located *const c = run;
+    for (int node = 0; node < BATCH_NODES && end > begin; node++) {
+        const double t = begin + batch_nodes[node] * (end - begin);
+        double s[BG_SIZE], w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
+        int status = bg_solver_dense(c, t, s);
+        if (status == BG_OK)
+            status = bg_view_look(&c->view, t, s, c->run.mode);
+        if (status != BG_OK)
+            return status;
+        bg_signals_at(c->signals, c->run.segment, t, w, dw);
+        for (int k = 0; k < job->products; k++) {
+            const batch_product *const two = job->product + k;
+            const int *const place = job->signal + job->signals;
+            const double one = value_of(place[two->one], w, &c->view.shot);
+            const double other = two->other < 0 ? 1.0 : value_of(place[two->other], w, &c->view.shot);
+            room->totals[k] += batch_weights[node] * (end - begin) * one * other;
+        }
+    }
+    return BG_OK;
+}
+
+/* One run; a status. */
+static int run(located_room *room, const double *parameters, const double *states,
+               const bg_signals *inputs, double *results)
+{
+    const batch_job *const job = room->job;
+    bg_request asked = {
+        .times = job->times, .states = states, .samples = job->samples, .method = room->method,
+        .rtol = room->rtol, .atol = room->atol, .to = room, .record = record,
+        .events = room->events, .capacity = room->capacity, .smooth = job->products ? smooth : 0,
+    };
+    for (int k = 0; k < job->products; k++)
+        room->totals[k] = 0.0;
+    int status = bg_model_init(room->model, parameters);
+    if (status == BG_OK && !BG_VARYING && batch_doubtful(room->model))
+        status = BG_SINGULAR;
+    if (status == BG_OK)
+        status = bg_model_run(room->run, room->model, inputs, &asked);
+    if (status != BG_OK)
+        return status;
+    return batch_reduce(job, room->values, job->samples, room->totals, asked.events, asked.count,
+                        results)
+               ? BG_OK
+               : BG_NOT_FINITE;
+}
+
+void located_batch(located_room *room, const batch_job *job, const located_runs *runs)
+{
+    room->job = job;
+    for (int k = 0; k < runs->runs; k++)
+        runs->status[k] = run(room, runs->parameters + (long)k * OWN_PARAMETERS,
+                              runs->states + (long)k * (N + OWN), runs->inputs[k],
+                              runs->results + (long)k * job->width);
+}

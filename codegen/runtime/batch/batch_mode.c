@@ -1,0 +1,234 @@
+/* From a model's affine maps to the engine's records. */
+#include "batch_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { N = EX_N, STATES = BG_STATES, M = BG_INPUTS, ROUNDS = 3 };
+
+/* What an affine map over fewer inputs has in a column of the engine's maps; -1 for none. */
+static int column_of(int j)
+{
+    if (j < N)
+        return j;
+    if (j == EX_L - 1)
+        return BATCH_COLUMNS - 1;
+    const int rate = j >= N + EX_W, input = (j - N) % EX_W;
+    return input < BG_EXTERNAL ? N + rate * BG_EXTERNAL + input : -1;
+}
+
+/* The largest magnitude. */
+static double largest(double (*matrix)[N])
+{
+    double most[N] = {0}, size = 0.0;
+    for (int i = 0; i < N; i++)
+#pragma GCC unroll 1
+        for (int j = 0; j < N; j++)
+            most[j] = bg_greater(fabs(matrix[i][j]), most[j]);
+    for (int j = 0; j < N; j++)
+        size = bg_greater(most[j], size);
+    return size;
+}
+
+static void square(double (*restrict matrix)[N], double factor, double (*restrict to)[N])
+{
+    for (int i = 0; i < N; i++)
+#pragma GCC unroll 1
+        for (int j = 0; j < N; j++) {
+            double sum = 0.0;
+#pragma GCC unroll 32
+            for (int l = 0; l < N; l++)
+                sum += matrix[i][l] * matrix[l][j];
+            to[i][j] = factor * sum;
+        }
+}
+
+/* The largest magnitude of an eigenvalue, nearly: from a high power of a balanced matrix. It is
+ * scaled at every second square only. */
+static double spectral_radius(double (*matrix)[N])
+{
+    double power[N][N], other[N][N], size = largest(matrix), logarithm = 0.0, share = 1.0;
+    memcpy(power, matrix, sizeof power);
+    for (int k = 0; k < ROUNDS && size > 0.0; k++) {
+        const double shrink = 1.0 / size;
+        logarithm += share * log(size);
+        share /= 4;
+        square(power, shrink * shrink, other);
+        square(other, 1.0, power);
+        size = largest(power);
+    }
+    return size > 0.0 ? exp(logarithm + share * log(size)) : 0.0;
+}
+
+/* One over the scales, powers of 2, that make rows and columns alike. */
+static void balance(double (*matrix)[N], double *weight)
+{
+    double scale[N];
+    for (int i = 0; i < N; i++)
+        weight[i] = scale[i] = 1.0;
+    for (int changed = 1, turn = 0; changed && turn < 50; turn++) {
+        changed = 0;
+        for (int i = 0; i < N; i++) {
+            double row = 0.0, column = 0.0, factor = 1.0;
+            for (int j = 0; j < N; j++) {
+                row += j == i ? 0.0 : fabs(matrix[i][j]) * scale[j];
+                column += j == i ? 0.0 : fabs(matrix[j][i]) * weight[j];
+            }
+            row *= weight[i];
+            column *= scale[i];
+            if (!(row > 0.0 && column > 0.0) || !isfinite(row + column))
+                continue;
+            const double before = row + column;
+            for (; column < row / 2; column *= 2, row /= 2)
+                factor *= 2;
+            for (; column >= row * 2; column /= 2, row *= 2)
+                factor /= 2;
+            if (row + column < 0.95 * before) {
+                weight[i] /= factor;
+                scale[i] *= factor;
+                changed = 1;
+            }
+        }
+    }
+}
+
+/* sum of factors times entries of one column of a map, from a row on */
+static double product(const double *map, int first, int count, const double *factors, int column)
+{
+    double sum = 0.0;
+    for (int i = 0; i < count; i++)
+        sum += factors[i] * map[(first + i) * BATCH_COLUMNS + column];
+    return sum;
+}
+
+/* How fast the slip of a port changes: F x' + D u', where x' has that of driven storages, too. */
+static double push(const double *map, const bg_numbers *a, int reading, int column)
+{
+    double sum = 0.0;
+    for (int j = 0; j < M; j++)
+        if (a->D[reading * M + j] != 0.0)
+            sum += a->D[reading * M + j] * map[(BATCH_AT_U + M + j) * BATCH_COLUMNS + column];
+    for (int l = 0; l < STATES; l++) {
+        const double factor = a->F[reading * STATES + l];
+        if (factor != 0.0 && !BG_DRIVEN)
+            sum += factor * map[(BATCH_AT_RATE + l) * BATCH_COLUMNS + column];
+        else if (factor != 0.0)
+            sum += factor * (product(map, 0, STATES, a->P + l * STATES, column)
+                             + product(map, BATCH_AT_U, M, a->Q + l * M, column)
+                             + product(map, BATCH_AT_U + M, M, a->R + l * M, column));
+    }
+    return sum;
+}
+
+static void fill_column(const double *map, const bg_numbers *a, int column, double *shot)
+{
+    for (int i = 0; i < STATES; i++)
+        shot[EX_AT_X + i] = map[i * BATCH_COLUMNS + column];
+    for (int i = 0; i < M; i++)
+        shot[EX_AT_U + i] = map[(BATCH_AT_U + i) * BATCH_COLUMNS + column];
+    for (int k = 0; k < EX_K; k++) {
+        const int reading = bg_friction_readings[k], input = bg_friction_inputs[k];
+        shot[EX_AT_SLIP + k] = map[(BATCH_AT_Y + reading) * BATCH_COLUMNS + column];
+        shot[EX_AT_EFFORT + k] = map[(BATCH_AT_U + input) * BATCH_COLUMNS + column];
+        shot[EX_AT_CAP + k] = map[(BATCH_AT_CAP + k) * BATCH_COLUMNS + column];
+        shot[EX_AT_PUSH + k] = push(map, a, reading, column);
+    }
+    for (int i = 0; i < N; i++)
+        shot[EX_AT_RATE + i] = map[(BATCH_AT_RATE + i) * BATCH_COLUMNS + column];
+}
+
+/* How fast the states are by themselves, and what balances them: as of a mode that has the same
+ * rates, such as one that slips the other way, or from the rates. */
+static void find_fastest(batch_room *room, int at)
+{
+    ex_mode *const made = room->mode + at;
+    double own[N][N];
+    for (int k = 0; k < at; k++) {
+        int same = 1;
+        for (int j = 0; j < N && same; j++)
+            same = memcmp(made->shot[j] + EX_AT_RATE, room->mode[k].shot[j] + EX_AT_RATE,
+                          sizeof own[j]) == 0;
+        if (same) {
+            made->fastest = room->mode[k].fastest;
+            memcpy(made->weight, room->mode[k].weight, sizeof made->weight);
+            return;
+        }
+    }
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++)
+            own[i][j] = made->shot[j][EX_AT_RATE + i];
+    balance(own, made->weight);
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++)
+            own[i][j] *= made->weight[i] / made->weight[j];
+    made->fastest = spectral_radius(own);
+}
+
+/* The slips that sticking takes from the states, and what only inputs rule of the others. */
+static void fill_held(ex_mode *made, const bg_hold *held)
+{
+    for (int k = 0; k < held->kept; k++)
+        for (int i = 0; i < STATES; i++)
+            made->take_away[k][i] = held->take_away[i * held->kept + k];
+    made->held = held->kept;
+    made->ruled = held->ruled;
+    for (int r = 0; r < held->ruled; r++)
+        for (int c = 0; c < held->count; c++)
+            made->ruling[r][held->ports[c]] = held->share[r * held->count + c];
+}
+
+static void fill(ex_mode *made, const double *map, const bg_numbers *a, const bg_hold *held)
+{
+    if (held)
+        fill_held(made, held);
+    for (int j = 0; j < EX_L; j++) {
+        const int column = column_of(j);
+        if (column < 0)
+            continue;
+        fill_column(map, a, column, made->shot[j]);
+        for (int k = 0; k < made->held; k++)
+            made->left[j][k] = product(map, 0, STATES, held->slip_x + k * STATES, column)
+                               + product(map, BATCH_AT_U, M, held->slip_u + k * M, column);
+    }
+}
+
+static void fill_readers(const batch_job *job, const double *map, double (*readers)[EX_L])
+{
+    for (int s = 0; s < job->signals + job->factors; s++)
+        for (int j = 0; j < EX_L; j++) {
+            const int row = job->signal[s], column = column_of(j);
+            if (row < 0)
+                readers[s][j] = j == N - 1 - row;
+            else
+                readers[s][j] = column < 0 ? 0.0 : map[row * BATCH_COLUMNS + column];
+        }
+}
+
+int batch_supply(batch_room *room, int number)
+{
+    static const int signs[3] = {0, 1, -1};
+    double map[BATCH_ROWS * BATCH_COLUMNS];
+    int mode[EX_PORTS] = {0}, digits = number;
+    batch_instance *const own = room->model;
+    bg_hold *held = NULL;
+    if (room->made >= BATCH_MODES)
+        return BG_NOT_AFFINE;
+    for (int i = 0; i < EX_K; i++, digits /= 3)
+        mode[i] = signs[digits % 3];
+    const enum batch_found found = batch_model_mode(own, mode, map, &held);
+    if (found == BATCH_MODE_REFUSED)
+        return BG_NOT_AFFINE;
+    const int at = room->made++;
+    memset(room->mode + at, 0, sizeof room->mode[at]);
+    if (found != BATCH_MODE_NONE)
+        fill(room->mode + at, map, &own->m.numbers, held);
+    room->mode[at].none = found == BATCH_MODE_NONE;
+    room->mode[at].supported = found == BATCH_MODE_WHOLE;
+    find_fastest(room, at);
+    if (found == BATCH_MODE_WHOLE)
+        fill_readers(room->job, map, batch_readers(room, at));
+    room->record.modes[number] = room->mode + at;
+    room->place[number] = at;
+    room->number[at] = number;
+    return BG_OK;
+}

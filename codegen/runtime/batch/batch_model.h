@@ -1,0 +1,35 @@
+/* The generated model as many runs use it. Matrices are by rows. */
+#ifndef BATCH_MODEL_H
+#define BATCH_MODEL_H
+
+#include "model_internal.h"
+
+typedef double batch_row[BG_MAP_COLUMNS];
+
+/* The parts of a map over [s, w, dw, 1]. */
+typedef struct {
+    batch_row x[BG_ROOM(BG_STATES)], z[BG_ROOM(BG_LAW_STATES)];
+    batch_row u[BG_ROOM(BG_INPUTS)], du[BG_ROOM(BG_INPUTS)], y[BG_ROOM(BG_READINGS)];
+    batch_row rate[BG_SIZE], caps[BG_ROOM(BG_FRICTION)];
+} batch_map;
+
+/* An instance; where `based`, without friction, and the efforts of slipping forwards. */
+typedef struct {
+    bg_model m;
+    int based;
+    batch_map base;
+    batch_row forward[BG_ROOM(BG_FRICTION)];
+} batch_instance;
+
+/* What there is of a mode: all, no more than the slips of a similar one, nothing that holds its
+ * ports, or a refusal. */
+enum batch_found { BATCH_MODE_WHOLE, BATCH_MODE_SLIPS, BATCH_MODE_NONE, BATCH_MODE_REFUSED };
+
+/* Binds parameters; a status, of a refusal or a doubt. */
+int batch_model_begin(batch_instance *own, const double *parameters);
+
+/* The affine map of a mode, -1, 0 or 1 for each port, and what holds it, if anything does. */
+enum batch_found batch_model_mode(batch_instance *own, const int *mode, double *map,
+                                  bg_hold **held);
+
+#endif

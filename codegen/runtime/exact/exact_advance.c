@@ -1,0 +1,203 @@
+/* One stretch: to a breakpoint or the first event, recording the samples on the way. */
+#include "exact_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The first sample that is not before a time. */
+static int first_not_before(const ex_task *task, int low, double stop)
+{
+    int high = task->samples;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        if (task->times[middle] < stop)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Refuses a friction level below zero: a rough look at a sample, an exact one where it may be. */
+int ex_check_levels(ex_context *c, double t, double *row)
+{
+    int below = 0;
+    for (int i = 0; i < EX_K; i++) {
+        const double *pair = row + EX_Z + 2 * i;
+        below |= (c->run.mode[i] ? 2.0 * pair[1] : pair[0] + pair[1]) < 0.0
+            || ex_rests(c->stretch.entry->mode, i);
+    }
+    if (!below)
+        return BG_OK;
+    ex_shot shot;
+    return ex_look(c, t, row, c->stretch.entry->mode, shot);
+}
+
+/* Writes the state as the sample `p->at`, which is at p->t. */
+static int record(ex_context *c, ex_place *p)
+{
+    double *row = c->task->rows[p->at];
+    memcpy(row, p->z, sizeof p->z);
+    ex_fill(&c->stretch, row);
+    c->task->modes[p->at] = ex_number(c->run.mode);
+    p->base = p->at++;
+    return ex_check_levels(c, p->t, row);
+}
+
+/* How many steps from the present sample on have one length, but for rounding; the stop, too. */
+int ex_alike(const ex_context *c, const ex_place *p, double *h)
+{
+    const double *times = c->task->times;
+    int end = p->last;
+    *h = c->task->grid;
+    if (*h <= 0.0) {
+        *h = p->at < p->last ? times[p->at] - p->t : 0.0;
+        for (end = p->at; end < p->last; end++)
+            if (fabs(times[end] - times[end - 1] - *h) > BG_ALIKE * *h)
+                break;
+    }
+    if (end == p->last && fabs(p->stop - times[end - 1] - *h) <= BG_ALIKE * *h)
+        end++;
+    return end - p->at;
+}
+
+/* Whether all triggers are armed; those are that have risen above rounding. */
+int ex_armed(ex_context *c, const double *row)
+{
+    int all = 1;
+    for (int i = 0; i < EX_T; i++) {
+        c->stretch.armed[i] |= row[EX_Z + i] >= c->stretch.limit[i];
+        all &= c->stretch.armed[i];
+    }
+    return all;
+}
+
+/* Keeps those of `count` steps in scratch that are samples; `done` were there before. */
+static void keep(const ex_context *c, const ex_place *p, long long done, int count)
+{
+    const long long parts = c->stretch.entry->parts;
+    for (long long k = parts - done % parts; k <= count; k += parts)
+        memcpy(c->task->rows[p->base + (done + k) / parts], c->scratch[k], sizeof c->scratch[k]);
+}
+
+/* A step that leaps could not be sure of; its end is written to `next`. */
+static int doubtful(ex_context *c, ex_place *p, long long done, double *next)
+{
+    const ex_entry *e = c->stretch.entry;
+    double end;
+    const int status = ex_series(c, p->t + (double)done * e->step, e->step, p->z, &end, &p->ports);
+    if (status || p->ports) {
+        p->stop = end;
+        return status;
+    }
+    memcpy(next, p->z, sizeof p->z);
+    ex_fill(&c->stretch, next);
+    return (done + 1) % e->parts ? BG_OK : ex_check_levels(c, end, next);
+}
+
+/* `count` samples by leaps of steps from sample `base`; how many steps there were goes to *done. */
+static int steps(ex_context *c, ex_place *p, int count, long long *done)
+{
+    const long long parts = c->stretch.entry->parts, total = count * parts;
+    *done = 0;
+    if (parts > 1)
+        memcpy(c->scratch[0], c->task->rows[p->base], sizeof c->scratch[0]);
+    while (*done < total) {
+        const long long left = total - *done;
+        const int ahead = parts > 1 && left > EX_BLOCK ? EX_BLOCK : (int)left;
+        double(*rows)[EX_ROW] = parts > 1 ? c->scratch : c->task->rows + p->base + *done;
+        int sure = ex_leap(&c->stretch, ahead, rows);
+        if (parts > 1)
+            keep(c, p, *done, sure);
+        *done += sure;
+        memcpy(p->z, rows[sure], sizeof p->z);
+        if (sure < ahead) {
+            const int status = doubtful(c, p, *done, rows[++sure]);
+            if (status || p->ports)
+                return status;
+            if (parts > 1 && ++*done % parts == 0)
+                memcpy(c->task->rows[p->base + *done / parts], rows[sure], sizeof rows[sure]);
+            else
+                *done += parts == 1;
+        }
+        if (parts > 1)
+            memcpy(c->scratch[0], rows[sure], sizeof c->scratch[0]);
+    }
+    return BG_OK;
+}
+
+/* Leaps over samples of one distance, as far as they reach. */
+static int leap_on(ex_context *c, ex_place *p, int count)
+{
+    long long done;
+    const int status = steps(c, p, count, &done), made = (int)(done / c->stretch.entry->parts);
+    const int number = ex_number(c->run.mode), until = p->at + made;
+    for (; p->at < until && p->at < p->last; p->at++)
+        c->task->modes[p->at] = number;
+    if (status || p->ports)
+        return status;
+    p->base = p->at - 1;
+    p->t = until > p->last ? p->stop : c->task->times[p->base];
+    return BG_OK;
+}
+
+/* One step by power series, to the next sample or the stop. */
+static int step_on(ex_context *c, ex_place *p)
+{
+    const int sample = p->at < p->last;
+    const double to = sample ? c->task->times[p->at] : p->stop;
+    double end;
+    const int status = ex_series(c, p->t, to - p->t, p->z, &end, &p->ports);
+    if (p->ports)
+        p->stop = end;
+    if (status || p->ports)
+        return status;
+    p->t = to;
+    p->base = -1;
+    return sample ? record(c, p) : BG_OK;
+}
+
+void ex_set_out(const ex_context *c, ex_place *p, double stop)
+{
+    p->t = c->run.at.t;
+    p->stop = stop;
+    p->at = c->next;
+    p->base = -1;
+    p->ports = 0;
+    p->last = first_not_before(c->task, c->next, stop);
+    memcpy(p->z, c->s, sizeof c->s);
+    ex_slots(c->inputs, c->run.segment, c->run.at.t, p->z + EX_N);
+}
+
+void ex_arrive(ex_context *c, const ex_place *p)
+{
+    c->next = p->at;
+    memcpy(c->s, p->z, sizeof c->s);
+    c->run.at.t = p->stop;
+    for (int i = 0; i < EX_K; i++)
+        c->run.at.touched[i] = p->ports >> i & 1u;
+}
+
+int ex_advance(ex_context *c, double stop)
+{
+    ex_place p;
+    int status = BG_OK;
+    if (EX_K == 0 && c->stretch.entry->norm * (stop - c->run.at.t) > BG_ROUNDED)
+        return ex_free(c, stop);
+    ex_set_out(c, &p, stop);
+    while (!status && !p.ports && (p.t < stop || p.at < p.last)) {
+        double h = 0.0;
+        const int count = p.base >= 0 ? ex_alike(c, &p, &h) : 0;
+        if (count >= EX_STRIDE && ex_armed(c, c->task->rows[p.base])) {
+            if (!c->stretch.leaping || c->stretch.entry->h != h) {
+                ex_leaps(c, &c->stretch, h, c->task->rows[p.base]);
+                ex_fill(&c->stretch, c->task->rows[p.base]);
+            }
+            status = leap_on(c, &p, count);
+        } else {
+            status = step_on(c, &p);
+        }
+    }
+    ex_arrive(c, &p);
+    return status;
+}

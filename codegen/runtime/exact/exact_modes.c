@@ -1,0 +1,114 @@
+/* Everything at one instant in a friction mode, and what counts as zero there. */
+#include "exact_internal.h"
+
+#include <float.h>
+#include <math.h>
+
+int ex_number(const int *mode)
+{
+    int number = 0;
+    for (int i = EX_K - 1; i >= 0; i--)
+        number = 3 * number + (mode[i] == 0 ? 0 : mode[i] > 0 ? 1 : 2);
+    return number;
+}
+
+int ex_find(ex_context *c, int number, const ex_mode **found)
+{
+    c->where = number;
+    *found = c->model->modes[number];
+    if (*found == 0)
+        return BG_MISSING;
+    return (*found)->supported ? BG_OK : BG_NOT_AFFINE;
+}
+
+/* Whether a port sticks in a mode though only inputs rule its slip. */
+int ex_rests(const ex_mode *mode, int port)
+{
+    int any = 0;
+    for (int k = 0; k < mode->ruled; k++)
+        any |= mode->ruling[k][port] != 0.0;
+    return any;
+}
+
+/* What affine maps act on; inputs are evaluated once for an instant. */
+void ex_vector(ex_context *c, double t, const double *s, double *v)
+{
+    if (!c->known || c->known_time != t || c->known_segment != c->run.segment) {
+        double g[EX_G];
+        ex_slots(c->inputs, c->run.segment, t, g);
+        ex_given(c->inputs, c->run.segment, g, c->given, c->given + EX_W);
+        c->known = 1;
+        c->known_time = t;
+        c->known_segment = c->run.segment;
+    }
+    for (int j = 0; j < EX_N; j++)
+        v[j] = s[j];
+    for (int j = 0; j < 2 * EX_W; j++)
+        v[EX_N + j] = c->given[j];
+    v[EX_L - 1] = 1.0;
+}
+
+/* Whether a level that is not positive is rounding of its terms, and so zero. */
+static int is_rounding(const ex_context *c, double t, const double *v, const ex_mode *mode,
+                       int port, double level)
+{
+    double w[EX_W], sum = 0.0;
+    ex_input_sizes(c->inputs, c->run.segment, t, w);
+    for (int j = 0; j < EX_L; j++) {
+        const int given = j >= EX_N && j < EX_N + EX_W;
+        double size = given ? w[j - EX_N] : fabs(v[j]);
+        if (j < EX_N && j < EX_X) /* a state that comes down to zero rounds by what it was */
+            size = bg_greater(size, c->peaks.x[j]);
+        sum += fabs(mode->shot[j][EX_AT_CAP + port]) * size;
+    }
+    return level >= -BG_ROUNDING * sum;
+}
+
+int ex_look(ex_context *c, double t, const double *s, const ex_mode *mode, double *shot)
+{
+    double v[EX_L];
+    ex_vector(c, t, s, v);
+#pragma GCC unroll 1
+    for (int i = 0; i < EX_SHOT; i++) {
+        double sum = 0.0;
+#pragma GCC unroll 32
+        for (int j = 0; j < EX_L; j++)
+            sum += mode->shot[j][i] * v[j];
+        shot[i] = sum;
+    }
+    for (int i = 0; i < EX_K; i++)
+        if (!(shot[EX_AT_CAP + i] >= 0.0)) {
+            if (is_rounding(c, t, v, mode, i, shot[EX_AT_CAP + i])) {
+                shot[EX_AT_CAP + i] = 0.0;
+                continue;
+            }
+            c->task->time = t;
+            return shot[EX_AT_CAP + i] < 0.0 ? BG_NEGATIVE : BG_NOT_FINITE;
+        }
+    return BG_OK;
+}
+
+/* The ports of an instant, without what counts as zero. */
+void ex_ports(const double *shot, bg_port *ports)
+{
+    for (int i = 0; i < EX_K; i++)
+        ports[i] = (bg_port){
+            .slip = shot[EX_AT_SLIP + i], .effort = shot[EX_AT_EFFORT + i],
+            .cap = shot[EX_AT_CAP + i], .push = shot[EX_AT_PUSH + i],
+        };
+}
+
+/* The ports of the instant t, with that. */
+void ex_round(const ex_context *c, const double *shot, double t, bg_port *ports)
+{
+    const ex_model *const m = c->model;
+    const bg_magnitudes sizes = {(double *)m->F, (double *)m->D, (double *)m->FP, (double *)m->FQ,
+                                 (double *)m->P, (double *)m->Q, (double *)m->inertia};
+    double x[EX_X], u[EX_U], rate[EX_X];
+    for (int i = 0; i < EX_X; i++)
+        x[i] = bg_greater(fabs(shot[EX_AT_X + i]), c->peaks.x[i]);
+    for (int i = 0; i < EX_U; i++)
+        u[i] = bg_greater(fabs(shot[EX_AT_U + i]), c->peaks.u[i]);
+    ex_ports(shot, ports);
+    bg_round_ports(EX_X, EX_U, EX_K, &sizes, t, c->run.at.time, x, u, rate, ports);
+}

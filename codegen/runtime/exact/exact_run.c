@@ -1,0 +1,159 @@
+/* What the loop looks at and advances: affine maps of the modes, and exact stretches. */
+#include "exact_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+void ex_sizes(unsigned long *sizes)
+{
+    sizes[0] = (unsigned long)sizeof(ex_context);
+    sizes[1] = (unsigned long)sizeof(ex_model);
+    sizes[2] = (unsigned long)sizeof(ex_mode);
+    sizes[3] = (unsigned long)sizeof(ex_chains);
+    sizes[4] = (unsigned long)(EX_ROW * sizeof(double));
+}
+
+void ex_forget(ex_context *c)
+{
+    c->clock = 0;
+    memset(c->used, 0, sizeof c->used);
+    c->ladder.known = 0;
+}
+
+/* A mode that is not affine may be looked at for what inputs rule of its slips alone. */
+static int look(void *context, double t, const double *s, const int *mode)
+{
+    ex_context *const c = context;
+    const ex_mode *found;
+    const int status = ex_find(c, ex_number(mode), &found);
+    if (status == BG_NOT_AFFINE && found->none)
+        return BG_NO_HOLD;
+    if (status && !(status == BG_NOT_AFFINE && found->ruled))
+        return status;
+    return ex_look(c, t, s, found, c->shot);
+}
+
+static void tell(void *context, const int *mode, const bg_instant *at, bg_port *ports,
+                 bg_ruling *ruling)
+{
+    const ex_context *const c = context;
+    const ex_mode *const found = c->model->modes[ex_number(mode)];
+    if (at)
+        ex_round(c, c->shot, at->t, ports);
+    else
+        ex_ports(c->shot, ports);
+    if (!ruling)
+        return;
+    ruling->unknown = found->supported ? BG_OK : BG_NOT_AFFINE;
+    ruling->count = found->ruled;
+    for (int k = 0; k < found->ruled; k++)
+        memcpy(ruling->rows[k], found->ruling[k], sizeof found->ruling[k]);
+}
+
+/* States, and the terms that make up inputs. */
+static void see(void *context, const int *slipping)
+{
+    ex_context *const c = context;
+    const ex_mode *const mode = c->model->modes[ex_number(slipping)];
+    double v[EX_L], terms[EX_U] = {0};
+    ex_vector(c, c->run.at.t, c->s, v);
+    for (int j = 0; j < EX_L; j++) {
+        const double size = j >= EX_N + EX_W && j < EX_L - 1 ? 0.0 : fabs(v[j]);
+        for (int i = 0; i < EX_U; i++)
+            terms[i] += fabs(mode->shot[j][EX_AT_U + i]) * size;
+    }
+    for (int i = 0; i < EX_X; i++)
+        c->peaks.x[i] = bg_greater(c->peaks.x[i], fabs(c->shot[EX_AT_X + i]));
+    for (int i = 0; i < EX_U; i++)
+        c->peaks.u[i] = bg_greater(c->peaks.u[i], terms[i]);
+}
+
+static int fastest(void *context, double *fastest)
+{
+    ex_context *const c = context;
+    const ex_mode *mode;
+    const int status = ex_find(c, ex_number(c->run.mode), &mode);
+    if (status == BG_OK)
+        *fastest = bg_greater(mode->fastest, c->inputs->fastest[c->run.segment]);
+    return status;
+}
+
+/* Removes the slip that is left at sticking ports: no energy but the slip's own. */
+static int rest(void *context)
+{
+    ex_context *const c = context;
+    const ex_mode *mode;
+    double v[EX_L];
+    const int status = ex_find(c, ex_number(c->run.mode), &mode);
+    if (status || mode->held == 0)
+        return status;
+    ex_vector(c, c->run.at.t, c->s, v);
+    for (int k = 0; k < mode->held; k++) {
+        double slip = 0.0;
+        for (int j = 0; j < EX_L; j++)
+            slip += mode->left[j][k] * v[j];
+        for (int i = 0; i < EX_N; i++)
+            c->s[i] += mode->take_away[k][i] * slip;
+    }
+    return BG_OK;
+}
+
+static int advance(void *context, double stop)
+{
+    ex_context *const c = context;
+    const int status = ex_begin(c, stop);
+    return status ? status : c->advance(c, stop);
+}
+
+int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task,
+              ex_advancing *how, void *caller)
+{
+    const bg_sight sight = {c, EX_N, EX_K, model->coupled, c->shot + EX_AT_RATE, c->point, look, tell};
+    const bg_engine engine = {sight, c, see, fastest, rest, advance};
+    c->model = model;
+    c->inputs = inputs;
+    c->task = task;
+    c->advance = how;
+    c->caller = caller;
+    c->known = c->next = 0;
+    c->run.segments = inputs->segments;
+    c->run.breaks = inputs->breaks;
+    c->run.events = task->events;
+    c->run.capacity = task->capacity;
+    task->where = -1;
+    memcpy(c->s, task->start, sizeof c->s);
+    memset(&c->peaks, 0, sizeof c->peaks);
+    bg_set_out(&c->run, task->times[0], task->times[task->samples - 1], c->s);
+    int status = bg_run(&engine, &c->run);
+    task->count = c->run.count;
+    if (status != BG_NEGATIVE)
+        task->time = c->run.at.t;
+    if (status)
+        task->where = c->where;
+    for (int i = 0; !status && i < EX_N; i++)
+        if (!isfinite(c->s[i]))
+            status = BG_NOT_FINITE;
+    return status;
+}
+
+int ex_run(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task)
+{
+    const int status = ex_run_by(c, model, inputs, task, ex_advance, 0);
+    if (status == BG_OK) {
+        memcpy(task->rows[task->samples - 1], c->s, sizeof c->s);
+        task->modes[task->samples - 1] = ex_number(c->run.mode);
+    }
+    return status;
+}
+
+int ex_run_often(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task,
+                 int repeats, int anew)
+{
+    int status = BG_OK;
+    for (int k = 0; k < repeats && !status; k++) {
+        if (anew)
+            ex_forget(c);
+        status = ex_run(c, model, inputs, task);
+    }
+    return status;
+}

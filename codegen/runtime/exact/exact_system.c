@@ -1,0 +1,206 @@
+/* A mode with its inputs' generator as one affine system, z' = M z + b, and stretches in it. */
+#include "exact_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A row of affine maps over the slots: an input and its rate are sums of them. */
+static void over_slots(const ex_chains *chains, const ex_mode *mode, double (*slots)[EX_SHOT])
+{
+    for (int i = 0; i < chains->count; i++) {
+        const int first = chains->first[i], width = chains->width[i], j = chains->input[i];
+        const double *by_w = mode->shot[EX_N + j], *by_dw = mode->shot[EX_N + EX_W + j];
+        const double re = chains->rate[i][0], im = chains->rate[i][1];
+        for (int r = 0; r < EX_SHOT; r++)
+            slots[first][r] = by_w[r] + re * by_dw[r];
+        if (width == 2)
+            for (int r = 0; r < EX_SHOT; r++)
+                slots[first + 1][r] = -im * by_dw[r];
+        if (chains->depth[i] > 1)
+            for (int r = 0; r < EX_SHOT; r++)
+                slots[first + width][r] = by_dw[r];
+    }
+}
+
+/* The generator's own columns of M. */
+static void generate(const ex_chains *chains, double (*M)[EX_Z])
+{
+    for (int i = 0; i < chains->count; i++)
+        for (int k = 0; k < chains->depth[i]; k++) {
+            const int width = chains->width[i], at = EX_N + chains->first[i] + k * width;
+            for (int part = 0; part < width; part++) {
+                M[at + part][at + part] = chains->rate[i][0];
+                if (k)
+                    M[at + part][at + part - width] = 1.0;
+            }
+            if (width == 2) {
+                M[at][at + 1] = chains->rate[i][1];
+                M[at + 1][at] = -chains->rate[i][1];
+            }
+        }
+}
+
+/* Triggers from the rows of slips, efforts and caps: a port that slips has its slip, and its cap,
+ * which is only watched; one that sticks the distances of its effort to both breakaway efforts, or,
+ * where only inputs rule its slip, of that to what is no longer zero: it gives nothing then. */
+static void triggers(const ex_mode *record, const int *mode, const double *shot, double *to)
+{
+    for (int i = 0; i < EX_K; i++) {
+        const int rests = ex_rests(record, i);
+        const double moved = shot[(rests ? EX_AT_SLIP : EX_AT_EFFORT) + i];
+        const double cap = shot[EX_AT_CAP + i], below = rests ? 0.0 : cap;
+        to[2 * i] = mode[i] ? mode[i] * shot[EX_AT_SLIP + i] : below - moved;
+        to[2 * i + 1] = mode[i] ? cap : below + moved;
+    }
+}
+
+/* Weights of the slots that keep what they feed from counting, and the norm of M in all. */
+static void balance(ex_entry *e)
+{
+    double own = 0.0;
+    e->norm = 0.0;
+    for (int j = 0; j < EX_Z; j++) {
+        double sum = 0.0;
+        const int rows = j < EX_N ? EX_N : j;
+        if (j == EX_N)
+            own = e->norm;
+        for (int i = 0; i < rows; i++)
+            sum += (j < EX_N ? e->mode->weight[i] : e->weight[i]) * fabs(e->M[j][i]);
+        e->weight[j] = j < EX_N ? e->mode->weight[j] : sum > 0 ? 4.0 * sum / (own + BG_SLOTS_FLOOR) : 1.0;
+        for (int i = rows; i < EX_Z; i++)
+            sum += e->weight[j] * fabs(e->M[j][i]);
+        e->norm = bg_greater(e->norm, sum / e->weight[j]);
+    }
+}
+
+static void assemble(ex_context *c, ex_entry *e)
+{
+    double slots[EX_G][EX_SHOT];
+    memset(e->M, 0, sizeof e->M);
+    memset(slots, 0, sizeof slots);
+    over_slots(&e->chains, e->mode, slots);
+    generate(&e->chains, e->M);
+    for (int j = 0; j < EX_Z; j++) {
+        const double *shot = j < EX_N ? e->mode->shot[j] : slots[j - EX_N];
+        for (int i = 0; i < EX_N; i++)
+            e->M[j][i] = shot[EX_AT_RATE + i];
+        triggers(e->mode, c->run.mode, shot, e->trigger[j]);
+    }
+    e->caps = 0;
+    for (int i = 0; i < EX_K; i++)
+        e->caps |= c->run.mode[i] ? 2u << 2 * i : 0u;
+    balance(e);
+    e->h = e->step = 0.0;
+}
+
+/* The entry of the present mode and generator, from the cache or in place of the oldest. */
+static int entry(ex_context *c, ex_entry **found)
+{
+    const ex_chains *chains = c->inputs->structures + c->inputs->chains[c->run.segment];
+    const ex_mode *mode;
+    const int number = ex_number(c->run.mode), status = ex_find(c, number, &mode);
+    int oldest = 0;
+    if (status)
+        return status;
+    if (c->clock > 1000000000) {
+        c->clock = 0;
+        memset(c->used, 0, sizeof c->used);
+    }
+    c->clock++;
+    for (int i = 0; i < EX_ENTRIES; i++) {
+        ex_entry *e = c->entries + i;
+        if (c->used[i] && e->number == number
+            && (e->chains.count == chains->count
+                && memcmp(&e->chains, chains, sizeof *chains) == 0)) {
+            c->used[i] = c->clock;
+            *found = e;
+            return BG_OK;
+        }
+        if (c->used[i] < c->used[oldest])
+            oldest = i;
+    }
+    *found = c->entries + oldest;
+    c->used[oldest] = c->clock;
+    (*found)->mode = mode;
+    (*found)->number = number;
+    (*found)->chains = *chains;
+    assemble(c, *found);
+    return isfinite((*found)->norm) ? BG_OK : BG_NOT_FINITE;
+}
+
+/* The constant parts of rates and triggers: of the map itself and of inputs that don't change. */
+static void constants(const ex_context *c, ex_stretch *stretch)
+{
+    const ex_mode *mode = stretch->entry->mode;
+    ex_shot sum;
+    memcpy(sum, mode->shot[EX_L - 1], sizeof sum);
+    for (int j = 0; j < EX_W; j++) {
+        const double w = c->inputs->constant[c->run.segment][j];
+        if (w != 0.0)
+            for (int i = 0; i < EX_SHOT; i++)
+                sum[i] += mode->shot[EX_N + j][i] * w;
+    }
+    for (int i = 0; i < EX_N; i++)
+        stretch->b[i] = sum[EX_AT_RATE + i];
+    for (int i = EX_N; i < EX_Z; i++)
+        stretch->b[i] = 0.0;
+    triggers(mode, c->run.mode, sum, stretch->level);
+}
+
+/* How long a motion has to be followed: until its end, or until it has decayed. */
+static double lasting(double rate, double decay, double span)
+{
+    return rate * (decay * span > BG_GONE ? BG_GONE / decay : span);
+}
+
+/* Whether a stretch takes a bearable number of steps, or none; a status. */
+static int bearable(ex_context *c, const ex_entry *e, double span)
+{
+    const double steps = e->norm * span;
+    const double few = EX_K || c->advance != ex_advance ? BG_MANY : BG_ROUNDED;
+    double most = 0.0;
+    if (!(steps > few))
+        return isfinite(steps) ? BG_OK : BG_ENDLESS;
+    if (EX_K == 0)
+        return !e->mode->sharp ? BG_BLUNT : steps < ldexp(1.0, BG_RUNGS - 3) ? BG_OK : BG_ENDLESS;
+    for (int i = 0; i < e->mode->rates; i++)
+        most = bg_greater(most, lasting(e->mode->spectrum[i][0], e->mode->spectrum[i][1], span));
+    for (int i = 0; i < e->chains.count; i++) {
+        const double *rate = e->chains.rate[i];
+        most = bg_greater(most, lasting(hypot(rate[0], rate[1]), -rate[0], span));
+    }
+    const double work = bg_lesser(steps, most / BG_LEAST_PART);
+    return work > BG_MOST_IN_C ? BG_ENDLESS : work < steps ? BG_STIFF : BG_OK;
+}
+
+/* A stretch from the context's instant on, in its mode. */
+int ex_begin(ex_context *c, double stop)
+{
+    ex_stretch *stretch = &c->stretch;
+    ex_shot now;
+    bg_port ports[EX_PORTS];
+    int status = entry(c, &stretch->entry);
+    if (status)
+        return status;
+    status = bearable(c, stretch->entry, stop - c->run.at.t);
+    if (status)
+        return status;
+    constants(c, stretch);
+    stretch->t = c->run.at.t;
+    stretch->blind = bg_moment(c->run.at.time);
+    stretch->leaping = 0;
+    if (EX_K == 0)
+        return BG_OK;
+    status = ex_look(c, c->run.at.t, c->s, stretch->entry->mode, now);
+    if (status)
+        return status;
+    ex_round(c, now, c->run.at.t, ports);
+    for (int i = 0; i < EX_T; i++) {
+        const int port = i / 2, rests = ex_rests(stretch->entry->mode, port);
+        stretch->limit[i] = c->run.mode[port] || rests ? ports[port].near_slip
+                                                    : ports[port].near_effort;
+        stretch->level[i] += rests ? BG_LEFT * ports[port].near_slip : 0.0;
+        stretch->armed[i] = c->run.mode[i / 2] && i % 2; /* caps need not be */
+    }
+    return BG_OK;
+}

@@ -1,0 +1,182 @@
+/* An instance: its variables by value reference, and its values brought up to date when asked for. */
+#include <math.h>
+#include <string.h>
+
+#include "fmu_common.h"
+
+static fmu_error message(int status)
+{
+    return status == BG_OK ? NULL : bg_model_message(status);
+}
+
+/* Sources inside and what the importer gives, for the view. An importer's integrator looks past a
+ * time event and keeps nothing of it: a level that comes down to zero there goes on smoothly, and is
+ * not refused for being below. */
+static int given(const void *self, double t, double *w, double *dw)
+{
+    const fmu_instance *const f = self;
+    double following;
+    fmu_externals(f, t, w, dw);
+    return !(f->at.exchange && fmu_next_break(f, &following) && t > following);
+}
+
+void fmu_reset(fmu_instance *f, int exchange)
+{
+    memset(f, 0, sizeof *f);
+    f->at.exchange = exchange;
+    f->at.step = FMU_STEP;
+    bg_model_parameters(f->at.parameters);
+    memcpy(f->at.start, fmu_starts, sizeof(double) * FMU_STATES);
+    memcpy(f->at.given, fmu_inputs, sizeof(double) * BG_EXTERNAL);
+    for (int i = 0; i < BG_FRICTION; i++)
+        f->at.mode[i] = 1;
+    f->view.model = &f->model;
+    f->view.peaks = &f->at.peaks;
+    f->view.self = f;
+    f->view.given = given;
+    f->stale = f->changed = 1;
+}
+
+/* Parameters that were set take effect. */
+fmu_error fmu_apply(fmu_instance *f)
+{
+    int status;
+    if (!f->changed)
+        return NULL;
+    status = bg_model_init(&f->model, f->at.parameters);
+    memcpy(f->model.mode, f->at.mode, sizeof f->model.mode);
+    f->model.started = f->at.stepped;
+    f->model.fastest = f->at.fastest;
+    f->changed = status != BG_OK;
+    f->view.measured = 0;
+    return message(status);
+}
+
+/* Every value at the instance's time, in its mode; before the start of a run the mode is looked for. */
+fmu_error fmu_refresh(fmu_instance *f)
+{
+    fmu_error failed = NULL;
+    if (!f->stale)
+        return NULL;
+    failed = fmu_apply(f);
+    if (failed)
+        return failed;
+    fmu_externals(f, f->at.time, f->w, f->dw);
+    if (f->at.phase <= FMU_INITIALIZING) {
+        failed = message(bg_model_vector(&f->model, f->at.time, f->at.start, f->w, f->at.s));
+        if (!failed && !f->frozen) {
+            f->at.decided = 0;
+            failed = fmu_decide(f);
+        }
+    }
+    if (!failed)
+        failed = fmu_look(f);
+    if (!failed && FMU_SWITCHES)
+        fmu_switch_values(&f->model.now, f->switches);
+    f->stale = failed != NULL;
+    return failed;
+}
+
+fmu_error fmu_look(fmu_instance *f)
+{
+    return message(bg_view_look(&f->view, f->at.time, f->at.s, f->at.mode));
+}
+
+static double state_of(const fmu_instance *f, int at)
+{
+    return at < BG_STATES ? f->view.shot.x[at] : f->view.shot.z[at - BG_STATES];
+}
+
+fmu_error fmu_get(fmu_instance *f, unsigned reference, double *value)
+{
+    double indicators[BG_ROOM(FMU_INDICATORS)];
+    const fmu_variable *v = &fmu_variables[reference];
+    fmu_error failed = NULL;
+    if (reference >= FMU_VARIABLES)
+        return "unknown value reference";
+    if (v->kind > FMU_SLOPE)
+        failed = fmu_refresh(f);
+    if (failed)
+        return failed;
+    switch (v->kind) {
+    case FMU_TIME: *value = f->at.time; break;
+    case FMU_PARAMETER: *value = f->at.parameters[v->index]; break;
+    case FMU_INTERNAL_STEP: *value = f->at.step; break;
+    case FMU_INPUT: *value = f->at.given[v->index]; break;
+    case FMU_SLOPE: *value = f->at.slopes[v->index]; break;
+    case FMU_STATE: *value = state_of(f, v->index); break;
+    case FMU_VECTOR: *value = f->at.s[v->index]; break;
+    case FMU_RATE: *value = f->view.shot.rate[v->index]; break;
+    case FMU_READING: *value = f->view.shot.y[v->index]; break;
+    case FMU_GIVEN: *value = f->view.shot.u[v->index]; break;
+    case FMU_SOURCE: *value = f->w[v->index]; break;
+    case FMU_INDICATOR:
+        fmu_indicators_of(f, &f->view.shot, indicators);
+        *value = indicators[v->index];
+        break;
+    default: *value = f->at.mode[v->index];
+    }
+    return NULL;
+}
+
+static fmu_error set_parameter(fmu_instance *f, int index, double value)
+{
+    if (f->at.phase > FMU_INITIALIZING
+        && (FMU_MOVED || (f->at.phase != FMU_EVENT && f->at.phase != FMU_STEPPING)))
+        return "this parameter cannot be changed now";
+    f->changed |= f->at.parameters[index] != value;
+    f->at.parameters[index] = value;
+    return NULL;
+}
+
+fmu_error fmu_set(fmu_instance *f, unsigned reference, double value)
+{
+    const fmu_variable *v = &fmu_variables[reference];
+    if (reference >= FMU_VARIABLES)
+        return "unknown value reference";
+    if (!isfinite(value))
+        return "a value is not finite";
+    f->stale = 1;
+    switch (v->kind) {
+    case FMU_PARAMETER: return set_parameter(f, v->index, value);
+    case FMU_INPUT: f->at.given[v->index] = value; return NULL;
+    case FMU_SLOPE: f->at.slopes[v->index] = value; return NULL;
+    case FMU_STATE:
+        if (f->at.phase > FMU_INITIALIZING)
+            return "a start value can only be set before the start";
+        f->at.start[v->index] = value;
+        return NULL;
+    case FMU_INTERNAL_STEP:
+        if (f->at.phase > FMU_INITIALIZING || value <= 0)
+            return "fixed_internal_step must be positive, and set before the start";
+        f->at.step = value;
+        return NULL;
+    default: return "this variable cannot be set";
+    }
+}
+
+fmu_error fmu_set_states(fmu_instance *f, const double *states, size_t count)
+{
+    if (count != FMU_STATES)
+        return "wrong number of states";
+    for (int i = 0; i < FMU_STATES; i++)
+        if (!isfinite(states[i]))
+            return "a state is not finite";
+    if (f->at.phase <= FMU_INITIALIZING)
+        return "states can only be set after the start";
+    memcpy(f->at.s, states, sizeof(double) * FMU_STATES);
+    f->stale = 1;
+    return NULL;
+}
+
+void fmu_set_time(fmu_instance *f, double time)
+{
+    f->stale |= f->at.time != time;
+    f->at.time = time;
+}
+
+void fmu_restore(fmu_instance *f, const fmu_memory *from)
+{
+    f->at = *from;
+    f->stale = f->changed = 1;
+}

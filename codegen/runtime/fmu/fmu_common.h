@@ -1,0 +1,114 @@
+/* An instance of a functional mock-up unit over a generated model, for FMI 2 and 3 alike. What can fail
+ * gives a text that says why, or NULL. */
+#ifndef FMU_COMMON_H
+#define FMU_COMMON_H
+
+#include "fmu_config.h"
+#include "model_signals.h"
+#include "port_sight.h"
+
+enum {
+    FMU_STATES = BG_STATES + BG_LAW_STATES,
+    FMU_INDICATORS = 2 * BG_FRICTION + FMU_SWITCHES,
+    FMU_MOVED = BG_DRIVEN && !BG_VARYING /* inputs drive dependent storages: s differs from x */
+};
+
+typedef const char *fmu_error;
+
+enum fmu_kind {
+    FMU_TIME, FMU_PARAMETER, FMU_INTERNAL_STEP, FMU_INPUT, FMU_SLOPE, FMU_STATE, FMU_VECTOR, FMU_RATE,
+    FMU_READING, FMU_GIVEN, FMU_SOURCE, FMU_INDICATOR, FMU_MODE
+};
+
+enum fmu_phase { FMU_MADE, FMU_INITIALIZING, FMU_EVENT, FMU_CONTINUOUS, FMU_STEPPING, FMU_ENDED };
+
+typedef struct {
+    int kind, index;
+} fmu_variable;
+
+/* All that a run depends on: what is saved and restored. Plain numbers. `rest`, `margin`: how far a
+ * slip or a holding effort may go beyond its bound before it counts as an event. */
+typedef struct {
+    double time, step;
+    double parameters[BG_ROOM(BG_PARAMETERS)], start[BG_ROOM(FMU_STATES)], s[BG_SIZE];
+    double given[BG_ROOM(BG_EXTERNAL)], slopes[BG_ROOM(BG_EXTERNAL)];
+    bg_peaks peaks;
+    double rest[BG_ROOM(BG_FRICTION)], margin[BG_ROOM(BG_FRICTION)];
+    double switch_peak[BG_ROOM(FMU_SWITCHES)], switch_rest[BG_ROOM(FMU_SWITCHES)];
+    int side[BG_ROOM(FMU_SWITCHES)], mode[BG_ROOM(BG_FRICTION)], segment;
+    int phase, decided, exchange, stepped;
+    bg_fastest fastest;
+} fmu_memory;
+
+typedef struct fmu_instance {
+    fmu_memory at;
+    int stale, changed, frozen; /* values, parameters; frozen: the mode is not to be decided */
+    bg_model model;
+    bg_view view;
+    double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)], point[BG_SIZE];
+    double switches[BG_ROOM(FMU_SWITCHES)], steps[3 * BG_ROOM(BG_EXTERNAL)];
+    char text[256]; /* of a failure that has numbers */
+} fmu_instance;
+
+/* What is generated: the variables by value reference, sources, start values, switching expressions. */
+extern const fmu_variable fmu_variables[];
+extern const bg_signals fmu_signals; /* sources inside the unit .. */
+extern const int fmu_inside[];       /* .. and whether an external input is one */
+extern const double fmu_starts[], fmu_inputs[];
+void fmu_switch_values(const bg_values *v, double *out);
+int fmu_resolved(const bg_values *v, double t, double h); /* known sources do little in h */
+
+/* fmu_common.c: everything at the time and states of the instance in its mode. */
+fmu_error fmu_look(fmu_instance *f);
+void fmu_reset(fmu_instance *f, int exchange);
+fmu_error fmu_apply(fmu_instance *f);
+fmu_error fmu_refresh(fmu_instance *f);
+fmu_error fmu_get(fmu_instance *f, unsigned reference, double *value);
+fmu_error fmu_set(fmu_instance *f, unsigned reference, double value);
+fmu_error fmu_set_states(fmu_instance *f, const double *states, size_t count);
+void fmu_set_time(fmu_instance *f, double time);
+void fmu_restore(fmu_instance *f, const fmu_memory *from);
+
+/* fmu_calls.c: one mode after the other; values of several variables; a saved state. What is not
+ * allowed in the instance's phase gives a text. `fmu_enter`: FMU_EVENT or FMU_CONTINUOUS. */
+fmu_error fmu_begin(fmu_instance *f, double start);
+fmu_error fmu_finish(fmu_instance *f);
+fmu_error fmu_enter(fmu_instance *f, int phase);
+fmu_error fmu_update(fmu_instance *f, int *states_changed);
+fmu_error fmu_step(fmu_instance *f, double time, double step);
+void fmu_end(fmu_instance *f);
+fmu_error fmu_get_all(fmu_instance *f, const unsigned *references, size_t count, double *values);
+fmu_error fmu_set_all(fmu_instance *f, const unsigned *references, size_t count,
+                      const double *values);
+fmu_error fmu_get_modes(fmu_instance *f, const unsigned *references, size_t count, int *values);
+fmu_error fmu_get_states(fmu_instance *f, double *states, size_t count);
+fmu_error fmu_get_rates(fmu_instance *f, double *rates, size_t count);
+fmu_error fmu_get_indicators(fmu_instance *f, double *indicators, size_t count);
+void fmu_get_nominals(double *nominals, size_t count);
+fmu_error fmu_copy(void *to, const void *from, size_t size);
+
+/* fmu_sources.c: external inputs at a time; breakpoints that are passed; the next one. The time of
+ * the next event: of a breakpoint, or where known sources have done enough to be looked at. */
+void fmu_externals(const fmu_instance *f, double t, double *w, double *dw);
+void fmu_pass(fmu_instance *f, double t);
+int fmu_next_break(const fmu_instance *f, double *time);
+int fmu_next_event(const fmu_instance *f, double *time);
+double fmu_resolution(const fmu_instance *f, double t, double longest);
+
+/* fmu_modes.c: the friction mode from the slips and efforts at an instant. */
+fmu_error fmu_decide(fmu_instance *f);
+
+/* fmu_events.c */
+void fmu_indicators_of(fmu_instance *f, const bg_snapshot *now, double *values);
+fmu_error fmu_indicators(fmu_instance *f, double *values);
+fmu_error fmu_initialize(fmu_instance *f);
+fmu_error fmu_event(fmu_instance *f, int *states_changed);
+
+/* fmu_step.c */
+fmu_error fmu_advance(fmu_instance *f, double t, double h);
+
+/* fmu_derive.c */
+fmu_error fmu_derive(fmu_instance *f, const unsigned *unknowns, size_t rows, const unsigned *knowns,
+                     size_t columns, const double *seed, double *result);
+
+#endif

@@ -1,0 +1,120 @@
+/* Events of model exchange: indicators that are positive while a mode holds, and what an event does. */
+#include <math.h>
+#include <string.h>
+
+#include "fmu_common.h"
+
+enum { K = BG_FRICTION };
+
+/* How far ports that stick are from leaving what inputs rule of their slips at zero. */
+static void keep_at_rest(fmu_instance *f, const bg_snapshot *now, double *values)
+{
+    bg_hold *held = NULL;
+    int sticking = 0;
+    for (int i = 0; i < K; i++)
+        sticking |= f->at.mode[i] == 0;
+    if (!sticking || bg_hold_of(&f->model, f->at.mode, &held) != BG_OK || held->ruled == 0)
+        return;
+    for (int i = 0; i < K; i++) {
+        const double most = now->caps[i] + f->at.margin[i];
+        const double rest = f->at.mode[i] ? INFINITY : most * bg_room(held, i, now, f->at.rest);
+        for (int k = 2 * i; k < 2 * i + 2; k++)
+            values[k] = fmin(values[k], rest);
+    }
+}
+
+/* Two for each friction port: its slip in its direction; margins to breakaway where it sticks. Then one
+ * for each expression at whose zero a law switches. A little below zero still counts as holding. */
+void fmu_indicators_of(fmu_instance *f, const bg_snapshot *now, double *values)
+{
+    for (int i = 0; i < K; i++) {
+        const int mode = f->at.mode[i];
+        const double effort = now->u[bg_friction_inputs[i]];
+        if (mode) {
+            values[2 * i] = mode * now->y[bg_friction_readings[i]] + f->at.rest[i];
+            values[2 * i + 1] = 1.0;
+        } else {
+            values[2 * i] = now->caps[i] - effort + f->at.margin[i];
+            values[2 * i + 1] = now->caps[i] + effort + f->at.margin[i];
+        }
+    }
+    keep_at_rest(f, now, values);
+    for (int k = 0; k < FMU_SWITCHES; k++)
+        values[2 * K + k] = f->at.side[k] * f->switches[k] + f->at.switch_rest[k];
+}
+
+fmu_error fmu_indicators(fmu_instance *f, double *values)
+{
+    const fmu_error failed = fmu_refresh(f);
+    if (!failed)
+        fmu_indicators_of(f, &f->view.shot, values);
+    return failed;
+}
+
+/* The sides on which laws are, and how far beyond a change counts. */
+static void note_sides(fmu_instance *f)
+{
+    for (int k = 0; k < FMU_SWITCHES; k++) {
+        const double value = f->switches[k];
+        double *const peak = &f->at.switch_peak[k];
+        *peak = fmax(*peak, fabs(value));
+        if (f->at.side[k] == 0 || f->at.side[k] * value + f->at.switch_rest[k] <= 0)
+            f->at.side[k] = value >= 0 ? 1 : -1;
+        f->at.switch_rest[k] = BG_SWITCH_PART * *peak + BG_SWITCH_FLOOR;
+    }
+}
+
+/* Takes what slip is left at sticking ports from the states, along A^-1 F^T. */
+static fmu_error remove_slips(fmu_instance *f, int *moved)
+{
+    int sticking = 0;
+    fmu_error failed = fmu_refresh(f);
+    for (int i = 0; i < K; i++)
+        sticking |= f->at.mode[i] == 0;
+    if (failed || !sticking)
+        return failed;
+    memcpy(f->point, f->at.s, sizeof f->at.s);
+    const int status = bg_remove_slips(&f->model, f->at.mode, &f->view.shot, f->at.s);
+    if (memcmp(f->point, f->at.s, sizeof f->at.s) != 0)
+        *moved = f->stale = 1;
+    return status == BG_OK ? NULL : bg_model_message(status);
+}
+
+static fmu_error settle(fmu_instance *f, int *states_changed)
+{
+    fmu_error failed;
+    fmu_pass(f, f->at.time);
+    failed = fmu_apply(f);
+    bg_have_seen(&f->model, f->at.s);
+    if (!failed)
+        failed = fmu_decide(f);
+    if (!failed)
+        failed = remove_slips(f, states_changed);
+    if (!failed)
+        failed = fmu_refresh(f);
+    if (!failed)
+        note_sides(f);
+    return failed;
+}
+
+/* The end of initialization: the vector, the mode, and slips that stick at rest. */
+fmu_error fmu_initialize(fmu_instance *f)
+{
+    int moved = 0;
+    fmu_error failed;
+    fmu_pass(f, f->at.time);
+    failed = fmu_refresh(f);
+    if (failed)
+        return failed;
+    f->at.phase = f->at.exchange ? FMU_EVENT : FMU_STEPPING;
+    memcpy(f->model.mode, f->at.mode, sizeof f->model.mode);
+    return settle(f, &moved);
+}
+
+/* An event: breakpoints of sources, then the mode anew. Parameters of models whose states inputs move
+ * at once cannot change here, so the vector stays as it is. */
+fmu_error fmu_event(fmu_instance *f, int *states_changed)
+{
+    *states_changed = 0;
+    return settle(f, states_changed);
+}

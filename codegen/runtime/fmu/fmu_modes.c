@@ -1,0 +1,53 @@
+/* Which ports stick and which way the others slip: one consistent mode at one instant. */
+#include <math.h>
+#include <string.h>
+
+#include "fmu_common.h"
+
+enum { K = BG_FRICTION };
+
+/* What the instant is to each port: by the indicators of the mode that was. An importer may find an
+ * event of a slip no better than to its own steps. */
+static void note_touched(fmu_instance *f, int *touched)
+{
+    double indicators[BG_ROOM(FMU_INDICATORS)];
+    if (!f->at.decided || fmu_look(f))
+        return; /* a mode that can no longer be evaluated tells nothing */
+    fmu_indicators_of(f, &f->view.shot, indicators);
+    for (int i = 0; i < K; i++)
+        if (indicators[2 * i] <= 0 || indicators[2 * i + 1] <= 0)
+            touched[i] = f->at.mode[i] ? BG_PASSED : BG_TOUCHED;
+}
+
+/* What later decisions and the indicators measure by. */
+static void note_sizes(fmu_instance *f)
+{
+    bg_port ports[BG_ROOM(K)];
+    bg_view_ports(&f->view, FMU_SHORTEST, ports);
+    for (int i = 0; i < K; i++) {
+        f->at.rest[i] = BG_HYSTERESIS * ports[i].near_slip;
+        f->at.margin[i] = BG_HYSTERESIS * ports[i].near_effort;
+    }
+}
+
+/* The mode just after the instance's time; ports at rest, or that crossed it, stick if they can. */
+fmu_error fmu_decide(fmu_instance *f)
+{
+    const bg_sight sight = bg_view_sight(&f->view);
+    bg_instant at = {f->at.time, FMU_SHORTEST, INFINITY, f->at.s, {0}};
+    int slipping[BG_MOST_PORTS] = {0};
+    if (K == 0)
+        return NULL;
+    f->stale = 1;
+    fmu_next_break(f, &at.following);
+    note_touched(f, at.touched);
+    memcpy(slipping, f->at.mode, sizeof f->at.mode);
+    int status = bg_evaluated(&sight, &at, 1, slipping);
+    if (status == BG_OK) {
+        bg_view_see(&f->view, f->at.s, slipping);
+        note_sizes(f);
+        status = bg_choose(&sight, &at, f->at.mode);
+    }
+    f->at.decided |= status == BG_OK;
+    return status == BG_OK ? NULL : bg_model_message(status);
+}

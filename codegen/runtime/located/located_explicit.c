@@ -1,0 +1,120 @@
+/* Explicit steps of order 8 with an interpolant of order 7. */
+#include <math.h>
+#include <string.h>
+
+#include "located_explicit_table.h"
+#include "located_internal.h"
+
+static const double SAFETY = 0.9, SHRINK = 0.2, GROW = 10.0;
+
+/* Stage i of a step, at `tried`. */
+static int stage(bg_located *c, int i, double h)
+{
+    bg_solver *const s = &c->solver;
+    for (int k = 0; k < BG_SIZE; k++)
+        s->tried[k] = 0.0;
+    for (int j = 0; j < i; j++) {
+        const double weight = h * A[i][j];
+        for (int k = 0; k < BG_SIZE && weight != 0.0; k++)
+            s->tried[k] += weight * s->stage[j][k];
+    }
+    for (int k = 0; k < BG_SIZE; k++)
+        s->tried[k] += s->y_old[k];
+    return bg_located_rate(c, s->t_old + C[i] * h, s->tried, s->stage[i]);
+}
+
+/* The error over what the tolerance allows: below 1 the step is good. */
+static double error_of(const bg_located *c, double h)
+{
+    const bg_solver *const s = &c->solver;
+    double fifth = 0.0, third = 0.0;
+    for (int k = 0; k < BG_SIZE; k++) {
+        const double size = fmax(fabs(s->y_old[k]), fabs(s->tried[k]));
+        const double scale = c->asked->atol + c->asked->rtol * size;
+        double e5 = 0.0, e3 = 0.0;
+        for (int i = 0; i <= STAGES; i++) {
+            e5 += E5[i] * s->stage[i][k];
+            e3 += E3[i] * s->stage[i][k];
+        }
+        fifth += (e5 / scale) * (e5 / scale);
+        third += (e3 / scale) * (e3 / scale);
+    }
+    if (fifth == 0.0 && third == 0.0)
+        return 0.0;
+    return h * fifth / sqrt((fifth + 0.01 * third) * BG_SIZE);
+}
+
+/* All stages of a step; its end in `tried`. A point where laws have no value is an error without
+ * bound. */
+static int attempt(bg_located *c, double h, double *error)
+{
+    int status = BG_OK;
+    for (int i = 1; i <= STAGES && status == BG_OK; i++)
+        status = stage(c, i, h);
+    *error = status == BG_OK ? error_of(c, h) : INFINITY;
+    return status == BG_NOT_FINITE || status == BG_NO_SOLUTION ? BG_OK : status;
+}
+
+int bg_explicit_step(bg_located *c, double stop)
+{
+    bg_solver *const s = &c->solver;
+    const double least = 10.0 * (nextafter(fabs(s->t), INFINITY) - fabs(s->t));
+    double h = fmin(fmax(s->next, least), s->longest), error = INFINITY, grow = GROW;
+    s->t_old = s->t;
+    memcpy(s->y_old, s->y, sizeof s->y);
+    memcpy(s->stage[0], s->f, sizeof s->f);
+    for (;;) {
+        const double end = fmin(s->t_old + h, stop);
+        h = end - s->t_old;
+        const int status = attempt(c, h, &error);
+        if (status != BG_OK)
+            return status;
+        s->t = end;
+        if (error < 1.0)
+            break;
+        h *= isfinite(error) ? fmax(SHRINK, SAFETY * pow(error, -0.125)) : SHRINK;
+        grow = 1.0;
+        if (h < least)
+            return BG_STEPS;
+    }
+    memcpy(s->y, s->tried, sizeof s->y);
+    memcpy(s->f_old, s->f, sizeof s->f);
+    memcpy(s->f, s->stage[STAGES], sizeof s->f);
+    s->h = h;
+    s->next = h * (error > 0.0 ? fmin(grow, SAFETY * pow(error, -0.125)) : grow);
+    return BG_OK;
+}
+
+int bg_explicit_dense(bg_located *c)
+{
+    bg_solver *const s = &c->solver;
+    for (int i = STAGES + 1; i < ALL; i++) {
+        const int status = stage(c, i, s->h);
+        if (status != BG_OK)
+            return status;
+    }
+    for (int k = 0; k < BG_SIZE; k++) {
+        const double change = s->y[k] - s->y_old[k];
+        s->interpolation[0][k] = change;
+        s->interpolation[1][k] = s->h * s->f_old[k] - change;
+        s->interpolation[2][k] = 2 * change - s->h * (s->f[k] + s->f_old[k]);
+        for (int r = 0; r < 4; r++) {
+            double sum = 0.0;
+            for (int i = 0; i < ALL; i++)
+                sum += D[r][i] * s->stage[i][k];
+            s->interpolation[3 + r][k] = s->h * sum;
+        }
+    }
+    return BG_OK;
+}
+
+void bg_explicit_at(const bg_solver *s, double t, double *y)
+{
+    const double x = (t - s->t_old) / s->h;
+    for (int k = 0; k < BG_SIZE; k++) {
+        double sum = 0.0;
+        for (int i = 6; i >= 0; i--)
+            sum = (sum + s->interpolation[i][k]) * (i % 2 ? 1 - x : x);
+        y[k] = s->y_old[k] + sum;
+    }
+}

@@ -1,0 +1,38 @@
+/* What the files of event-located runs share. */
+#ifndef BG_LOCATED_INTERNAL_H
+#define BG_LOCATED_INTERNAL_H
+
+#include "model_located.h"
+#include "tuning.h"
+
+/* located_run.c: rates of s at t in the present segment and mode. */
+int bg_located_rate(bg_located *c, double t, const double *s, double *rate);
+
+/* located_rates.c: how rates change with the states, by rows; the largest rate, of the inputs too;
+ * that at the present instant, a jump beside it left aside. */
+int bg_located_jacobian(bg_located *c, double t, const double *s, double *jacobian);
+int bg_located_fastest(bg_located *c, double t, const double *s, double *fastest);
+int bg_located_calm(bg_located *c, double *fastest);
+
+/* located_progress.c: BG_STEPS where lots of steps go nowhere, at a jump of the rates. */
+void bg_progress_begin(bg_located *c);
+int bg_progress_check(bg_located *c);
+
+/* located_watch.c: triggers from c->t on; the first event of the solver's latest step: 1 in *found,
+ * with its time and ports. */
+int bg_watch_begin(bg_located *c);
+int bg_watch_step(bg_located *c, int *found, double *time, int *ports);
+
+/* located_solver.c: one step that keeps the tolerance, and the state anywhere inside it. */
+int bg_solver_begin(bg_located *c, int method, double longest);
+int bg_solver_step(bg_located *c, double stop);
+int bg_solver_dense(bg_located *c, double t, double *s);
+
+/* located_explicit.c, located_implicit.c */
+int bg_explicit_step(bg_located *c, double stop);
+int bg_explicit_dense(bg_located *c);
+void bg_explicit_at(const bg_solver *solver, double t, double *s);
+int bg_implicit_step(bg_located *c, double stop);
+void bg_implicit_at(const bg_solver *solver, double t, double *s);
+
+#endif

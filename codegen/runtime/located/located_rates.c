@@ -1,0 +1,99 @@
+/* How rates change with the states, and the shortest time constant. */
+#include <math.h>
+#include <string.h>
+
+#include "located_internal.h"
+
+enum { SQUARINGS = 8 };
+
+/* How rates change with the states, by rows, from differences that stay where laws have values;
+ * downwards where `side` is -1. */
+static int slopes(bg_located *c, double t, const double *s, double side, double *jacobian)
+{
+    const double past = bg_longest_step(t - c->run.began);
+    double base[BG_SIZE], rate[BG_SIZE], moved[BG_SIZE];
+    int status = bg_located_rate(c, t, s, base);
+    memcpy(moved, s, sizeof moved);
+    for (int j = 0; j < BG_SIZE && status == BG_OK; j++) {
+        const double reach = BG_SLOPE_FLOOR * fabs(base[j]) * past + BG_SLOPE_FLOOR;
+        double step = side * (BG_SLOPE * fabs(s[j]) + reach);
+        for (int tries = 0; tries < 12; tries++, step *= BG_SLOPE_SHORTER) {
+            moved[j] = s[j] + step;
+            status = bg_located_rate(c, t, moved, rate);
+            if (status == BG_OK)
+                break;
+        }
+        for (int i = 0; i < BG_SIZE; i++)
+            jacobian[i * BG_SIZE + j] = (rate[i] - base[i]) / (moved[j] - s[j]);
+        moved[j] = s[j];
+    }
+    return status;
+}
+
+int bg_located_jacobian(bg_located *c, double t, const double *s, double *jacobian)
+{
+    return slopes(c, t, s, 1.0, jacobian);
+}
+
+static double largest(const double *a)
+{
+    double most = 0.0;
+    for (int i = 0; i < BG_SIZE * BG_SIZE; i++)
+        most = fmax(most, fabs(a[i]));
+    return most;
+}
+
+static void square(const double *a, double *product)
+{
+    memset(product, 0, sizeof(double) * BG_SIZE * BG_SIZE);
+    for (int i = 0; i < BG_SIZE; i++)
+        for (int l = 0; l < BG_SIZE; l++) {
+            const double factor = a[i * BG_SIZE + l];
+            for (int j = 0; j < BG_SIZE && factor != 0.0; j++)
+                product[i * BG_SIZE + j] += factor * a[l * BG_SIZE + j];
+        }
+}
+
+/* The largest rate [1/s] of the model linearised in squares[0] and of the inputs: of the model from
+ * a high power of the matrix, scaled as it grows. */
+static int largest_rate(bg_located *c, double *fastest)
+{
+    double *power = c->squares[0], *next = c->squares[1], logarithm = 0.0, share = 1.0;
+    double size = largest(power);
+    *fastest = c->signals->fastest[c->run.segment];
+    if (!isfinite(size))
+        return BG_NOT_FINITE;
+    for (int k = 0; k < SQUARINGS && size > 0.0; k++) {
+        double *const done = power;
+        logarithm += share * log(size);
+        share /= 2;
+        for (int i = 0; i < BG_SIZE * BG_SIZE; i++)
+            power[i] /= size;
+        square(power, next);
+        power = next;
+        next = done;
+        size = largest(power);
+    }
+    if (size > 0.0)
+        *fastest = fmax(*fastest, exp(logarithm + share * log(size)));
+    return BG_OK;
+}
+
+int bg_located_fastest(bg_located *c, double t, const double *s, double *fastest)
+{
+    const int status = bg_located_jacobian(c, t, s, c->squares[0]);
+    *fastest = 0.0;
+    return status == BG_OK ? largest_rate(c, fastest) : status;
+}
+
+/* At the present instant, a jump beside it left aside: from the smaller slope of both sides. */
+int bg_located_calm(bg_located *c, double *fastest)
+{
+    double *const ahead = c->squares[0], *const behind = c->squares[1];
+    int status = slopes(c, c->run.at.t, c->s, 1.0, ahead);
+    if (status == BG_OK)
+        status = slopes(c, c->run.at.t, c->s, -1.0, behind);
+    for (int i = 0; i < BG_SIZE * BG_SIZE; i++)
+        ahead[i] = fabs(ahead[i]) < fabs(behind[i]) ? ahead[i] : behind[i];
+    return status == BG_OK ? largest_rate(c, fastest) : status;
+}

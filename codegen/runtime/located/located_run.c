@@ -1,0 +1,188 @@
+/* Event-located runs: steps with a tolerance, and the samples on the way. */
+#include <math.h>
+#include <string.h>
+
+#include "located_internal.h"
+
+enum { K = BG_FRICTION };
+
+/* External inputs in the present segment, for the view. */
+static int given(const void *self, double t, double *w, double *dw)
+{
+    const bg_located *const c = self;
+    bg_signals_at(c->signals, c->run.segment, t, w, dw);
+    return 1;
+}
+
+/* In the present mode; straight-line code where all ports slip and there is any. */
+int bg_located_rate(bg_located *c, double t, const double *s, double *rate)
+{
+    double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)], signs[BG_ROOM(K)] = {0};
+    int sticking = 0;
+    for (int i = 0; i < K; i++) {
+        signs[i] = c->run.mode[i];
+        sticking |= c->run.mode[i] == 0;
+    }
+    if (!BG_STRAIGHT || sticking) {
+        const int status = bg_view_look(&c->view, t, s, c->run.mode);
+        memcpy(rate, c->view.shot.rate, sizeof c->view.shot.rate);
+        return status;
+    }
+    bg_signals_at(c->signals, c->run.segment, t, w, dw);
+    const int status = bg_model_rhs(c->model, t, s, w, signs, rate);
+    return status == BG_OK && !bg_finite(BG_SIZE, rate) ? BG_NOT_FINITE : status;
+}
+
+static void see(void *run, const int *slipping)
+{
+    bg_located *const c = run;
+    bg_view_see(&c->view, c->s, slipping);
+}
+
+/* The largest rate in the mode so far or, where that cannot be evaluated, in one that can. */
+static int fastest_now(void *run, double *fastest)
+{
+    bg_located *const c = run;
+    const bg_sight sight = bg_view_sight(&c->view);
+    int before[BG_MOST_PORTS];
+    memcpy(before, c->run.mode, sizeof before);
+    int status = bg_evaluated(&sight, &c->run.at, 0, c->run.mode);
+    if (status == BG_OK)
+        status = bg_located_fastest(c, c->run.at.t, c->s, fastest);
+    memcpy(c->run.mode, before, sizeof before);
+    return status;
+}
+
+static int rest(void *run)
+{
+    bg_located *const c = run;
+    int sticking = 0;
+    for (int i = 0; i < K; i++)
+        sticking |= c->run.mode[i] == 0;
+    const int status = sticking ? bg_view_look(&c->view, c->run.at.t, c->s, c->run.mode) : BG_OK;
+    return status || !sticking ? status : bg_remove_slips(c->model, c->run.mode, &c->view.shot, c->s);
+}
+
+/* Hands the next sample over, which is at s. */
+static int record(bg_located *c, const double *s)
+{
+    const bg_request *const asked = c->asked;
+    const double t = asked->times[c->next];
+    double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
+    const int status = bg_view_look(&c->view, t, s, c->run.mode);
+    if (status != BG_OK)
+        return status;
+    bg_signals_at(c->signals, c->run.segment, t, w, dw);
+    asked->record(asked->to, c->next++, w, c->run.mode, &c->view.shot);
+    return BG_OK;
+}
+
+/* The samples before `until`, from the latest step. */
+static int sample(bg_located *c, double until)
+{
+    const bg_request *const asked = c->asked;
+    double s[BG_SIZE];
+    int status = BG_OK;
+    while (status == BG_OK && c->next < asked->samples && asked->times[c->next] < until) {
+        status = bg_solver_dense(c, asked->times[c->next], s);
+        if (status == BG_OK)
+            status = record(c, s);
+    }
+    return status;
+}
+
+/* The longest step: events and inputs must not fall between, nor the interpolant be strained. */
+static double longest(const bg_located *c, int method, double fastest)
+{
+    const double bound = bg_longest_step(c->run.at.t - c->run.began);
+    const double driven = c->signals->fastest[c->run.segment];
+    if (method == BG_RADAU)
+        return driven > 0 ? fmin(bound, BG_FOLLOWED / driven) : bound;
+    return fastest > 0 ? fmin(bound, 1.0 / fastest) : bound;
+}
+
+/* A step: its end, or the event in it; samples before that are recorded. */
+static int step(bg_located *c, double stop, int *ended)
+{
+    const bg_request *const asked = c->asked;
+    double until = INFINITY, s[BG_SIZE];
+    int status = bg_solver_step(c, stop);
+    if (status == BG_OK)
+        status = bg_watch_step(c, ended, &until, c->run.at.touched);
+    if (status == BG_OK)
+        status = sample(c, *ended ? until : c->solver.t);
+    if (status == BG_OK && asked->smooth)
+        status = asked->smooth(asked->to, c, c->run.at.t, *ended ? until : c->solver.t);
+    if (status == BG_OK && *ended)
+        status = bg_solver_dense(c, until, s);
+    if (status != BG_OK)
+        return status;
+    c->run.at.t = *ended ? until : c->solver.t;
+    memcpy(c->s, *ended ? s : c->solver.y, sizeof c->s);
+    bg_have_seen(c->model, c->s);
+    return BG_OK;
+}
+
+/* From the present instant to `stop` or the first event. */
+static int advance(void *run, double stop)
+{
+    bg_located *const c = run;
+    double fastest;
+    int status = bg_located_fastest(c, c->run.at.t, c->s, &fastest), ended = 0;
+    int method = c->asked->method;
+    const double span = c->asked->times[c->asked->samples - 1] - c->run.began;
+    if (method == BG_AUTO)
+        method = fastest * span > BG_STIFF_SPAN ? BG_RADAU : BG_DOP853;
+    if (status == BG_OK)
+        status = bg_solver_begin(c, method, longest(c, method, fastest));
+    if (status == BG_OK)
+        status = bg_watch_begin(c);
+    bg_progress_begin(c);
+    for (long count = 1; status == BG_OK && c->run.at.t < stop && !ended; count++) {
+        status = step(c, stop, &ended);
+        if (status == BG_OK && !ended)
+            status = bg_progress_check(c);
+        if (status == BG_OK && !BG_AFFINE && count % BG_REFRESH == 0)
+            status = bg_located_fastest(c, c->run.at.t, c->s, &fastest);
+        c->solver.longest = longest(c, method, fastest);
+    }
+    return status;
+}
+
+static int begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
+{
+    double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
+    c->model = m;
+    c->signals = signals;
+    c->asked = asked;
+    c->next = 0;
+    c->run.segments = signals->segments;
+    c->run.breaks = signals->breaks;
+    c->run.events = asked->events;
+    c->run.capacity = asked->capacity;
+    bg_set_out(&c->run, asked->times[0], asked->times[asked->samples - 1], c->s);
+    memset(&c->peaks, 0, sizeof c->peaks);
+    c->view.model = m;
+    c->view.peaks = &c->peaks;
+    c->view.self = c;
+    c->view.given = given;
+    c->view.measured = 0;
+    memset(m->seen, 0, sizeof m->seen);
+    given(c, c->run.at.t, w, dw);
+    const int status = bg_model_vector(m, c->run.at.t, asked->states, w, c->s);
+    bg_have_seen(m, c->s);
+    return status;
+}
+
+int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
+{
+    int status = begin(c, m, signals, asked);
+    const bg_engine engine = {bg_view_sight(&c->view), c, see, fastest_now, rest, advance};
+    if (status == BG_OK)
+        status = bg_run(&engine, &c->run);
+    if (status == BG_OK)
+        status = record(c, c->s); /* the last sample shows the instant after all events */
+    asked->count = c->run.count;
+    asked->time = c->run.at.t;
+    return status;
+}

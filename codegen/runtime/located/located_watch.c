@@ -1,0 +1,189 @@
+/* Events inside one step of an integrator: where a slip or a margin falls through zero. */
+#include <math.h>
+#include <string.h>
+
+#include "located_internal.h"
+
+enum { K = BG_FRICTION, POINTS = BG_CHECKS + 2, SECTIONS = 44 };
+#define PORTS BG_ROOM(BG_FRICTION)
+
+/* What a search for a root asks: trigger `port` less `level` inside the latest step. */
+typedef struct {
+    bg_located *c;
+    int port, status;
+    double level;
+} search;
+
+/* The triggers of the instant in c->view.shot; a port that sticks lets go where inputs move it, too. */
+static void triggers(const bg_located *c, double *values)
+{
+    int sticking = 0;
+    bg_hold *held = NULL;
+    for (int i = 0; i < K; i++) {
+        const double effort = c->view.shot.u[bg_friction_inputs[i]];
+        const double slip = c->view.shot.y[bg_friction_readings[i]];
+        values[i] = c->run.mode[i] ? c->run.mode[i] * slip : c->view.shot.caps[i] - fabs(effort);
+        sticking |= c->run.mode[i] == 0;
+    }
+    if (!sticking || bg_hold_of(c->model, c->run.mode, &held) != BG_OK || held->ruled == 0)
+        return;
+    for (int i = 0; i < K; i++) {
+        const double rest = c->view.shot.caps[i] + 4 * c->watch.limit[i];
+        if (c->run.mode[i] == 0)
+            values[i] = fmin(values[i], rest * bg_room(held, i, &c->view.shot, c->watch.near));
+    }
+}
+
+/* The triggers inside the latest step. */
+static int triggers_at(bg_located *c, double t, double *values)
+{
+    double s[BG_SIZE];
+    int status = bg_solver_dense(c, t, s);
+    if (status == BG_OK)
+        status = bg_view_look(&c->view, t, s, c->run.mode);
+    triggers(c, values);
+    return status;
+}
+
+static double above(void *self, double t)
+{
+    search *const asked = self;
+    double values[PORTS] = {0};
+    const int status = triggers_at(asked->c, t, values);
+    if (status != BG_OK)
+        asked->status = status;
+    return values[asked->port] - asked->level;
+}
+
+/* Where trigger falls through the level between a and b, where it is above it and below. */
+static double crossing(search *asked, double a, double b, double level)
+{
+    double found = b;
+    asked->level = level;
+    if (above(asked, a) <= 0)
+        return a;
+    if (above(asked, b) < 0)
+        bg_root(above, asked, a, b, &found);
+    return found;
+}
+
+/* Where trigger `i` falls through zero between two points: 1, if it does. Until it is armed only a
+ * fall well below zero counts, after a moment in which nothing does. */
+static int fall(search *asked, double t_a, double t_b, double a, double b, double *root)
+{
+    bg_watch *const watch = &asked->c->watch;
+    const int i = asked->port;
+    const double limit = watch->limit[i];
+    if (!watch->armed[i] && fmax(a, b) > limit) {
+        watch->armed[i] = 1;
+        if (a <= limit)
+            return 0;
+    }
+    if (watch->armed[i]) {
+        if (b > 0)
+            return 0;
+        *root = crossing(asked, t_a, t_b, 0.0);
+        return 1;
+    }
+    if (b >= -2 * limit || t_b <= watch->blind)
+        return 0;
+    *root = fmax(crossing(asked, t_a, t_b, -2 * limit), watch->blind);
+    return 1;
+}
+
+/* The first of two roots where a trigger dips below zero between three points and comes back: the
+ * parabola through them tells whether there is a dip worth a closer look, by golden sections. */
+static int dip(search *asked, const double *t, const double *values, double *root)
+{
+    static const double golden = 0.6180339887498949;
+    const double a = values[0], b = values[1], c = values[2];
+    const double curve = a - 2 * b + c, slope = (c - a) / 2, least = fmin(a, fmin(b, c));
+    double low = t[0], high = t[2], left, right, at_left, at_right;
+    if (least <= 0 || curve <= 0 || fabs(slope) > 1.25 * curve
+        || b - slope * slope / (2 * curve) > 0.5 * least)
+        return 0;
+    asked->level = 0.0;
+    left = high - golden * (high - low);
+    right = low + golden * (high - low);
+    at_left = above(asked, left);
+    at_right = above(asked, right);
+    for (int k = 0; k < SECTIONS && at_left > 0 && at_right > 0; k++) {
+        if (at_left < at_right) {
+            high = right, right = left, at_right = at_left;
+            left = high - golden * (high - low);
+            at_left = above(asked, left);
+        } else {
+            low = left, left = right, at_left = at_right;
+            right = low + golden * (high - low);
+            at_right = above(asked, right);
+        }
+    }
+    if (at_left > 0 && at_right > 0)
+        return 0;
+    *root = crossing(asked, t[0], at_left <= 0 ? left : right, 0.0);
+    return 1;
+}
+
+/* The first time in a step at which a trigger falls through zero, seen or hidden in a dip. */
+static int first_fall(search *asked, const double *times, double values[POINTS][PORTS],
+                      double *root)
+{
+    const int i = asked->port;
+    for (int k = 0; k + 1 < POINTS; k++) {
+        if (fall(asked, times[k], times[k + 1], values[k][i], values[k + 1][i], root))
+            return 1;
+        if (k > 0 && asked->c->watch.armed[i]) {
+            const double three[3] = {values[k - 1][i], values[k][i], values[k + 1][i]};
+            if (dip(asked, times + k - 1, three, root))
+                return 1;
+        }
+    }
+    return 0;
+}
+
+int bg_watch_begin(bg_located *c)
+{
+    bg_port ports[BG_ROOM(K)];
+    const int status = K > 0 ? bg_view_look(&c->view, c->run.at.t, c->s, c->run.mode) : BG_OK;
+    if (status != BG_OK || K == 0)
+        return status;
+    bg_view_ports(&c->view, c->run.at.time, ports);
+    c->watch.blind = c->run.at.t + bg_moment(c->run.at.time);
+    for (int i = 0; i < K; i++) {
+        c->watch.limit[i] = c->run.mode[i] ? ports[i].near_slip : ports[i].near_effort;
+        c->watch.near[i] = BG_LEFT * ports[i].near_slip;
+        c->watch.armed[i] = 0;
+    }
+    triggers(c, c->watch.before);
+    return BG_OK;
+}
+
+int bg_watch_step(bg_located *c, int *found, double *time, int *ports)
+{
+    const double begin = c->solver.t_old, end = c->solver.t;
+    double times[POINTS], values[POINTS][PORTS], roots[PORTS];
+    search asked = {c, 0, BG_OK, 0.0};
+    *found = 0;
+    *time = INFINITY;
+    if (K == 0)
+        return BG_OK;
+    memcpy(values[0], c->watch.before, sizeof values[0]);
+    times[0] = begin;
+    for (int k = 1; k < POINTS; k++) {
+        times[k] = k == POINTS - 1 ? end : begin + k * (end - begin) / (POINTS - 1);
+        const int status = triggers_at(c, times[k], values[k]);
+        if (status != BG_OK)
+            return status;
+    }
+    memcpy(c->watch.before, values[POINTS - 1], sizeof values[0]);
+    for (int i = 0; i < K; i++) {
+        asked.port = i;
+        roots[i] = INFINITY;
+        if (first_fall(&asked, times, values, roots + i))
+            *found = 1;
+        *time = fmin(*time, roots[i]);
+    }
+    for (int i = 0; i < K; i++)
+        ports[i] = *found && roots[i] <= *time + BG_TOGETHER * fmax(fabs(*time), end - begin);
+    return asked.status;
+}

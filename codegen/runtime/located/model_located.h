@@ -1,0 +1,59 @@
+/* Event-located runs of a generated model: integrated with step control between breakpoints of the
+ * inputs, sticking, release and zero crossings, each located by its root. Nothing is allocated and
+ * nothing is global: the caller provides a `bg_located` for each run at a time. */
+#ifndef BG_MODEL_LOCATED_H
+#define BG_MODEL_LOCATED_H
+
+#include "located_request.h"
+#include "port_sight.h"
+#include "run_loop.h"
+
+enum { BG_EXPLICIT_STAGES = 16 };
+
+/* One step of an integrator, and what its interpolation needs. */
+typedef struct {
+    int method, begun, dense, stale, factored;
+    double t_old, t, h, next, longest, error, h_factored;
+    double y_old[BG_SIZE], y[BG_SIZE], f_old[BG_SIZE], f[BG_SIZE];
+    double stage[BG_EXPLICIT_STAGES][BG_SIZE], tried[BG_SIZE], scale[BG_SIZE];
+    double interpolation[7][BG_SIZE], collocation[3][BG_SIZE];
+    double jacobian[BG_SIZE * BG_SIZE], real[BG_SIZE * BG_SIZE];
+    double complex[4 * BG_SIZE * BG_SIZE];
+    int real_pivots[BG_SIZE], complex_pivots[2 * BG_SIZE];
+} bg_solver;
+
+/* The triggers of a stretch, one for each port, positive while its mode holds: the slip, or the
+ * margin to the breakaway effort. Armed when they have risen above rounding. */
+typedef struct {
+    double blind, limit[BG_ROOM(BG_FRICTION)], before[BG_ROOM(BG_FRICTION)];
+    double near[BG_ROOM(BG_FRICTION)]; /* where slips that inputs rule have left zero */
+    int armed[BG_ROOM(BG_FRICTION)];
+} bg_watch;
+
+/* The steps of a stretch: when the latest lot of them began, and whether the one before went
+ * nowhere. */
+typedef struct {
+    double begin;
+    long steps;
+    int idle;
+} bg_progress;
+
+/* A run: where it is, what it looks at, the next sample. */
+typedef struct {
+    bg_model *model;
+    const bg_signals *signals;
+    bg_request *asked;
+    bg_course run;
+    bg_peaks peaks;
+    bg_view view;
+    double s[BG_SIZE], squares[2][BG_SIZE * BG_SIZE];
+    int next;
+    bg_watch watch;
+    bg_progress progress;
+    bg_solver solver;
+} bg_located;
+
+/* Runs; a status. */
+int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked);
+
+#endif

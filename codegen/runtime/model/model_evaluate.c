@@ -1,0 +1,241 @@
+/* Every variable at one time, state and friction mode, law by law. */
+#include <math.h>
+#include <string.h>
+
+#include "model_internal.h"
+
+enum { K = BG_FRICTION, N = BG_STATES, OWN = BG_LAW_STATES, M = BG_INPUTS, ROWS = BG_READINGS };
+
+/* Adds to inputs, and to the readings that show them at once. */
+void bg_give(bg_model *m, int count, const int *columns, const double *values)
+{
+    for (int k = 0; k < count; k++)
+        m->now.u[columns[k]] += values[k];
+    for (int i = 0; i < ROWS; i++) {
+        double sum = 0.0;
+        for (int k = 0; k < count; k++)
+            sum += m->numbers.D[i * M + columns[k]] * values[k];
+        m->now.y[i] += sum;
+    }
+}
+
+/* Slipping ports' efforts, zero at sticking ones; notes every port's breakaway effort. */
+static int efforts_against(bg_model *m, const int *mode, int checked, double *efforts)
+{
+    double values[4 * BG_ROOM(K)] = {0};
+    int below = 0;
+    bg_friction_values(&m->now, values);
+    for (int i = 0; i < 4 * K; i++)
+        below |= values[i] < 0.0;
+    if (checked && below)
+        bg_without_rounding(m, values);
+    for (int i = 0; i < K; i++) {
+        const double level = values[4 * i], cap = values[4 * i + 1], curve = values[4 * i + 2];
+        const double at_rest = level * values[4 * i + 3];
+        m->caps[i] = cap;
+        efforts[i] = level * curve * mode[i];
+        if (checked && (level < 0 || curve < 0 || cap < at_rest * (1 - BG_BREAKAWAY))) {
+            m->where = i;
+            return BG_BAD_FRICTION;
+        }
+    }
+    return BG_OK;
+}
+
+static int friction_residual(bg_model *m, const bg_loop *loop, double *left)
+{
+    const bg_hold *const held = loop->held;
+    double against[BG_ROOM(K)] = {0}, rule[BG_ROOM(K)] = {0};
+    const int status = efforts_against(m, loop->mode, loop->checked, against);
+    int ruled;
+    for (int i = 0; i < K; i++)
+        left[i] = m->now.u[bg_friction_inputs[i]] - against[i];
+    if (held) {
+        ruled = held->count - held->share_count;
+        bg_multiply_add(ruled, N, held->X, m->now.x, rule);
+        bg_multiply_add(ruled, M, held->U, m->now.u, rule);
+        bg_multiply_add(ruled, M, held->V, m->du, rule);
+        for (int r = 0; r < held->share_count; r++)
+            for (int c = 0; c < held->count; c++)
+                rule[ruled + r] += held->share[r * held->count + c]
+                    * m->now.u[bg_friction_inputs[held->ports[c]]];
+        for (int r = 0; r < held->count; r++)
+            left[held->ports[r]] = rule[r];
+    }
+    bg_coupled.values(&m->now, m->work.law);
+    for (int i = 0; i < bg_coupled.count; i++)
+        left[K + i] = m->now.u[bg_coupled.inputs[i]] - m->work.law[i];
+    return status;
+}
+
+int bg_residual(bg_model *m, const bg_loop *loop, double *left)
+{
+    if (!loop->group)
+        return friction_residual(m, loop, left);
+    loop->group->values(&m->now, m->work.law);
+    for (int i = 0; i < loop->count; i++)
+        left[i] = m->now.u[loop->columns[i]] - m->work.law[i];
+    return BG_OK;
+}
+
+/* Evaluates one group of laws, or solves it if it is a loop. */
+static int evaluate_group(bg_model *m, const bg_group *group)
+{
+    if (!group->loop) {
+        group->values(&m->now, m->work.law);
+        bg_give(m, group->count, group->inputs, m->work.law);
+        return BG_OK;
+    }
+    bg_loop loop = {group, NULL, NULL, group->count, 0, {0}, {0}};
+    memcpy(loop.columns, group->inputs, sizeof(int) * (size_t)group->count);
+    memcpy(loop.rows, group->readings, sizeof(int) * (size_t)group->count);
+    return bg_solve_loop(m, &loop);
+}
+
+/* Friction efforts that act back on slips or laws at once: all solved together. */
+static int rub_jointly(bg_model *m, const int *mode, bg_hold *held, int checked)
+{
+    bg_loop loop = {NULL, mode, held, K + bg_coupled.count, checked, {0}, {0}};
+    double efforts[BG_ROOM(K)] = {0}, caps[BG_ROOM(K)] = {0};
+    int status, columns[BG_ROOM(K)] = {0};
+    for (int i = 0; i < K; i++) {
+        loop.columns[i] = bg_friction_inputs[i];
+        loop.rows[i] = bg_friction_readings[i];
+    }
+    for (int i = 0; i < bg_coupled.count; i++) {
+        loop.columns[K + i] = bg_coupled.inputs[i];
+        loop.rows[K + i] = bg_coupled.readings[i];
+    }
+    status = bg_solve_loop(m, &loop);
+    if (status != BG_OK || !held || held->share_count == 0)
+        return status;
+    for (int r = 0; r < held->count; r++) {
+        columns[r] = bg_friction_inputs[held->ports[r]];
+        efforts[r] = m->now.u[columns[r]];
+        caps[r] = m->caps[held->ports[r]];
+    }
+    bg_fair_share(held, caps, efforts);
+    for (int r = 0; r < held->count; r++)
+        efforts[r] -= m->now.u[columns[r]];
+    bg_give(m, held->count, columns, efforts);
+    return BG_OK;
+}
+
+/* The friction efforts of a mode: against the slip, or whatever holds. */
+static int rub(bg_model *m, const int *mode, bg_hold *held, int checked)
+{
+    double efforts[BG_ROOM(K)] = {0}, holding[BG_ROOM(K)] = {0};
+    int status;
+    if (BG_JOINT)
+        return rub_jointly(m, mode, held, checked);
+    status = efforts_against(m, mode, checked, efforts);
+    if (status != BG_OK)
+        return status;
+    for (int i = 0; i < K; i++)
+        m->now.u[bg_friction_inputs[i]] = efforts[i];
+    if (held) {
+        status = bg_holding_efforts(m, held, holding);
+        if (status != BG_OK)
+            return status;
+        for (int r = 0; r < held->count; r++)
+            efforts[held->ports[r]] = holding[r];
+    }
+    for (int i = 0; i < K; i++)
+        m->now.u[bg_friction_inputs[i]] = 0.0;
+    bg_give(m, K, bg_friction_inputs, efforts);
+    return BG_OK;
+}
+
+/* Time, states, external inputs and known laws; x and readings as far as these determine them. */
+static int begin(bg_model *m, double t, const double *s, const double *w, const double *dw)
+{
+    bg_values *const now = &m->now;
+    int status = BG_OK;
+    now->t = t;
+    memcpy(now->x, s, sizeof(double) * N);
+    memcpy(now->z, s + N, sizeof(double) * OWN);
+    memset(now->u, 0, sizeof now->u);
+    memset(now->y, 0, sizeof now->y);
+    memset(m->du, 0, sizeof m->du);
+    for (int i = 0; i < BG_EXTERNAL; i++) {
+        now->w[i] = w[i];
+        now->dw[i] = dw ? dw[i] : 0.0;
+    }
+    for (int i = 0; i < BG_OUTSIDE; i++) {
+        now->u[bg_outside_inputs[i]] = now->w[i];
+        m->du[bg_outside_inputs[i]] = now->dw[i];
+    }
+    bg_known.values(now, m->work.law);
+    for (int i = 0; i < bg_known.count; i++)
+        now->u[bg_known.inputs[i]] = m->work.law[i];
+    if (BG_RATED) {
+        bg_known_rates(now, m->work.law);
+        for (int i = 0; i < bg_known.count; i++)
+            m->du[bg_known.inputs[i]] = m->work.law[i];
+    }
+    if (BG_VARYING) {
+        for (int i = 0; i < BG_HOLDS; i++)
+            m->holds[i].ready = 0;
+        status = bg_assemble(m);
+    } else if (BG_DRIVEN) {
+        bg_multiply_add(N, M, m->numbers.R, now->u, now->x);
+    }
+    bg_multiply_add(ROWS, N, m->numbers.F, now->x, now->y);
+    bg_multiply_add(ROWS, M, m->numbers.D, now->u, now->y);
+    if (BG_RATED)
+        bg_multiply_add(ROWS, M, m->numbers.G, m->du, now->y);
+    return status;
+}
+
+/* The rate of s, and all else as a snapshot. */
+static int finish(bg_model *m, const bg_hold *held, bg_snapshot *shot)
+{
+    const bg_values *const now = &m->now;
+    memset(shot->rate, 0, sizeof shot->rate);
+    bg_multiply_add(N, N, m->numbers.P, now->x, shot->rate);
+    bg_multiply_add(N, M, m->numbers.Q, now->u, shot->rate);
+    if (BG_VARYING)
+        bg_multiply_add(N, M, m->numbers.R, m->du, shot->rate);
+    for (int i = 0; i < OWN; i++)
+        shot->rate[N + i] = now->y[bg_law_rates[i]];
+    if (held)
+        bg_correct(held, shot->rate, m->du);
+    memcpy(shot->x, now->x, sizeof shot->x);
+    memcpy(shot->z, now->z, sizeof shot->z);
+    memcpy(shot->u, now->u, sizeof shot->u);
+    memcpy(shot->du, m->du, sizeof shot->du);
+    memcpy(shot->y, now->y, sizeof shot->y);
+    memcpy(shot->caps, m->caps, sizeof shot->caps);
+    if (!bg_finite(BG_SIZE, shot->rate) || !bg_finite(M, shot->u) || !bg_finite(ROWS, shot->y))
+        return BG_NOT_FINITE;
+    return BG_OK;
+}
+
+int bg_evaluate(bg_model *m, double t, const double *s, const double *w, const double *dw,
+                const int *mode, int checked, bg_snapshot *shot)
+{
+    bg_hold *held = NULL;
+    int status = begin(m, t, s, w, dw), sticking = 0;
+    m->where = -1;
+    for (int g = 0; g < BG_GROUPS && status == BG_OK; g++) {
+        status = evaluate_group(m, &bg_groups[g]);
+        if (status != BG_OK)
+            m->where = g;
+    }
+    for (int i = 0; i < K; i++)
+        sticking |= mode[i] == 0;
+    if (status == BG_OK && sticking)
+        status = bg_hold_of(m, mode, &held);
+    if (status == BG_OK && K > 0)
+        status = rub(m, mode, held, checked);
+    return status == BG_OK ? finish(m, held, shot) : status;
+}
+
+int bg_model_evaluate(bg_model *m, double t, const double *s, const double *w, const double *dw,
+                      const int *mode, bg_snapshot *shot)
+{
+    for (int i = 0; i < K; i++)
+        if (mode[i] < -1 || mode[i] > 1)
+            return BG_BAD_MODE;
+    return bg_evaluate(m, t, s, w, dw, mode, 1, shot);
+}

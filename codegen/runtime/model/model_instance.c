@@ -1,0 +1,158 @@
+/* An instance: its parameters, its vector, its affine maps, and what a status means. */
+#include <math.h>
+#include <string.h>
+
+#include "model_internal.h"
+
+enum { K = BG_FRICTION, N = BG_STATES, OWN = BG_LAW_STATES, M = BG_INPUTS, ROWS = BG_READINGS };
+void bg_model_parameters(double *parameters)
+{
+    memcpy(parameters, bg_defaults, sizeof(double) * BG_PARAMETERS);
+}
+
+int bg_model_init(bg_model *m, const double *parameters)
+{
+    int status;
+    memset(m, 0, sizeof *m);
+    m->where = -1;
+    memcpy(m->now.p, parameters ? parameters : bg_defaults, sizeof(double) * BG_PARAMETERS);
+    if (!bg_finite(BG_PARAMETERS, m->now.p))
+        return BG_PARAMETER;
+    for (int i = 0; i < K; i++) {
+        m->band[i] = BG_BAND;
+        m->mode[i] = 1;
+    }
+    if (BG_VARYING)
+        return BG_OK;
+    status = bg_assemble(m);
+    if (status == BG_OK && BG_STRAIGHT)
+        bg_prepare_rhs(m);
+    return status;
+}
+
+int bg_model_vector(bg_model *m, double t, const double *states, const double *w, double *s)
+{
+    int mode[BG_ROOM(K)], status;
+    double driven[BG_ROOM(N)] = {0};
+    s[0] = 0.0;
+    memcpy(s, states, sizeof(double) * (N + OWN));
+    if (!BG_DRIVEN || BG_VARYING)
+        return BG_OK;
+    for (int i = 0; i < BG_ROOM(K); i++)
+        mode[i] = 1;
+    status = bg_model_evaluate(m, t, s, w, NULL, mode, &m->shot);
+    if (status != BG_OK)
+        return status;
+    bg_multiply_add(N, M, m->numbers.R, m->shot.u, driven);
+    for (int i = 0; i < N; i++)
+        s[i] -= driven[i];
+    return BG_OK;
+}
+
+void bg_model_outputs(const bg_snapshot *shot, double *outputs)
+{
+    for (int i = 0; i < BG_OUTPUTS; i++)
+        outputs[i] = shot->y[bg_output_readings[i]];
+}
+
+static double *put(double *to, int count, const double *from)
+{
+    memcpy(to, from, sizeof(double) * (size_t)count);
+    return to + count;
+}
+
+/* Probes the model where one component of [s, w, dw] is BG_FAR and all others are 0. */
+static int probe(bg_model *m, const int *mode, int at, double *column)
+{
+    int status;
+    memset(m->work.point, 0, sizeof m->work.point);
+    memset(m->work.external, 0, sizeof m->work.external);
+    if (at >= BG_SIZE + BG_EXTERNAL)
+        m->work.external[1][at - BG_SIZE - BG_EXTERNAL] = BG_FAR;
+    else if (at >= BG_SIZE)
+        m->work.external[0][at - BG_SIZE] = BG_FAR;
+    else if (at >= 0)
+        m->work.point[at] = BG_FAR;
+    status = bg_evaluate(m, 0.0, m->work.point, m->work.external[0], m->work.external[1], mode, 0,
+                         &m->shot);
+    column = put(column, N, m->shot.x);
+    column = put(column, OWN, m->shot.z);
+    column = put(column, M, m->shot.u);
+    column = put(column, M, m->shot.du);
+    column = put(column, ROWS, m->shot.y);
+    column = put(column, BG_SIZE, m->shot.rate);
+    put(column, K, m->shot.caps);
+    return status;
+}
+
+/* Slips that stick must not drift by the rounding of the matrix either. */
+static void correct_map(const bg_hold *held, bg_work *work, double *matrix)
+{
+    const int du_row = N + OWN + M, rate_row = N + OWN + 2 * M + ROWS;
+    for (int j = 0; j < BG_MAP_COLUMNS; j++) {
+        for (int i = 0; i < BG_SIZE; i++)
+            work->point[i] = matrix[(rate_row + i) * BG_MAP_COLUMNS + j];
+        for (int i = 0; i < M; i++)
+            work->u[i] = matrix[(du_row + i) * BG_MAP_COLUMNS + j];
+        bg_correct(held, work->point, work->u);
+        for (int i = 0; i < BG_SIZE; i++)
+            matrix[(rate_row + i) * BG_MAP_COLUMNS + j] = work->point[i];
+    }
+}
+
+int bg_model_affine_map(bg_model *m, const int *mode, double *matrix)
+{
+    double column[BG_MAP_ROWS];
+    bg_hold *held = NULL;
+    int status = BG_AFFINE ? BG_OK : BG_NOT_AFFINE, sticking = 0;
+    for (int i = 0; i < K; i++)
+        sticking |= mode[i] == 0;
+    if (status == BG_OK && sticking)
+        status = bg_hold_of(m, mode, &held);
+    if (status == BG_OK && held && bg_shares(held))
+        status = BG_NOT_AFFINE;
+    if (status == BG_OK)
+        status = probe(m, mode, -1, m->work.origin);
+    for (int j = 0; j < BG_MAP_COLUMNS && status == BG_OK; j++) {
+        const int last = j == BG_MAP_COLUMNS - 1;
+        if (!last)
+            status = probe(m, mode, j, column);
+        for (int i = 0; i < BG_MAP_ROWS; i++)
+            matrix[i * BG_MAP_COLUMNS + j] =
+                last ? m->work.origin[i] : (column[i] - m->work.origin[i]) / BG_FAR;
+    }
+    if (status == BG_OK && held)
+        correct_map(held, &m->work, matrix);
+    return status;
+}
+
+const char *bg_model_message(int status)
+{
+    static const char *const messages[] = {
+        "no failure",
+        "a parameter is not a finite number",
+        "a coefficient is not finite at these parameters, states or inputs",
+        "the matrix A is singular: a storage is zero, or storages cancel each other",
+        "a law or a rate has no finite value",
+        "laws that depend on one another have no solution; check them, or put a storage between",
+        "a friction level or curve is negative, or a breakaway is below the friction at standstill",
+        "sticking ports have no unique holding efforts: the storages behind them cancel",
+        "these parameters change which friction ports are redundant; generate the model at them",
+        "holding a port would need the slope in time of an input that a law gives",
+        "this model, or this mode of it, is not one affine map",
+        "a friction mode must be -1, 0 or 1",
+        "no way of sticking and slipping is consistent",
+        "events follow one another and time makes no progress",
+        "the integrator no longer advances: the rates jump there",
+        "more events than there is room for",
+        "the step is too long: beyond the stability of its method at the model's fastest rates",
+        "a step must be a positive finite number",
+    };
+    const int count = (int)(sizeof messages / sizeof *messages);
+    return status >= 0 && status < count ? messages[status] : "unknown status";
+}
+
+size_t bg_model_size(void)
+{
+    return sizeof(bg_model);
+}

@@ -1,0 +1,152 @@
+/* What the files of the runtime share with one another and with the generated model.c. */
+#ifndef BG_MODEL_INTERNAL_H
+#define BG_MODEL_INTERNAL_H
+
+#include "model_runtime.h"
+#include "tuning.h"
+
+/* Where the nonzero entries of a matrix stand. */
+typedef struct {
+    int count;
+    const int *rows, *columns;
+} bg_pattern;
+
+enum { BG_A, BG_J, BG_B, BG_E, BG_F, BG_D, BG_H, BG_K, BG_MATRICES };
+
+typedef void bg_block(const bg_values *v, double *out);
+
+/* Laws evaluated together: the inputs they give, what their ports receive. */
+typedef struct {
+    int count, loop;
+    const int *inputs, *readings;
+    bg_block *values;
+} bg_group;
+
+/* Ranks of one set of sticking ports, exact: `direct` rows of D, over the set and the coupled laws
+ * that it moves, are independent in `direct_columns`; of the combinations that D leaves free (one
+ * for each of `null`, positions of the other ports), those of positions `kept` are independent in
+ * the states `kept_columns`; `ruled`: whether other inputs rule one that is not. */
+typedef struct {
+    int moved, direct, null, kept, ruled;
+    int moved_laws[BG_ROOM(BG_COUPLED)];
+    int direct_rows[BG_ROOM(BG_FRICTION)], direct_columns[BG_ROOM(BG_FRICTION)];
+    int null_rows[BG_ROOM(BG_FRICTION)];
+    int kept_rows[BG_ROOM(BG_FRICTION)], kept_columns[BG_ROOM(BG_FRICTION)];
+} bg_structure;
+
+/* As fmin, fmax and the sign, but no number where an argument is none. */
+static inline double bg_min(double a, double b)
+{
+    return a < b || a != a ? a : b;
+}
+
+static inline double bg_max(double a, double b)
+{
+    return a > b || a != a ? a : b;
+}
+
+static inline double bg_sign(double a)
+{
+    return a > 0 ? 1.0 : a < 0 ? -1.0 : a;
+}
+
+/* Generated. */
+extern const bg_pattern bg_layout[BG_MATRICES];
+extern const bg_group bg_known, bg_groups[], bg_coupled;
+extern const bg_structure bg_structures[];
+extern const int bg_law_rates[], bg_friction_inputs[], bg_friction_readings[];
+extern const int bg_outside_inputs[], bg_differentiable[], bg_output_readings[], bg_beside[];
+extern const double bg_defaults[];
+void bg_coefficients(const bg_values *v, double *out);
+void bg_known_rates(const bg_values *v, double *out);
+void bg_friction_values(const bg_values *v, double *out);
+void bg_prepare_rhs(bg_model *m);
+
+/* model_linear.c: by rows; n small or large. */
+int bg_factor(int n, double *a, int *pivots);
+void bg_solve(int n, const double *a, const int *pivots, int columns, double *right);
+int bg_inverse(int n, double *a, int *pivots, double *inverse);
+void bg_multiply_add(int rows, int columns, const double *a, const double *x, double *y);
+int bg_finite(int count, const double *values);
+
+/* model_numbers.c */
+int bg_assemble(bg_model *m);
+void bg_inverse_entries(bg_model *m, int count, const int *rows, const int *columns, double *out);
+void bg_solve_storages(const bg_numbers *a, int columns, double *right);
+
+/* port_independent.c: combinations of slips; whether redundant ports share a load; how far what
+ * other inputs rule of slips is from leaving zero. */
+int bg_independent(const bg_model *m, const bg_structure *s, bg_hold *held, double *null);
+int bg_shares(const bg_hold *held);
+double bg_room(const bg_hold *held, int port, const bg_snapshot *shot, const double *near);
+
+/* port_hold.c */
+int bg_hold_of(bg_model *m, const int *mode, bg_hold **found);
+int bg_holding_efforts(bg_model *m, const bg_hold *held, double *efforts);
+void bg_correct(const bg_hold *held, double *rate, const double *du);
+
+/* Takes what slips are left at sticking ports from s, along A^-1 F^T; `shot` is of that mode. */
+int bg_remove_slips(bg_model *m, const int *mode, const bg_snapshot *shot, double *s);
+
+/* port_slips.c: a port's slip at an instant, and how fast it changes; in `terms` the magnitude of
+ * what makes that up. */
+double bg_slip(const bg_model *m, const bg_snapshot *now, int port, double *terms);
+double bg_slip_rate(const bg_model *m, const bg_snapshot *now, int port, double *terms);
+
+/* port_stick.c: m->mode for a step of h; rates of inputs are in m->work. */
+int bg_stick(bg_model *m, double t, double h, const double *s, const double *w);
+
+/* port_share.c */
+void bg_fair_share(const bg_hold *held, const double *caps, double *efforts);
+
+/* model_roots.c: a root of f between a and b, unless its signs there are the same: then 0. */
+int bg_root(double (*f)(void *self, double at), void *self, double a, double b, double *found);
+
+/* model_loops.c: inputs at `columns` for which the residual vanishes; `rows` are what they act
+ * on. */
+typedef struct {
+    const bg_group *group; /* NULL for friction with the coupled laws */
+    const int *mode;
+    bg_hold *held;
+    int count, checked;
+    int columns[BG_ROOM(BG_LOOP)], rows[BG_ROOM(BG_LOOP)];
+} bg_loop;
+int bg_solve_loop(bg_model *m, const bg_loop *loop);
+
+/* model_region.c: where the method is stable, as |h l|: on the negative axis, on the imaginary one,
+ * and the least and the largest in the left half plane; the longest stable step where the roots of
+ * l^2 = a l + b are the rates. */
+#define BG_REAL_LIMIT 2.785293563405282
+#define BG_IMAGINARY_LIMIT 2.8284271247461903
+#define BG_NEAREST 2.6156
+#define BG_FARTHEST 2.9603
+double bg_stable_step(double a, double b);
+
+/* model_slope.c: weights and magnitudes of the states at a step's start; the product of changes
+ * whose square is twice their energy; image = J from, both times the weights, by a difference of so
+ * many magnitudes. The first stage must be known. */
+void bg_weigh(bg_model *m, double h);
+void bg_reach(bg_model *m, double h, const double *s);
+double bg_energy(const bg_model *m, const double *a, const double *b);
+int bg_slope(bg_model *m, double t, const double *s, const double *w, double amount,
+             const double *from, double *image);
+
+/* model_fastest.c: BG_UNSTABLE if a step of h from t, s is beyond that. What the stages of a step
+ * tell of the next. */
+int bg_check_step(bg_model *m, double t, double h, const double *s, const double *w);
+void bg_note_stages(bg_model *m);
+
+/* model_level.c: of level, cap, curve and curve at rest of every port at `m->now` those become zero
+ * that are below by no more than the rounding of their terms. */
+void bg_without_rounding(bg_model *m, double *values);
+
+/* Takes a vector that a run has come to into account: where it comes down to zero, it rounds. */
+void bg_have_seen(bg_model *m, const double *s);
+
+/* model_evaluate.c */
+void bg_give(bg_model *m, int count, const int *columns, const double *values);
+int bg_residual(bg_model *m, const bg_loop *loop, double *left);
+int bg_evaluate(bg_model *m, double t, const double *s, const double *w, const double *dw,
+                const int *mode, int checked, bg_snapshot *shot);
+
+#endif

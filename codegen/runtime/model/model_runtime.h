@@ -1,0 +1,154 @@
+/* What a generated model is and does. Nothing is allocated, nothing is global: all of an instance
+ * is one `bg_model`, which the caller puts where it likes; several run side by side. Every function
+ * that can fail returns a status, 0 for success; `bg_model_message` says what it means. */
+#ifndef BG_MODEL_RUNTIME_H
+#define BG_MODEL_RUNTIME_H
+
+#include <stddef.h>
+
+#include "config.h"
+#include "run_status.h"
+
+/* Arrays of a length that may be zero have room for one. */
+#define BG_ROOM(n) ((n) > 0 ? (n) : 1)
+#define BG_TABLE(rows, columns) (BG_ROOM(rows) * BG_ROOM(columns))
+
+enum {
+    /* The integrated vector s: states less what driven dependent storages add, then law states. */
+    BG_SIZE = BG_ROOM(BG_STATES + BG_LAW_STATES),
+    BG_MAP_COLUMNS = BG_SIZE + 2 * BG_EXTERNAL + 1,
+    BG_MAP_ROWS = BG_STATES + BG_LAW_STATES + 2 * BG_INPUTS + BG_READINGS + BG_SIZE + BG_FRICTION
+};
+
+/* One instant: time, states, law states, readings, inputs, external inputs and their rates. */
+typedef struct {
+    double t;
+    double x[BG_ROOM(BG_STATES)], z[BG_ROOM(BG_LAW_STATES)], y[BG_ROOM(BG_READINGS)];
+    double u[BG_ROOM(BG_INPUTS)], w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
+    double p[BG_ROOM(BG_PARAMETERS)];
+} bg_values;
+
+/* Everything at one instant; `rate` is the rate of s, `caps` are breakaway efforts. */
+typedef struct {
+    double x[BG_ROOM(BG_STATES)], z[BG_ROOM(BG_LAW_STATES)];
+    double u[BG_ROOM(BG_INPUTS)], du[BG_ROOM(BG_INPUTS)], y[BG_ROOM(BG_READINGS)];
+    double rate[BG_SIZE], caps[BG_ROOM(BG_FRICTION)];
+} bg_snapshot;
+
+/* x' = P x + Q u + R u',  y = F x + D u + G u', by rows; A factored, its rows and columns scaled.
+ * slip_F, slip_D: F and D of the friction ports' slips, as they stand without x'; of D what
+ * friction and the laws coupled to it give. */
+typedef struct {
+    double P[BG_TABLE(BG_STATES, BG_STATES)], Q[BG_TABLE(BG_STATES, BG_INPUTS)];
+    double R[BG_TABLE(BG_STATES, BG_INPUTS)];
+    double F[BG_TABLE(BG_READINGS, BG_STATES)], D[BG_TABLE(BG_READINGS, BG_INPUTS)];
+    double G[BG_TABLE(BG_READINGS, BG_INPUTS)];
+    double A[BG_TABLE(BG_STATES, BG_STATES)], scale[BG_ROOM(BG_STATES)];
+    double slip_F[BG_TABLE(BG_FRICTION, BG_STATES)];
+    double slip_D[BG_TABLE(BG_FRICTION, BG_FRICTION + BG_COUPLED)];
+    int pivots[BG_ROOM(BG_STATES)];
+} bg_numbers;
+
+/* The holding equations X x + U u + V u' = 0 of one set of sticking ports (bits of `stuck`).
+ * Of `count` ports, the slips of `kept` combinations are states' and kept zero by taking away;
+ * those of the first `ruled` rows of `share` are other inputs' and must be zero. */
+typedef struct {
+    unsigned stuck;
+    int ready, count, kept, share_count, ruled, ports[BG_ROOM(BG_FRICTION)];
+    double X[BG_TABLE(BG_FRICTION, BG_STATES)];
+    double U[BG_TABLE(BG_FRICTION, BG_INPUTS)], V[BG_TABLE(BG_FRICTION, BG_INPUTS)];
+    double inverse[BG_TABLE(BG_FRICTION, BG_FRICTION)], share[BG_TABLE(BG_FRICTION, BG_FRICTION)];
+    double slip_x[BG_TABLE(BG_FRICTION, BG_STATES)], slip_u[BG_TABLE(BG_FRICTION, BG_INPUTS)];
+    double fixed[BG_TABLE(BG_FRICTION, BG_INPUTS)];
+    double take_away[BG_TABLE(BG_STATES, BG_FRICTION)];
+} bg_hold;
+
+/* Room to work in, so that nothing large lies on the stack. */
+typedef struct {
+    double entries[BG_ROOM(BG_ENTRIES)], moved[BG_TABLE(BG_STATES, BG_FRICTION)];
+    double law[BG_ROOM(BG_LARGEST)];
+    double u[BG_ROOM(BG_INPUTS)], y[BG_ROOM(BG_READINGS)];
+    double stage[4][BG_SIZE], point[BG_SIZE];
+    double weight[BG_SIZE], reach[BG_SIZE], image[BG_SIZE], next[BG_SIZE];
+    double given[3][BG_ROOM(BG_EXTERNAL)], rates[3][BG_ROOM(BG_EXTERNAL)];
+    double origin[BG_MAP_ROWS], external[2][BG_ROOM(BG_EXTERNAL)];
+    double loop[BG_ROOM(BG_LOOP)][6], slopes[BG_TABLE(BG_LOOP, BG_LOOP)];
+    int pivots[BG_ROOM(BG_LOOP)];
+    bg_values sizes;
+} bg_work;
+
+/* What a step knows of the model's fastest rates: a direction in which the rates move fast, and how
+ * fast. `step`: after BG_UNSTABLE the longest step [s] that is stable there. */
+typedef struct {
+    double direction[BG_SIZE], growth, step;
+    unsigned noise;
+    int rounds;
+} bg_fastest;
+
+/* One instance. `band` [unit of each slip]: the dead band inside which a step lets a port stick;
+ * `mode`: 0 sticking, 1 or -1 the sign of the slip, as the last step left it (`started`: there
+ * was one). `where`: the friction port or group of laws that a failure is about, -1 for none. The
+ * rest is its own. */
+typedef struct {
+    double band[BG_ROOM(BG_FRICTION)];
+    int mode[BG_ROOM(BG_FRICTION)], started, where;
+    bg_fastest fastest;
+    bg_values now;
+    double seen[BG_SIZE]; /* the largest magnitudes of s at starts of steps: what it rounds by */
+    double du[BG_ROOM(BG_INPUTS)], caps[BG_ROOM(BG_FRICTION)], constants[BG_ROOM(BG_CONSTANTS)];
+    bg_numbers numbers;
+    bg_hold holds[BG_HOLDS];
+    bg_snapshot shot;
+    bg_work work;
+} bg_model;
+
+/* Names, units ("" where none is told) and defaults, in the order of the arrays; in model.c. */
+extern const char *const bg_model_name;
+extern const char *const bg_state_names[], *const bg_state_units[]; /* law states last */
+extern const char *const bg_input_names[], *const bg_input_units[]; /* external inputs, as in w */
+extern const char *const bg_output_names[], *const bg_output_units[];
+extern const char *const bg_parameter_names[];
+extern const char *const bg_friction_names[];
+
+/* The parameters the model was generated at, BG_PARAMETERS of them. */
+void bg_model_parameters(double *parameters);
+
+/* Makes an instance; `parameters` may be NULL for those that the model was generated at. */
+int bg_model_init(bg_model *m, const double *parameters);
+
+/* s from the states (law states last) and the external inputs: they differ where inputs drive
+ * dependent storages. */
+int bg_model_vector(bg_model *m, double t, const double *states, const double *w, double *s);
+
+/* Everything at t, s, external inputs w and their rates dw (NULL: zero), in a friction mode. */
+int bg_model_evaluate(bg_model *m, double t, const double *s, const double *w, const double *dw,
+                      const int *mode, bg_snapshot *shot);
+
+/* The outputs of a snapshot. */
+void bg_model_outputs(const bg_snapshot *shot, double *outputs);
+
+/* BG_MAP_ROWS x BG_MAP_COLUMNS: x, z, u, du, y, rate, caps as a matrix times [s, w, dw, 1]. */
+int bg_model_affine_map(bg_model *m, const int *mode, double *matrix);
+
+/* The rate of s of slipping friction in straight-line code; signs: +1 or -1 a friction port. For
+ * models with `BG_STRAIGHT`; others take the way of `bg_model_evaluate`. */
+int bg_model_rhs(bg_model *m, double t, const double *s, const double *w, const double *signs,
+                 double *rate);
+
+/* One step of h from t, s in place; w: the external inputs at t, t + h/2 and t + h, one after the
+ * other. Time is bounded: which ports stick is decided once, at the start, by Karnopp's dead band
+ * (`bg_model_settle`: sets `mode` and takes the slips of sticking ports away); then the step is one
+ * of Runge's and Kutta's fourth order (`bg_model_advance`).
+ *
+ * A step beyond the method's stability gives BG_UNSTABLE before anything is changed, so a shorter
+ * one may follow; `fastest.step` is the longest that would be stable. Two evaluations a step find
+ * that out, eight more in the first step, two more where rates may jump, 32 more in a refusal;
+ * BG_CHECK_STEP 0 leaves them out. */
+int bg_model_step(bg_model *m, double t, double h, double *s, const double *w);
+int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w);
+int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w);
+
+const char *bg_model_message(int status);
+size_t bg_model_size(void);
+
+#endif

@@ -1,0 +1,66 @@
+/* Which friction ports stick and which way the others slip: one consistent mode at one instant, of
+ * whatever can be looked at in a given mode. */
+#ifndef BG_PORT_CHOOSE_H
+#define BG_PORT_CHOOSE_H
+
+#include "config.h"
+#include "run_status.h"
+#include "tuning.h"
+
+enum { BG_MOST_PORTS = 6 };
+
+/* What an instant is to a port: none of its own, its event, or an event that may be long past, as
+ * whoever steps the model finds it no better. */
+enum { BG_UNTOUCHED, BG_TOUCHED, BG_PASSED };
+
+/* One port at one instant in one mode. `push`: how fast the slip changes; `near_..`: below these
+ * slip, margin and push count as zero. */
+typedef struct {
+    double slip, effort, cap, push, near_slip, near_effort, near_push;
+} bg_port;
+
+/* Combinations of slips, by rows over all ports, that only inputs rule and not what the ports of a
+ * mode give: those that stick hold only while all are zero. `unknown`: the status of a mode of
+ * which no more is known than whether they are. */
+typedef struct {
+    int count, unknown;
+    double rows[BG_MOST_PORTS][BG_MOST_PORTS];
+} bg_ruling;
+
+/* An instant: the shortest time constant there, and the inputs' next breakpoint. */
+typedef struct {
+    double t, time, following;
+    double *s;
+    int touched[BG_MOST_PORTS];
+} bg_instant;
+
+/* What can be looked at; `coupled`: whether a port's slip depends at once on friction. `look`
+ * evaluates everything at t, s in a mode and leaves the rate of s in `rate`; its status tells why
+ * the mode is none, or ends the search. `tell` tells of the latest look: of every port what there
+ * is and, unless `at` is NULL, what counts as zero there; and unless that is NULL of the ruling,
+ * which comes with no rows. */
+typedef struct {
+    void *self;
+    int size, ports;
+    const int *coupled;
+    const double *rate;
+    double *point; /* room for s */
+    int (*look)(void *self, double t, const double *s, const int *mode);
+    void (*tell)(void *self, const int *mode, const bg_instant *at, bg_port *ports,
+                 bg_ruling *ruling);
+} bg_sight;
+
+/* From the mode so far to the one just after the instant: 0 sticks, 1 slips forwards, -1 backwards.
+ * Ports at rest, or so close that it is an event's own rounding, stick if they can. A status: where
+ * no mode is consistent BG_UNDECIDED or, if none could be looked at, that of the first. */
+int bg_choose(const bg_sight *sight, const bg_instant *at, int *mode);
+
+/* What to try where a mode cannot be evaluated, by number: slipping as it does, the same backwards
+ * where it sticks, the mode, the ways of slipping, all stuck; 0 where there are no more. */
+int bg_try(int ports, int number, const int *mode, int *tried);
+
+/* Looks at a mode that can be: that of `mode`, or if `slipping` one that slips as it does; else any
+ * other way of slipping, or all stuck. A status: that of the first if there is none. */
+int bg_evaluated(const bg_sight *sight, const bg_instant *at, int slipping, int *mode);
+
+#endif

@@ -1,0 +1,179 @@
+/* What holds ports that stick: linear equations for their efforts. */
+#include <math.h>
+#include <string.h>
+
+#include "model_internal.h"
+
+enum { K = BG_FRICTION, N = BG_STATES, M = BG_INPUTS };
+#define SQUARE BG_TABLE(BG_FRICTION, BG_FRICTION)
+#define PORTS BG_ROOM(BG_FRICTION)
+
+static void copy_direct(const bg_model *m, const bg_structure *s, bg_hold *held)
+{
+    for (int r = 0; r < s->direct; r++) {
+        const int row = bg_friction_readings[held->ports[s->direct_rows[r]]];
+        memcpy(held->X + r * N, m->numbers.F + row * N, sizeof(double) * N);
+        memcpy(held->U + r * M, m->numbers.D + row * M, sizeof(double) * M);
+        memcpy(held->V + r * M, m->numbers.G + row * M, sizeof(double) * M);
+    }
+}
+
+/* row += factor * a[at], `columns` wide */
+static void add_row(int columns, double factor, const double *a, int at, double *row)
+{
+    for (int j = 0; j < columns && factor != 0; j++)
+        row[j] += factor * a[at * columns + j];
+}
+
+/* The rows that rule the states: N^T y_s' = 0. */
+static void rule_states(const bg_model *m, const bg_structure *s, const double *null, bg_hold *held)
+{
+    const bg_numbers *const a = &m->numbers;
+    for (int k = 0; k < s->kept; k++) {
+        const double *combined = null + s->kept_rows[k] * held->count;
+        double *slip_x = held->slip_x + k * N, *slip_u = held->slip_u + k * M;
+        double *fixed = held->fixed + k * M;
+        const int row = s->direct + k;
+        for (int c = 0; c < held->count; c++) {
+            add_row(N, combined[c], a->F, bg_friction_readings[held->ports[c]], slip_x);
+            add_row(M, combined[c], a->D, bg_friction_readings[held->ports[c]], slip_u);
+        }
+        memcpy(fixed, slip_u, sizeof(double) * M);
+        memcpy(held->V + row * M, slip_u, sizeof(double) * M);
+        for (int l = 0; l < N; l++) {
+            add_row(N, slip_x[l], a->P, l, held->X + row * N);
+            add_row(M, slip_x[l], a->Q, l, held->U + row * M);
+            add_row(M, slip_x[l], a->R, l, held->V + row * M);
+            if (!BG_VARYING)
+                add_row(M, slip_x[l], a->R, l, fixed);
+        }
+    }
+}
+
+static int invert_system(const bg_structure *s, bg_hold *held)
+{
+    double system[SQUARE];
+    int pivots[PORTS];
+    const int count = held->count, ruled = s->direct + s->kept;
+    for (int c = 0; c < count; c++) {
+        for (int r = 0; r < ruled; r++)
+            system[r * count + c] = held->U[r * M + bg_friction_inputs[held->ports[c]]];
+        for (int r = 0; r < held->share_count; r++)
+            system[(ruled + r) * count + c] = held->share[r * count + c];
+    }
+    return bg_inverse(count, system, pivots, held->inverse);
+}
+
+/* -A^-1 S^T (S A^-1 S^T)^-1: the impulse that stops the slips S x, and moves nothing else. */
+static int find_take_away(bg_model *m, bg_hold *held)
+{
+    double inner[SQUARE], inverse[SQUARE], *const moved = m->work.moved;
+    int pivots[PORTS];
+    const int kept = held->kept;
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k < kept; k++)
+            moved[i * kept + k] = held->slip_x[k * N + i];
+    bg_solve_storages(&m->numbers, kept, moved);
+    memset(inner, 0, sizeof inner);
+    for (int k = 0; k < kept; k++)
+        for (int i = 0; i < N; i++)
+            add_row(kept, held->slip_x[k * N + i], moved, i, inner + k * kept);
+    if (!bg_inverse(kept, inner, pivots, inverse))
+        return 0;
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k < kept; k++)
+            add_row(kept, -moved[i * kept + k], inverse, k, held->take_away + i * kept);
+    return 1;
+}
+
+/* Refuses to stick where the slope of a law that the system rules would be needed. */
+static int check_slopes(const bg_structure *s, const bg_hold *held)
+{
+    for (int r = 0; r < s->direct + s->kept; r++)
+        for (int j = 0; j < M; j++)
+            if (fabs(held->V[r * M + j]) > BG_NOTHING_HELD && !bg_differentiable[j])
+                return BG_NEEDS_SLOPE;
+    return BG_OK;
+}
+
+static int build(bg_model *m, const bg_structure *s, bg_hold *held)
+{
+    double null[SQUARE];
+    if (!bg_independent(m, s, held, null))
+        return BG_STRUCTURE;
+    held->kept = s->kept;
+    held->ruled = s->ruled ? held->share_count : 0;
+    copy_direct(m, s, held);
+    rule_states(m, s, null, held);
+    /* Where laws answer as well, all are searched for together. */
+    if ((s->moved == 0 && !invert_system(s, held)) || !find_take_away(m, held))
+        return BG_NO_HOLD;
+    return check_slopes(s, held);
+}
+
+/* The holding equations of the ports that stick in a mode, from before if they still hold. */
+int bg_hold_of(bg_model *m, const int *mode, bg_hold **found)
+{
+    unsigned stuck = 0;
+    bg_hold *held;
+    int status;
+    for (int i = 0; i < K; i++)
+        if (mode[i] == 0)
+            stuck |= 1u << i;
+    held = &m->holds[stuck % BG_HOLDS];
+    *found = held;
+    if (held->ready && held->stuck == stuck)
+        return BG_OK;
+    memset(held, 0, sizeof *held);
+    held->stuck = stuck;
+    for (int i = 0; i < K; i++)
+        if (stuck >> i & 1u)
+            held->ports[held->count++] = i;
+    status = build(m, &bg_structures[stuck], held);
+    held->ready = status == BG_OK;
+    return status;
+}
+
+/* The holding efforts at `m->now`, whose inputs hold zero at the sticking ports. */
+int bg_holding_efforts(bg_model *m, const bg_hold *held, double *efforts)
+{
+    double right[PORTS] = {0}, caps[PORTS];
+    const int ruled = held->count - held->share_count;
+    bg_multiply_add(ruled, N, held->X, m->now.x, right);
+    bg_multiply_add(ruled, M, held->U, m->now.u, right);
+    bg_multiply_add(ruled, M, held->V, m->du, right);
+    for (int r = 0; r < held->count; r++) {
+        right[r] = -right[r];
+        efforts[r] = 0.0;
+        caps[r] = m->caps[held->ports[r]];
+    }
+    bg_multiply_add(held->count, held->count, held->inverse, right, efforts);
+    if (!bg_finite(held->count, efforts))
+        return BG_NOT_FINITE;
+    if (held->share_count > 0)
+        bg_fair_share(held, caps, efforts);
+    return BG_OK;
+}
+
+/* What rounding in the holding efforts adds to rates is taken away, or slips that stick would
+ * drift. */
+void bg_correct(const bg_hold *held, double *rate, const double *du)
+{
+    double drift[PORTS] = {0};
+    bg_multiply_add(held->kept, N, held->slip_x, rate, drift);
+    bg_multiply_add(held->kept, M, held->fixed, du, drift);
+    bg_multiply_add(N, held->kept, held->take_away, drift, rate);
+}
+
+int bg_remove_slips(bg_model *m, const int *mode, const bg_snapshot *shot, double *s)
+{
+    double slips[PORTS] = {0};
+    bg_hold *held = NULL;
+    const int status = bg_hold_of(m, mode, &held);
+    if (status != BG_OK)
+        return status;
+    bg_multiply_add(held->kept, N, held->slip_x, shot->x, slips);
+    bg_multiply_add(held->kept, M, held->slip_u, shot->u, slips);
+    bg_multiply_add(N, held->kept, held->take_away, slips, s);
+    return BG_OK;
+}

@@ -1,0 +1,42 @@
+/* Slips of friction ports and how fast they change, with the magnitude of what makes them up. */
+#include <math.h>
+
+#include "model_internal.h"
+
+enum { N = BG_STATES, M = BG_INPUTS };
+
+double bg_slip(const bg_model *m, const bg_snapshot *now, int port, double *terms)
+{
+    const int row = bg_friction_readings[port];
+    *terms = 0.0;
+    for (int i = 0; i < N; i++)
+        *terms += fabs(m->numbers.F[row * N + i]) * fabs(now->x[i]);
+    for (int j = 0; j < M; j++)
+        *terms += fabs(m->numbers.D[row * M + j]) * fabs(now->u[j]);
+    return now->y[row];
+}
+
+double bg_slip_rate(const bg_model *m, const bg_snapshot *now, int port, double *terms)
+{
+    const bg_numbers *const a = &m->numbers;
+    const int row = bg_friction_readings[port];
+    double sum = 0.0;
+    *terms = 0.0;
+    for (int i = 0; i < N; i++) {
+        const double factor = a->F[row * N + i];
+        double rate = 0.0, size = 0.0;
+        for (int j = 0; j < N && factor != 0.0; j++) {
+            rate += a->P[i * N + j] * now->x[j];
+            size += fabs(a->P[i * N + j]) * fabs(now->x[j]);
+        }
+        for (int j = 0; j < M && factor != 0.0; j++) {
+            rate += a->Q[i * M + j] * now->u[j] + a->R[i * M + j] * now->du[j];
+            size += fabs(a->Q[i * M + j]) * fabs(now->u[j]);
+        }
+        sum += factor * rate;
+        *terms += fabs(factor) * size;
+    }
+    for (int j = 0; j < M; j++)
+        sum += a->D[row * M + j] * now->du[j];
+    return sum;
+}

@@ -1,0 +1,171 @@
+/* Which ports stick in a step: Karnopp's dead band, in at most 4 evaluations for each port near
+ * rest; where that comes to what is no mode, all modes of these ports. */
+#include <math.h>
+#include <string.h>
+
+#include "model_internal.h"
+#include "port_choose.h"
+
+enum { K = BG_FRICTION };
+#define PORTS BG_ROOM(BG_FRICTION)
+
+static int sticks(const int *mode)
+{
+    int any = 0;
+    for (int i = 0; i < K; i++)
+        any |= mode[i] == 0;
+    return any;
+}
+
+/* A port may stick if its slip is inside the band, has changed its sign since the step before, by
+ * no more than a step of h can, or depends on its effort at once. First guess: all these stick;
+ * their number. */
+static int first_guess(bg_model *m, double h, int *near)
+{
+    int count = 0;
+    for (int i = 0; i < K; i++) {
+        double around, terms;
+        const double slip = bg_slip(m, &m->shot, i, &around), rate = bg_slip_rate(m, &m->shot, i, &terms);
+        near[i] = fabs(slip) <= fmax(m->band[i], BG_STEP_ROUNDING * around) || bg_beside[i];
+        /* An input that steps may turn a slip round too; what a step can't reach slips on. */
+        near[i] |= m->started && slip * m->mode[i] < 0 && fabs(slip) <= 2 * h * fabs(rate);
+        m->mode[i] = near[i] ? 0 : slip > 0 ? 1 : -1;
+        count += near[i];
+    }
+    return count;
+}
+
+/* Lets the sticking port go that is held farthest beyond its breakaway effort; 0: there is none. */
+static int let_go(bg_model *m)
+{
+    double worst = 0.0, most = 0.0;
+    int found = -1;
+    for (int i = 0; i < K; i++)
+        most = fmax(most, fabs(m->shot.u[bg_friction_inputs[i]]));
+    for (int i = 0; i < K; i++) {
+        const double effort = fabs(m->shot.u[bg_friction_inputs[i]]), cap = m->shot.caps[i];
+        const double over = m->mode[i] == 0 ? effort - cap * (1 + BG_BREAKAWAY) : 0.0;
+        if (over > 0 && (found < 0 || over / (cap + BG_BREAKAWAY * most) > worst)) {
+            found = i;
+            worst = over / (cap + BG_BREAKAWAY * most);
+        }
+    }
+    if (found >= 0)
+        m->mode[found] = m->shot.u[bg_friction_inputs[found]] > 0 ? 1 : -1;
+    return found >= 0;
+}
+
+/* Catches a port let go that would slip against its direction; 0: there is none. */
+static int caught(bg_model *m, const int *near)
+{
+    for (int i = 0; i < K; i++) {
+        double terms, moves;
+        if (!near[i] || m->mode[i] == 0)
+            continue;
+        moves = bg_beside[i] ? bg_slip(m, &m->shot, i, &terms) : bg_slip_rate(m, &m->shot, i, &terms);
+        if (moves * m->mode[i] < -BG_STEP_ROUNDING * terms) {
+            m->mode[i] = 0;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Whether slips that only inputs rule are not zero though ports are to hold them there. */
+static int ruled_out(bg_model *m)
+{
+    bg_hold *held = NULL;
+    if (!sticks(m->mode) || bg_hold_of(m, m->mode, &held) != BG_OK)
+        return 0;
+    for (int r = 0; r < held->ruled; r++) {
+        double slip = 0.0, least = 0.0;
+        for (int c = 0; c < held->count; c++) {
+            const double weight = held->share[r * held->count + c];
+            double terms;
+            slip += weight * bg_slip(m, &m->shot, held->ports[c], &terms);
+            least += fabs(weight) * fmax(m->band[held->ports[c]], BG_STEP_ROUNDING * terms);
+        }
+        if (fabs(slip) > least)
+            return 1;
+    }
+    return 0;
+}
+
+/* An instant at the start of a step. */
+typedef struct {
+    double t;
+    const double *s, *w, *dw;
+} start;
+
+static int evaluate(bg_model *m, const start *at, const int *mode)
+{
+    return bg_evaluate(m, at->t, at->s, at->w, at->dw, mode, 1, &m->shot);
+}
+
+/* The slips, by a mode in which there are any: laws may have no solution one way. */
+static int look_at_slips(bg_model *m, const start *at)
+{
+    int before[BG_MOST_PORTS] = {0}, tried[BG_MOST_PORTS] = {0};
+    int status = BG_NO_SOLUTION, first = BG_OK;
+    for (int i = 0; i < K && m->started; i++)
+        before[i] = m->mode[i];
+    for (int k = 0; status != BG_OK && bg_try(K, k, before, tried); k++) {
+        status = evaluate(m, at, tried);
+        first = k ? first : status;
+    }
+    return status == BG_OK ? BG_OK : first;
+}
+
+/* The mode of a number: a digit of base 3 for each port near rest; how many stick. */
+static int numbered(bg_model *m, const int *near, const int *rest, int number)
+{
+    int sticking = 0;
+    for (int i = 0; i < K; i++) {
+        m->mode[i] = near[i] ? (number % 3 + 1) % 3 - 1 : rest[i];
+        number /= near[i] ? 3 : 1;
+        sticking += near[i] && m->mode[i] == 0;
+    }
+    return sticking;
+}
+
+/* The first mode that contradicts nothing, those in which most ports stick first: where one change
+ * at a time has come to what is no mode, for a reason that is told if there is none. */
+static int search(bg_model *m, const start *at, const int *near, int reason)
+{
+    int rest[PORTS] = {0}, kept[PORTS] = {0}, count = 0, total = 1;
+    memcpy(rest, m->mode, sizeof m->mode);
+    for (int i = 0; i < K; i++) {
+        count += near[i];
+        total *= near[i] ? 3 : 1;
+    }
+    for (int stick = count; stick >= 0; stick--)
+        for (int number = 0; number < total; number++) {
+            if (numbered(m, near, rest, number) != stick || evaluate(m, at, m->mode) != BG_OK
+                || ruled_out(m))
+                continue;
+            memcpy(kept, m->mode, sizeof m->mode);
+            if (!let_go(m) && !caught(m, near))
+                return BG_OK;
+            memcpy(m->mode, kept, sizeof m->mode);
+        }
+    return reason;
+}
+
+/* The mode of a step from t, s and w; one port changes at a time. */
+int bg_stick(bg_model *m, double t, double h, const double *s, const double *w)
+{
+    const start begun = {t, s, w, m->work.rates[0]}, *const at = &begun;
+    int near[PORTS], status = look_at_slips(m, at);
+    const int tries = status == BG_OK ? 4 * first_guess(m, h, near) : 0;
+    m->started = status == BG_OK;
+    for (int k = 0; k < tries; k++) {
+        status = evaluate(m, at, m->mode);
+        if (status == BG_NEEDS_SLOPE || status == BG_STRUCTURE)
+            return status;
+        if (status != BG_OK || ruled_out(m))
+            return search(m, at, near, status != BG_OK ? status : BG_UNDECIDED);
+        if (!let_go(m) && !caught(m, near))
+            return BG_OK;
+    }
+    return status;
+}

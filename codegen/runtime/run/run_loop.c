@@ -1,0 +1,94 @@
+/* The event-driven loop, over what an engine can look at and advance. */
+#include "run_loop.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+/* At the end of a run: whether there is something to decide. The search may have missed an event
+ * there by a rounding: what slips and is at rest, or sticks and is at its limit, counts as one. */
+static int come_to_end(const bg_engine *e, bg_course *c, int *undecided)
+{
+    const bg_sight *const sight = &e->sight;
+    bg_port now[BG_MOST_PORTS];
+    *undecided = c->segment > 0 && c->breaks[c->segment - 1] == c->at.t;
+    if (sight->ports == 0)
+        return BG_OK;
+    const int status = sight->look(sight->self, c->at.t, c->at.s, c->mode);
+    if (status)
+        return status;
+    sight->tell(sight->self, c->mode, &c->at, now, NULL);
+    for (int i = 0; i < sight->ports; i++) {
+        if (c->mode[i] == 0)
+            c->at.touched[i] |= now[i].cap - fabs(now[i].effort) <= BG_WIDE * now[i].near_effort;
+        else if (!sight->coupled[i])
+            c->at.touched[i] |= fabs(now[i].slip) <= BG_WIDE * now[i].near_slip;
+        *undecided |= c->at.touched[i] || sight->coupled[i];
+    }
+    return BG_OK;
+}
+
+/* Takes the present instant into account, decides the mode there and removes slips that stick. */
+static int settle(const bg_engine *e, bg_course *c, int started)
+{
+    const bg_sight *const sight = &e->sight;
+    int before[BG_MOST_PORTS], slipping[BG_MOST_PORTS], touched = 0;
+    double fastest = 0.0;
+    if (sight->ports == 0)
+        return BG_OK;
+    memcpy(before, c->mode, sizeof before);
+    memcpy(slipping, c->mode, sizeof slipping);
+    int status = bg_evaluated(sight, &c->at, 1, slipping);
+    if (status == BG_OK)
+        e->see(e->self, slipping);
+    if (status == BG_OK)
+        status = e->fastest(e->self, &fastest);
+    if (status)
+        return status;
+    c->at.time = bg_time_constant(fastest, c->at.t - c->began);
+    status = bg_choose(sight, &c->at, c->mode);
+    for (int i = 0; i < sight->ports; i++)
+        touched |= c->at.touched[i];
+    if (status == BG_OK && started) {
+        if (bg_note(c->events, &c->count, c->capacity, c->at.t, sight->ports, before, c->mode))
+            status = BG_EVENTS;
+        else if (touched && bg_stalls(&c->rounds, c->at.t, c->at.time))
+            status = BG_STALLS;
+    }
+    return status ? status : e->rest(e->self);
+}
+
+void bg_set_out(bg_course *c, double t, double end, double *s)
+{
+    c->at = (bg_instant){.t = t, .s = s};
+    c->began = t;
+    c->end = end;
+    c->segment = bg_segment(c->segments, c->breaks, t);
+    c->count = c->rounds.next = c->rounds.full = 0;
+    for (int i = 0; i < BG_MOST_PORTS; i++)
+        c->mode[i] = 1;
+}
+
+int bg_run(const bg_engine *e, bg_course *c)
+{
+    const double most = 16.0 * c->capacity + c->segments + 1000.0;
+    int status = BG_OK;
+    for (double turns = 0.0; turns < most; turns += 1.0) {
+        int undecided = 1;
+        c->segment = bg_segment(c->segments, c->breaks, c->at.t);
+        const int last = c->segment + 1 == c->segments;
+        c->at.following = last ? INFINITY : c->breaks[c->segment];
+        if (turns > 0 && c->at.t >= c->end)
+            status = come_to_end(e, c, &undecided);
+        if (status || !undecided)
+            return status;
+        status = settle(e, c, turns > 0);
+        memset(c->at.touched, 0, sizeof c->at.touched);
+        if (status || c->at.t >= c->end)
+            return status;
+        status = e->advance(e->self, fmin(c->at.following, c->end));
+        if (status)
+            return status;
+    }
+    return BG_EVENTS;
+}

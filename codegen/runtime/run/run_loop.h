@@ -1,0 +1,39 @@
+/* The event-driven loop: stretches between breakpoints, sticking, release and zero crossings; of
+ * whatever can be looked at and advanced. */
+#ifndef BG_RUN_LOOP_H
+#define BG_RUN_LOOP_H
+
+#include "port_choose.h"
+#include "port_events.h"
+#include "run_pace.h"
+
+/* Where a run is. `began`, `end` [s]: of all of it; segment k of the inputs lasts to breaks[k], the
+ * last one for ever. The modes 0, 1, -1 of the ports; what has happened, in `count` of `capacity`. */
+typedef struct {
+    bg_instant at;
+    double began, end;
+    int segments, segment, mode[BG_MOST_PORTS];
+    const double *breaks;
+    bg_event *events;
+    int capacity, count;
+    bg_rounds rounds;
+} bg_course;
+
+/* What runs. `see` takes the instant, which was looked at with friction slipping so, into what
+ * rounding is relative to; `fastest` tells the largest rate [1/s] there in the mode so far; `rest`
+ * takes the slips of ports that stick away; `advance` goes on to `stop` or the first event, and tells
+ * whose it was in `touched`. All but the first give a status. */
+typedef struct {
+    bg_sight sight;
+    void *self;
+    void (*see)(void *self, const int *slipping);
+    int (*fastest)(void *self, double *fastest);
+    int (*rest)(void *self);
+    int (*advance)(void *self, double stop);
+} bg_engine;
+
+/* Sets out at t, and runs to the end. */
+void bg_set_out(bg_course *c, double t, double end, double *s);
+int bg_run(const bg_engine *engine, bg_course *c);
+
+#endif

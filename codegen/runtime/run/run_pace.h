@@ -1,0 +1,33 @@
+/* How short a moment is, and whether a run gets anywhere. */
+#ifndef BG_RUN_PACE_H
+#define BG_RUN_PACE_H
+
+#include "config.h"
+#include "tuning.h"
+
+/* When latest stretches ended in an event; `next` is where the next time goes: on the oldest. */
+typedef struct {
+    double time[BG_STALLED];
+    int next, full;
+} bg_rounds;
+
+/* The shortest time constant at the largest rate; what has none of its own is as slow as a run is
+ * old, which is `elapsed`. As codegen/modes/pace.py. */
+double bg_time_constant(double fastest, double elapsed);
+
+/* How much later ties at t are decided: never beyond `following`, the inputs' next breakpoint. */
+double bg_look_ahead(double time, double t, double following);
+
+/* Too short to matter: in it, what starts from complete rest gets going. */
+double bg_moment(double time);
+
+/* No step is longer. */
+double bg_longest_step(double elapsed);
+
+/* Counts an event at t; whether the latest ones all were within a moment of a time constant. */
+int bg_stalls(bg_rounds *rounds, double t, double time);
+
+/* The segment that holds at t and just after; segment k lasts to breaks[k], the last for ever. */
+int bg_segment(int segments, const double *breaks, double t);
+
+#endif

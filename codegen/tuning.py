@@ -1,0 +1,152 @@
+"""Every tolerance and choice of size that runs rest on, once.
+
+numpy reads them here, as ``TUNING.rounding``; C as ``BG_ROUNDING`` of ``tuning.h``, which is printed from
+this. Coefficients of methods are none: they stand in their tables.
+"""
+
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+
+def _told(value: float, what: str) -> Any:
+    """A number, and what it is and why."""
+    return field(default=value, metadata={"what": what})
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """The numbers by name, in the order of what they are for."""
+
+    # What counts as zero
+    rounding: float = _told(1e-10, "of the terms that make a slip, an effort or a level up: zero")
+    pushes: float = _told(
+        10.0, "so many times that of a slip's rate: its terms have been solved for"
+    )
+    late: float = _told(16.0, "spacings of t by which an event's time may be off")
+    term: float = _told(2.0**-20, "relative change whose effect, divided by it, is a term")
+    far: float = _told(2.0**30, "how far out affine maps are probed: dividing by it is exact")
+
+    # How friction ports are decided
+    wide: float = _told(1e3, "an event's own rounding, in what counts as zero")
+    moving: float = _told(1e-4, "a moment later, of what counts as zero: above it a change is real")
+    seen: float = _told(1e-2, "the same where efforts change a slip at once")
+    left: float = _told(10.0, "slips that inputs rule have left zero at so many times what is zero")
+    hysteresis: float = _told(
+        10.0, "roundings that a unit's indicators are beyond what still holds"
+    )
+    breakaway: float = _told(1e-12, "part by which a limit may fall short: its own rounding")
+    nothing_held: float = _told(1e-12, "entries of a holding equation that are none")
+    consistent: float = _told(1e-9, "part of a combination's terms that may be left of it")
+    nothing: float = _told(1e-11, "entries below this part of the largest are rounding")
+    least_cap: float = _told(
+        1e-15, "of the largest effort: the least that a port's limit counts as"
+    )
+    tiny: float = _told(1e-300, "larger than nothing")
+
+    # How short a moment is
+    look_ahead: float = _told(1e-4, "ties are decided this part of a time constant later")
+    slowest: float = _told(100.0, "1/s, below which nothing is called fast while a run is young")
+    coarsest: float = _told(20.0, "no step is longer than what went before over this")
+    stalled: int = _told(60, "so many events within a moment are a run that goes nowhere")
+    together: float = _told(1e-12, "events so close, of the time, are one")
+
+    # Laws that determine one another
+    residual: float = _told(1e-9, "part of their magnitude to which laws are solved")
+    residual_floor: float = _told(1e-3, "added to that magnitude")
+    loop_difference: float = _told(1e-7, "relative difference for the slopes of laws")
+    loop_floor: float = _told(1e-6, "added to what that is relative to")
+    huge: float = _told(1e300, "stands for what is no number")
+    least_interval: float = _told(
+        1e-30, "of the first interval of a root's search, where it is at 0"
+    )
+
+    # Integrators with step control
+    stiff_span: float = _told(2e5, "run over time constant from which steps are implicit")
+    followed: float = _told(0.1, "an implicit step in time constants of the inputs")
+    refresh: int = _told(50, "steps after which time constants are looked at again")
+    checks: int = _told(6, "points inside a step at which events are looked for")
+    first_small: float = _told(1e-5, "states or rates so small in tolerances tell no first step")
+    first_step: float = _told(1e-6, "s, the first step then")
+    first_part: float = _told(1e-2, "of what moves a state by itself: a first try; of a tolerance")
+    first_flat: float = _told(1e-15, "rates so small change nothing")
+    first_shorter: float = _told(1e-3, "of the first try, where nothing changes")
+    first_least: float = _told(1e-12, "of the longest step: no first step is shorter")
+    newton: float = _told(0.03, "of a tolerance to which stages are solved, or less")
+    newton_slow: float = _told(1e-3, "stages that converge more slowly want new slopes")
+    slope: float = _told(1e-6, "relative difference for the slopes of rates")
+    slope_floor: float = _told(1e-9, "the same of what a rate does in a step, and at the least")
+    slope_shorter: float = _told(1e-2, "by which it shrinks where laws have no value")
+
+    # Whether an integrator advances
+    lot: int = _told(200, "steps that are looked at together")
+    short: float = _told(1e-2, "of what the model allows: shorter steps go nowhere in a slide")
+    shorter: float = _told(1e-4, "of the same: shorter steps go nowhere at any jump")
+    reach: int = _told(32, "so many such steps ahead a jump is looked for")
+    back: float = _told(2.0**-10, "of the reach beyond a jump, where rates push back if they do")
+    halves: int = _told(24, "a change that is whole after so many halvings is a jump")
+    whole: float = _told(0.1, "of a change, which is left of a jump")
+    felt: float = _told(1e-3, "tolerances that a jump changes rates by at the least")
+
+    # Exact steps
+    degree: int = _told(18, "of power series: over |M| h <= 1 what is left out is below rounding")
+    pair_degree: int = _told(21, "the same of pairs: over |M| h <= 1/4 it is below 1e-32")
+    rungs: int = _told(62, "doublings beyond which rounding of pairs would show: 2^62 are 1e-13")
+    rounded: float = _told(1e4, "so many steps in double precision leave all digits that count")
+    many: float = _told(3e5, "so many steps are always taken where something is watched ..")
+    least_part: float = _told(
+        0.01, ".. of more, unless a smaller part follows what has not decayed .."
+    )
+    most: float = _told(1e9, ".. up to some half an hour's of numpy ..")
+    most_in_c: float = _told(1e11, ".. or some hours' of C")
+    gone: float = _told(40.0, "time constants after which a motion is below rounding")
+    longest: float = _told(2.5, "|M| h of one step of a leap: bounds need its square below 8")
+    radius: float = _told(0.75, "|M| h of the Taylor polynomial of degree 16: 0.75^17/17! = 2e-17")
+    large: int = _told(500, "larger states than 2 to this power are scaled down")
+    alike: float = _told(1e-9, "part by which distances of samples that are one may differ")
+    narrow: float = _told(2.0**-44, "intervals of a polynomial are not divided further")
+    polished: float = _told(1e-16, "part of a root by which Newton's last step moves it")
+    halved: float = _told(4e-16, "part of a root that its interval is")
+    bound_slack: float = _told(1e-9, "part by which bounds may be rounded")
+    slots_floor: float = _told(
+        1e-3, "1/s, added to a model's rates where inputs are weighed by them"
+    )
+
+    # Fixed steps
+    band: float = _told(1e-6, "dead band of a port, unless it is told otherwise")
+    step_rounding: float = _told(1e-9, "of what makes a slip or its rate up: zero to a step")
+    difference: float = _told(1e-7, "of the states' magnitudes: a difference for the fastest rates")
+    farther: float = _told(8.0, "a second one, so many times as large, must find a like slope")
+    unexplained: float = _told(0.2, "part of a fit of the fastest rates that may be left over")
+    sine: float = _told(1e-2, "closer to one another, two vectors count as one")
+    stirred: float = _told(0.01, "of every direction, mixed into the vector that is kept")
+    seeded: float = _told(0.1, "of the kept vector, mixed into what the stages tell")
+    reach_part: float = _told(1e-3, "of all states' magnitude: the least of each")
+    reach_floor: float = _told(1e-10, "the same where all are zero")
+    bracket: float = _told(1e-3, "by which the boundary of stability is searched farther")
+    whole_steps: float = _told(1e-9, "part by which a stretch may be longer than whole steps")
+
+    # Many runs, and sources
+    doubtful: float = _told(1e-9, "pivot of A, its diagonal 1, from which it may be singular")
+    cancelled: float = _told(1e-6, "of an input's largest coefficient: above it nothing cancels")
+
+    # Units
+    unit_difference: float = _told(6e-6, "relative difference for a unit's directional derivatives")
+    switch_part: float = _told(
+        1e-9, "of a switch's largest value by which it may be beyond zero .."
+    )
+    switch_floor: float = _told(1e-12, ".. and at the least")
+    turns: float = _told(0.05, "radians, or powers of e, that known sources do little in")
+
+
+TUNING = Tuning()
+"""What all runs use."""
+
+
+def tuning_text() -> str:
+    """The numbers as C, ``tuning.h``."""
+    lines = ["/* Tolerances and choices of size; written by bondgraph-toolkit. */"]
+    lines += ["#ifndef BG_TUNING_H", "#define BG_TUNING_H", ""]
+    for one in fields(TUNING):
+        value, what = getattr(TUNING, one.name), one.metadata["what"]
+        lines.append(f"#define BG_{one.name.upper()} {value!r} /* {what} */")
+    return "\n".join([*lines, "", "#endif", ""])

@@ -1,0 +1,121 @@
+"""One name, one meaning in the C runtime: functions, types, enums, and what Python mirrors of them."""
+
+import re
+from collections import defaultdict
+from pathlib import Path
+
+import pytest
+
+from codegen.c.runtime import FOLDERS, runtime_file, runtime_names
+from codegen.engine import located, runs, sizes
+from codegen.engine.status import Status
+from codegen.batch import engine as batch_engine
+
+FILES = ("main.c", *(name for folder in FOLDERS for name in runtime_names(folder)))
+
+FUNCTION = re.compile(
+    r"^(?!typedef|extern|#|enum|struct \w+ \{)\w[\w \t*]*?\**\(?\*?\b(\w+)\(", re.M
+)
+TYPE = re.compile(r"^\} (\w+)(?:\[\w+\])*;|^(?:enum|struct) (\w+) \{", re.M)
+ALIAS = re.compile(r"^typedef (?!struct|enum)[^;{}]*?\b(\w+)(?:\[\w+\])*(?:\([^;]*\))?;", re.M)
+
+
+def _plain(name: str) -> str:
+    """A file without comments, strings and what the preprocessor reads."""
+    text = re.sub(r"/\*.*?\*/", "", runtime_file(name), flags=re.DOTALL)
+    text = re.sub(r"\\\n", " ", text)
+    return re.sub(r"^#.*$|\"[^\"\n]*\"", "", text, flags=re.MULTILINE)
+
+
+def _defined(text: str) -> list[str]:
+    """Names of the functions that have a body here, and of types."""
+    found = []
+    for match in FUNCTION.finditer(text):
+        end = text.find("{", match.end())
+        if end >= 0 and ";" not in text[match.end() : end]:
+            found.append(match[1])
+    types = {name for match in TYPE.finditer(text) for name in match.groups() if name}
+    return found + sorted(types | set(ALIAS.findall(text)))
+
+
+def test_no_function_or_type_is_defined_twice() -> None:
+    """Not even static ones: a name means one thing wherever it is met."""
+    where = defaultdict(list)
+    for name in FILES:
+        for one in _defined(_plain(name)):
+            where[one].append(name)
+    assert len(where) > 500
+    assert {one: files for one, files in where.items() if len(files) > 1} == {}
+
+
+def test_the_search_sees_what_it_has_to() -> None:
+    text = "static double *put(int a,\n  int b)\n{\n}\nint bg_run(void);\ntypedef int bg_block(void);\n"
+    text += (
+        "typedef struct {\n    int a;\n} bg_one;\nenum bg_two { BG_A };\ntypedef double three[4];\n"
+    )
+    assert sorted(_defined(text)) == ["bg_block", "bg_one", "bg_two", "put", "three"]
+
+
+def test_no_file_tells_engines_apart() -> None:
+    """The preprocessor guards headers and knows compilers; sizes of models are values."""
+    for name in FILES:
+        for line in re.findall(r"^#\s*if\w*.*$", runtime_file(name), re.MULTILINE):
+            assert re.fullmatch(r"#ifndef \w+_H|#if defined\(__GNUC__\)", line), (name, line)
+
+
+def _values(header: str, *, enum: str = "") -> dict[str, int]:
+    """An enum's names and values as C counts them."""
+    body = re.search(rf"enum {enum}\s*\{{(.*?)\}}", _plain(header), re.DOTALL)
+    assert body is not None
+    names = [part.strip() for part in body[1].split(",") if part.strip()]
+    return {name: at for at, name in enumerate(names)}
+
+
+def test_statuses_are_those_of_c() -> None:
+    expected = {f"BG_{status.name}": int(status) for status in Status}
+    assert _values("run_status.h", enum="bg_status") == expected
+
+
+def test_kinds_of_events_and_methods_are_those_of_c() -> None:
+    kinds = {f"BG_{kind.upper()}": at for at, kind in enumerate(runs.KINDS)}
+    assert _values("port_events.h", enum="bg_kind") == kinds
+    methods = {f"BG_{method.upper()}": at for at, method in enumerate(located.METHODS)}
+    assert _values("located_request.h", enum="bg_method") == methods
+
+
+def _constant(header: str, name: str) -> str:
+    found = re.search(rf"\b{name} = ([^,}}]+?)\s*[,}}]", _plain(header))
+    assert found is not None, name
+    return found[1].strip()
+
+
+def test_sizes_are_those_of_c() -> None:
+    assert int(_constant("port_choose.h", "BG_MOST_PORTS")) == sizes.MOST_PORTS
+    assert int(_constant("batch.h", "BATCH_STRIDE")) == batch_engine.STRIDE
+    assert int(_constant("batch.h", "BATCH_SQUARES")) == batch_engine.SQUARES
+    limit = batch_engine.MOST_MODES
+    assert _constant("batch.h", "BATCH_MODES") == f"EX_MODES < {limit} ? EX_MODES : {limit}"
+    assert sizes.ALIGNMENT % int(_constant("exact.h", "EX_ALIGNMENT")) == 0
+
+
+@pytest.mark.parametrize("ports", [0, 1, 3])
+def test_sizes_that_python_works_out_are_those_of_c(ports: int, tmp_path: Path) -> None:
+    """Every size that declarations use, as a compiler sees it in the header."""
+    wanted = sizes.Sizes(5, 4, 7, 2, ports, 3)
+    checks = "\n".join(
+        f"typedef char check_{name}[EX_{name} == {value} ? 1 : -1];"
+        for name, value in wanted.numbers.items()
+    )
+    sources = {**sizes.sources(), "config.h": wanted.config}
+    for name, text in sources.items():
+        (tmp_path / name).write_text(text)
+    (tmp_path / "check.c").write_text(f'#include "exact.h"\n{checks}\n')
+    from oracles.c_model import compiled
+
+    compiled(
+        tmp_path, [str(tmp_path / "check.c"), *_units(tmp_path, sources)], "-O0", "-shared", "-fPIC"
+    )
+
+
+def _units(folder: Path, sources: dict[str, str]) -> list[str]:
+    return [str(folder / name) for name in sources if name.endswith(".c")]
