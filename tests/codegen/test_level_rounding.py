@@ -125,6 +125,23 @@ def test_a_level_that_rounds_below_zero_is_zero(
     assert run(_case(level, speed), tmp_path) == pytest.approx(_right(speed), abs=near)
 
 
+@pytest.mark.parametrize("method", ["DOP853", "Radau"])
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_no_step_is_tried_beyond_where_a_level_ends(backend: str, method: str) -> None:
+    """A brake let go within 1e-5 s, far less than a step of what moves beside it: w' = 2 from then on."""
+    nodes = [
+        bg.Se("push", "P"), bg.One("m"), bg.I("J", "J", flow="w"), bg.R("brake"),
+        bg.Se("pull", "P"), bg.One("free"), bg.I("J_2", "J", flow="w_2"),
+    ]  # fmt: skip
+    graph = bond_graph(nodes, "push>m>J m>brake pull>free>J_2")
+    run = simulator(bg.derive(graph), {"J": 1.0}, {"brake": bg.DryFriction("n")}, backend)
+    inputs = {"P": 2.0, "n": Ramp(0.3, -3e5, 3.0, 0.30001)}
+    result = run.run([0, 0.3, 0.4, 1], {"w_2": 3.0}, inputs, method)
+    left = 1e-5 * 2 / 3
+    assert result["w"][-1] == pytest.approx(2 * (0.7 - 1e-5) + left, abs=1e-9)
+
+
+
 @pytest.mark.parametrize("level", LEVELS)
 def test_sweeps_in_c_run_through_it(level: str) -> None:
     """Both ways of a batch of runs: exact steps, and located where the level's curve is not affine."""

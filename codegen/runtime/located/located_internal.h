@@ -23,8 +23,9 @@ int bg_progress_check(bg_located *c);
 int bg_watch_begin(bg_located *c);
 int bg_watch_step(bg_located *c, int *found, double *time, int *ports);
 
-/* located_solver.c: one step that keeps the tolerance, and the state anywhere inside it. */
-int bg_solver_begin(bg_located *c, int method, double longest);
+/* located_solver.c: steps to no later than `stop` that keep the tolerance, and the state anywhere in
+ * the latest. */
+int bg_solver_begin(bg_located *c, int method, double longest, double stop);
 int bg_solver_step(bg_located *c, double stop);
 int bg_solver_dense(bg_located *c, double t, double *s);
 

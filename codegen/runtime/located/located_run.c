@@ -134,7 +134,7 @@ static int advance(void *run, double stop)
     if (method == BG_AUTO)
         method = fastest * span > BG_STIFF_SPAN ? BG_RADAU : BG_DOP853;
     if (status == BG_OK)
-        status = bg_solver_begin(c, method, longest(c, method, fastest));
+        status = bg_solver_begin(c, method, longest(c, method, fastest), stop);
     if (status == BG_OK)
         status = bg_watch_begin(c);
     bg_progress_begin(c);

@@ -13,8 +13,9 @@ static double norm(const bg_located *c, const double *values)
 }
 
 /* A first step from the sizes of the state, its rate and its rate's rate (Hairer, Norsett, Wanner,
- * Solving Ordinary Differential Equations I, section II.4). */
-static int first_step(bg_located *c, double order)
+ * Solving Ordinary Differential Equations I, section II.4); tried no further than to `stop`, beyond
+ * which inputs go on as they never do. */
+static int first_step(bg_located *c, double order, double stop)
 {
     bg_solver *const s = &c->solver;
     double rate[BG_SIZE];
@@ -23,7 +24,7 @@ static int first_step(bg_located *c, double order)
     const double size = norm(c, s->y), slope = norm(c, s->f);
     const int tiny = size < BG_FIRST_SMALL || slope < BG_FIRST_SMALL;
     double h = tiny ? BG_FIRST_STEP : BG_FIRST_PART * size / slope;
-    h = fmin(h, s->longest);
+    h = fmin(h, fmin(s->longest, stop - c->run.at.t));
     for (int i = 0; i < BG_SIZE; i++)
         s->tried[i] = s->y[i] + h * s->f[i];
     const int status = bg_located_rate(c, c->run.at.t + h, s->tried, rate);
@@ -37,7 +38,7 @@ static int first_step(bg_located *c, double order)
     return status == BG_NOT_FINITE || status == BG_NO_SOLUTION ? BG_OK : status;
 }
 
-int bg_solver_begin(bg_located *c, int method, double longest)
+int bg_solver_begin(bg_located *c, int method, double longest, double stop)
 {
     bg_solver *const s = &c->solver;
     s->method = method;
@@ -46,7 +47,7 @@ int bg_solver_begin(bg_located *c, int method, double longest)
     s->t = s->t_old = c->run.at.t;
     memcpy(s->y, c->s, sizeof s->y);
     const int status = bg_located_rate(c, c->run.at.t, s->y, s->f);
-    return status == BG_OK ? first_step(c, method == BG_RADAU ? 4.0 : 8.0) : status;
+    return status == BG_OK ? first_step(c, method == BG_RADAU ? 4.0 : 8.0, stop) : status;
 }
 
 int bg_solver_step(bg_located *c, double stop)
