@@ -6,21 +6,14 @@ from pathlib import Path
 import click
 
 import differentials.cli.options as options
+from codegen.exports import TARGETS
 from codegen.fmu.binaries import PLATFORMS
 from differentials.cli.names import OneOf, check_names
 from differentials.cli.options import Asked
 from differentials.cli.preparing import prepare
 from differentials.cli.printing import print_json
 from differentials.cli.subject import Subject
-from differentials.exporting import TARGETS, write
-
-NEXT = {
-    "python": "cd {folder} && python {file}",
-    "c": "cc -std=c99 -O2 {folder}/*.c -lm -o run_{name}",
-    "fmu2": "load {path} into any tool that knows FMI 2.0",
-    "fmu3": "load {path} into any tool that knows FMI 3.0",
-}
-"""What to do with an export."""
+from differentials.exporting import write
 
 
 @options.command(
@@ -33,7 +26,7 @@ NEXT = {
 @click.option(
     "--to",
     "target",
-    type=OneOf(TARGETS, "target"),
+    type=OneOf(tuple(TARGETS), "target"),
     metavar="TARGET",
     required=True,
     help=f"What to write: {', '.join(TARGETS)}.",
@@ -50,8 +43,9 @@ def export(
     subject: Subject, target: str, asked: Asked, platforms: str | None, out: Path, as_json: bool
 ) -> None:
     """Write MODEL with its numbers, its start and its inputs as Python, C or an FMU."""
-    if platforms is not None and not target.startswith("fmu"):
-        raise click.UsageError("--platforms is for --to fmu2 and --to fmu3; leave it out")
+    if platforms is not None and not TARGETS[target].compiled:
+        compiled = " and ".join(f"--to {one.name}" for one in TARGETS.values() if one.compiled)
+        raise click.UsageError(f"--platforms is for {compiled}; leave it out")
     chosen = (
         platforms if platforms in (None, "all") else [one.strip() for one in platforms.split(",")]
     )
@@ -66,4 +60,4 @@ def export(
     last = paths[-1]
     told = {"folder": last.parent, "file": last.name, "path": last, "name": subject.name}
     quoted = {key: shlex.quote(str(value)) for key, value in told.items()}
-    click.echo(f"\nNext: {NEXT[target].format(**quoted)}")
+    click.echo(f"\nNext: {TARGETS[target].following.format(**quoted)}")

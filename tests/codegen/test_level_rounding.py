@@ -141,7 +141,6 @@ def test_no_step_is_tried_beyond_where_a_level_ends(backend: str, method: str) -
     assert result["w"][-1] == pytest.approx(2 * (0.7 - 1e-5) + left, abs=1e-9)
 
 
-
 @pytest.mark.parametrize("level", LEVELS)
 def test_sweeps_in_c_run_through_it(level: str) -> None:
     """Both ways of a batch of runs: exact steps, and located where the level's curve is not affine."""

@@ -3,9 +3,9 @@
 import json
 from collections.abc import Sequence
 
-from codegen import Constant, Lag, Signal, Step
-from codegen.inputs.signals import as_signal
-from differentials.scenarios import Prepared
+from codegen.inputs.signal import Signal
+from codegen.inputs.signals import Constant, Lag, Step, as_signal
+from codegen.targets import Export
 
 _LAGGED = '''
 
@@ -36,20 +36,20 @@ _HELPERS = {"pieces": (("bisect", "cmath"), _PIECES), "lagged": (("math",), _LAG
 _UNKNOWN = "  # nothing was given: a constant, or a function of time, to change"
 
 
-def script(name: str, ready: Prepared, names: Sequence[str]) -> str:
+def script(name: str, export: Export, names: Sequence[str]) -> str:
     """The text of a script that runs the module ``name`` and writes every signal as a table.
 
     ``names``: the model's inputs; those that the run does not give are constants of zero, to be changed.
     """
-    given = {one: _signal(as_signal(signal, one)) + "," for one, signal in ready.inputs.items()}
+    given = {one: _signal(as_signal(signal, one)) + "," for one, signal in export.inputs.items()}
     given |= {one: f"0.0,{_UNKNOWN}" for one in names if one not in given}
     inputs = "".join(f"    {_text(one)}: {value}\n" for one, value in given.items())
-    initial = "".join(f"    {_text(one)}: {float(v)!r},\n" for one, v in ready.initial.items())
+    initial = "".join(f"    {_text(one)}: {float(v)!r},\n" for one, v in export.initial.items())
     used = [helper for word, helper in _HELPERS.items() if f": {word}(" in inputs]
     imports = "".join(f"import {one}\n" for modules, _ in used for one in modules)
     imports += "\n" if imports else ""
     helpers = "".join(text for _, text in used)
-    begin, end = float(ready.times[0]), float(ready.times[-1])
+    begin, end = float(export.times[0]), float(export.times[-1])
     return f'''"""Runs {name} as it was exported and writes every signal as comma-separated columns."""
 
 {imports}import numpy as np
@@ -61,7 +61,7 @@ inputs = {{
 {inputs}}}
 initial = {{
 {initial}}}
-times = np.linspace({begin!r}, {end!r}, {len(ready.times)})
+times = np.linspace({begin!r}, {end!r}, {len(export.times)})
 result = simulate(times, initial, inputs)
 table = np.column_stack([*result.values()])
 header = ",".join(result)
