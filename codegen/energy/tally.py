@@ -8,9 +8,10 @@ import numpy as np
 from codegen.energy.quadrature import NODES, exact_integrals, gauss_sum, rows_over
 from codegen.inputs.generators import generator
 from codegen.inputs.pieces import Piece
-from codegen.model.snapshot import RATE, Mode, Run, Snapshot
+from codegen.model.snapshot import Mode, Run, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
+from codegen.program.layout import RATE
 
 Dense = Callable[[float | Array], Array]
 

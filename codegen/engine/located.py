@@ -19,6 +19,7 @@ from codegen.inputs.signal import Signal
 from codegen.inputs.tables import SignalTable, signal_table
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
+from codegen.program.layout import recorded
 from codegen.record.snapshots import Snapshots
 from codegen.runs.track import Event, Settings
 
@@ -77,7 +78,7 @@ class LocatedLibrary:
         ffi, library = self.opened
         sizes = ffi.new("unsigned long[3]")
         library.bg_rows_sizes(sizes)
-        if sizes[2] != 8 * sum(_widths(self._model)):
+        if sizes[2] != 8 * sum(recorded(self._model.program)):
             raise SimulationError(
                 "the library of this model was compiled for other sizes; empty the cache"
             )
@@ -101,7 +102,7 @@ class LocatedRuns:
     ) -> Recorded | Stopped:
         """Run and record, or why it could not go on."""
         ffi, _ = self.library.opened
-        rows = np.empty((len(times), sum(_widths(self.model))))
+        rows = np.empty((len(times), sum(recorded(self.model.program))))
         start = np.append(states, 0.0)
         asked = ffi.new("bg_request *")
         asked.times, asked.states = _pointer(ffi, times), _pointer(ffi, start)
@@ -143,19 +144,8 @@ class LocatedRuns:
         return aligned(instance), aligned(run)
 
     def _shots(self, rows: Array) -> Snapshots:
-        ends = np.cumsum(_widths(self.model))[:-1]
-        x, z, u, du, y, rate, external = np.split(rows, ends, axis=1)
-        return Snapshots(x, z, u, du, y, rate, external)
-
-
-def _widths(model: ClosedModel) -> tuple[int, ...]:
-    """How many columns x, z, u, u', y, the rate of s and external inputs have."""
-    program = model.program
-    inputs = len(program.inputs)
-    return (
-        len(program.states), len(program.law_states), inputs, inputs, len(program.readings),
-        model.size, len(program.external),
-    )  # fmt: skip
+        ends = np.cumsum(recorded(self.model.program))[:-1]
+        return Snapshots(*np.split(rows, ends, axis=1))
 
 
 def packed_signals(ffi: Any, table: SignalTable) -> tuple[Any, list[Any]]:

@@ -7,14 +7,12 @@ import scipy.linalg
 
 from bondgraph.errors import SimulationError
 from codegen.engine.sizes import Engine, view
-from codegen.model.snapshot import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, Mode
+from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.ports.friction import SlopeNeededError
 from codegen.program.affine import AffineMap
-
-STATES = 0
-"""Where the states stand in an affine map."""
+from codegen.program.layout import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, STATES
 
 
 def mode_of(number: int, ports: int) -> Mode:

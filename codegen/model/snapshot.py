@@ -9,9 +9,6 @@ from codegen.numbers.arrays import Array
 Mode = tuple[int, ...]
 """For each friction port: 0 sticking, +1 or -1 the sign of its slip."""
 
-INPUTS, RATES_OF_INPUTS, READINGS, RATE, CAPS = 2, 3, 4, 5, 6
-"""Where the parts of a `Snapshot` stand in an affine map."""
-
 
 class Run(Protocol):
     """What a model need know of a run that it is in."""

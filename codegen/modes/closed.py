@@ -17,16 +17,7 @@ from codegen.model.instant import Binding, Evaluation, Instant
 from codegen.model.loops import solve_loop
 from codegen.model.numbers import Numbers, assembled, check_values, exact_parameters, numbers
 from codegen.model.sharp import NotAffineError, sharp_rates
-from codegen.model.snapshot import (
-    CAPS,
-    INPUTS,
-    RATE,
-    RATES_OF_INPUTS,
-    READINGS,
-    Mode,
-    Run,
-    Snapshot,
-)
+from codegen.model.snapshot import Mode, Run, Snapshot
 from codegen.model.terms import without_rounding
 from codegen.numbers.arrays import Array
 from codegen.numbers.pairs import Pair, pair
@@ -35,11 +26,8 @@ from codegen.ports.rubbing import Rubbing
 from codegen.ports.slips import SlipRows
 from codegen.program.affine import AffineMap, check_finite, probed
 from codegen.program.gains import check_gains
+from codegen.program.layout import CAPS, INPUTS, RATE, RATES_OF_INPUTS
 from codegen.program.records import Group, Program
-
-__all__ = [
-    "CAPS", "INPUTS", "RATE", "RATES_OF_INPUTS", "READINGS", "ClosedModel", "Mode", "Snapshot",
-]  # fmt: skip
 
 
 class ClosedModel:

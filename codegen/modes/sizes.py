@@ -6,9 +6,10 @@ import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
-from codegen.model.snapshot import INPUTS, Mode
+from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
+from codegen.program.layout import INPUTS
 from codegen.tuning import TUNING
 
 

@@ -12,9 +12,10 @@ from itertools import product
 import numpy as np
 
 from bondgraph.errors import SimulationError
-from codegen.model.snapshot import RATE, Mode
+from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
+from codegen.program.layout import RATE
 from codegen.tuning import TUNING
 
 REAL_LIMIT, IMAGINARY_LIMIT = 2.785293563405282, 2.0 * math.sqrt(2.0)

@@ -6,15 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from codegen.inputs.signal import Signal, sampled_rates, sampled_values
-from codegen.model.snapshot import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS
 from codegen.model.terms import without_rounding
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
+from codegen.program.layout import (
+    CAPS,
+    EXTERNAL,
+    NAMES,
+    RECORDED,
+)
 from codegen.runs.track import Track
-
-STATES, LAW_STATES = 0, 1
-"""Where the parts stand in an affine map, as in a `Snapshot`."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,7 @@ def snapshots(
         model.at(t, s, [signal.piece(t) for signal in signals], mode)
         for t, s, mode in zip(times.tolist(), track.vectors, track.modes, strict=True)
     ]
-    names = ("x", "z", "u", "du", "y", "rate", "external")
+    names = [NAMES[part] for part in RECORDED]
     return Snapshots(*(np.array([getattr(shot, name) for shot in shots]) for name in names))
 
 
@@ -69,9 +71,8 @@ def _by_modes(
         tables[which == number[mode]] = vectors[which == number[mode]] @ affine.matrix.T
     if affine is None or tables is None or (mode and _refused(affine, tables, vectors, track)):
         return None
-    kept = (STATES, LAW_STATES, INPUTS, RATES_OF_INPUTS, READINGS, RATE)
-    x, z, u, du, y, rate = (tables[:, affine.parts[part]] for part in kept)
-    return Snapshots(x, z, u, du, y, rate, w.T)
+    kept = {NAMES[part]: tables[:, affine.parts[part]] for part in RECORDED if part != EXTERNAL}
+    return Snapshots(**kept, external=w.T)
 
 
 def _refused(affine: AffineMap, tables: Array, vectors: Array, track: Track) -> bool:

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from codegen.inputs.pieces import Piece
-from codegen.model.snapshot import CAPS, INPUTS, READINGS, Mode, Snapshot
+from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.modes.guards import guard_rounding
 from codegen.modes.pace import moment
@@ -14,6 +14,7 @@ from codegen.modes.rounding import Peaks, scales
 from codegen.modes.verdicts import Look, room
 from codegen.numbers.arrays import Array
 from codegen.numbers.roots import root
+from codegen.program.layout import CAPS, INPUTS, READINGS
 from codegen.runs.track import Dense
 from codegen.tuning import TUNING
 

@@ -6,10 +6,11 @@ import numpy as np
 import scipy.linalg
 
 from codegen.inputs.generators import Generator
-from codegen.model.snapshot import CAPS, INPUTS, RATE, READINGS, Mode
+from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
+from codegen.program.layout import CAPS, INPUTS, RATE, READINGS
 from codegen.tuning import TUNING
 
 

@@ -13,9 +13,10 @@ from pathlib import Path
 import pytest
 
 FILES = (
-    "codegen/test_awkward_names.py", "codegen/test_batch*.py", "codegen/test_build.py",
-    "codegen/test_c_*.py", "codegen/test_engine_bounds.py", "codegen/test_fmu*.py",
-    "codegen/test_located.py", "codegen/test_memory.py", "differentials/test_agreement.py",
+    "codegen/batch/test_*.py", "codegen/c/test_c_*.py", "codegen/engine/test_build.py",
+    "codegen/engine/test_c_backend.py", "codegen/engine/test_engine_bounds.py",
+    "codegen/engine/test_located.py", "codegen/engine/test_memory.py", "codegen/fmu/test_*.py",
+    "codegen/program/test_awkward_names.py", "differentials/test_agreement.py",
     "docs/test_commands.py", "test_notebooks.py",
 )  # fmt: skip
 """Below `tests`."""

@@ -11,9 +11,9 @@ TESTS = Path(__file__).parents[1]
 
 def test_every_pattern_names_a_file() -> None:
     assert all(list(TESTS.glob(pattern)) for pattern in needs.FILES)
-    assert needs.needs_compiler(TESTS / "codegen" / "test_fmu_runs.py")
-    assert not needs.needs_compiler(TESTS / "codegen" / "test_friction_belt.py")
-    assert not needs.needs_compiler(TESTS.parent / "codegen" / "test_fmu_runs.py")
+    assert needs.needs_compiler(TESTS / "codegen" / "fmu" / "test_fmu_runs.py")
+    assert not needs.needs_compiler(TESTS / "codegen" / "ports" / "test_friction_belt.py")
+    assert not needs.needs_compiler(TESTS.parent / "codegen" / "fmu" / "test_fmu_runs.py")
 
 
 def test_every_slow_test_is_there() -> None:

@@ -25,7 +25,7 @@ CASES = every()
 EXPORTED = tuple(CASES) if ALL else ("brake", "constant")
 RUN = tuple(CASES) if ALL else ("brake", "rubbing")
 UNITS = tuple(CASES) if ALL else ("wound_brake",)
-ORACLES = Path(__file__).parent / "oracles"
+ORACLES = Path(__file__).parents[1] / "oracles"
 
 
 def test_edges_are_among_what_is_run() -> None:

@@ -143,14 +143,14 @@ def test_nothing_is_left_in_matplotlibs_global_state() -> None:
         "sys.exit('matplotlib.pyplot' in sys.modules)"
     )
     search = {"PYTHONPATH": ":".join((".", "tests", "tests/codegen"))}
-    root = Path(__file__).parents[2]
+    root = Path(__file__).parents[3]
     done = subprocess.run([sys.executable, "-c", script], cwd=root, env=search, check=False)
     assert done.returncode == 0
 
 
 def test_matplotlib_is_not_imported_with_the_packages() -> None:
     script = "import sys, codegen, differentials; sys.exit('matplotlib' in sys.modules)"
-    root = Path(__file__).parents[2]
+    root = Path(__file__).parents[3]
     done = subprocess.run([sys.executable, "-c", script], cwd=root, env={}, check=False)
     assert done.returncode == 0
 

@@ -212,7 +212,7 @@ def test_text_is_formatted(tmp_path: Path) -> None:
 
 
 def test_the_text_of_the_alsd(update_golden: bool) -> None:
-    file, text = Path(__file__).parent / "golden" / "alsd.py.txt", _alsd()
+    file, text = Path(__file__).parents[1] / "golden" / "alsd.py.txt", _alsd()
     if update_golden:
         file.parent.mkdir(exist_ok=True)
         file.write_text(text, encoding="utf-8")

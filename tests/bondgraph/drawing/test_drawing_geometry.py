@@ -16,7 +16,7 @@ import bondgraph as bg
 import differentials
 from bondgraph.drawing.shapes import Box, Point, Scene
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 
 CATALOG = [
     (name, full) for name, row in differentials.catalog.items() for full in {False, row.full}

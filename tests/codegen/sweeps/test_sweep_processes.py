@@ -17,7 +17,7 @@ from codegen.sweeps.crews import THREADS, Processes
 from codegen.sweeps.drive import ENDED, Pace, Work, drive
 from codegen.sweeps.job import Chunk, Job, sent
 
-TESTS = Path(__file__).parents[1]
+TESTS = Path(__file__).parents[2]
 SPEEDS = np.arange(1.0, 13.0)
 
 

@@ -15,7 +15,7 @@ from codegen.c.structure import MOST_PORTS
 from codegen.program.printing import printed
 from differentials.model import model
 
-GOLDEN = Path(__file__).parent / "golden" / "alsd"
+GOLDEN = Path(__file__).parents[1] / "golden" / "alsd"
 
 
 def _alsd() -> dict[str, str]:

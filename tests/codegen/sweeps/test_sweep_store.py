@@ -20,7 +20,7 @@ from codegen.sweeps.design import Samples
 from codegen.sweeps.job import Outcome
 from codegen.sweeps.result import Collected
 
-TESTS = Path(__file__).parents[1]
+TESTS = Path(__file__).parents[2]
 SPEEDS = {"v": np.arange(1.0, 41.0)}
 PLAIN = {"time": TIMES, "measures": {"twice": twice}, "workers": 0, "progress": False}
 
