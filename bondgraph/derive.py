@@ -7,10 +7,11 @@ networkx.DiGraph        the user's: nodes carry `kind`, `value`, ...; edges are 
   state_equations       `StateEquations`: A J B E F D G, laws          `DependentSourceError`
 """
 
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Sequence
 from types import MappingProxyType
 from typing import Any
 
+from bondgraph.algebra.exact import FixedRow
 from bondgraph.algebra.tidy import tidy_matrices
 from bondgraph.causality.assign import assign_causality
 from bondgraph.equations import StateEquations
@@ -74,7 +75,7 @@ def state_equations(
     laws = {port.element.name: port.element.law for port in imposed if port.element.law is not None}
     check_laws(laws, signals, imposed, E, readings)
     n, m = len(states), len(reduction.inputs)
-    parts = [
+    parts: list[tuple[Sequence[FixedRow], int]] = [
         (A, n), ([row.F for row in balances], n), ([row.D for row in balances], m), (E, m),
         ([row.F for row in resolved_rows], n), ([row.D for row in resolved_rows], m),
         ([row.K for row in resolved_rows], m),

@@ -10,7 +10,7 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import Law
 from bondgraph.errors import StructureError
-from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.structure import Port, PortRow
 from bondgraph.show.display import equations_text

@@ -1,6 +1,7 @@
 """Exact linear algebra on small systems of expressions, in the field that their entries generate."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import sympy as sp
@@ -13,6 +14,9 @@ from bondgraph.algebra.residues import is_zero
 Row = dict[int, sp.Expr]
 """A sparse row: column to expression, no zeros."""
 
+FixedRow = Mapping[int, sp.Expr]
+"""A sparse row that is not changed any more."""
+
 SHORT_OPERATIONS = 60
 SHORT_TERMS = 100
 """A sum with more operations, or more terms when multiplied out, is left as it came."""
@@ -22,7 +26,17 @@ class SingularError(ArithmeticError):
     """The matrix of a linear system has a determinant that vanishes identically."""
 
 
-def add_scaled(target: Row, row: Mapping[int, sp.Expr], factor: sp.Expr) -> None:
+def fixed(row: FixedRow) -> FixedRow:
+    """A read-only copy of a sparse row; the row itself where it is read-only already.
+
+    >>> fixed({0: sp.Symbol("a")})[1] = sp.Symbol("b")
+    Traceback (most recent call last):
+    TypeError: 'mappingproxy' object does not support item assignment
+    """
+    return row if isinstance(row, MappingProxyType) else MappingProxyType(dict(row))
+
+
+def add_scaled(target: Row, row: FixedRow, factor: sp.Expr) -> None:
     """Add ``factor * row`` to a sparse row in place, dropping entries that cancel exactly."""
     for column, entry in row.items():
         if column in target:
@@ -35,7 +49,7 @@ def add_scaled(target: Row, row: Mapping[int, sp.Expr], factor: sp.Expr) -> None
             target[column] = factor * entry
 
 
-def scaled(row: Mapping[int, sp.Expr], factor: sp.Expr) -> Row:
+def scaled(row: FixedRow, factor: sp.Expr) -> Row:
     """``factor * row``."""
     return {column: factor * entry for column, entry in row.items()}
 
@@ -51,7 +65,7 @@ def cancelled(expr: sp.Expr) -> sp.Expr:
     return min((expr, sp.cancel(expr)), key=lambda form: form.count_ops())
 
 
-def solve(matrix: Sequence[Row], right: Sequence[Row]) -> list[Row]:
+def solve(matrix: Sequence[FixedRow], right: Sequence[FixedRow]) -> list[Row]:
     """Solve ``matrix * X = right`` exactly, both given as sparse rows; the columns of X as in ``right``.
 
     Entries are fractions in lowest terms. Raises `SingularError` if the determinant vanishes.
@@ -86,7 +100,7 @@ def solve(matrix: Sequence[Row], right: Sequence[Row]) -> list[Row]:
     return result
 
 
-def determinant(matrix: Sequence[Row]) -> sp.Expr:
+def determinant(matrix: Sequence[FixedRow]) -> sp.Expr:
     """The determinant of a square system given as sparse rows.
 
     >>> a, b = sp.symbols("a b")
@@ -101,7 +115,7 @@ def determinant(matrix: Sequence[Row]) -> sp.Expr:
     return found
 
 
-def combined(parts: Iterable[tuple[Mapping[int, sp.Expr], sp.Expr]]) -> Row:
+def combined(parts: Iterable[tuple[FixedRow, sp.Expr]]) -> Row:
     """The sum of multiples of sparse rows, each entry cancelled once, however many terms it has.
 
     >>> a, b = sp.symbols("a b")
@@ -141,7 +155,7 @@ def rows_of(matrix: sp.Matrix) -> list[Row]:
     return result
 
 
-def matrix_of(rows: Sequence[Mapping[int, sp.Expr]], columns: int) -> sp.ImmutableSparseMatrix:
+def matrix_of(rows: Sequence[FixedRow], columns: int) -> sp.ImmutableSparseMatrix:
     """The immutable sparse sympy matrix of sparse rows."""
     entries = {(i, j): entry for i, row in enumerate(rows) for j, entry in sorted(row.items())}
     return sp.ImmutableSparseMatrix(len(rows), columns, entries)

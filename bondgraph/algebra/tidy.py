@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import sympy as sp
 
-from bondgraph.algebra.exact import Row, matrix_of
+from bondgraph.algebra.exact import FixedRow, matrix_of
 from bondgraph.algebra.expressions import expanded_terms
 from bondgraph.algebra.residues import is_rational_function, is_zero
 
@@ -17,7 +17,9 @@ LARGEST_TIDIED = 2_000
 """Matrices with more entries in all are left as they were derived."""
 
 
-def tidy_matrices(parts: Sequence[tuple[list[Row], int]]) -> list[sp.ImmutableSparseMatrix]:
+def tidy_matrices(
+    parts: Sequence[tuple[Sequence[FixedRow], int]],
+) -> list[sp.ImmutableSparseMatrix]:
     """Immutable matrices from rows and widths, entries in their shortest form while there are few."""
     count = sum(len(row) for rows, _ in parts for row in rows)
     if count <= LARGEST_TIDIED:

@@ -1,6 +1,7 @@
 """Equations as rows over states and inputs, every closed law replaced by its slopes."""
 
 from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import replace
 
 import sympy as sp
 
@@ -13,8 +14,9 @@ from bondgraph.analyse.slopes import Point, slopes
 from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, SignalError, SingularStorageError
-from bondgraph.reduce.motion import Reading, slope_of
+from bondgraph.reduce.motion import slope_of
 from bondgraph.reduce.readings import depends_on_signals
+from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.structure import Port
 
 
@@ -87,17 +89,15 @@ class ClosedRows:
         if not self._equations.varying:
             return row
         moving = set(self._equations.varying)
-        result = Reading.zero()
-        for mine, theirs in zip(result.parts, row.parts, strict=True):
-            for j, entry in theirs.items():
-                if (value := self._there(entry)) != 0:
-                    mine[j] = value
+        there = [{j: self._there(entry) for j, entry in part.items()} for part in row.parts]
+        kept = ({j: value for j, value in part.items() if value != 0} for part in there)
+        result = ReadingSum(Reading(*kept))
         for names, part in ((self.states, row.F), (self.columns, row.D)):
             for j, entry in part.items():
                 for name in sorted(entry.free_symbols & moving - {TIME}, key=str):
                     slope = self._there(slope_of(entry, name) * names[j])
                     result.add(self.signal(name), slope)
-        return result
+        return result.whole()
 
     def _there(self, expr: sp.Expr) -> sp.Expr:
         """An expression at the operating point."""
@@ -110,10 +110,10 @@ class ClosedRows:
         return expr.subs({name: self._point[name] for name in expr.free_symbols & moving})
 
     def _combined(self, slope: Mapping[sp.Symbol, sp.Expr]) -> Reading:
-        result = Reading.zero()
+        result = ReadingSum()
         for name, factor in slope.items():
             result.add(self.signal(name), factor)
-        return result
+        return result.whole()
 
     def put_in(self, row: Reading) -> Reading:
         """A row with what laws give replaced by the signals they read."""
@@ -123,11 +123,11 @@ class ClosedRows:
                 "variable"
             )
         kept = {j: entry for j, entry in row.D.items() if j not in self._given}
-        result = Reading(dict(row.F), kept, dict(row.H), dict(row.K))
+        result = ReadingSum(replace(row, D=kept))
         for j, entry in row.D.items():
             if j in self._given:
                 result.add(self._given[j], entry)
-        return result
+        return result.whole()
 
     def dynamics(self) -> tuple[list[Row], list[Reading]]:
         """A and the right sides of ``A x' =``, the rates of laws' own states below."""

@@ -1,13 +1,13 @@
 """States whose slips are held at zero: which remain, and the balances that holding efforts miss."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import sympy as sp
 
-from bondgraph.algebra.exact import Row, add_scaled
+from bondgraph.algebra.exact import FixedRow, Row, add_scaled, fixed
 from bondgraph.algebra.residues import is_zero
-from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.record import Reading
 
 
 @dataclass(frozen=True)
@@ -15,12 +15,14 @@ class Rows:
     """A by rows, the right sides of ``A x' =``, and outputs, over states and inputs."""
 
     states: tuple[sp.Symbol, ...]
-    A: list[Row]
-    balances: list[Reading]
-    outputs: list[Reading]
+    A: tuple[FixedRow, ...]
+    balances: tuple[Reading, ...]
+    outputs: tuple[Reading, ...]
 
 
-def locked(model: Rows, slips: Sequence[Row], held: Sequence[int], order: Sequence[int]) -> Rows:
+def locked(
+    model: Rows, slips: Sequence[FixedRow], held: Sequence[int], order: Sequence[int]
+) -> Rows:
     """The model with slips at zero: ``x = T x_r``, and the balances along what is left free.
 
     ``held``: the columns of the efforts that hold them; ``order``: see `without_slips`.
@@ -32,13 +34,15 @@ def locked(model: Rows, slips: Sequence[Row], held: Sequence[int], order: Sequen
     if any(multiplied(row, efforts) for row in N):
         numbered = [{held.index(j): e for j, e in row.items()} for row in efforts]
         N = left_annihilator(transposed(numbered, len(held)), len(T))
-    A = [multiplied(multiplied(row, model.A), T) for row in N]
+    A = tuple(fixed(multiplied(multiplied(row, model.A), T)) for row in N)
     F, D, K = ([getattr(row, part) for row in model.balances] for part in "FDK")
-    balances = [
+    balances = tuple(
         Reading(multiplied(multiplied(row, F), T), multiplied(row, D), {}, multiplied(row, K))
         for row in N
-    ]
-    outputs = [Reading(multiplied(y.F, T), y.D, multiplied(y.H, T), y.K) for y in model.outputs]
+    )
+    outputs = tuple(
+        Reading(multiplied(y.F, T), y.D, multiplied(y.H, T), y.K) for y in model.outputs
+    )
     return Rows(tuple(model.states[j] for j in kept), A, balances, outputs)
 
 
@@ -47,14 +51,14 @@ class Reduced:
     """States that remain when slips are held at zero: ``x = T x_r``, ``T`` by rows."""
 
     kept: tuple[int, ...]
-    T: tuple[Row, ...]
+    T: tuple[FixedRow, ...]
 
 
-def without_slips(slips: Sequence[Row], order: Sequence[int]) -> Reduced:
+def without_slips(slips: Sequence[FixedRow], order: Sequence[int]) -> Reduced:
     """Solve ``F_s x = 0`` for as many states as there are independent slips, in that order of states.
 
-    >>> without_slips([{0: sp.Integer(1), 1: -sp.Integer(2)}], [0, 1]).T
-    ({0: 2}, {0: 1})
+    >>> [dict(row) for row in without_slips([{0: sp.Integer(1), 1: -sp.Integer(2)}], [0, 1]).T]
+    [{0: 2}, {0: 1}]
     """
     matrix = sp.zeros(len(slips), len(order))
     for i, row in enumerate(slips):
@@ -68,7 +72,7 @@ def without_slips(slips: Sequence[Row], order: Sequence[int]) -> Reduced:
     for j, i in gone.items():
         entries = {at: reduced[i, order.index(k)] for k, at in place.items()}
         T[j] = {at: -entry for at, entry in entries.items() if entry != 0}
-    return Reduced(kept, tuple(T))
+    return Reduced(kept, tuple(map(fixed, T)))
 
 
 def left_annihilator(columns: Sequence[Row], size: int) -> list[Row]:
@@ -93,7 +97,7 @@ def echelon(matrix: sp.Matrix) -> tuple[sp.Matrix, tuple[int, ...]]:
     return reduced, tuple(pivots)
 
 
-def multiplied(row: Mapping[int, sp.Expr], T: Sequence[Row]) -> Row:
+def multiplied(row: FixedRow, T: Sequence[FixedRow]) -> Row:
     """``row * T``."""
     result: Row = {}
     for j, entry in row.items():
@@ -101,7 +105,7 @@ def multiplied(row: Mapping[int, sp.Expr], T: Sequence[Row]) -> Row:
     return result
 
 
-def transposed(rows: Sequence[Row], columns: int) -> list[Row]:
+def transposed(rows: Sequence[FixedRow], columns: int) -> list[Row]:
     """The columns of sparse rows, sparse."""
     result: list[Row] = [{} for _ in range(columns)]
     for i, row in enumerate(rows):

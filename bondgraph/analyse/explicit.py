@@ -14,8 +14,9 @@ from bondgraph.analyse.holding import balances_of
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import AlgebraicLoopError, StructureError
-from bondgraph.reduce.motion import Reading, slope_of
+from bondgraph.reduce.motion import slope_of
 from bondgraph.reduce.rates import resolved
+from bondgraph.reduce.record import Reading
 
 LARGEST = 40
 """The inverse of a larger A is too long to be read, and grows as its determinant does."""

@@ -10,8 +10,8 @@ from bondgraph.algebra.tidy import tidy
 from bondgraph.analyse.constrained import echelon
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, StructureError
-from bondgraph.reduce.motion import Reading
 from bondgraph.reduce.rates import resolved
+from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.structure import Port
 
 
@@ -81,10 +81,10 @@ def split(rows: Sequence[Reading], held: Sequence[int]) -> tuple[list[Reading], 
     direct = [rows[i] for i in pivots]
     bound = []
     for weights in D.T.nullspace(simplify=sp.cancel):
-        total = Reading.zero()
+        total = ReadingSum()
         for row, weight in zip(rows, weights, strict=True):
             total.add(row, weight)
-        bound.append(total)
+        bound.append(total.whole())
     return direct, bound
 
 

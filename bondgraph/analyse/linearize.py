@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from bondgraph.algebra.exact import Row, SingularError, rows_of, solve
+from bondgraph.algebra.exact import FixedRow, Row, SingularError, fixed, rows_of, solve
 from bondgraph.algebra.expressions import TIME, normal
 from bondgraph.algebra.tidy import tidy_matrices
 from bondgraph.analyse.closed_rows import ClosedRows
@@ -17,8 +17,8 @@ from bondgraph.analyse.slopes import operating_point, with_given
 from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, SignalError, SingularStorageError, StructureError
-from bondgraph.reduce.motion import Reading
 from bondgraph.reduce.rates import resolved
+from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import Port
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ def linearize(
     slips = _slips(system, held, gone)
     A, balances = system.dynamics()
     ys = [system.put_in(system.signal(name)) for name in shown]
-    model = Rows(system.states, A, balances, ys)
+    model = Rows(system.states, tuple(map(fixed, A)), tuple(balances), tuple(ys))
     if slips:
         if any(j in gone for y in ys for j in y.D):
             raise SignalError("an output shows what holds a sticking port; see holding_efforts")
@@ -144,7 +144,7 @@ def linearize(
     return _model(model, left, system.columns, tuple(shown))
 
 
-def _slips(system: ClosedRows, held: Sequence[Port], gone: Sequence[int]) -> list[Row]:
+def _slips(system: ClosedRows, held: Sequence[Port], gone: Sequence[int]) -> list[FixedRow]:
     """The slips that bind states; efforts that a resistance rules at once are put in instead."""
     direct, bound = split([system.put_in(system.signal(port.received)) for port in held], gone)
     if direct and bound:
@@ -215,7 +215,7 @@ def _model(
     """Rows as matrices over the inputs that are left."""
     place = {j: at for at, j in enumerate(left)}
 
-    def over_inputs(rows: Sequence[Row]) -> tuple[list[Row], int]:
+    def over_inputs(rows: Sequence[FixedRow]) -> tuple[list[Row], int]:
         return [{place[j]: entry for j, entry in row.items()} for row in rows], len(left)
 
     n = len(model.states)

@@ -7,7 +7,7 @@ from typing import Any, Literal
 import networkx as nx
 import sympy as sp
 
-from bondgraph.algebra.exact import Row, determinant
+from bondgraph.algebra.exact import FixedRow, Row, determinant
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.signals import causal_equations, causal_groups, loop_rows
@@ -118,5 +118,5 @@ def _of_sources(reduction: Reduction) -> Iterator[Loop]:
                 yield Loop("source", (ports[i].element.name, ports[d].element.name), gain)
 
 
-def _gain(rows: Sequence[Row]) -> sp.Expr | None:
+def _gain(rows: Sequence[FixedRow]) -> sp.Expr | None:
     return None if len(rows) > MOST else sp.factor(1 - determinant(rows))

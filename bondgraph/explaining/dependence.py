@@ -7,7 +7,7 @@ import sympy as sp
 from bondgraph.explaining.elimination import reading_terms, row_terms
 from bondgraph.explaining.momenta import Momenta
 from bondgraph.explaining.records import Equation, Step, equation
-from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.storages import stored_rate
 from bondgraph.show.sums import Term, rate, total

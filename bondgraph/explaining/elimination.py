@@ -9,7 +9,7 @@ from bondgraph.algebra.tidy import tidy
 from bondgraph.causality.assignments import Assignment
 from bondgraph.causality.signals import CausalEquations, causal_groups
 from bondgraph.explaining.records import Equation, Step, equation
-from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.record import Reading
 from bondgraph.reduce.resistances import ResistiveGroup, resistive_groups
 from bondgraph.reduce.sorting import Reduction, detects
 from bondgraph.show.sums import Term, rate

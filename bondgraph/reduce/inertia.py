@@ -10,9 +10,9 @@ from bondgraph.algebra.exact import Row
 from bondgraph.algebra.residues import decided_by_residues, is_zero, residues
 from bondgraph.causality.vanishing import generic, told
 from bondgraph.errors import SingularStorageError
-from bondgraph.reduce.motion import Reading
 from bondgraph.reduce.ports import reduce_ports
 from bondgraph.reduce.rates import reached
+from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.storages import stored_rate
 
@@ -22,11 +22,13 @@ LARGEST_ROOTED = 6
 
 def inertia(reduction: Reduction) -> tuple[list[Row], list[Reading]]:
     """A by rows, and the right sides ``J x + B u + E u'``; their H is -A."""
-    balances = [reduction.reading(reduction.structure.rows[port]) for port in reduction.states]
     A: list[Row] = []
-    for port, balance in zip(reduction.states, balances, strict=True):
+    balances: list[Reading] = []
+    for port in reduction.states:
+        balance = ReadingSum(reduction.reading(reduction.structure.rows[port]))
         balance.add(stored_rate(reduction, port), -sp.Integer(1))
         A.append({j: -entry for j, entry in balance.H.items()})
+        balances.append(balance.whole())
     return A, balances
 
 

@@ -5,10 +5,12 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.exact import (
+    FixedRow,
     Row,
     SingularError,
     add_scaled,
     combined,
+    fixed,
     scaled,
     solve,
 )
@@ -33,7 +35,7 @@ def junction_structure(causal: CausalGraph) -> JunctionStructure:
     rows = []
     for node in one_ports:
         signal, sign = equations.received[node]
-        rows.append(signals[signal] if sign == 1 else scaled(signals[signal], sign))
+        rows.append(signals[signal] if sign == 1 else fixed(scaled(signals[signal], sign)))
     common = {
         strokes.names[node]: signals[2 * strokes.at[node][0] + (element.kind is Kind.ONE)]
         for node, element in enumerate(strokes.elements)
@@ -59,35 +61,34 @@ def _port(strokes: Strokes, node: int) -> Port:
 
 def _signals(
     strokes: Strokes, equations: CausalEquations, index: dict[int, int]
-) -> tuple[list[Row], tuple[tuple[Row, ...], ...]]:
+) -> tuple[list[FixedRow], tuple[tuple[FixedRow, ...], ...]]:
     """Every signal as a sparse row over what the ports give, and the loops on the way."""
-    signals: list[Row] = [{} for _ in equations.terms]
-    loops: list[tuple[Row, ...]] = []
+    signals: list[FixedRow] = [{} for _ in equations.terms]
+    loops: list[tuple[FixedRow, ...]] = []
     for group in causal_groups(equations.terms):
         if len(group) == 1:
             signals[group[0]] = _signal(equations, group[0], index, signals)
         else:
             _solve_loop(strokes, equations, group, signals)
-            loops.append(tuple(loop_rows(equations, group)))
+            loops.append(tuple(map(fixed, loop_rows(equations, group))))
     return signals, tuple(loops)
 
 
 def _signal(
-    equations: CausalEquations, signal: int, index: dict[int, int], signals: list[Row]
-) -> Row:
+    equations: CausalEquations, signal: int, index: dict[int, int], signals: list[FixedRow]
+) -> FixedRow:
     if signal in equations.given:
         node, sign = equations.given[signal]
-        return {index[node]: sp.Integer(sign)}
+        return fixed({index[node]: sp.Integer(sign)})
     terms = equations.terms[signal]
     if len(terms) == 1:
-        # Rows are never changed once made, so equal signals may share one.
         source, factor = terms[0]
-        return signals[source] if factor == 1 else scaled(signals[source], factor)
-    return combined((signals[source], factor) for source, factor in terms)
+        return signals[source] if factor == 1 else fixed(scaled(signals[source], factor))
+    return fixed(combined((signals[source], factor) for source, factor in terms))
 
 
 def _solve_loop(
-    strokes: Strokes, equations: CausalEquations, group: tuple[int, ...], signals: list[Row]
+    strokes: Strokes, equations: CausalEquations, group: tuple[int, ...], signals: list[FixedRow]
 ) -> None:
     """Solve ``s = W s + r`` for the signals of one loop, r being known rows."""
     place = {signal: at for at, signal in enumerate(group)}
@@ -108,7 +109,7 @@ def _solve_loop(
     except SingularError:
         raise AlgebraicLoopError(_loop_message(strokes, group)) from None
     for signal, row in zip(group, solved, strict=True):
-        signals[signal] = row
+        signals[signal] = fixed(row)
 
 
 def _loop_message(strokes: Strokes, group: tuple[int, ...]) -> str:

@@ -6,37 +6,11 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from bondgraph.algebra.exact import Row, add_scaled
+from bondgraph.algebra.exact import FixedRow, add_scaled, fixed
 from bondgraph.algebra.expressions import TIME
 from bondgraph.errors import AlgebraicLoopError, DependentSourceError
+from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.structure import JunctionStructure, Port
-
-
-@dataclass(frozen=True)
-class Reading:
-    """One signal as ``F x + D u + H x' + K u'``: sparse rows over the states and the inputs."""
-
-    F: Row
-    D: Row
-    H: Row
-    K: Row
-
-    @classmethod
-    def zero(cls) -> "Reading":
-        """Nothing at all."""
-        return cls({}, {}, {}, {})
-
-    def add(self, other: "Reading", factor: sp.Expr) -> None:
-        """Add a multiple of another reading in place."""
-        if factor == 0:
-            return
-        for mine, theirs in zip(self.parts, other.parts, strict=True):
-            add_scaled(mine, theirs, factor)
-
-    @property
-    def parts(self) -> tuple[Row, Row, Row, Row]:
-        """F, D, H and K."""
-        return self.F, self.D, self.H, self.K
 
 
 @dataclass(frozen=True)
@@ -50,8 +24,8 @@ class Motion:
     inputs: tuple[sp.Symbol, ...]
     rates: Mapping[sp.Symbol, Reading]
 
-    def add_rate(self, target: Reading, value: sp.Expr, variable: sp.Symbol) -> None:
-        """Add ``value' variable`` to a reading: what ``(value variable)'`` has over ``value variable'``.
+    def add_rate(self, target: ReadingSum, value: sp.Expr, variable: sp.Symbol) -> None:
+        """Add ``value' variable`` to a sum: what ``(value variable)'`` has over ``value variable'``.
 
         The part of ``value'`` in states and inputs goes with the variable's own column, as it does where
         an angle's rate is known; its part in x' goes to H, and so into A.
@@ -69,8 +43,8 @@ class Motion:
             add_scaled(target.H, rate.H, slope * variable)
             add_scaled(target.K, rate.K, slope * variable)
 
-    def add_total_rate(self, target: Reading, value: sp.Expr, where: Hashable) -> None:
-        """Add ``value'`` to a reading, the rate of an expression over moving names."""
+    def add_total_rate(self, target: ReadingSum, value: sp.Expr, where: Hashable) -> None:
+        """Add ``value'`` to a sum, the rate of an expression over moving names."""
         if TIME in value.free_symbols:
             raise DependentSourceError(
                 f"the storage {where!r} has derivative causality and follows the time itself; give the "
@@ -79,7 +53,7 @@ class Motion:
         for name in sorted(value.free_symbols & self.rates.keys(), key=str):
             target.add(self.rates[name], slope_of(value, name))
 
-    def _add(self, target: Reading, variable: sp.Symbol, factor: sp.Expr) -> None:
+    def _add(self, target: ReadingSum, variable: sp.Symbol, factor: sp.Expr) -> None:
         if variable in self.states:
             add_scaled(target.F, {self.states.index(variable): sp.Integer(1)}, factor)
         else:
@@ -140,8 +114,8 @@ def settled(
 def _replaced(
     structure: JunctionStructure, exact: Mapping[sp.Symbol, sp.Expr]
 ) -> JunctionStructure:
-    def row(entries: Mapping[int, sp.Expr]) -> Row:
-        return {j: entry.xreplace(exact) for j, entry in entries.items()}
+    def row(entries: FixedRow) -> FixedRow:
+        return fixed({j: entry.xreplace(exact) for j, entry in entries.items()})
 
     def port(one: Port) -> Port:
         value = one.element.value

@@ -4,10 +4,11 @@ from collections.abc import Hashable, Iterable
 
 import sympy as sp
 
+from bondgraph.algebra.exact import fixed
 from bondgraph.algebra.residues import is_zero
 from bondgraph.declare.elements import Kind
 from bondgraph.errors import StructureError
-from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.structure import JunctionStructure, PortRow
 
@@ -20,7 +21,7 @@ def named_signals(reduction: Reduction) -> dict[sp.Symbol, PortRow]:
     structure = reduction.structure
     found: dict[sp.Symbol, PortRow] = {}
     for at, port in enumerate(structure.ports):
-        _add(reduction, found, port.given, {at: sp.Integer(1)})
+        _add(reduction, found, port.given, fixed({at: sp.Integer(1)}))
         _add(reduction, found, port.received, structure.rows[at])
     for name, row in structure.common.items():
         symbol = _common(structure, name)

@@ -9,7 +9,8 @@ import sympy as sp
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.elements import Kind
 from bondgraph.errors import DependentSourceError
-from bondgraph.reduce.motion import Motion, Reading, moving_names, settled
+from bondgraph.reduce.motion import Motion, moving_names, settled
+from bondgraph.reduce.record import Reading
 from bondgraph.reduce.resistances import resistances
 from bondgraph.reduce.sorting import Reduction, detects, imposes, is_storage
 from bondgraph.reduce.storages import stored_rate
@@ -36,17 +37,18 @@ def reduce_ports(structure: JunctionStructure) -> Reduction:
     one = sp.Integer(1)
     columns = {port: Reading({at: one}, {}, {}, {}) for at, port in enumerate(states)}
     columns |= {i: Reading({}, {inputs.index(ports[i].given): one}, {}, {}) for i in imposed}
-    columns |= {i: Reading.zero() for i, port in enumerate(ports) if detects(port)}
-    found = Reduction(structure, states, dependent, resistive, imposed, inputs, None, columns)
-    columns |= resistances(found)
+    columns |= {i: Reading({}, {}, {}, {}) for i, port in enumerate(ports) if detects(port)}
+    found = Reduction(
+        structure, states, dependent, resistive, imposed, inputs, None, MappingProxyType(columns)
+    )
+    found = found.knowing(resistances(found))
     moving = moving_names(structure)
     if moving or any(ports[i].element.inverse is not None for i in dependent):
-        found = _in_motion(found, moving, columns)
-    columns |= {port: stored_rate(found, port) for port in dependent}
-    return found
+        found = _in_motion(found, moving)
+    return found.knowing({port: stored_rate(found, port) for port in dependent})
 
 
-def _in_motion(found: Reduction, moving: set[sp.Symbol], columns: dict[int, Reading]) -> Reduction:
+def _in_motion(found: Reduction, moving: set[sp.Symbol]) -> Reduction:
     """The same with values over states, integrals, inputs and time, and the rates of these."""
     structure = found.structure
     base = {*found.names, *found.inputs, *structure.states_of_laws, TIME}
@@ -57,7 +59,7 @@ def _in_motion(found: Reduction, moving: set[sp.Symbol], columns: dict[int, Read
 
     structure = settled(structure, moving, base, express)
     found = replace(found, structure=structure)
-    columns |= resistances(found)
+    found = found.knowing(resistances(found))
     one = sp.Integer(1)
     rates = {name: Reading({}, {}, {at: one}, {}) for at, name in enumerate(found.names)}
     rates |= {name: Reading({}, {}, {}, {at: one}) for at, name in enumerate(found.inputs)}

@@ -4,11 +4,11 @@ from collections.abc import Hashable, Mapping, Sequence
 
 import sympy as sp
 
-from bondgraph.algebra.exact import Row
+from bondgraph.algebra.exact import FixedRow
 from bondgraph.declare.elements import STORAGES
 from bondgraph.declare.laws import DryFriction, Law
 from bondgraph.errors import DependentSourceError, StructureError
-from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import Port, PortRow
 
 
@@ -16,7 +16,7 @@ def check_laws(
     laws: Mapping[Hashable, Law],
     known: Mapping[sp.Symbol, PortRow],
     ports: Sequence[Port],
-    E: Sequence[Row],
+    E: Sequence[FixedRow],
     readings: Mapping[sp.Symbol, Reading],
 ) -> None:
     """Refuse dry friction that reads its own effort, and a law whose slope in time would be needed.

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 import networkx as nx
 import sympy as sp
 
-from bondgraph.algebra.exact import Row, SingularError, add_scaled, solve
+from bondgraph.algebra.exact import FixedRow, Row, SingularError, add_scaled, fixed, solve
 from bondgraph.causality.vanishing import generic, told
 from bondgraph.errors import AlgebraicLoopError
-from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.structure import JunctionStructure, Port
 
@@ -28,8 +28,8 @@ class ResistiveGroup:
     """Ports of resistances that hang together: ``z = L w``, and ``1 - S_rr L``, by places in the group."""
 
     ports: tuple[int, ...]
-    laws: tuple[Row, ...]
-    inside: tuple[Row, ...]
+    laws: tuple[FixedRow, ...]
+    inside: tuple[FixedRow, ...]
 
     @property
     def is_loop(self) -> bool:
@@ -37,7 +37,7 @@ class ResistiveGroup:
         return any(len(row) > 1 or row.get(at) != 1 for at, row in enumerate(self.inside))
 
 
-def resistive_loops(reduction: Reduction) -> Iterator[tuple[list[int], list[Row]]]:
+def resistive_loops(reduction: Reduction) -> Iterator[tuple[list[int], list[FixedRow]]]:
     """Ports of resistances that hang together, and ``1 - S_rr L`` of each such group."""
     for group in resistive_groups(reduction):
         yield [*group.ports], [*group.inside]
@@ -49,7 +49,7 @@ def resistive_groups(reduction: Reduction) -> Iterator[ResistiveGroup]:
         place = {port: at for at, port in enumerate(group)}
         laws = _given_by_received(reduction, group, place)
         inside = _inside(reduction.structure, group, place, laws)
-        yield ResistiveGroup(tuple(group), tuple(laws), tuple(inside))
+        yield ResistiveGroup(tuple(group), tuple(map(fixed, laws)), tuple(map(fixed, inside)))
 
 
 def _groups(reduction: Reduction) -> Iterator[list[int]]:
@@ -81,12 +81,12 @@ def _closed(reduction: Reduction, group: Sequence[int]) -> list[Reading]:
         received = _solved(structure, group, inside, outside, len(reduction.states))
     result = []
     for law in laws:
-        given = Reading.zero()
+        given = ReadingSum()
         for at, factor in law.items():
             F, D = received[at]
             add_scaled(given.F, F, factor)
             add_scaled(given.D, D, factor)
-        result.append(given)
+        result.append(given.whole())
     return result
 
 
@@ -142,8 +142,8 @@ def _solved(
     inside: list[Row],
     outside: list[Reading],
     states: int,
-) -> list[tuple[Row, Row]]:
-    right = [row.F | {states + j: entry for j, entry in row.D.items()} for row in outside]
+) -> list[tuple[FixedRow, FixedRow]]:
+    right = [{**row.F} | {states + j: entry for j, entry in row.D.items()} for row in outside]
     try:
         rows = solve(inside, right)
     except SingularError:

@@ -1,14 +1,16 @@
 """`Reduction`: the ports of a junction structure, sorted into states, inputs and what follows from them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
 
 import sympy as sp
 
 from bondgraph.algebra.exact import combined
 from bondgraph.declare.elements import DETECTORS, STORAGES
-from bondgraph.reduce.motion import Motion, Reading
+from bondgraph.reduce.motion import Motion
+from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import JunctionStructure, Port
 
 
@@ -28,12 +30,17 @@ class Reduction:
     inputs: tuple[sp.Symbol, ...]
     #: The names in values that change in time; None where all values are constant.
     motion: Motion | None
+    #: What each port gives, by its number.
     columns: Mapping[int, Reading]
 
     @cached_property
     def columns_of_states(self) -> Mapping[int, int]:
         """Each state's column by its port's number."""
-        return {port: at for at, port in enumerate(self.states)}
+        return MappingProxyType({port: at for at, port in enumerate(self.states)})
+
+    def knowing(self, more: Mapping[int, Reading]) -> "Reduction":
+        """The same that also knows what these ports give."""
+        return replace(self, columns=MappingProxyType({**self.columns, **more}))
 
     @cached_property
     def names(self) -> tuple[sp.Symbol, ...]:

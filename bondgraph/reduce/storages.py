@@ -4,7 +4,7 @@ import sympy as sp
 
 from bondgraph.algebra.exact import add_scaled
 from bondgraph.errors import CausalityError
-from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.sorting import Reduction
 
 
@@ -14,11 +14,11 @@ def stored_rate(reduction: Reduction, port: int) -> Reading:
     v_j is the state of a port with integral causality; of a dependent one it is what states and inputs
     make it. The sum has more than one term in fields alone.
     """
-    result = Reading.zero()
+    result = ReadingSum()
     element = reduction.structure.ports[port].element
     if element.inverse is not None and reduction.motion is not None:
         _add_inverse_rate(reduction, port, result)
-        return result
+        return result.whole()
     for other, value in field_row(reduction, port):
         if other in reduction.columns_of_states:
             ruled = Reading({reduction.columns_of_states[other]: sp.Integer(1)}, {}, {}, {})
@@ -32,10 +32,10 @@ def stored_rate(reduction: Reduction, port: int) -> Reading:
         products += [(reduction.inputs[j], entry) for j, entry in result.K.items()]
         for symbol, entry in products:
             reduction.motion.add_rate(result, entry, symbol)
-    return result
+    return result.whole()
 
 
-def _add_inverse_rate(reduction: Reduction, port: int, result: Reading) -> None:
+def _add_inverse_rate(reduction: Reduction, port: int, result: ReadingSum) -> None:
     """The rate of a nonlinear storage's state as a function of what it receives."""
     one, ruled = reduction.structure.ports[port], _ruled(reduction, port)
     terms = [entry * reduction.names[j] for j, entry in ruled.F.items()]

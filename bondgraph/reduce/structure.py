@@ -3,14 +3,15 @@
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 
 import sympy as sp
 
-from bondgraph.algebra.exact import Row, matrix_of
+from bondgraph.algebra.exact import FixedRow, matrix_of
 from bondgraph.declare.elements import Element, Kind
 from bondgraph.declare.laws import ExpressionLaw
 
-PortRow = Mapping[int, sp.Expr]
+PortRow = FixedRow
 """A signal over what the ports give."""
 
 
@@ -60,17 +61,17 @@ class JunctionStructure:
 
     ports: tuple[Port, ...]
     #: For each port the row of S, sparse: port number to modulus.
-    rows: tuple[Mapping[int, sp.Expr], ...]
-    common: Mapping[Hashable, Mapping[int, sp.Expr]]
-    bonds: Mapping[tuple[Hashable, Hashable], tuple[Mapping[int, sp.Expr], Mapping[int, sp.Expr]]]
+    rows: tuple[PortRow, ...]
+    common: Mapping[Hashable, PortRow]
+    bonds: Mapping[tuple[Hashable, Hashable], tuple[PortRow, PortRow]]
     elements: Mapping[Hashable, Element]
     #: Of each loop of signals ``s = W s + r`` that was solved the rows of ``1 - W``.
-    loops: tuple[tuple[Row, ...], ...] = ()
+    loops: tuple[tuple[FixedRow, ...], ...] = ()
 
     @cached_property
     def places(self) -> Mapping[Hashable, int]:
         """Each port's number by its node's name."""
-        return {port.element.name: at for at, port in enumerate(self.ports)}
+        return MappingProxyType({port.element.name: at for at, port in enumerate(self.ports)})
 
     @property
     def states_of_laws(self) -> tuple[sp.Symbol, ...]:

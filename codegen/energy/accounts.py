@@ -7,12 +7,11 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from bondgraph.algebra.exact import add_scaled
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.elements import SOURCES, STORAGES
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
-from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.sorting import is_storage
 from bondgraph.reduce.storages import field_row
 from bondgraph.reduce.structure import Port
@@ -101,7 +100,7 @@ def _moved(equations: StateEquations, at: int) -> Reading | None:
     linear = port.element.kind in STORAGES and is_storage(port) and port.element.law is None
     if motion is None or not linear:
         return None
-    result = Reading.zero()
+    result = ReadingSum()
     moving = False
     for other, value in field_row(reduction, at):
         moving |= bool(value.free_symbols & {*motion.rates, TIME})
@@ -111,11 +110,10 @@ def _moved(equations: StateEquations, at: int) -> Reading | None:
         ruled = reduction.reading(row)
         for row, names in ((ruled.F, reduction.names), (ruled.D, reduction.inputs)):
             for column, factor in row.items():
-                gained = Reading.zero()
+                gained = ReadingSum()
                 motion.add_rate(gained, value, names[column])
-                for mine, theirs in zip(result.parts, gained.parts, strict=True):
-                    add_scaled(mine, theirs, factor)
-    return result if moving else None
+                result.add(gained.whole(), factor)
+    return result.whole() if moving else None
 
 
 def _free(name: str, equations: StateEquations) -> sp.Symbol:

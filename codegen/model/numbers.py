@@ -7,7 +7,7 @@ import numpy as np
 import sympy as sp
 
 from bondgraph.algebra.elimination import ResidueRows
-from bondgraph.algebra.exact import Row, rows_of
+from bondgraph.algebra.exact import FixedRow, Row, rows_of
 from bondgraph.algebra.expressions import normal, number
 from bondgraph.algebra.residues import residues
 from bondgraph.declare.elements import Kind
@@ -158,7 +158,9 @@ def _check_loops(equations: StateEquations, parameters: Mapping[str, sp.Rational
     value = residues()
     reduction = equations.reduction
     ports = reduction.structure.ports
-    loops: list[tuple[str, Sequence[Row]]] = [("bonds", rows) for rows in reduction.structure.loops]
+    loops: list[tuple[str, Sequence[FixedRow]]] = [
+        ("bonds", rows) for rows in reduction.structure.loops
+    ]
     for group, inside in resistive_loops(reduction):
         names = ", ".join(repr(ports[i].element.name) for i in group)
         loops.append((f"the resistances {names}", inside))

@@ -10,7 +10,7 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.elements import SOURCES
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError
-from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.record import Reading
 from codegen.energy.stored import stored_energy
 from codegen.model.numbers import at_parameters
 from codegen.modes.closed import ClosedModel

@@ -13,7 +13,7 @@ import sympy as sp
 from bondgraph.algebra.exact import Row
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
-from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import is_storage
 from bondgraph.reduce.structure import JunctionStructure
 from codegen.model.instant import Binding, Evaluation, Instant

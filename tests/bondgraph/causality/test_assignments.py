@@ -14,7 +14,7 @@ from references.random_graphs import chain, random_graph
 from soak.families import seeds
 
 import bondgraph as bg
-from bondgraph.reduce.motion import Reading
+from bondgraph.reduce.record import Reading
 
 REFUSALS = (bg.CausalityError, bg.AlgebraicLoopError)
 
