@@ -58,6 +58,8 @@ class Family:
         exact_parameters(self.parameters)
         named = {str(normal(name)): value for name, value in self.parameters.items()}
         object.__setattr__(self, "parameters", MappingProxyType(named))
+        if isinstance(self.laws, Mapping):
+            object.__setattr__(self, "laws", MappingProxyType(dict(self.laws)))
 
     @cached_property
     def program(self) -> Program:

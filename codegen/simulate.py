@@ -25,7 +25,7 @@ from codegen.model.sources import source_signals
 from codegen.modes.choose import decide
 from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks
-from codegen.numbers.arrays import Array, is_finite, is_number
+from codegen.numbers.arrays import Array, is_finite, is_number, read_only
 from codegen.program.lower import lower
 from codegen.program.records import Program
 from codegen.program.units import told_units
@@ -165,9 +165,18 @@ class Simulator:
             self.inputs,
             self.outputs,
             found.events,
-            MappingProxyType(columns),
+            columns,
             observer,
-            self._ledger(Run(self.laws, self.closed.parameters, times, start, asked, settings)),
+            self._ledger(
+                Run(
+                    self.laws,
+                    self.closed.parameters,
+                    times,
+                    read_only(start),
+                    tuple(asked),
+                    settings,
+                )
+            ),
             told_units(self.closed.equations),
             found.backend,
         )
@@ -290,5 +299,5 @@ def bound(
         tuple(name.name for name in program.asked),
         tuple(name.name for name in program.outputs),
         closed,
-        laws,
+        None if laws is None else MappingProxyType(dict(laws)),
     )

@@ -207,7 +207,7 @@ def state_space(
     solved = scale[:, None] * np.linalg.solve(A * np.outer(scale, scale), right)
     n, m = len(names[0]), len(names[1])
     arrays = (solved[:, :n], solved[:, n : n + m], solved[:, n + m :], F, D, G)
-    for array in arrays:
+    for array in (*arrays, solved):
         array.setflags(write=False)
     states, inputs, outputs = (tuple(map(str, group)) for group in names)
     return StateSpace(states, inputs, outputs, *arrays, drifts=not _is_regular(matrices[1], values))

@@ -4,8 +4,9 @@ Signal ``2*b`` is the effort of bond b, ``2*b + 1`` its flow.
 """
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import networkx as nx
 import sympy as sp
@@ -26,8 +27,8 @@ class CausalEquations:
     """
 
     terms: tuple[tuple[Term, ...], ...]
-    given: dict[int, tuple[int, int]]
-    received: dict[int, tuple[int, int]]
+    given: Mapping[int, tuple[int, int]]
+    received: Mapping[int, tuple[int, int]]
 
 
 def causal_equations(strokes: Strokes) -> CausalEquations:
@@ -46,7 +47,7 @@ def causal_equations(strokes: Strokes) -> CausalEquations:
             rule = _two_port if element.kind in (Kind.TF, Kind.GY) else _junction
             for signal, right in rule(strokes, node):
                 terms[signal] = right
-    return CausalEquations(tuple(terms), given, received)
+    return CausalEquations(tuple(terms), MappingProxyType(given), MappingProxyType(received))
 
 
 def _effort_sign(strokes: Strokes, node: int, bond: int) -> int:

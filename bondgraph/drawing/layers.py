@@ -1,6 +1,8 @@
 """Layers: which nodes lie beside a junction, and in which layer each of the others lies."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import networkx as nx
 
@@ -19,10 +21,10 @@ class Layers:
     ``paths``: tail and head of a bond to the vertices on its way, from top to bottom.
     """
 
-    beside: dict[int, tuple[int, ...]]
+    beside: Mapping[int, tuple[int, ...]]
     graph: "nx.DiGraph[int]"
     layers: tuple[tuple[int, ...], ...]
-    paths: dict[tuple[int, int], tuple[int, ...]]
+    paths: Mapping[tuple[int, int], tuple[int, ...]]
 
 
 def layered(subject: Subject) -> Layers:
@@ -45,7 +47,12 @@ def layered(subject: Subject) -> Layers:
         nx.add_path(graph, paths[upper, lower])
         for at, bend in enumerate(bends, ranks[upper] + 1):
             layers[at].append(bend)
-    return Layers(beside, graph, tuple(map(tuple, layers)), paths)
+    return Layers(
+        MappingProxyType(beside),
+        nx.freeze(graph),
+        tuple(map(tuple, layers)),
+        MappingProxyType(paths),
+    )
 
 
 def _downwards(subject: Subject) -> "nx.DiGraph[int]":

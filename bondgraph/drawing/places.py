@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import ceil
+from types import MappingProxyType
 
 import networkx as nx
 
@@ -27,17 +28,17 @@ STEEPEST = 0.34
 class Places:
     """Every node's shape and the place it is aimed at; ``bends``: of a bond between two layers."""
 
-    at: dict[int, Point]
-    shapes: dict[int, NodeShape]
-    sides: dict[int, Side]
-    bends: dict[tuple[int, int], tuple[Point, ...]]
+    at: Mapping[int, Point]
+    shapes: Mapping[int, NodeShape]
+    sides: Mapping[int, Side]
+    bends: Mapping[tuple[int, int], tuple[Point, ...]]
 
 
 @dataclass(frozen=True)
 class _Cell:
     """A vertex with what lies beside it: shapes by item and their offsets, and the whole extent."""
 
-    shapes: dict[int, tuple[NodeShape, float, Side]]
+    shapes: Mapping[int, tuple[NodeShape, float, Side]]
     left: int
     right: int
 
@@ -74,7 +75,12 @@ def places(subject: Subject, room: float, reach: Mapping[int, float]) -> Places:
         ends: tuple((columns[bend], rows[bend] + by) for bend in path[1:-1] for by in (-BAND, BAND))
         for ends, path in found.paths.items()
     }
-    return Places(at, shapes, sides, turns)
+    return Places(
+        MappingProxyType(at),
+        MappingProxyType(shapes),
+        MappingProxyType(sides),
+        MappingProxyType(turns),
+    )
 
 
 def _extents(cells: Mapping[int, _Cell]) -> dict[int, tuple[int, int]]:
@@ -94,7 +100,7 @@ def _cells(
     cells = {}
     for vertex in found.graph:
         if vertex >= len(subject.items):
-            cells[vertex] = _Cell({}, 2, 2)
+            cells[vertex] = _Cell(MappingProxyType({}), 2, 2)
         else:
             cells[vertex] = _cell(
                 subject, vertex, found.beside.get(vertex, ()), lean[vertex], lengths
@@ -125,7 +131,7 @@ def _cell(
         shapes[item] = (own, offset, side)
     if lean == 0 and not beside:
         left, right = min(left, -right), max(right, -left)
-    return _Cell(shapes, ceil(-left), ceil(right))
+    return _Cell(MappingProxyType(shapes), ceil(-left), ceil(right))
 
 
 def _rows(

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.signal import detrend, find_peaks, periodogram
 
 from bondgraph.errors import SignalError
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, read_only
 from codegen.pictures.canvas import rule, stack
 from codegen.pictures.labels import measured
 from codegen.pictures.style import QUIET, SMALL, TEXT, curve
@@ -123,5 +123,5 @@ def spectrum(
     halves[[0, -1]] = 1.0
     return Spectrum(
         name, result.units.get(name, ""), float(time[0]), float(time[-1]),
-        frequency, np.sqrt(halves * power),
+        read_only(frequency), read_only(np.sqrt(halves * power)),
     )  # fmt: skip

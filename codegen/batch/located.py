@@ -24,7 +24,7 @@ class Shared(NamedTuple):
 
     table: SignalTable
     record: Any
-    kept: list[Any]
+    kept: tuple[Any, ...]
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,8 @@
 
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
 
 from bondgraph.show.blocks import aligned
 
@@ -25,6 +27,15 @@ class Audit:
     conserving: tuple[Hashable, ...] = field(repr=False)
     impacts: float
     turned_over: float
+
+    def __post_init__(self) -> None:
+        for name in ("gave", "took", "lost"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copied and pickled by its parts, as read-only mappings by themselves cannot be."""
+        gave, took, lost = map(dict, (self.gave, self.took, self.lost))
+        return Audit, (gave, took, lost, self.conserving, self.impacts, self.turned_over)
 
     @property
     def residual(self) -> float:

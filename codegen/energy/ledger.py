@@ -1,8 +1,8 @@
 """Work, integrals and the power balance of a run that is over, from the same run done again."""
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
+from functools import cache, cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -58,7 +58,6 @@ class Ledger:
     equations: StateEquations
     names: tuple[str, ...]
     again: Again
-    _integrals: dict[str, Array] = field(default_factory=dict)
 
     def work(self, node: Hashable) -> Array:
         """What a one-port absorbs, or a source supplies, up to each sample."""
@@ -69,14 +68,7 @@ class Ledger:
 
     def integral(self, name: str) -> Array:
         """A signal integrated up to each sample; `SignalError` for one that there is not."""
-        if name not in self._integrals:
-            known = {*self.names, *map(str, self.equations.signals)}
-            if name not in known:
-                raise SignalError(f"no signal {name!r}; there are {', '.join(sorted(known))}")
-            made = with_signals(self._accounts, [name])
-            found = self.again(made.equations, [(Product(1.0, name, ""),)])
-            self._integrals[name] = found.totals[:, 0]
-        return self._integrals[name].copy()
+        return self._integrated(name).copy()
 
     def audit(self) -> Audit:
         """The power balance from the first sample to the last."""
@@ -106,11 +98,23 @@ class Ledger:
         return float(energy[-1] - energy[0]) + gained, float(abs(energy[0]) + abs(energy[-1]))
 
     @cached_property
+    def _integrated(self) -> Callable[[str], Array]:
+        """Integrates a signal when it is first asked for, and no second time."""
+        return cache(self._integral)
+
+    def _integral(self, name: str) -> Array:
+        known = {*self.names, *map(str, self.equations.signals)}
+        if name not in known:
+            raise SignalError(f"no signal {name!r}; there are {', '.join(sorted(known))}")
+        made = with_signals(self._accounts, [name])
+        return self.again(made.equations, [(Product(1.0, name, ""),)]).totals[:, 0]
+
+    @cached_property
     def _accounts(self) -> Accounts:
         return accounts(self.equations)
 
     @cached_property
-    def _balance(self) -> tuple[list[Account], Integrated]:
+    def _balance(self) -> tuple[tuple[Account, ...], Integrated]:
         made = self._accounts
-        whole = [*made.power.values(), *made.moved.values()]
+        whole = (*made.power.values(), *made.moved.values())
         return whole, self.again(made.equations, whole)

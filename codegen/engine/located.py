@@ -148,7 +148,7 @@ class LocatedRuns:
         return Snapshots(*np.split(rows, ends, axis=1))
 
 
-def packed_signals(ffi: Any, table: SignalTable) -> tuple[Any, list[Any]]:
+def packed_signals(ffi: Any, table: SignalTable) -> tuple[Any, tuple[Any, ...]]:
     """A table as the runtime's record, and what has to be kept while that is used."""
     record = ffi.new("bg_signals *")
     rows = [
@@ -169,7 +169,7 @@ def packed_signals(ffi: Any, table: SignalTable) -> tuple[Any, list[Any]]:
     record.breaks, record.fastest = _pointer(ffi, breaks), _pointer(ffi, fastest)
     record.begins = _pointer(ffi, begins, "int *")
     record.coefficients = _pointer(ffi, coefficients, "double(*)[2]")
-    return record, [terms, breaks, fastest, begins, coefficients]
+    return record, (terms, breaks, fastest, begins, coefficients)
 
 
 def _pointer(ffi: Any, array: Any, kind: str = "double *") -> Any:

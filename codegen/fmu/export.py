@@ -109,9 +109,9 @@ def _model(
     shortest = _shortest(told, start.tolist(), every)
     switches = switching(program)
     starts = Starts(
-        [float(exact[symbol.name]) for symbol in program.parameters],
-        start.tolist(),
-        [one if isinstance(one, float) else 0.0 for one in signals],
+        tuple(float(exact[symbol.name]) for symbol in program.parameters),
+        tuple(start.tolist()),
+        tuple(one if isinstance(one, float) else 0.0 for one in signals),
         frozenset(inside),
         _internal_step(shortest, step_at_start(ready.closed, start, every)),
     )

@@ -1,6 +1,6 @@
 """The variables of a functional mock-up unit: their names, what they are, where they start."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -41,9 +41,9 @@ class Variable:
 class Starts:
     """Where parameters, states and inputs start; ``sources``: external inputs with sources inside."""
 
-    parameters: Sequence[float]
-    states: Sequence[float]
-    inputs: Sequence[float]
+    parameters: tuple[float, ...]
+    states: tuple[float, ...]
+    inputs: tuple[float, ...]
     sources: frozenset[int]
     step: float
 

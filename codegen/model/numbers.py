@@ -15,7 +15,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from bondgraph.reduce.resistances import resistive_loops
 from codegen.model.numpy_backend import compiled
-from codegen.numbers.arrays import Array, real_values
+from codegen.numbers.arrays import Array, read_only, real_values
 from codegen.program.records import Program
 
 
@@ -61,7 +61,10 @@ def numbers(
     the latter is decided exactly.
     """
     check_values(equations, parameters)
-    return assembled(program, _values(program, equations, parameters))
+    found = assembled(program, _values(program, equations, parameters))
+    for matrix in vars(found).values():
+        read_only(matrix)
+    return found
 
 
 def check_values(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:

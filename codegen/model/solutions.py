@@ -5,7 +5,7 @@ in them. The count is exact for rational functions (Sturm's theorem on rationals
 other signals, of which a few are looked at; else changes of sign are told by bounds, in a stretch.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,11 +39,11 @@ class Loop:
     ``received``: what their ports receive, a sum of the unknowns, ``D``, and of other signals.
     """
 
-    ports: Sequence[str]
-    unknowns: Sequence[sp.Symbol]
-    left: Sequence[sp.Expr]
-    received: Sequence[sp.Expr]
-    D: sp.Matrix
+    ports: tuple[str, ...]
+    unknowns: tuple[sp.Symbol, ...]
+    left: tuple[sp.Expr, ...]
+    received: tuple[sp.Expr, ...]
+    D: sp.ImmutableMatrix
 
 
 def several_solutions(program: Program, parameters: Numbers) -> Iterator[str]:
@@ -77,8 +77,9 @@ def _loop(program: Program, group: Group, parameters: Numbers) -> Loop | None:
     unknowns = [program.inputs[j] for j in group.inputs]
     left = [u - at(law.xreplace(received)) for u, law in zip(unknowns, laws, strict=True)]
     own = [received[program.readings[i]] for i in group.readings]
-    D = sp.Matrix([[sp.diff(expr, u) for u in unknowns] for expr in own])
-    return Loop([repr(port) for port in group.ports], unknowns, left, own, D)
+    D = sp.ImmutableMatrix([[sp.diff(expr, u) for u in unknowns] for expr in own])
+    ports = tuple(repr(port) for port in group.ports)
+    return Loop(ports, tuple(unknowns), tuple(left), tuple(own), D)
 
 
 def _constants(program: Program, parameters: Numbers) -> dict[sp.Symbol, sp.Expr]:

@@ -7,6 +7,7 @@ drives a dependent storage steps; z are the states that laws own.
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 
@@ -36,7 +37,7 @@ class ClosedModel:
     def __init__(
         self, program: Program, equations: StateEquations, parameters: Mapping[str, object]
     ) -> None:
-        exact = exact_parameters(parameters)
+        exact = MappingProxyType(exact_parameters(parameters))
         self.program, self.equations, self.parameters = program, equations, exact
         check_gains(program, exact)
         self.friction_inputs = [port.input for port in program.friction]

@@ -60,6 +60,20 @@ def real_array(values: ArrayLike) -> Array:
         raise ValueError(str(error)) from None
 
 
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """The array, which nobody can write to any more, nor to what it is a view of.
+
+    >>> read_only(real_array([1, 2]))[0] = 3
+    Traceback (most recent call last):
+    ValueError: assignment destination is read-only
+    """
+    part: Any = array
+    while isinstance(part, np.ndarray):
+        part.flags.writeable = False
+        part = part.base
+    return array
+
+
 def real_values(values: Sequence[Any]) -> Array:
     """The results of a function as an array; `TypeError` for a complex one."""
     for value in values:

@@ -1,20 +1,21 @@
 """Samples as columns by name."""
 
 from collections.abc import Mapping
+from types import MappingProxyType
 
 import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.modes.closed import ClosedModel
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, read_only
 from codegen.record.observer import Observer
 from codegen.record.snapshots import Snapshots
 
 
 def named_columns(
     model: ClosedModel, times: Array, found: Snapshots
-) -> tuple[dict[str, Array], Observer]:
-    """The samples of what a run records, by name, and what works out all other signals.
+) -> tuple[Mapping[str, Array], Observer]:
+    """The samples of what a run records, by name, and what works out all other signals; read-only arrays.
 
     Raises `SimulationError`, with the time, where one is not finite.
     """
@@ -29,12 +30,14 @@ def named_columns(
     columns: dict[str, Array] = {}
     for names, table in groups:
         for at, name in enumerate(names):
-            columns.setdefault(name.name, table[:, at].copy())
+            columns.setdefault(name.name, read_only(table[:, at].copy()))
     _check_finite(times, columns)
     dx = found.rate[:, : len(program.states)]
     if not program.varying:
         dx = dx + found.du @ model.constant.R.T
-    return columns, Observer(times, model, columns, found.x, dx, found.u, found.du)
+    known = MappingProxyType(columns)
+    x, dx, u, du = map(read_only, (found.x, dx, found.u, found.du))
+    return known, Observer(times, model, known, x, dx, u, du)
 
 
 def _check_finite(times: Array, columns: Mapping[str, Array]) -> None:

@@ -18,7 +18,7 @@ from codegen.inputs.signal import Signal
 from codegen.model.snapshot import Snapshot
 from codegen.model.sources import source_signals
 from codegen.modes.closed import ClosedModel
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, read_only
 from codegen.program.layout import places
 from codegen.program.lower import lower
 from codegen.record.columns import named_columns
@@ -35,7 +35,7 @@ class Run:
     parameters: Mapping[str, sp.Rational]
     times: Array
     start: Array
-    signals: Sequence[Signal]
+    signals: tuple[Signal, ...]
     settings: Settings
 
     def again(self, equations: StateEquations, whole: Sequence[Account]) -> Integrated:
@@ -51,7 +51,8 @@ class Run:
             shots = snapshots(model.within(run.track), self.times, signals, run.track)
         _, observer = named_columns(model, self.times, shots)
         rows = np.array(tally.rows)
-        return Integrated(rows[:, :-1] @ shares(whole), rows[:, -1], observer)
+        totals, impacts = read_only(rows[:, :-1] @ shares(whole)), read_only(rows[:, -1])
+        return Integrated(totals, impacts, observer)
 
 
 def closed_model(

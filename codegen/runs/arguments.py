@@ -9,7 +9,7 @@ from bondgraph.algebra.expressions import normal
 from bondgraph.errors import SignalError
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import as_signal
-from codegen.numbers.arrays import Array, is_finite, is_number, real_array
+from codegen.numbers.arrays import Array, is_finite, is_number, read_only, real_array
 from codegen.runs.methods import CHOICES
 from codegen.runs.track import Settings
 
@@ -23,7 +23,7 @@ def numbers_of(values: ArrayLike, what: str) -> Array:
 
 
 def checked_times(time: ArrayLike) -> Array:
-    """The points in time of a run: two or more, finite, increasing."""
+    """The points in time of a run: two or more, finite, increasing; a read-only array of its own."""
     times = numbers_of(time, "time")
     if times.ndim != 1 or len(times) < 2:
         raise SignalError(f"time must be a list of two or more points, not of shape {times.shape}")
@@ -32,7 +32,7 @@ def checked_times(time: ArrayLike) -> Array:
     if not (np.diff(times) > 0).all():
         at = int(np.argmin(np.diff(times)))
         raise SignalError(f"time must increase; {times[at]:g} is followed by {times[at + 1]:g}")
-    return times
+    return read_only(times)
 
 
 def initial_values(initial: Mapping[str, float], states: Sequence[str]) -> Array:

@@ -18,6 +18,7 @@ from bondgraph.declare.elements import JUNCTIONS, Kind
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.errors import StructureError
 from codegen.inputs.signals import Constant
+from codegen.numbers.arrays import read_only
 from codegen.sparse.signal_rows import Matrix, Row, SignalRows, matrix
 from codegen.sparse.valued import valued_graph
 
@@ -26,7 +27,7 @@ from codegen.sparse.valued import valued_graph
 class SparseModel:
     """``A x' = J x + B u + E u'``, ``y = F x + D u + H x' + K u'`` in numbers, as scipy's csr arrays.
 
-    ``known``: the inputs that constant laws and sources give, by name.
+    The arrays are read-only. ``known``: the inputs that constant laws and sources give, by name.
     """
 
     states: tuple[str, ...]
@@ -80,16 +81,25 @@ def _assembled(rows: SignalRows, outputs: Iterable[Hashable]) -> SparseModel:
         tuple(rows.given(node).name for node in rows.states),
         tuple(name.name for name in rows.inputs),
         tuple(names),
-        A=Matrix(sps.diags_array(values, shape=(n, n)) - received[:, rates:last]),
-        J=Matrix(received[:, :n]),
-        B=Matrix(received[:, n:rates]),
-        E=Matrix(received[:, last:]),
-        F=Matrix(seen[:, :n]),
-        D=Matrix(seen[:, n:rates]),
-        H=Matrix(seen[:, rates:last]),
-        K=Matrix(seen[:, last:]),
+        A=_fixed(sps.diags_array(values, shape=(n, n)) - received[:, rates:last]),
+        J=_fixed(received[:, :n]),
+        B=_fixed(received[:, n:rates]),
+        E=_fixed(received[:, last:]),
+        F=_fixed(seen[:, :n]),
+        D=_fixed(seen[:, n:rates]),
+        H=_fixed(seen[:, rates:last]),
+        K=_fixed(seen[:, last:]),
         known=_known(rows),
     )
+
+
+def _fixed(made: Any) -> Matrix:
+    """A matrix whose arrays nobody can write to."""
+    fixed = Matrix(made)
+    fixed.sort_indices()
+    for part in (fixed.data, fixed.indices, fixed.indptr):
+        read_only(part)
+    return fixed
 
 
 def _known(rows: SignalRows) -> Mapping[str, Constant]:

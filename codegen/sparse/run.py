@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from bondgraph.errors import SignalError, SimulationError
 from codegen.energy.audit import Audit
 from codegen.inputs.signal import Signal, first_step
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, read_only
 from codegen.record.result import Result
 from codegen.runs.arguments import checked_times, initial_values, settings_of, signals_for
 from codegen.runs.methods import EXACT
@@ -143,7 +143,7 @@ def _columns(
     columns: dict[str, Array] = {}
     for names, table in ((model.states, x), (model.inputs, u), (model.outputs, y)):
         for at, name in enumerate(names):
-            columns.setdefault(name, np.ascontiguousarray(table[:, at]))
+            columns.setdefault(name, read_only(np.ascontiguousarray(table[:, at])))
     return columns
 
 

@@ -180,7 +180,9 @@ class Collected:
         for array in arrays:
             array.flags.writeable = False
         measures = MappingProxyType(dict(zip(self._measures, arrays, strict=True)))
-        return Sweep(design, time, measures, failed, self.done, over_time)
+        done = self.done.copy()
+        done.flags.writeable = False
+        return Sweep(design, time, measures, failed, done, over_time)
 
     def _misshapen(self) -> dict[int, str]:
         """Why runs whose measures have other shapes than the first run's are left out."""

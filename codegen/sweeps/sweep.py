@@ -4,6 +4,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from os import PathLike
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -89,8 +90,9 @@ def sweep(
     array([1., 1., 4., 4., 9., 9.])
     """
     runs = design(parameters)
-    settings = {"method": method, "rtol": rtol, "atol": atol}
-    job = Job(model, runs.names, checked_times(time), dict(measures), initial, inputs, settings)
+    settings = MappingProxyType({"method": method, "rtol": rtol, "atol": atol})
+    asked = MappingProxyType(dict(measures))
+    job = Job(model, runs.names, checked_times(time), asked, initial, inputs, settings)
     _check(job)
     _check_count(workers, "workers", 0)
     _check_count(chunk, "chunk", 1)

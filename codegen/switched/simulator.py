@@ -22,7 +22,7 @@ from codegen.energy.tally import Tally
 from codegen.inputs.signal import Signal
 from codegen.model.snapshot import Snapshot
 from codegen.modes.pace import hardly_apart
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, read_only
 from codegen.program.units import told_units
 from codegen.record.columns import named_columns
 from codegen.record.replay import shares, tally_of
@@ -76,7 +76,7 @@ class SwitchedSimulator:
         values = named_numbers({} if initial is None else initial, self.states)
         settings = settings_of(method, rtol, atol)
         first = checked_modes(self.switches, initially_on)
-        start = _Start(times, signals, settings, first, values)
+        start = _Start(times, MappingProxyType(signals), settings, first, MappingProxyType(values))
         with np.errstate(all="ignore"):
             return _Journey(self, start, self._ledger(start)).run()
 
@@ -98,7 +98,8 @@ class SwitchedSimulator:
             journey = _Journey(simulator, start, self._ledger(start), whole)
             result = journey.run()
         rows = np.array(journey.rows)
-        return Integrated(rows[:, :-1] @ shares(whole), rows[:, -1], result.observer)
+        totals, impacts = read_only(rows[:, :-1] @ shares(whole)), read_only(rows[:, -1])
+        return Integrated(totals, impacts, result.observer)
 
 
 @dataclass(frozen=True)
@@ -206,7 +207,7 @@ class _Journey:
             columns, observer = named_columns(model, rest[own], shots)
             self._parts.append(
                 Result(rest[own], simulator.states, simulator.inputs, simulator.outputs, (),
-                       MappingProxyType(columns), observer, self._ledger,
+                       columns, observer, self._ledger,
                        told_units(model.equations))
             )  # fmt: skip
             self._modes += [phase.on] * track.recorded
@@ -254,16 +255,16 @@ class _Journey:
 
     def _result(self) -> Result:
         """All phases as one result."""
-        spliced, simulator = Spliced(self._parts), self._simulator
+        spliced, simulator = Spliced(tuple(self._parts)), self._simulator
         common = set(self._parts[0].columns).intersection(*(part.columns for part in self._parts))
         names = dict.fromkeys([*simulator.states, *self._parts[0].columns])
         columns = {
-            name: spliced.signal(name)
+            name: read_only(spliced.signal(name))
             for name in names
             if name in common or name in simulator.states
         }
         for name in simulator.switches:
-            columns[str(name)] = np.array([float(name in mode) for mode in self._modes])
+            columns[str(name)] = read_only(np.array([float(name in mode) for mode in self._modes]))
         return Result(
             self._times, simulator.states, simulator.inputs, self._parts[0].outputs,
             tuple(self._events), MappingProxyType(columns), spliced, self._ledger,

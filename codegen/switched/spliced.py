@@ -1,6 +1,6 @@
 """A run through several phases as one result: every signal of each, one after the other."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +13,7 @@ from codegen.record.result import Result
 class Spliced:
     """The results of a run's phases, in turn; signals are those that all phases have."""
 
-    parts: Sequence[Result]
+    parts: tuple[Result, ...]
 
     def signal(self, name: str) -> Array:
         """A named effort or flow."""
