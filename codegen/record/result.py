@@ -56,8 +56,9 @@ class Result:
 
     ``events``: what happened at friction ports and switches, in order. At a step or an event a sample
     shows the instant just after. ``columns``: the signals that a table of the run holds: states, inputs,
-    outputs and what laws read. ``units``: of those signals of which elements tell it. ``backend``: what
-    ran it; what the C of a simulator cannot go on with is run by "numpy" from the start.
+    outputs and what laws read; they and ``time`` are read-only arrays. ``units``: of those signals of which
+    elements tell it. ``backend``: what ran it; what the C of a simulator cannot go on with is run by "numpy"
+    from the start.
     """
 
     time: Array = field(repr=False)

@@ -30,7 +30,8 @@ class Failure(NamedTuple):
 class Sweep:
     """The measures of all runs: ``sweep["name"]`` has a row for each run, NaN where there is none.
 
-    ``design``: the runs' numbers. ``failed``: runs that gave nothing, in the order of their indices.
+    Its arrays are read-only. ``design``: the runs' numbers. ``failed``: runs that gave nothing, in the
+    order of their indices.
     ``done``: which runs were done, failed ones included; all of them, unless the sweep was interrupted.
     """
 
