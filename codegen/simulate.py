@@ -92,7 +92,14 @@ class Simulator:
         with np.errstate(all="ignore"):
             peaks.see(self.closed, t, s, pieces, slipping)
             mode = decide(
-                self.closed, t, s, pieces, slipping, frozenset(), TUNING.look_ahead * 1e-3, peaks
+                self.closed,
+                t,
+                s,
+                pieces,
+                slipping,
+                frozenset(),
+                TUNING.look_ahead * TUNING.standing,
+                peaks,
             )
             now = self.closed.at(t, s, pieces, mode)
         n = len(self.closed.program.states)
@@ -107,8 +114,8 @@ class Simulator:
         initial: Mapping[str, float] | None = None,
         inputs: Mapping[str, object] | None = None,
         method: str = "auto",
-        rtol: float = 1e-10,
-        atol: float = 1e-11,
+        rtol: float = TUNING.rtol,
+        atol: float = TUNING.atol,
     ) -> Result:
         """Integrate over the given times [s] and sample every signal at them.
 
@@ -131,8 +138,8 @@ class Simulator:
         initial: Mapping[str, float] | None = None,
         inputs: Mapping[str, object] | None = None,
         method: str = "auto",
-        rtol: float = 1e-10,
-        atol: float = 1e-11,
+        rtol: float = TUNING.rtol,
+        atol: float = TUNING.atol,
     ) -> Result:
         """As `run`; ``tell`` is called where numpy runs what C was asked to.
 

@@ -12,11 +12,9 @@ from codegen.modes.closed import ClosedModel
 from codegen.modes.trials import evaluated
 from codegen.numbers.arrays import Array
 from codegen.simulate import Simulator
+from codegen.tuning import TUNING
 
 ITERATIONS = 50
-
-CLOSE = 1e-10
-"""A steady state's rates are below this fraction of the terms that make them up."""
 
 
 def trim(
@@ -79,9 +77,11 @@ def _rest(model: ClosedModel, pieces: Sequence[Piece], mode: Mode, start: Array)
     for _ in range(ITERATIONS):
         if not np.isfinite(left).all():
             return None
-        if (np.abs(left) <= CLOSE * size).all():
+        if (np.abs(left) <= TUNING.close * size).all():
             return s
-        step = np.linalg.lstsq(_slopes(model, pieces, mode, s, left), -left, rcond=1e-13)[0]
+        step = np.linalg.lstsq(
+            _slopes(model, pieces, mode, s, left), -left, rcond=TUNING.independent
+        )[0]
         for shorter in 0.5 ** np.arange(30):
             tried, tried_size = _residual(model, pieces, mode, s + shorter * step)
             # Terms that vanish at the start say nothing about what is small: the largest seen do.
@@ -104,7 +104,9 @@ def _residual(
     terms = np.abs(numbers.P) @ np.abs(now.x) + np.abs(numbers.Q) @ np.abs(now.u)
     rates = np.concatenate([terms, np.ones(len(now.rate) - n)])
     held = np.abs(numbers.F[stuck]) @ np.abs(now.x) + np.abs(numbers.D[stuck]) @ np.abs(now.u)
-    return np.concatenate([now.rate, now.y[stuck]]), np.concatenate([rates, held]) + 1e-9
+    return np.concatenate([now.rate, now.y[stuck]]), np.concatenate(
+        [rates, held]
+    ) + TUNING.trim_floor
 
 
 def _slopes(
@@ -112,7 +114,7 @@ def _slopes(
 ) -> Array:
     slopes = np.empty((len(left), len(s)))
     for j in range(len(s)):
-        step = 1e-7 * (abs(s[j]) + 1e-3)
+        step = TUNING.difference * (abs(s[j]) + TUNING.residual_floor)
         ahead, behind = s.copy(), s.copy()
         ahead[j], behind[j] = s[j] + step, s[j] - step
         over, under = (_residual(model, pieces, mode, at)[0] for at in (ahead, behind))
@@ -123,7 +125,11 @@ def _slopes(
 def _consistent(model: ClosedModel, mode: Mode, now: Snapshot) -> bool:
     """Whether slips have the mode's signs and holding efforts stay within what ports can hold."""
     slips, efforts = now.y[model.friction_readings], now.u[model.friction_inputs]
-    held = [abs(efforts[i]) <= now.caps[i] * (1 + 1e-9) for i, m in enumerate(mode) if m == 0]
+    held = [
+        abs(efforts[i]) <= now.caps[i] * (1 + TUNING.consistent)
+        for i, m in enumerate(mode)
+        if m == 0
+    ]
     slipping = [slips[i] * m > 0 for i, m in enumerate(mode) if m]
     return all(held) and all(slipping)
 

@@ -137,6 +137,55 @@ class Tuning:
     switch_floor: float = _told(1e-12, ".. and at the least")
     turns: float = _told(0.05, "radians, or powers of e, that known sources do little in")
 
+    # What is numpy's alone, by the folders that read it
+    rtol: float = _told(1e-10, "relative tolerance of runs, unless it is told otherwise")
+    atol: float = _told(1e-11, "absolute tolerance of the same")
+    sparse_rtol: float = _told(1e-8, "relative tolerance of runs of sparse models")
+    sparse_atol: float = _told(1e-10, "absolute tolerance of the same")
+    even: float = _told(1e-6, "part of a distance by which samples may be uneven for a spectrum")
+    cancelling: float = _told(1e-12, "of its terms: a pivot of A below is none")
+    one_length: float = _told(1e-13, "part by which lengths of stretches that are one may differ")
+    unit_step: float = _told(1e-2, "s, the step of a unit that nothing bounds")
+    unit_longest: float = _told(1e-3, "s, no step of a unit is longer where something moves")
+    usual_step: float = _told(
+        1e-4, "s, no step of exported Python is longer unless it is told otherwise"
+    )
+    hardly: float = _told(2.0**-40, "of an interval, by which branches are told apart")
+    resonance: float = _told(
+        1e-3, "rates so near each other, over one of them, are summed as a series"
+    )
+    zero_value: float = _told(
+        2.0**-49,
+        "of its terms: a value below is zero, and so is what an eighth of it in time changes",
+    )
+    segment_rounding: float = _told(2.0**-50, "of an expression of time: its own rounding")
+    flat: float = _told(2.0**-20, "of a segment, by which its ends are no part of it")
+    nothing_there: float = _told(1e-40, "expressions of time below are zero")
+    narrowest: float = _told(2.0**-40, "of a run: segments of a source are no shorter")
+    least_span: float = _told(1e-6, "s, the least span that segments are made for")
+    energy_rounding: float = _told(1e-12, "of the entries of a storage: an energy below is zero")
+    searched: float = _told(1e-13, "tolerance of a search for what laws give")
+    beside: float = _told(1e-8, "of a root, by which one looks beside it")
+    pole: float = _told(
+        1e-3, "of the values about a change of sign: a larger one between is a pole"
+    )
+    shortest: float = _told(1e-6, "s, the shortest run that sources are told for")
+    guard_moment: float = _told(1e-9, "of the time, in which a guard moves by rounding")
+    guard_floor: float = _told(1e-3, "s, the least time for that")
+    rate_rounding: float = _told(1e-12, "of the largest rate: smaller ones are rounding")
+    dip: float = _told(1e-9, "of a step, to which the bottom of a dip is found")
+    tighter: float = _told(
+        1e-2, "of the tolerances, which CVODE is given, as its error is a step's"
+    )
+    standing: float = _told(
+        1e-3, "of a moment: how far after an instant without a run ties are decided"
+    )
+    quick: float = _told(1e-2, "s, the shortest chunk of runs that is handed out")
+    least_each: float = _told(1e-6, "s, the least that a run counts as")
+    close: float = _told(1e-10, "of its terms: what may be left of a steady state")
+    trim_floor: float = _told(1e-9, "added to the terms of a steady state")
+    independent: float = _told(1e-13, "of the largest singular value: smaller ones are none")
+
 
 TUNING = Tuning()
 """What all runs use."""

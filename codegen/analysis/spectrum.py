@@ -12,6 +12,7 @@ from codegen.pictures.canvas import rule, stack
 from codegen.pictures.labels import measured
 from codegen.pictures.style import QUIET, SMALL, TEXT, curve
 from codegen.record.result import Result, values_of
+from codegen.tuning import TUNING
 
 FEWEST = 8
 """Samples; fewer have no spectrum worth the name."""
@@ -110,7 +111,7 @@ def spectrum(
         )
     steps = np.diff(time)
     step = float(time[-1] - time[0]) / len(steps)
-    if abs(steps - step).max() > 1e-6 * step:
+    if abs(steps - step).max() > TUNING.even * step:
         raise SignalError(
             "a spectrum needs evenly spaced samples; run with np.linspace, or choose another stretch"
         )

@@ -19,6 +19,7 @@ from codegen.family import Family
 from codegen.model.numbers import check_values, exact_parameters
 from codegen.numbers.arrays import Array
 from codegen.program.records import Program
+from codegen.tuning import TUNING
 
 Flags = NDArray[np.bool_]
 
@@ -75,7 +76,7 @@ def _checked_values(equations: StateEquations, program: Program) -> Callable[[Ar
     def usable(parameters: Array) -> Flags:
         found = np.ones(len(parameters), dtype=bool)
         for value, size in function(*parameters.T):
-            found &= np.isfinite(size) & (np.abs(value) > 1e-12 * np.abs(size))
+            found &= np.isfinite(size) & (np.abs(value) > TUNING.cancelling * np.abs(size))
         return found
 
     return usable

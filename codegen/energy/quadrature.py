@@ -53,7 +53,7 @@ def exact_integrals(rows: Rows, z: Array, lengths: Array) -> Array:
     left = np.flatnonzero(~short)
     while len(left):
         h = float(lengths[left[0]])
-        alike = np.abs(lengths[left] - h) <= 1e-13 * h
+        alike = np.abs(lengths[left] - h) <= TUNING.one_length * h
         found[left[alike]] = _long(rows, z[left[alike]], h)
         left = left[~alike]
     return found

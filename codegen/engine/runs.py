@@ -20,6 +20,7 @@ from codegen.program.affine import is_affine
 from codegen.program.gains import written_out
 from codegen.program.records import Program
 from codegen.runs.track import Event, Track
+from codegen.tuning import TUNING
 
 KINDS = ("stick", "slip", "cross")
 
@@ -205,4 +206,4 @@ def grid_of(times: Array) -> float:
     step = float(times[-1] - times[0]) / (len(times) - 1)
     even = times[0] + step * np.arange(len(times))
     rounding = 8 * np.spacing(np.abs(times).max())
-    return step if np.abs(times - even).max() <= min(rounding, 1e-9 * step) else 0.0
+    return step if np.abs(times - even).max() <= min(rounding, TUNING.alike * step) else 0.0

@@ -34,6 +34,7 @@ from codegen.runs.legs import Leg
 from codegen.runs.steps import round_step, step_at_start
 from codegen.runs.track import Settings
 from codegen.simulate import Simulator, guarded_simulator
+from codegen.tuning import TUNING
 
 GLUE: Mapping[str, tuple[str, ...]] = {
     version: tuple(name for name in runtime_names("fmu") if not name.startswith(f"fmu{other}"))
@@ -154,20 +155,20 @@ def _shortest(ready: Simulator, start: list[float], signals: list[Signal]) -> fl
     signals = [*signals, *ready.sources(0.0, 0.0)]
     pieces = [signal.piece(0.0) for signal in signals]
     mode = tuple(1 for _ in ready.closed.program.friction)
-    settings = Settings("auto", 1e-10, 1e-11)
+    settings = Settings()
     try:
         with np.errstate(all="ignore"):
             given = np.array([signal(0.0) for signal in signals])
             vector = ready.vector(0.0, np.array(start), given)
             fastest = Leg(ready.closed, pieces, mode, settings, 0.0).fastest(0.0, vector)
     except BondGraphError:
-        return 1e-2
+        return TUNING.unit_step
     return time_constant(fastest, 0.0)
 
 
 def _internal_step(shortest: float, longest: float) -> float:
     """A round length: a fifth of the shortest time constant or less, half the longest stable one at most."""
-    return round_step(min(1e-3, shortest / 5, longest / 2))
+    return round_step(min(TUNING.unit_longest, shortest / 5, longest / 2))
 
 
 def _identifier(name: str) -> str:

@@ -12,15 +12,13 @@ from codegen.inputs.discs import known as analytic
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.inputs.segments import DEGREE, polynomial_segments
 from codegen.numbers.arrays import Array
+from codegen.tuning import TUNING
 
 CORNERED = (
     sp.Abs, sp.sign, sp.Heaviside, sp.Max, sp.Min, sp.floor, sp.ceiling, sp.frac, sp.Mod,
     sp.core.relational.Relational,
 )  # fmt: skip
 """What has corners or jumps; a Piecewise has them where its conditions change."""
-
-HARDLY = 2.0**-40
-"""Of a segment: signs are told so far from a root."""
 
 Part = tuple[float, sp.Expr]
 """Where a part begins [s], and what the expression is from there on."""
@@ -127,13 +125,13 @@ def crossings(expr: sp.Expr, begin: float, end: float) -> list[float]:
 
 def _changes(powers: Array) -> tuple[float, list[float]]:
     """The sign just inside the unit interval, and where a polynomial changes it further on."""
-    tau, roots = HARDLY, list[float]()
+    tau, roots = TUNING.hardly, list[float]()
     begins = sign = 1.0 if value(powers, tau) > 0 else -1.0
-    while tau < 1 - HARDLY:
+    while tau < 1 - TUNING.hardly:
         root = first_fall(sign * powers, tau)
         if root is None:
             break
-        tau = max(root, tau) + HARDLY
+        tau = max(root, tau) + TUNING.hardly
         if tau < 1 and sign * value(powers, tau) < 0:
             roots.append(root)
             sign = -sign

@@ -9,19 +9,13 @@ from functools import cached_property
 import numpy as np
 
 from codegen.numbers.arrays import Array
+from codegen.tuning import TUNING
 
 Term = tuple[complex, tuple[complex, ...]]
 """A rate [1/s] and a polynomial's coefficients, lowest power first."""
 
-RESONANCE = 1e-3
-"""A lag driven so near its own rate (relatively) answers by a series about it, not by a quotient."""
-
 SERIES = 9
 """Terms of that series: rounding takes over from the quotient where the series leaves off."""
-
-ROUNDED = 2.0**-49
-"""Below this fraction of the terms that make it up a value is zero, or below what rounding of the time by
-an eighth of it changes: a ramp that comes down to nothing ends at nothing."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +67,7 @@ class Piece:
         if alone and not complex(self.terms[0][0]).imag:
             return -1.0
         sizes = [abs(c) for _, polynomial in self.terms for c in polynomial]
-        return 1e-6 * max(sizes, default=0.0)
+        return TUNING.cancelled * max(sizes, default=0.0)
 
     def _rounding(self, times: Array) -> Array:
         """What rounding leaves of terms that cancel, at their times."""
@@ -87,7 +81,7 @@ class Piece:
             grown = np.exp(complex(rate).real * (times - self.start))
             size, slope = size + own * grown, slope + (rising + abs(rate) * own) * grown
         late = (np.abs(times) + abs(self.start)) / 8
-        return np.asarray(ROUNDED * (size + late * slope), dtype=float)
+        return np.asarray(TUNING.zero_value * (size + late * slope), dtype=float)
 
     @cached_property
     def derivative(self) -> "Piece":
@@ -117,7 +111,7 @@ def lagged_terms(piece: Piece, T: float) -> tuple[Term, ...]:
     terms: list[Term] = []
     for rate, polynomial in piece.terms:
         gain = 1 + rate * T
-        if abs(gain) <= RESONANCE:
+        if abs(gain) <= TUNING.resonance:
             terms.append((complex(-1 / T), _resonant(polynomial, gain / T, T)))
             continue
         solved: list[complex] = []

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from bondgraph.errors import SimulationError
 from codegen.inputs.discs import disc_of
 from codegen.numbers.arrays import Array
+from codegen.tuning import TUNING
 
 Flags = NDArray[np.bool_]
 
@@ -27,21 +28,8 @@ DEGREE = 13
 BEYOND = 10.0
 """The disc's radius in half-widths of the segment."""
 
-ROUNDING = 2.0**-50
-"""What counts as exact, as part of the terms that make up the expression."""
-
-FLAT = 2.0**-20
-"""Of what there is about a segment: where a zero is flat, rounding is told from this part of it."""
-
-NOTHING = 1e-40
-"""In every unit: how exact the tails of pulses have to be."""
-
 MOST = 2_000_000
 """So many segments are more than a run can have."""
-
-NARROWEST = 2.0**-40
-"""Of a span: near a singularity at an end segments are not halved further, nor where time is rounding."""
-
 
 EDGE = 2.0**14
 """So many of the narrowest segments at an end need have no value."""
@@ -61,11 +49,11 @@ def polynomial_segments(expr: sp.Expr, begin: float, end: float) -> Segments:
 
     Raises `SimulationError` naming the time where the expression has no finite real value.
     """
-    width = 2.0 ** math.ceil(math.log2(max(end - begin, 1e-6)))
+    width = 2.0 ** math.ceil(math.log2(max(end - begin, TUNING.least_span)))
     first, last = math.floor(begin / width), math.ceil(end / width)
     centres = np.asarray((np.arange(first, max(last, first + 1)) + 0.5) * width, dtype=np.float64)
     rounding = float(np.spacing(max(abs(begin), abs(end))))
-    narrowest, half = max(width * NARROWEST, 2.0**12 * rounding), width / 2
+    narrowest, half = max(width * TUNING.narrowest, 2.0**12 * rounding), width / 2
     kept: list[Segments] = []
     total, about = 0, np.zeros(len(centres))
     with np.errstate(all="ignore"):
@@ -109,7 +97,7 @@ def _fitted(
     error = 4 * (np.abs(centre) + off) * rho**-DEGREE / (rho - 1)
     size = _size(expr, times).max(axis=1)
     about = np.fmax(about, size)
-    enough = ROUNDING * np.fmax(size, FLAT * about) + NOTHING
+    enough = TUNING.segment_rounding * np.fmax(size, TUNING.flat * about) + TUNING.nothing_there
     shares, basis = _matrices()
     # One after the other: their product would have entries of 1e6 that cancel.
     exact = np.asarray(np.isfinite(error) & (error <= enough), dtype=np.bool_)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from bondgraph.errors import SignalError
 from codegen.inputs.pieces import Piece, collected, moved
 from codegen.numbers.arrays import is_finite, is_number
+from codegen.tuning import TUNING
 
 
 class Signal(ABC):
@@ -125,7 +126,7 @@ def first_step(signal: Signal, begin: float, end: float) -> float | None:
         if (
             begin < b <= end
             and b not in signal.seams
-            and jump > 1e-12 * (abs(one(b)) + abs(other(b)))
+            and jump > TUNING.together * (abs(one(b)) + abs(other(b)))
         ):
             return b
     return None

@@ -8,9 +8,7 @@ import sympy as sp
 from bondgraph.declare.elements import STORAGES, Element
 from bondgraph.equations import StateEquations
 from codegen.model.numbers import at_parameters
-
-ROUNDING = 1e-12
-"""An eigenvalue of a field above minus this fraction of its largest entry is zero."""
+from codegen.tuning import TUNING
 
 
 def negative_energies(
@@ -47,7 +45,7 @@ def _negative(
         if all(len(row) == len(ports) for row in known):
             matrix = np.array(known)
             least = np.linalg.eigvalsh((matrix + matrix.T) / 2).min()
-            if least < -ROUNDING * np.abs(matrix).max():
+            if least < -TUNING.energy_rounding * np.abs(matrix).max():
                 yield owner
 
 

@@ -78,7 +78,7 @@ def _attempts(left: Residual, D: Array, open_y: Array) -> Iterator[Array]:
         yield from _bracketed(left, nothing_received[0])
     for start in (nothing_received, np.zeros(size)):
         yield _newton(left, start)
-        yield scipy.optimize.root(left, start, method="hybr", tol=1e-13).x
+        yield scipy.optimize.root(left, start, method="hybr", tol=TUNING.searched).x
 
 
 def _bracketed(left: Residual, end: float) -> Iterator[Array]:

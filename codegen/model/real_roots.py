@@ -8,16 +8,13 @@ import sympy as sp
 from bondgraph.algebra.expressions import TIME
 from bondgraph.errors import SimulationError
 from codegen.inputs.branches import crossings, known, smooth_parts
+from codegen.tuning import TUNING
 
 DIGITS = 40
 """Of coefficients that are no rationals; roots closer than the rounding of half as many count as one."""
 
 ENDS = (-100.0, -10.0, -1.0, 1.0, 10.0, 100.0)
 """Roots of what is no rational function are looked for in each stretch between two of these."""
-
-BESIDE = 1e-8
-"""So far beside a root that was found in doubles its two signs are told; closer ones count as one."""
-
 
 NONE = (SimulationError, ArithmeticError, KeyError, NotImplementedError, TypeError, ValueError)
 """What is raised where an expression has no real value, or a function is not known."""
@@ -62,7 +59,7 @@ def _of_fraction(expr: sp.Expr, name: sp.Symbol) -> Roots | None:
     coefficients = given if exact else [sp.Rational(str(sp.N(c, DIGITS))) for c in given]
     polynomial = sp.Poly(coefficients, name, domain="QQ").sqf_part()
     places = [_middle(*pair) for pair, _ in polynomial.intervals(eps=sp.Rational(1, 10**20))]
-    if not exact and any(b - a < 1e-12 * (abs(a) + abs(b)) for a, b in pairwise(places)):
+    if not exact and any(b - a < TUNING.together * (abs(a) + abs(b)) for a, b in pairwise(places)):
         return None
     return Roots(len(places), tuple(places))
 
@@ -82,7 +79,7 @@ def _of_parts(expr: sp.Expr) -> Roots:
     for (_, end, left), (begin, _, right) in pairwise(parts):
         if begin == end and _changes(left, right, end):
             found.append(end)
-    values = [b for a, b in pairwise([2 * ENDS[0], *sorted(found)]) if b - a > 10 * BESIDE]
+    values = [b for a, b in pairwise([2 * ENDS[0], *sorted(found)]) if b - a > 10 * TUNING.beside]
     return Roots(len(values), tuple(values), (ENDS[0], ENDS[-1]))
 
 
@@ -105,9 +102,9 @@ def _crossings(expr: sp.Expr, begin: float, end: float) -> list[float]:
 
 def _changes(left: sp.Expr, right: sp.Expr, place: float) -> bool:
     """Whether the sign changes across a place by way of zero, not by a jump or a pole: with many digits."""
-    at, off = sp.Rational(place), sp.Rational(BESIDE)
+    at, off = sp.Rational(place), sp.Rational(TUNING.beside)
     pairs = ((left, at - off), (right, at + off), (left, at), (right, at))
     a, b, *middle = (sp.N(part.subs(TIME, where), DIGITS) for part, where in pairs)
     if not (a.is_real and b.is_real and all(value.is_real for value in middle)):
         return False
-    return bool(a * b < 0 and max(map(abs, middle)) <= 1e-3 * (abs(a) + abs(b)))
+    return bool(a * b < 0 and max(map(abs, middle)) <= TUNING.pole * (abs(a) + abs(b)))

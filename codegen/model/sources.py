@@ -8,6 +8,7 @@ from codegen.inputs.known import known_signal
 from codegen.inputs.signal import Signal
 from codegen.model.numbers import at_parameters
 from codegen.program.records import Program
+from codegen.tuning import TUNING
 
 
 def source_signals(
@@ -15,10 +16,6 @@ def source_signals(
 ) -> list[Signal]:
     """A signal for each of the program's sources, from ``begin`` to ``end`` [s]."""
     return [
-        known_signal(at_parameters(expr, parameters), begin, max(end, begin + SHORTEST))
+        known_signal(at_parameters(expr, parameters), begin, max(end, begin + TUNING.shortest))
         for expr in program.sources
     ]
-
-
-SHORTEST = 1e-6
-"""Time [s] over which sources are told where an instant is asked for."""

@@ -52,7 +52,7 @@ def guard_rounding(
 def _slopes(model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode) -> Array:
     """How fast the guards change, by a difference over a moment."""
     now = model.at(t, s, pieces, mode)
-    moment = 1e-9 * max(abs(t), 1e-3)
+    moment = TUNING.guard_moment * max(abs(t), TUNING.guard_floor)
     later = model.guards(t + moment, model.at(t + moment, s + moment * now.rate, pieces, mode))
     return np.asarray(np.nan_to_num(np.abs(later - model.guards(t, now)) / moment), dtype=float)
 

@@ -73,7 +73,7 @@ def _steps(jacobian: Array | None) -> Iterable[float]:
     if jacobian is None:
         return ()
     found = np.linalg.eigvals(jacobian)
-    rounding = 1e-12 * np.abs(found).max(initial=0.0)
+    rounding = TUNING.rate_rounding * np.abs(found).max(initial=0.0)
     return [
         stable_step(complex(0.0 if abs(rate.real) <= rounding else rate.real, rate.imag))
         for rate in found.tolist()

@@ -10,6 +10,7 @@ from codegen.program.records import Program
 from codegen.python.sticking import beside_resistance
 from codegen.python.text import listing, names_tuple
 from codegen.runs.steps import round_step, told_step
+from codegen.tuning import TUNING
 
 Held = Mapping[tuple[int, ...], tuple[int, int]]
 """Ranks of sets of sticking ports, as `sticking_ranks` gives them."""
@@ -126,7 +127,7 @@ def friction_tables(program: Program, equations: StateEquations, held: Held) -> 
 
 def step_settings(longest: float) -> list[str]:
     """What there is to say of fixed steps; ``longest``: the longest stable one at the start [s]."""
-    usual = round_step(min(1e-4, longest / 2))
+    usual = round_step(min(TUNING.usual_step, longest / 2))
     return [
         "",
         "# The longest step [s] that is stable at the start, in every friction mode; the usual one.",

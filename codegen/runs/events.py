@@ -160,7 +160,7 @@ class Watch:
             return None
         lowest = minimize_scalar(
             lambda t: float(self._triggers(t, self._snapshot(t, dense(t)))[i]),
-            bounds=(grid[0], grid[2]), method="bounded", options={"xatol": 1e-9 * (grid[2] - grid[0])},
+            bounds=(grid[0], grid[2]), method="bounded", options={"xatol": TUNING.dip * (grid[2] - grid[0])},
         )  # fmt: skip
         if lowest.fun > 0:
             return None

@@ -10,6 +10,7 @@ from codegen.inputs.signal import Signal
 from codegen.modes.closed import ClosedModel
 from codegen.modes.stability import longest_stable_step
 from codegen.numbers.arrays import Array
+from codegen.tuning import TUNING
 
 
 def step_at_start(model: ClosedModel, states: Array, signals: Sequence[Signal]) -> float:
@@ -31,7 +32,7 @@ def round_step(longest: float) -> float:
     (0.0002, 0.001)
     """
     power = 10.0 ** math.floor(math.log10(longest))
-    digit = max(one for one in (1, 2, 5) if one * power <= longest * (1 + 1e-9))
+    digit = max(one for one in (1, 2, 5) if one * power <= longest * (1 + TUNING.whole_steps))
     return float(f"{digit}e{round(math.log10(power))}")
 
 

@@ -7,9 +7,7 @@ import numpy as np
 
 from bondgraph.errors import MissingExtraError
 from codegen.numbers.arrays import Array
-
-TIGHTER = 0.01
-"""What a step may err by, of the tolerance: multistep errors add up where a model rings."""
+from codegen.tuning import TUNING
 
 
 class Cvode:
@@ -31,7 +29,11 @@ class Cvode:
 
         def begun(t: float, y: Array, longest: float) -> Any:
             solver = _solver_class()(
-                fill, method=formulas, rtol=TIGHTER * rtol, atol=TIGHTER * atol, max_step=longest
+                fill,
+                method=formulas,
+                rtol=TUNING.tighter * rtol,
+                atol=TUNING.tighter * atol,
+                max_step=longest,
             )
             solver.init_step(t, y)
             return solver

@@ -9,6 +9,7 @@ import numpy as np
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Run
 from codegen.numbers.arrays import Array
+from codegen.tuning import TUNING
 
 Dense = Callable[[float | Array], Array]
 """The integrated vector anywhere inside a step; for several times its columns."""
@@ -89,5 +90,5 @@ class Settings:
     """How to integrate: method, relative and absolute tolerance."""
 
     method: str = "auto"
-    rtol: float = 1e-10
-    atol: float = 1e-11
+    rtol: float = TUNING.rtol
+    atol: float = TUNING.atol

@@ -16,6 +16,7 @@ from codegen.runs.arguments import checked_times, initial_values, settings_of, s
 from codegen.runs.methods import EXACT
 from codegen.sparse.model import SparseModel
 from codegen.sparse.steps import SparseSystem, integrate
+from codegen.tuning import TUNING
 
 NO_POWERS = "a sparse run knows no powers; derive the graph and run a simulator for them"
 
@@ -59,8 +60,8 @@ def run_sparse(
     initial: Mapping[str, float] | None = None,
     inputs: Mapping[str, object] | None = None,
     method: str = "auto",
-    rtol: float = 1e-8,
-    atol: float = 1e-10,
+    rtol: float = TUNING.sparse_rtol,
+    atol: float = TUNING.sparse_atol,
 ) -> Result:
     """Integrate a sparse model over the given times [s] and sample states, inputs and outputs at them.
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from codegen.sweeps.crews import Crew, Lost
 from codegen.sweeps.design import Table
 from codegen.sweeps.job import Chunk, Outcome
+from codegen.tuning import TUNING
 
 
 class Rhythm(NamedTuple):
@@ -31,7 +32,7 @@ class Rhythm(NamedTuple):
 
 STEADY = Rhythm(shortest=0.5, longest=10.0, shares=4, first=1, growth=4)
 
-QUICK = Rhythm(shortest=0.01, longest=1.0, shares=2, first=1, growth=16)
+QUICK = Rhythm(shortest=TUNING.quick, longest=1.0, shares=2, first=1, growth=16)
 """For runs by a loop in C, where a chunk costs little beside its runs and cannot be interrupted."""
 
 ENDED = "the process that did it ended: killed, out of memory, or by an exit in a measure"
@@ -63,7 +64,7 @@ class Pace:
             return self.fixed
         if not self.runs:
             return self.rhythm.first
-        each, rhythm = max(self.seconds / self.runs, 1e-6), self.rhythm
+        each, rhythm = max(self.seconds / self.runs, TUNING.least_each), self.rhythm
         target = min(max(left * each / (rhythm.shares * slots), rhythm.shortest), rhythm.longest)
         return max(1, min(round(target / each), rhythm.growth * self.runs))
 

@@ -23,6 +23,7 @@ from codegen.record.result import Result
 from codegen.runs.track import Settings
 from codegen.simulate import Simulator
 from codegen.sweeps.columns import Columns
+from codegen.tuning import TUNING
 
 
 class Runner(Protocol):
@@ -34,8 +35,8 @@ class Runner(Protocol):
         initial: Mapping[str, float] | None = None,
         inputs: Mapping[str, object] | None = None,
         method: str = "auto",
-        rtol: float = 1e-10,
-        atol: float = 1e-11,
+        rtol: float = TUNING.rtol,
+        atol: float = TUNING.atol,
     ) -> Result:
         """The record of a run."""
 

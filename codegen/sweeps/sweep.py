@@ -26,6 +26,7 @@ from codegen.sweeps.drive import QUICK, STEADY, Pace, Work, drive
 from codegen.sweeps.job import Job, Model, Outcome, batch_of, sent
 from codegen.sweeps.result import Collected, Sweep, SweepInterrupted
 from codegen.sweeps.store import Store
+from codegen.tuning import TUNING
 
 RESERVED = ("run", "time")
 """Names of axes."""
@@ -40,8 +41,8 @@ def sweep(
     inputs: Given = None,
     *,
     method: str = "auto",
-    rtol: float = 1e-10,
-    atol: float = 1e-11,
+    rtol: float = TUNING.rtol,
+    atol: float = TUNING.atol,
     workers: int | None = None,
     client: Any = None,
     store: str | PathLike[str] | None = None,

@@ -231,7 +231,9 @@ def _friction_mode(phase: Phase, t: float, s: Array, pieces: Sequence[Piece]) ->
     model = phase.simulator.closed
     slipping, peaks = tuple(1 for _ in model.program.friction), Peaks.none(model)
     peaks.see(model, t, s, pieces, slipping)
-    return decide(model, t, s, pieces, slipping, frozenset(), TUNING.look_ahead * 1e-3, peaks)
+    return decide(
+        model, t, s, pieces, slipping, frozenset(), TUNING.look_ahead * TUNING.standing, peaks
+    )
 
 
 def _listed(on: On) -> str:

@@ -57,8 +57,8 @@ class SwitchedSimulator:
         inputs: Mapping[str, object] | None = None,
         initially_on: Iterable[Hashable] = (),
         method: str = "auto",
-        rtol: float = 1e-10,
-        atol: float = 1e-11,
+        rtol: float = TUNING.rtol,
+        atol: float = TUNING.atol,
     ) -> Result:
         """Integrate over the given times [s], as `Simulator.run` does, from phase to phase.
 
