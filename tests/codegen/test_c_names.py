@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from codegen.batch import engine as batch_engine
 from codegen.c.runtime import FOLDERS, runtime_file, runtime_names
 from codegen.engine import located, runs, sizes
 from codegen.engine.status import Status
-from codegen.batch import engine as batch_engine
 
 FILES = ("main.c", *(name for folder in FOLDERS for name in runtime_names(folder)))
 

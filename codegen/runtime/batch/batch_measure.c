@@ -45,7 +45,7 @@ static double of_events(const bg_event *events, int count, const batch_measure *
     return measure->what == BATCH_FIRST ? (double)NAN : (double)found;
 }
 
-static void keep(const batch_job *job, const double *values, const batch_measure *measure,
+static void keep_measure(const batch_job *job, const double *values, const batch_measure *measure,
                  double *results)
 {
     double *const found = results + measure->at;
@@ -81,7 +81,7 @@ int batch_reduce(const batch_job *job, const double *values, int pitch, const do
         else if (measure->what == BATCH_TOTAL)
             results[measure->at] = totals[measure->signal];
         else
-            keep(job, values + (long)measure->signal * pitch, measure, results);
+            keep_measure(job, values + (long)measure->signal * pitch, measure, results);
         all &= is_finite(job, measure, results + measure->at);
     }
     return all;

@@ -23,7 +23,9 @@ int bg_progress_check(bg_located *c);
 int bg_watch_begin(bg_located *c);
 int bg_watch_step(bg_located *c, int *found, double *time, int *ports);
 
-/* located_solver.c: one step that keeps the tolerance, and the state anywhere inside it. */
+/* located_solver.c: one step that keeps the tolerance, and the state anywhere inside it; the mean
+ * of values over scales, which repeat. */
+double bg_norm(int count, const double *values, const double *scale);
 int bg_solver_begin(bg_located *c, int method, double longest);
 int bg_solver_step(bg_located *c, double stop);
 int bg_solver_dense(bg_located *c, double t, double *s);
