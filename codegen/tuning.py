@@ -61,6 +61,8 @@ class Tuning:
     )
 
     # Integrators with step control
+    rtol: float = _told(1e-10, "relative tolerance, unless it is told otherwise")
+    atol: float = _told(1e-11, "the same in units of each state")
     stiff_span: float = _told(2e5, "run over time constant from which steps are implicit")
     followed: float = _told(0.1, "an implicit step in time constants of the inputs")
     refresh: int = _told(50, "steps after which time constants are looked at again")

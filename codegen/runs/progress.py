@@ -1,5 +1,5 @@
 """Whether an integrator still advances, told by its work: steps far shorter than anything in the model
-asks for, in front of rates that jump. ``model_progress.c`` decides the same way with the same numbers."""
+asks for, in front of rates that jump. ``located_progress.c`` decides the same way with the same numbers."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

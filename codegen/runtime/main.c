@@ -33,7 +33,7 @@ static int find(int count, const char *const *names, const char *text, size_t le
 }
 
 /* Holds an input at a value: the first term of each is a constant, the others lose theirs. */
-static void hold(command *asked, int input, double value)
+static void hold_input(command *asked, int input, double value)
 {
     asked->coefficients[input][0] = value;
     for (int k = 0; k < SCENARIO_TERMS; k++)
@@ -58,7 +58,7 @@ static int assign(command *asked, const char *text)
     else if ((at = find(STATES, bg_state_names, text, length)) >= 0)
         asked->states[at] = value;
     else if ((at = find(BG_EXTERNAL, bg_input_names, text, length)) >= 0)
-        hold(asked, at, value);
+        hold_input(asked, at, value);
     else if (length == 4 && strncmp(text, "band", 4) == 0)
         asked->band = value;
     else if (length == 4 && strncmp(text, "step", 4) == 0 && value > 0)
@@ -133,7 +133,8 @@ static int run_stepped(bg_model *m, const command *asked, const bg_signals *sign
     return 0;
 }
 
-static void record(void *to, int sample, const double *w, const int *mode, const bg_snapshot *shot)
+static void print_sample(void *to, int sample, const double *w, const int *mode,
+                         const bg_snapshot *shot)
 {
     (void)w;
     (void)mode;
@@ -148,8 +149,8 @@ static int run_located(bg_model *m, const command *asked, const bg_signals *sign
     static bg_event events[EVENTS];
     const int count = (int)floor(asked->end / asked->sample * (1 + BG_TOGETHER)) + 1;
     double *const times = calloc((size_t)count, sizeof *times);
-    bg_request request = {times, asked->states, count, BG_AUTO, 1e-10, 1e-11, times, record, events,
-                          EVENTS, 0, 0.0, NULL};
+    bg_request request = {times, asked->states, count, BG_AUTO, BG_RTOL, BG_ATOL,
+                          times, print_sample, events, EVENTS, 0, 0.0, NULL};
     if (!times)
         return 1;
     for (int k = 0; k < count; k++)

@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* Records the state as the sample `p->at`, which is at p->t; its triggers go to `row`. */
-static int record(ex_context *c, const batch_table *table, ex_place *p, double *row)
+static int record_signals(ex_context *c, const batch_table *table, ex_place *p, double *row)
 {
     batch_sample(c->caller, table, p->z, p->at);
     memcpy(row, p->z, sizeof p->z);
@@ -14,7 +14,7 @@ static int record(ex_context *c, const batch_table *table, ex_place *p, double *
 }
 
 /* A step that leaps could not be sure of. */
-static int doubtful(ex_context *c, ex_place *p, batch_leaps *l, double *row)
+static int look_closely(ex_context *c, ex_place *p, batch_leaps *l, double *row)
 {
     const ex_entry *const e = c->stretch.entry;
     double end;
@@ -37,7 +37,7 @@ static int doubtful(ex_context *c, ex_place *p, batch_leaps *l, double *row)
 }
 
 /* Leaps over `count` samples of one distance, as far as they reach. */
-static int leap_on(ex_context *c, const batch_table *table, ex_place *p, int count, double *row)
+static int leap_over(ex_context *c, const batch_table *table, ex_place *p, int count, double *row)
 {
     const long long parts = c->stretch.entry->parts;
     batch_leaps l = {.room = c->caller, .stretch = &c->stretch, .table = *table};
@@ -46,7 +46,7 @@ static int leap_on(ex_context *c, const batch_table *table, ex_place *p, int cou
     while (!status && !p->ports && l.done < l.total) {
         batch_leap(&l, p->base);
         if (l.done < l.total)
-            status = doubtful(c, p, &l, row);
+            status = look_closely(c, p, &l, row);
     }
     const int until = p->at + (int)(l.done / parts);
     p->at = until < p->last ? until : p->last;
@@ -61,7 +61,7 @@ static int leap_on(ex_context *c, const batch_table *table, ex_place *p, int cou
 }
 
 /* One step by power series, to the next sample or the stop. */
-static int step_on(ex_context *c, const batch_table *table, ex_place *p, double *row)
+static int step_over(ex_context *c, const batch_table *table, ex_place *p, double *row)
 {
     const int sample = p->at < p->last;
     const double to = sample ? c->task->times[p->at] : p->stop;
@@ -73,7 +73,7 @@ static int step_on(ex_context *c, const batch_table *table, ex_place *p, double 
         return status;
     p->t = to;
     p->base = -1;
-    return sample ? record(c, table, p, row) : BG_OK;
+    return sample ? record_signals(c, table, p, row) : BG_OK;
 }
 
 int batch_advance(ex_context *c, double stop)
@@ -93,9 +93,9 @@ int batch_advance(ex_context *c, double stop)
         if (count >= EX_STRIDE && ex_armed(c, row)) {
             if (c->stretch.entry->h != h)
                 batch_prepare(c, c->caller, &table, h);
-            status = leap_on(c, &table, &p, count, row);
+            status = leap_over(c, &table, &p, count, row);
         } else {
-            status = step_on(c, &table, &p, row);
+            status = step_over(c, &table, &p, row);
         }
     }
     ex_arrive(c, &p);

@@ -47,7 +47,7 @@ static void growth(const double (*A)[SIZE], double (*work)[SIZE], double (*to)[S
 }
 
 /* P of a short step from y on. */
-static void begin(const double (*A)[SIZE], const double *z, double step, double (*P)[SIZE])
+static void short_step(const double (*A)[SIZE], const double *z, double step, double (*P)[SIZE])
 {
     double terms[BG_DEGREE + 1][SIZE];
     memcpy(terms[0], z, sizeof(double) * EX_Z);
@@ -120,7 +120,7 @@ void batch_integrate(const ex_context *c, const batch_room *room, double t, cons
     for (; c->stretch.entry->norm * step > 1.0 && doublings < MOST; step /= 2)
         doublings++;
     system_of(&c->stretch, step, A);
-    begin((const double(*)[SIZE])A, z, step, P);
+    short_step((const double(*)[SIZE])A, z, step, P);
     if (doublings)
         growth((const double(*)[SIZE])A, work, added);
     for (; doublings; doublings--)

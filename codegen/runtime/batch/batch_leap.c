@@ -15,7 +15,7 @@ typedef struct {
 } trail;
 
 /* to = add + P z, by columns; in two sums that don't wait for each other. */
-static inline void affine(const double (*restrict P)[EX_Z], const double *restrict add,
+static inline void moved_by(const double (*restrict P)[EX_Z], const double *restrict add,
                           const double *restrict z, double *restrict to)
 {
 #pragma GCC unroll 1
@@ -32,12 +32,12 @@ static inline void affine(const double (*restrict P)[EX_Z], const double *restri
 }
 
 /* `count` steps of the state, fewer than twice the stride. */
-static inline void walk(batch_leaps *l, int count)
+static inline void step_by(batch_leaps *l, int count)
 {
     for (int i = BATCH_POWERS - 1; i >= 0; i--)
         if (count >> i & 1) {
             double next[EX_Z];
-            affine((const double(*)[EX_Z])l->table.power[i], l->step[i], l->beyond, next);
+            moved_by((const double(*)[EX_Z])l->table.power[i], l->step[i], l->beyond, next);
             memcpy(l->beyond, next, sizeof next);
         }
 }
@@ -73,8 +73,8 @@ void batch_begin_leaps(batch_leaps *l, const double *z, long long total)
     double rate[EX_Z], add[EX_Z][STRIDE], sum[EX_Z];
     memcpy(l->origin, z, sizeof rate);
     ex_fill(l->stretch, l->origin);
-    affine((const double(*)[EX_Z])e->M, l->stretch->b, z, rate);
-    affine((const double(*)[EX_Z])e->gather, none, rate, sum);
+    moved_by((const double(*)[EX_Z])e->M, l->stretch->b, z, rate);
+    moved_by((const double(*)[EX_Z])e->gather, none, rate, sum);
     for (int r = 0; r < STRIDE; r++) {
         double next[EX_Z];
         for (int i = 0; i < BATCH_POWERS; i++)
@@ -82,7 +82,7 @@ void batch_begin_leaps(batch_leaps *l, const double *z, long long total)
                 memcpy(l->step[i], sum, sizeof sum);
         for (int j = 0; j < EX_Z; j++)
             add[j][r] = sum[j];
-        affine((const double(*)[EX_Z])l->table.power[0], l->step[0], sum, next);
+        moved_by((const double(*)[EX_Z])l->table.power[0], l->step[0], sum, next);
         memcpy(sum, next, sizeof sum);
     }
     fill_constants(l, add);
@@ -121,7 +121,7 @@ static int is_certain(const trail *at, unsigned caps, const double *slack, int r
 
 /* How many steps from here are certain. All are where every trigger is farther from its slack than
  * a third of its change; only otherwise steps are looked at one by one. */
-static inline int certain(batch_leaps *l, trail *at, const double *slack)
+static inline int how_certain(batch_leaps *l, trail *at, const double *slack)
 {
     const unsigned caps = l->stretch->entry->caps;
     double least[STRIDE], first = DBL_MAX;
@@ -196,10 +196,10 @@ void batch_leap(batch_leaps *l, int at)
         const int ahead = left < STRIDE ? (int)left : STRIDE;
         if (walked % EX_RENEWAL == 0 && EX_K)
             renew(l, slack);
-        const int certainly = EX_K ? certain(l, &found, slack) : STRIDE;
+        const int certainly = EX_K ? how_certain(l, &found, slack) : STRIDE;
         const int sure = certainly < ahead ? certainly : ahead;
         write_signals(l, at);
-        walk(l, sure);
+        step_by(l, sure);
         l->done += sure;
         if (certainly < ahead)
             return;

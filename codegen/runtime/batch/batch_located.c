@@ -21,7 +21,7 @@ static double value_of(int place, const double *w, const bg_snapshot *shot)
     return shot->y[place - N - OWN - 2 * M];
 }
 
-static void record(void *to, int sample, const double *w, const int *mode,
+static void keep_signals(void *to, int sample, const double *w, const int *mode,
                    const bg_snapshot *shot)
 {
     const located_room *const room = to;
@@ -58,13 +58,13 @@ static int smooth(void *to, void *run, double begin, double end)
 }
 
 /* One run; a status. */
-static int run(located_room *room, const double *parameters, const double *states,
+static int run_located_once(located_room *room, const double *parameters, const double *states,
                const bg_signals *inputs, double *results)
 {
     const batch_job *const job = room->job;
     bg_request asked = {
         .times = job->times, .states = states, .samples = job->samples, .method = room->method,
-        .rtol = room->rtol, .atol = room->atol, .to = room, .record = record,
+        .rtol = room->rtol, .atol = room->atol, .to = room, .record = keep_signals,
         .events = room->events, .capacity = room->capacity, .smooth = job->products ? smooth : 0,
     };
     for (int k = 0; k < job->products; k++)
@@ -86,7 +86,7 @@ void located_batch(located_room *room, const batch_job *job, const located_runs 
 {
     room->job = job;
     for (int k = 0; k < runs->runs; k++)
-        runs->status[k] = run(room, runs->parameters + (long)k * OWN_PARAMETERS,
+        runs->status[k] = run_located_once(room, runs->parameters + (long)k * OWN_PARAMETERS,
                               runs->states + (long)k * (N + OWN), runs->inputs[k],
                               runs->results + (long)k * job->width);
 }

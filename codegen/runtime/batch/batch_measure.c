@@ -38,14 +38,14 @@ static double of_events(const bg_event *events, int count, const batch_measure *
     for (int i = 0; i < count; i++) {
         if (events[i].port != measure->port || events[i].kind != measure->kind)
             continue;
-        if (measure->what == BATCH_FIRST)
+        if (measure->what == BATCH_FIRST_EVENT)
             return events[i].time;
         found++;
     }
-    return measure->what == BATCH_FIRST ? (double)NAN : (double)found;
+    return measure->what == BATCH_FIRST_EVENT ? (double)NAN : (double)found;
 }
 
-static void keep(const batch_job *job, const double *values, const batch_measure *measure,
+static void keep_measure(const batch_job *job, const double *values, const batch_measure *measure,
                  double *results)
 {
     double *const found = results + measure->at;
@@ -66,7 +66,7 @@ static int is_finite(const batch_job *job, const batch_measure *measure, const d
     const int length = measure->what == BATCH_SAMPLES ? job->samples : 1;
     int all = 1;
     for (int i = 0; i < length; i++)
-        all &= isfinite(found[i]) || measure->what == BATCH_FIRST;
+        all &= isfinite(found[i]) || measure->what == BATCH_FIRST_EVENT;
     return all;
 }
 
@@ -76,12 +76,12 @@ int batch_reduce(const batch_job *job, const double *values, int pitch, const do
     int all = 1;
     for (int k = 0; k < job->measures; k++) {
         const batch_measure *const measure = job->measure + k;
-        if (measure->what >= BATCH_FIRST)
+        if (measure->what >= BATCH_FIRST_EVENT)
             results[measure->at] = of_events(events, count, measure);
         else if (measure->what == BATCH_TOTAL)
             results[measure->at] = totals[measure->signal];
         else
-            keep(job, values + (long)measure->signal * pitch, measure, results);
+            keep_measure(job, values + (long)measure->signal * pitch, measure, results);
         all &= is_finite(job, measure, results + measure->at);
     }
     return all;

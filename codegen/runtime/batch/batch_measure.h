@@ -6,7 +6,7 @@
 
 enum batch_what {
     BATCH_PEAK, BATCH_LARGEST, BATCH_SMALLEST, BATCH_START, BATCH_FINAL, BATCH_SAMPLES, BATCH_TOTAL,
-    BATCH_FIRST, BATCH_COUNT
+    BATCH_FIRST_EVENT, BATCH_EVENT_COUNT
 };
 
 /* What to keep of a run, from place `at` of its results: of a signal, a product or events. */

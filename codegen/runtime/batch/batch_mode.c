@@ -18,7 +18,7 @@ static int column_of(int j)
 }
 
 /* The largest magnitude. */
-static double largest(double (*matrix)[N])
+static double largest_rate_of(double (*matrix)[N])
 {
     double most[N] = {0}, size = 0.0;
     for (int i = 0; i < N; i++)
@@ -30,7 +30,7 @@ static double largest(double (*matrix)[N])
     return size;
 }
 
-static void square(double (*restrict matrix)[N], double factor, double (*restrict to)[N])
+static void squared(double (*restrict matrix)[N], double factor, double (*restrict to)[N])
 {
     for (int i = 0; i < N; i++)
 #pragma GCC unroll 1
@@ -47,21 +47,21 @@ static void square(double (*restrict matrix)[N], double factor, double (*restric
  * scaled at every second square only. */
 static double spectral_radius(double (*matrix)[N])
 {
-    double power[N][N], other[N][N], size = largest(matrix), logarithm = 0.0, share = 1.0;
+    double power[N][N], other[N][N], size = largest_rate_of(matrix), logarithm = 0.0, share = 1.0;
     memcpy(power, matrix, sizeof power);
     for (int k = 0; k < ROUNDS && size > 0.0; k++) {
         const double shrink = 1.0 / size;
         logarithm += share * log(size);
         share /= 4;
-        square(power, shrink * shrink, other);
-        square(other, 1.0, power);
-        size = largest(power);
+        squared(power, shrink * shrink, other);
+        squared(other, 1.0, power);
+        size = largest_rate_of(power);
     }
     return size > 0.0 ? exp(logarithm + share * log(size)) : 0.0;
 }
 
 /* One over the scales, powers of 2, that make rows and columns alike. */
-static void balance(double (*matrix)[N], double *weight)
+static void balance_rates(double (*matrix)[N], double *weight)
 {
     double scale[N];
     for (int i = 0; i < N; i++)
@@ -102,7 +102,7 @@ static double product(const double *map, int first, int count, const double *fac
 }
 
 /* How fast the slip of a port changes: F x' + D u', where x' has that of driven storages, too. */
-static double push(const double *map, const bg_numbers *a, int reading, int column)
+static double push_of(const double *map, const bg_numbers *a, int reading, int column)
 {
     double sum = 0.0;
     for (int j = 0; j < M; j++)
@@ -131,7 +131,7 @@ static void fill_column(const double *map, const bg_numbers *a, int column, doub
         shot[EX_AT_SLIP + k] = map[(BATCH_AT_Y + reading) * BATCH_COLUMNS + column];
         shot[EX_AT_EFFORT + k] = map[(BATCH_AT_U + input) * BATCH_COLUMNS + column];
         shot[EX_AT_CAP + k] = map[(BATCH_AT_CAP + k) * BATCH_COLUMNS + column];
-        shot[EX_AT_PUSH + k] = push(map, a, reading, column);
+        shot[EX_AT_PUSH + k] = push_of(map, a, reading, column);
     }
     for (int i = 0; i < N; i++)
         shot[EX_AT_RATE + i] = map[(BATCH_AT_RATE + i) * BATCH_COLUMNS + column];
@@ -157,7 +157,7 @@ static void find_fastest(batch_room *room, int at)
     for (int i = 0; i < N; i++)
         for (int j = 0; j < N; j++)
             own[i][j] = made->shot[j][EX_AT_RATE + i];
-    balance(own, made->weight);
+    balance_rates(own, made->weight);
     for (int i = 0; i < N; i++)
         for (int j = 0; j < N; j++)
             own[i][j] *= made->weight[i] / made->weight[j];

@@ -38,7 +38,7 @@ static void add_rows(int rows, int count, const double *a, batch_row *from, batc
 }
 
 /* The effort at a port moves inputs, readings and rates. */
-static void push(const bg_numbers *a, int port, double factor, const double *effort, batch_map *map)
+static void push_port(const bg_numbers *a, int port, double factor, const double *effort, batch_map *map)
 {
     const int column = bg_friction_inputs[port];
     add(factor, effort, map->u[column]);
@@ -48,14 +48,14 @@ static void push(const bg_numbers *a, int port, double factor, const double *eff
         add(factor * a->Q[i * M + column], effort, map->rate[i]);
 }
 
-static void put(int count, const double *values, int column, batch_row *to)
+static void put_column(int count, const double *values, int column, batch_row *to)
 {
     for (int i = 0; i < count; i++)
         to[i][column] = values[i];
 }
 
 /* Evaluates the model where component `at` of [s, w, dw] is BG_FAR and all others are 0. */
-static int probe(bg_model *m, int at, batch_map *map)
+static int probe_base(bg_model *m, int at, batch_map *map)
 {
     double point[BG_MAP_COLUMNS] = {0};
     const bg_snapshot *const shot = &m->shot;
@@ -65,13 +65,13 @@ static int probe(bg_model *m, int at, batch_map *map)
     point[at] = at < BG_MAP_COLUMNS - 1 ? BG_FAR : 0.0;
     const int status = bg_evaluate(m, 0.0, point, point + BG_SIZE, point + BG_SIZE + BG_EXTERNAL,
                                    forward, 0, &m->shot);
-    put(N, shot->x, at, map->x);
-    put(OWN, shot->z, at, map->z);
-    put(M, shot->u, at, map->u);
-    put(M, shot->du, at, map->du);
-    put(ROWS, shot->y, at, map->y);
-    put(BG_SIZE, shot->rate, at, map->rate);
-    put(K, shot->caps, at, map->caps);
+    put_column(N, shot->x, at, map->x);
+    put_column(OWN, shot->z, at, map->z);
+    put_column(M, shot->u, at, map->u);
+    put_column(M, shot->du, at, map->du);
+    put_column(ROWS, shot->y, at, map->y);
+    put_column(BG_SIZE, shot->rate, at, map->rate);
+    put_column(K, shot->caps, at, map->caps);
     return status;
 }
 
@@ -84,7 +84,7 @@ static void pass_rates(batch_map *map)
 
 /* Readings and rates from states and inputs: not by taking friction away, which would leave
  * rounding where there is nothing. */
-static void show(const bg_numbers *a, batch_map *map)
+static void show_all(const bg_numbers *a, batch_map *map)
 {
     memset(map->y, 0, sizeof map->y);
     memset(map->rate, 0, sizeof map->rate);
@@ -101,9 +101,9 @@ static int find_base(batch_instance *own)
     batch_row *const rows = own->base.x;
     int status;
     memset(&own->base, 0, sizeof own->base);
-    status = probe(&own->m, last, &own->base);
+    status = probe_base(&own->m, last, &own->base);
     for (int j = 0; j < (rates ? last : BG_SIZE + BG_EXTERNAL) && status == BG_OK; j++) {
-        status = probe(&own->m, j, &own->base);
+        status = probe_base(&own->m, j, &own->base);
         for (size_t i = 0; i < sizeof own->base / sizeof *rows; i++)
             rows[i][j] = (rows[i][j] - rows[i][last]) / BG_FAR;
     }
@@ -113,7 +113,7 @@ static int find_base(batch_instance *own)
         memcpy(own->forward[k], own->base.u[bg_friction_inputs[k]], sizeof(batch_row));
         memset(own->base.u[bg_friction_inputs[k]], 0, sizeof(batch_row));
     }
-    show(&own->m.numbers, &own->base);
+    show_all(&own->m.numbers, &own->base);
     own->based = status == BG_OK;
     return status;
 }
@@ -128,7 +128,7 @@ static void correct(const bg_hold *held, batch_map *map)
     add_rows(N, held->kept, held->take_away, drift, map->rate);
 }
 
-static void hold(const bg_numbers *a, const bg_hold *held, batch_map *map)
+static void hold_ports(const bg_numbers *a, const bg_hold *held, batch_map *map)
 {
     batch_row right[BG_ROOM(K)], efforts[BG_ROOM(K)];
     memset(right, 0, sizeof right);
@@ -138,7 +138,7 @@ static void hold(const bg_numbers *a, const bg_hold *held, batch_map *map)
     add_rows(held->count, M, held->V, map->du, right);
     add_rows(held->count, held->count, held->inverse, right, efforts);
     for (int r = 0; r < held->count; r++)
-        push(a, held->ports[r], -1.0, efforts[r], map);
+        push_port(a, held->ports[r], -1.0, efforts[r], map);
     for (int turn = 0; turn < 2; turn++) /* the second, of what rounding the first has left */
         correct(held, map);
 }
@@ -149,9 +149,9 @@ static void combine(const batch_instance *own, const int *mode, const bg_hold *h
     const bg_numbers *const a = &own->m.numbers;
     memcpy(map, &own->base, sizeof *map);
     for (int k = 0; k < K; k++)
-        push(a, k, mode[k], own->forward[k], map);
+        push_port(a, k, mode[k], own->forward[k], map);
     if (held)
-        hold(a, held, map);
+        hold_ports(a, held, map);
     for (int i = 0; i < OWN; i++)
         memcpy(map->rate[N + i], map->y[bg_law_rates[i]], sizeof(batch_row));
 }

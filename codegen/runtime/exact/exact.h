@@ -5,7 +5,7 @@
  *   EX_W external inputs w           EX_K friction ports  EX_MODES three to the power of EX_K
  *   EX_G slots of the inputs' generator
  * All but EX_K are at least 1. A mode's number has a digit of base 3 for each port, the first port
- * the lowest: 0 sticks, 1 slips forwards, 2 backwards.
+ * the lowest: 0 sticks, 1 slips forwards, 2 backwards. What is of exact steps alone begins with ex_.
  *
  * Nothing is allocated and nothing is global: the caller owns a context for each run at a time. */
 #ifndef BG_EXACT_H

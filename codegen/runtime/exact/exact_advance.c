@@ -73,7 +73,7 @@ int ex_armed(ex_context *c, const double *row)
 }
 
 /* Keeps those of `count` steps in scratch that are samples; `done` were there before. */
-static void keep(const ex_context *c, const ex_place *p, long long done, int count)
+static void keep_samples(const ex_context *c, const ex_place *p, long long done, int count)
 {
     const long long parts = c->stretch.entry->parts;
     for (long long k = parts - done % parts; k <= count; k += parts)
@@ -108,7 +108,7 @@ static int steps(ex_context *c, ex_place *p, int count, long long *done)
         double(*rows)[EX_ROW] = parts > 1 ? c->scratch : c->task->rows + p->base + *done;
         int sure = ex_leap(&c->stretch, ahead, rows);
         if (parts > 1)
-            keep(c, p, *done, sure);
+            keep_samples(c, p, *done, sure);
         *done += sure;
         memcpy(p->z, rows[sure], sizeof p->z);
         if (sure < ahead) {

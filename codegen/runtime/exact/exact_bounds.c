@@ -92,7 +92,7 @@ static void leap_further(double (*leap)[EX_ROW], double (*before)[EX_ROW], doubl
 
 /* The constant parts of the next samples, which are told from an origin: so nothing large is
  * rounded again in every step. */
-static void constants(ex_stretch *stretch, const double *row)
+static void leap_constants(ex_stretch *stretch, const double *row)
 {
     const ex_entry *e = stretch->entry;
     double rate[EX_Z], next[EX_ROW] = {0};
@@ -142,6 +142,6 @@ void ex_leaps(ex_context *c, ex_stretch *stretch, double h, const double *row)
         if (EX_K)
             ex_bound(c, e, E);
     }
-    constants(stretch, row);
+    leap_constants(stretch, row);
     stretch->leaping = 1;
 }

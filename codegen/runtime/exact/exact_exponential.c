@@ -29,7 +29,7 @@ static void add_terms(const double *c, double (*one)[EX_Z], double (*two)[EX_Z],
 }
 
 /* The series of (exp(B) - 1)/B to B^16 (Paterson and Stockmeyer), with B in work[0]. */
-static void series(ex_context *c, double (*total)[EX_Z])
+static void exponential_series(ex_context *c, double (*total)[EX_Z])
 {
     double(*one)[EX_Z] = c->work[0], (*two)[EX_Z] = c->work[1], (*three)[EX_Z] = c->work[2];
     double(*four)[EX_Z] = c->work[3], inverse[17], factorial = 1.0;
@@ -61,7 +61,7 @@ void ex_exponential(ex_context *c, double (*M)[EX_Z], double norm, double h, dou
     for (int j = 0; j < EX_Z; j++)
         for (int i = 0; i < EX_Z; i++)
             c->work[0][j][i] = part * M[j][i];
-    series(c, gather);
+    exponential_series(c, gather);
     ex_multiply(c->work[0], gather, E);
     for (int j = 0; j < EX_Z; j++) {
         E[j][j] += 1.0;

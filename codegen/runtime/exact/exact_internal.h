@@ -77,13 +77,11 @@ struct ex_context {
     ex_task *task;
     ex_advancing *advance;
     void *caller;                       /* for `advance` */
-    bg_course run;
     int clock, where, next;             /* the latest mode; the next sample */
-    double s[EX_N], point[EX_N];
+    double s[EX_N];
     int known, known_segment;           /* whether `given` holds, for `known_time` */
     double known_time, given[2 * EX_W];
     ex_peaks peaks;
-    ex_shot shot;                       /* of the latest look of the loop */
     ex_stretch stretch;
     double work[6][EX_Z][EX_Z];
     double terms[BG_DEGREE + 1][EX_Z], powers[EX_TRIGGERS][BG_DEGREE + 1];
@@ -91,6 +89,9 @@ struct ex_context {
     int used[EX_ENTRIES];               /* when each was used last; 0 if it is empty */
     ex_entry entries[EX_ENTRIES];
     ex_ladder ladder;
+    bg_course run;
+    double point[EX_N];                 /* room of the loop */
+    ex_shot shot;                       /* of its latest look */
 };
 
 /* exact_inputs.c: the slots at t in a segment; and w and its rate from them. */

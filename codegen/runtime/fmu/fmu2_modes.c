@@ -85,7 +85,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     return fmu2_tell(c, fmu_step(CORE(c), time, step));
 }
 
-static fmi2Status save(fmu2 *f, const void *from, size_t size, fmi2FMUstate *state)
+static fmi2Status save2(fmu2 *f, const void *from, size_t size, fmi2FMUstate *state)
 {
     if (!*state && size == sizeof(fmu_memory))
         *state = f->call.allocateMemory(1, size);
@@ -94,7 +94,7 @@ static fmi2Status save(fmu2 *f, const void *from, size_t size, fmi2FMUstate *sta
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state)
 {
-    return save(c, &CORE(c)->at, sizeof(fmu_memory), state);
+    return save2(c, &CORE(c)->at, sizeof(fmu_memory), state);
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state)
@@ -127,7 +127,7 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size,
                                    fmi2FMUstate *state)
 {
-    return save(c, bytes, size, state);
+    return save2(c, bytes, size, state);
 }
 
 #define REFUSED(name, rest, count)                                          \

@@ -96,7 +96,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Bo
     return fmu3_tell(c, failed);
 }
 
-static fmi3Status save(fmu3 *f, const void *from, size_t size, fmi3FMUState *state)
+static fmi3Status save3(fmu3 *f, const void *from, size_t size, fmi3FMUState *state)
 {
     if (!*state && size == sizeof(fmu_memory))
         *state = malloc(size);
@@ -105,7 +105,7 @@ static fmi3Status save(fmu3 *f, const void *from, size_t size, fmi3FMUState *sta
 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state)
 {
-    return save(c, &CORE(c)->at, sizeof(fmu_memory), state);
+    return save3(c, &CORE(c)->at, sizeof(fmu_memory), state);
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state)
@@ -139,5 +139,5 @@ fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte by
 fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size,
                                    fmi3FMUState *state)
 {
-    return save(c, bytes, size, state);
+    return save3(c, bytes, size, state);
 }

@@ -12,7 +12,7 @@ static fmu_error message(int status)
 /* Sources inside and what the importer gives, for the view. An importer's integrator looks past a
  * time event and keeps nothing of it: a level that comes down to zero there goes on smoothly, and is
  * not refused for being below. */
-static int given(const void *self, double t, double *w, double *dw)
+static int externals_at(const void *self, double t, double *w, double *dw)
 {
     const fmu_instance *const f = self;
     double following;
@@ -33,7 +33,7 @@ void fmu_reset(fmu_instance *f, int exchange)
     f->view.model = &f->model;
     f->view.peaks = &f->at.peaks;
     f->view.self = f;
-    f->view.given = given;
+    f->view.given = externals_at;
     f->stale = f->changed = 1;
 }
 

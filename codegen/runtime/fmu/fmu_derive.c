@@ -6,7 +6,7 @@
 
 enum { K = BG_FRICTION, W = BG_EXTERNAL };
 /* Whether a mode is one affine map of s, w and w'; redundant ports that share a load are not. */
-static int affine(fmu_instance *f)
+static int is_affine(fmu_instance *f)
 {
     bg_hold *held = NULL;
     int sticking = 0;
@@ -18,7 +18,7 @@ static int affine(fmu_instance *f)
 }
 
 /* Moves variables along the seed, where they are part of s, w or w'; 0: one is not. */
-static int push(const unsigned *knowns, size_t columns, const double *seed, double way, double *s,
+static int push_along(const unsigned *knowns, size_t columns, const double *seed, double way, double *s,
                 double *w, double *dw)
 {
     for (size_t j = 0; j < columns; j++) {
@@ -47,7 +47,7 @@ static fmu_error far_difference(fmu_instance *f, const unsigned *unknowns, size_
         int status;
         memset(f->point, 0, sizeof f->point);
         memset(f->w, 0, sizeof f->w);
-        push(knowns, columns, seed, out * BG_FAR, f->point, f->w, dw);
+        push_along(knowns, columns, seed, out * BG_FAR, f->point, f->w, dw);
         status = bg_evaluate(&f->model, 0.0, f->point, f->w, dw, f->at.mode, 0, &f->view.shot);
         if (status != BG_OK)
             return bg_model_message(status);
@@ -69,7 +69,7 @@ static fmu_error set_along(fmu_instance *f, const unsigned *knowns, size_t colum
                            const double *seed, double way, const fmu_memory *from)
 {
     fmu_restore(f, from);
-    if (push(knowns, columns, seed, way, f->at.phase > FMU_INITIALIZING ? f->at.s : f->at.start,
+    if (push_along(knowns, columns, seed, way, f->at.phase > FMU_INITIALIZING ? f->at.s : f->at.start,
              f->at.given, f->at.slopes))
         return NULL;
     fmu_restore(f, from);
@@ -123,7 +123,7 @@ fmu_error fmu_derive(fmu_instance *f, const unsigned *unknowns, size_t rows, con
         return failed;
     const fmu_memory kept = f->at;
     f->frozen = 1;
-    if (affine(f) && push(knowns, columns, seed, 0.0, f->point, f->w, f->dw)) {
+    if (is_affine(f) && push_along(knowns, columns, seed, 0.0, f->point, f->w, f->dw)) {
         failed = far_difference(f, unknowns, rows, knowns, columns, seed, result);
     } else {
         for (int way = 1; way >= -1 && !failed; way -= 2) {

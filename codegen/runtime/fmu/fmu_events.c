@@ -80,7 +80,7 @@ static fmu_error remove_slips(fmu_instance *f, int *moved)
     return status == BG_OK ? NULL : bg_model_message(status);
 }
 
-static fmu_error settle(fmu_instance *f, int *states_changed)
+static fmu_error settle_event(fmu_instance *f, int *states_changed)
 {
     fmu_error failed;
     fmu_pass(f, f->at.time);
@@ -108,7 +108,7 @@ fmu_error fmu_initialize(fmu_instance *f)
         return failed;
     f->at.phase = f->at.exchange ? FMU_EVENT : FMU_STEPPING;
     memcpy(f->model.mode, f->at.mode, sizeof f->model.mode);
-    return settle(f, &moved);
+    return settle_event(f, &moved);
 }
 
 /* An event: breakpoints of sources, then the mode anew. Parameters of models whose states inputs move
@@ -116,5 +116,5 @@ fmu_error fmu_initialize(fmu_instance *f)
 fmu_error fmu_event(fmu_instance *f, int *states_changed)
 {
     *states_changed = 0;
-    return settle(f, states_changed);
+    return settle_event(f, states_changed);
 }

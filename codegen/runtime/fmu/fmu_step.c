@@ -38,7 +38,7 @@ static fmu_error stride(fmu_instance *f, double t, double stop, double longest)
 }
 
 /* From t to stop in internal steps, shorter ones where known sources do much in one. */
-static fmu_error walk(fmu_instance *f, double t, double stop)
+static fmu_error walk_on(fmu_instance *f, double t, double stop)
 {
     fmu_error failed = NULL;
     while (!failed && t < stop) {
@@ -59,14 +59,14 @@ static fmu_error walk_pieces(fmu_instance *f, double t, double end)
         fmu_pass(f, t);
         if (fmu_next_break(f, &stop) && !(stop < end))
             stop = end;
-        failed = walk(f, t, stop);
+        failed = walk_on(f, t, stop);
         t = stop;
     }
     return failed;
 }
 
 /* Sticking as it is at the end of a step, so that outputs show it. */
-static int settle(fmu_instance *f, double t, double h)
+static int settle_end(fmu_instance *f, double t, double h)
 {
     for (int i = 0; i < 3; i++)
         fmu_externals(f, t + 0.5 * i * h, f->steps + i * W, f->dw);
@@ -100,7 +100,7 @@ fmu_error fmu_advance(fmu_instance *f, double t, double h)
     }
     f->at.time = end;
     fmu_pass(f, end);
-    status = settle(f, end, f->at.step);
+    status = settle_end(f, end, f->at.step);
     memcpy(f->at.mode, f->model.mode, sizeof f->at.mode);
     f->at.stepped = f->model.started;
     f->at.fastest = f->model.fastest;

@@ -24,7 +24,7 @@ static int stage(bg_located *c, int i, double h)
 }
 
 /* The error over what the tolerance allows: below 1 the step is good. */
-static double error_of(const bg_located *c, double h)
+static double explicit_error(const bg_located *c, double h)
 {
     const bg_solver *const s = &c->solver;
     double fifth = 0.0, third = 0.0;
@@ -51,7 +51,7 @@ static int attempt(bg_located *c, double h, double *error)
     int status = BG_OK;
     for (int i = 1; i <= STAGES && status == BG_OK; i++)
         status = stage(c, i, h);
-    *error = status == BG_OK ? error_of(c, h) : INFINITY;
+    *error = status == BG_OK ? explicit_error(c, h) : INFINITY;
     return status == BG_NOT_FINITE || status == BG_NO_SOLUTION ? BG_OK : status;
 }
 

@@ -31,14 +31,6 @@ static const double P[STAGES][STAGES] = {
     {1.0 / 3.0, -8.0 / 3.0, 10.0 / 3.0},
 };
 
-static double norm(int count, const double *values, const double *scale)
-{
-    double sum = 0.0;
-    for (int i = 0; i < count; i++)
-        sum += values[i] / scale[i % N] * (values[i] / scale[i % N]);
-    return sqrt(sum / count);
-}
-
 /* Factors GAMMA/h - J, and (ALPHA - i BETA)/h - J as a real matrix of twice the size. */
 static int factor(bg_solver *s, double h)
 {
@@ -99,7 +91,7 @@ static int solve_stages(bg_located *c, double h, double (*Z)[N], double *rate)
     for (int turn = 0; turn < NEWTON; turn++) {
         if (!change(c, h, (const double(*)[N])Z, (const double(*)[N])W, dW))
             return 0;
-        const double size = norm(STAGES * N, dW[0], s->scale);
+        const double size = bg_norm(STAGES * N, dW[0], s->scale);
         *rate = turn ? size / before : 0.0;
         if (turn && (*rate >= 1 || pow(*rate, NEWTON - turn) / (1 - *rate) * size > enough))
             return 0;
@@ -125,13 +117,13 @@ static void tolerances(bg_located *c, const double *other)
 }
 
 /* Solves (GAMMA/h - J) error = rate + Z E / h. */
-static double error_of(bg_solver *s, double h, const double (*Z)[N], const double *rate,
+static double implicit_error(bg_solver *s, double h, const double (*Z)[N], const double *rate,
                        double *error)
 {
     for (int k = 0; k < N; k++)
         error[k] = rate[k] + (Z[0][k] * E[0] + Z[1][k] * E[1] + Z[2][k] * E[2]) / h;
     bg_solve(N, s->real, s->real_pivots, 1, error);
-    return norm(N, error, s->scale);
+    return bg_norm(N, error, s->scale);
 }
 
 /* The error over what the tolerance allows; a step that follows a rejected one looks twice. */
@@ -142,14 +134,14 @@ static double judged(bg_located *c, double h, const double (*Z)[N], int again)
     for (int k = 0; k < N; k++)
         end[k] = s->y_old[k] + Z[STAGES - 1][k];
     tolerances(c, end);
-    double size = error_of(s, h, Z, s->f_old, error);
+    double size = implicit_error(s, h, Z, s->f_old, error);
     if (!again || !(size > 1))
         return size;
     for (int k = 0; k < N; k++)
         s->tried[k] = s->y_old[k] + error[k];
     if (bg_located_rate(c, s->t_old, s->tried, rate) != BG_OK)
         return size;
-    return error_of(s, h, Z, rate, error);
+    return implicit_error(s, h, Z, rate, error);
 }
 
 /* By how much the next step may differ, from the errors of this one and the one before. */

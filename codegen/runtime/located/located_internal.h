@@ -24,7 +24,8 @@ int bg_watch_begin(bg_located *c);
 int bg_watch_step(bg_located *c, int *found, double *time, int *ports);
 
 /* located_solver.c: steps to no later than `stop` that keep the tolerance, and the state anywhere in
- * the latest. */
+ * the latest; the mean of values over scales, which repeat. */
+double bg_norm(int count, const double *values, const double *scale);
 int bg_solver_begin(bg_located *c, int method, double longest, double stop);
 int bg_solver_step(bg_located *c, double stop);
 int bg_solver_dense(bg_located *c, double t, double *s);

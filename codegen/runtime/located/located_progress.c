@@ -38,7 +38,8 @@ static int jumps(bg_located *c, double mean, int slides)
     double low[BG_SIZE], middle[BG_SIZE], high[BG_SIZE], begin = 0.0, end = 1.0;
     for (int i = 0; i < BG_SIZE; i++)
         l.scale[i] = l.reach / (c->asked->atol + c->asked->rtol * fabs(c->s[i]));
-    if (bg_located_rate(c, c->run.at.t, c->s, l.base) != BG_OK || !rates_at(&l, 1.0, 0.0, NULL, high))
+    if (bg_located_rate(c, c->run.at.t, c->s, l.base) != BG_OK
+        || !rates_at(&l, 1.0, 0.0, NULL, high))
         return 0;
     memcpy(low, l.base, sizeof low);
     const double first = changed(&l, low, high);

@@ -35,15 +35,7 @@ int bg_located_jacobian(bg_located *c, double t, const double *s, double *jacobi
     return slopes(c, t, s, 1.0, jacobian);
 }
 
-static double largest(const double *a)
-{
-    double most = 0.0;
-    for (int i = 0; i < BG_SIZE * BG_SIZE; i++)
-        most = fmax(most, fabs(a[i]));
-    return most;
-}
-
-static void square(const double *a, double *product)
+static void square_of(const double *a, double *product)
 {
     memset(product, 0, sizeof(double) * BG_SIZE * BG_SIZE);
     for (int i = 0; i < BG_SIZE; i++)
@@ -59,7 +51,7 @@ static void square(const double *a, double *product)
 static int largest_rate(bg_located *c, double *fastest)
 {
     double *power = c->squares[0], *next = c->squares[1], logarithm = 0.0, share = 1.0;
-    double size = largest(power);
+    double size = bg_largest(BG_SIZE * BG_SIZE, power);
     *fastest = c->signals->fastest[c->run.segment];
     if (!isfinite(size))
         return BG_NOT_FINITE;
@@ -69,10 +61,10 @@ static int largest_rate(bg_located *c, double *fastest)
         share /= 2;
         for (int i = 0; i < BG_SIZE * BG_SIZE; i++)
             power[i] /= size;
-        square(power, next);
+        square_of(power, next);
         power = next;
         next = done;
-        size = largest(power);
+        size = bg_largest(BG_SIZE * BG_SIZE, power);
     }
     if (size > 0.0)
         *fastest = fmax(*fastest, exp(logarithm + share * log(size)));

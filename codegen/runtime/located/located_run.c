@@ -7,7 +7,7 @@
 enum { K = BG_FRICTION };
 
 /* External inputs in the present segment, for the view. */
-static int given(const void *self, double t, double *w, double *dw)
+static int inputs_now(const void *self, double t, double *w, double *dw)
 {
     const bg_located *const c = self;
     bg_signals_at(c->signals, c->run.segment, t, w, dw);
@@ -33,7 +33,7 @@ int bg_located_rate(bg_located *c, double t, const double *s, double *rate)
     return status == BG_OK && !bg_finite(BG_SIZE, rate) ? BG_NOT_FINITE : status;
 }
 
-static void see(void *run, const int *slipping)
+static void take_in(void *run, const int *slipping)
 {
     bg_located *const c = run;
     bg_view_see(&c->view, c->s, slipping);
@@ -53,18 +53,20 @@ static int fastest_now(void *run, double *fastest)
     return status;
 }
 
-static int rest(void *run)
+static int take_away(void *run)
 {
     bg_located *const c = run;
     int sticking = 0;
     for (int i = 0; i < K; i++)
         sticking |= c->run.mode[i] == 0;
     const int status = sticking ? bg_view_look(&c->view, c->run.at.t, c->s, c->run.mode) : BG_OK;
-    return status || !sticking ? status : bg_remove_slips(c->model, c->run.mode, &c->view.shot, c->s);
+    if (status || !sticking)
+        return status;
+    return bg_remove_slips(c->model, c->run.mode, &c->view.shot, c->s);
 }
 
 /* Hands the next sample over, which is at s. */
-static int record(bg_located *c, const double *s)
+static int hand_over(bg_located *c, const double *s)
 {
     const bg_request *const asked = c->asked;
     const double t = asked->times[c->next];
@@ -86,13 +88,13 @@ static int sample(bg_located *c, double until)
     while (status == BG_OK && c->next < asked->samples && asked->times[c->next] < until) {
         status = bg_solver_dense(c, asked->times[c->next], s);
         if (status == BG_OK)
-            status = record(c, s);
+            status = hand_over(c, s);
     }
     return status;
 }
 
 /* The longest step: events and inputs must not fall between, nor the interpolant be strained. */
-static double longest(const bg_located *c, int method, double fastest)
+static double longest_now(const bg_located *c, int method, double fastest)
 {
     const double bound = bg_longest_step(c->run.at.t - c->run.began);
     const double driven = c->signals->fastest[c->run.segment];
@@ -124,7 +126,7 @@ static int step(bg_located *c, double stop, int *ended)
 }
 
 /* From the present instant to `stop` or the first event. */
-static int advance(void *run, double stop)
+static int go_on(void *run, double stop)
 {
     bg_located *const c = run;
     double fastest;
@@ -134,7 +136,7 @@ static int advance(void *run, double stop)
     if (method == BG_AUTO)
         method = fastest * span > BG_STIFF_SPAN ? BG_RADAU : BG_DOP853;
     if (status == BG_OK)
-        status = bg_solver_begin(c, method, longest(c, method, fastest), stop);
+        status = bg_solver_begin(c, method, longest_now(c, method, fastest), stop);
     if (status == BG_OK)
         status = bg_watch_begin(c);
     bg_progress_begin(c);
@@ -144,12 +146,12 @@ static int advance(void *run, double stop)
             status = bg_progress_check(c);
         if (status == BG_OK && !BG_AFFINE && count % BG_REFRESH == 0)
             status = bg_located_fastest(c, c->run.at.t, c->s, &fastest);
-        c->solver.longest = longest(c, method, fastest);
+        c->solver.longest = longest_now(c, method, fastest);
     }
     return status;
 }
 
-static int begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
+static int set_up(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
 {
     double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
     c->model = m;
@@ -165,10 +167,10 @@ static int begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_reque
     c->view.model = m;
     c->view.peaks = &c->peaks;
     c->view.self = c;
-    c->view.given = given;
+    c->view.given = inputs_now;
     c->view.measured = 0;
     memset(m->seen, 0, sizeof m->seen);
-    given(c, c->run.at.t, w, dw);
+    inputs_now(c, c->run.at.t, w, dw);
     const int status = bg_model_vector(m, c->run.at.t, asked->states, w, c->s);
     bg_have_seen(m, c->s);
     return status;
@@ -176,12 +178,12 @@ static int begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_reque
 
 int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
 {
-    int status = begin(c, m, signals, asked);
-    const bg_engine engine = {bg_view_sight(&c->view), c, see, fastest_now, rest, advance};
+    int status = set_up(c, m, signals, asked);
+    const bg_engine engine = {bg_view_sight(&c->view), c, take_in, fastest_now, take_away, go_on};
     if (status == BG_OK)
         status = bg_run(&engine, &c->run);
     if (status == BG_OK)
-        status = record(c, c->s); /* the last sample shows the instant after all events */
+        status = hand_over(c, c->s); /* the last sample shows the instant after all events */
     asked->count = c->run.count;
     asked->time = c->run.at.t;
     return status;

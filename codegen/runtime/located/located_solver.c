@@ -4,12 +4,12 @@
 
 #include "located_internal.h"
 
-static double norm(const bg_located *c, const double *values)
+double bg_norm(int count, const double *values, const double *scale)
 {
     double sum = 0.0;
-    for (int i = 0; i < BG_SIZE; i++)
-        sum += values[i] / c->solver.scale[i] * (values[i] / c->solver.scale[i]);
-    return sqrt(sum / BG_SIZE);
+    for (int i = 0; i < count; i++)
+        sum += values[i] / scale[i % BG_SIZE] * (values[i] / scale[i % BG_SIZE]);
+    return sqrt(sum / count);
 }
 
 /* A first step from the sizes of the state, its rate and its rate's rate (Hairer, Norsett, Wanner,
@@ -21,7 +21,7 @@ static int first_step(bg_located *c, double order, double stop)
     double rate[BG_SIZE];
     for (int i = 0; i < BG_SIZE; i++)
         s->scale[i] = c->asked->atol + c->asked->rtol * fabs(s->y[i]);
-    const double size = norm(c, s->y), slope = norm(c, s->f);
+    const double size = bg_norm(BG_SIZE, s->y, s->scale), slope = bg_norm(BG_SIZE, s->f, s->scale);
     const int tiny = size < BG_FIRST_SMALL || slope < BG_FIRST_SMALL;
     double h = tiny ? BG_FIRST_STEP : BG_FIRST_PART * size / slope;
     h = fmin(h, fmin(s->longest, stop - c->run.at.t));
@@ -30,7 +30,7 @@ static int first_step(bg_located *c, double order, double stop)
     const int status = bg_located_rate(c, c->run.at.t + h, s->tried, rate);
     for (int i = 0; i < BG_SIZE; i++)
         rate[i] -= s->f[i];
-    const double bend = status == BG_OK ? norm(c, rate) / h : INFINITY;
+    const double bend = status == BG_OK ? bg_norm(BG_SIZE, rate, s->scale) / h : INFINITY;
     const double most = fmax(slope, bend);
     const double next = most <= BG_FIRST_FLAT ? fmax(BG_FIRST_STEP, h * BG_FIRST_SHORTER)
                                               : pow(BG_FIRST_PART / most, 1.0 / order);

@@ -12,10 +12,10 @@ typedef struct {
     bg_located *c;
     int port, status;
     double level;
-} search;
+} root_search;
 
-/* The triggers of the instant in c->view.shot; a port that sticks lets go where inputs move it, too. */
-static void triggers(const bg_located *c, double *values)
+/* The triggers of the latest look; a port that sticks lets go where inputs move it, too. */
+static void triggers_now(const bg_located *c, double *values)
 {
     int sticking = 0;
     bg_hold *held = NULL;
@@ -41,13 +41,13 @@ static int triggers_at(bg_located *c, double t, double *values)
     int status = bg_solver_dense(c, t, s);
     if (status == BG_OK)
         status = bg_view_look(&c->view, t, s, c->run.mode);
-    triggers(c, values);
+    triggers_now(c, values);
     return status;
 }
 
 static double above(void *self, double t)
 {
-    search *const asked = self;
+    root_search *const asked = self;
     double values[PORTS] = {0};
     const int status = triggers_at(asked->c, t, values);
     if (status != BG_OK)
@@ -56,7 +56,7 @@ static double above(void *self, double t)
 }
 
 /* Where trigger falls through the level between a and b, where it is above it and below. */
-static double crossing(search *asked, double a, double b, double level)
+static double crossing(root_search *asked, double a, double b, double level)
 {
     double found = b;
     asked->level = level;
@@ -69,7 +69,8 @@ static double crossing(search *asked, double a, double b, double level)
 
 /* Where trigger `i` falls through zero between two points: 1, if it does. Until it is armed only a
  * fall well below zero counts, after a moment in which nothing does. */
-static int fall(search *asked, double t_a, double t_b, double a, double b, double *root)
+static int trigger_fall(root_search *asked, double t_a, double t_b, double a, double b,
+                        double *root)
 {
     bg_watch *const watch = &asked->c->watch;
     const int i = asked->port;
@@ -93,7 +94,7 @@ static int fall(search *asked, double t_a, double t_b, double a, double b, doubl
 
 /* The first of two roots where a trigger dips below zero between three points and comes back: the
  * parabola through them tells whether there is a dip worth a closer look, by golden sections. */
-static int dip(search *asked, const double *t, const double *values, double *root)
+static int dip(root_search *asked, const double *t, const double *values, double *root)
 {
     static const double golden = 0.6180339887498949;
     const double a = values[0], b = values[1], c = values[2];
@@ -125,12 +126,12 @@ static int dip(search *asked, const double *t, const double *values, double *roo
 }
 
 /* The first time in a step at which a trigger falls through zero, seen or hidden in a dip. */
-static int first_fall(search *asked, const double *times, double values[POINTS][PORTS],
+static int first_fall(root_search *asked, const double *times, double values[POINTS][PORTS],
                       double *root)
 {
     const int i = asked->port;
     for (int k = 0; k + 1 < POINTS; k++) {
-        if (fall(asked, times[k], times[k + 1], values[k][i], values[k + 1][i], root))
+        if (trigger_fall(asked, times[k], times[k + 1], values[k][i], values[k + 1][i], root))
             return 1;
         if (k > 0 && asked->c->watch.armed[i]) {
             const double three[3] = {values[k - 1][i], values[k][i], values[k + 1][i]};
@@ -154,7 +155,7 @@ int bg_watch_begin(bg_located *c)
         c->watch.near[i] = BG_LEFT * ports[i].near_slip;
         c->watch.armed[i] = 0;
     }
-    triggers(c, c->watch.before);
+    triggers_now(c, c->watch.before);
     return BG_OK;
 }
 
@@ -162,7 +163,7 @@ int bg_watch_step(bg_located *c, int *found, double *time, int *ports)
 {
     const double begin = c->solver.t_old, end = c->solver.t;
     double times[POINTS], values[POINTS][PORTS], roots[PORTS];
-    search asked = {c, 0, BG_OK, 0.0};
+    root_search asked = {c, 0, BG_OK, 0.0};
     *found = 0;
     *time = INFINITY;
     if (K == 0)

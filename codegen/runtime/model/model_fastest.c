@@ -29,7 +29,7 @@ static double normalised(const bg_model *m, double *a)
 }
 
 /* Fits J J from, which becomes `next`, both of length 1, by J from and from. */
-static int look(bg_model *m, double t, const double *s, const double *w, double amount,
+static int look_along(bg_model *m, double t, const double *s, const double *w, double amount,
                 const double *from, double *next, fit *found)
 {
     double *const once = m->work.image;
@@ -80,7 +80,7 @@ static double longest(const bg_fastest *f, const fit *found, double h)
 }
 
 /* The kept vector goes on, and a little of every direction with it, so that none is ever lost. */
-static void keep(bg_model *m, const fit *found, const double *next)
+static void keep_direction(bg_model *m, const fit *found, const double *next)
 {
     bg_fastest *const f = &m->fastest;
     double stir[BG_SIZE] = {0};
@@ -108,22 +108,23 @@ static int on_one_side(const bg_model *m)
 }
 
 /* Rounds that give no verdict; 0 where the rates have no values beside s. */
-static int go_on(bg_model *m, double t, const double *s, const double *w, int rounds, fit *found)
+static int look_on(bg_model *m, double t, const double *s, const double *w, int rounds, fit *found)
 {
     for (int k = 0; k < rounds; k++) {
-        if (look(m, t, s, w, BG_DIFFERENCE, m->fastest.direction, m->work.next, found) != BG_OK)
+        double *const along = m->fastest.direction;
+        if (look_along(m, t, s, w, BG_DIFFERENCE, along, m->work.next, found) != BG_OK)
             return 0;
-        keep(m, found, m->work.next);
+        keep_direction(m, found, m->work.next);
     }
     return 1;
 }
 
 /* A direction that no structure of the model is blind to. */
-static void begin(bg_model *m, fit *found)
+static void begin_fit(bg_model *m, fit *found)
 {
     memset(found, 0, sizeof *found);
     memset(m->work.next, 0, sizeof m->work.next);
-    keep(m, found, m->work.next);
+    keep_direction(m, found, m->work.next);
 }
 
 /* Looks a second time, to the other side and farther: a jump has other slopes there. The longest
@@ -131,13 +132,14 @@ static void begin(bg_model *m, fit *found)
 static double confirmed(bg_model *m, double t, double h, const double *s, const double *w,
                         const fit *found)
 {
+    const double other = -BG_FARTHER * BG_DIFFERENCE;
     bg_fastest *const f = &m->fastest;
     fit again;
     double step = longest(f, found, h), finer;
-    if (look(m, t, s, w, -BG_FARTHER * BG_DIFFERENCE, f->direction, m->work.next, &again) != BG_OK
+    if (look_along(m, t, s, w, other, f->direction, m->work.next, &again) != BG_OK
         || again.growth < 0.5 * found->growth || !(longest(f, &again, h) < h))
         return h;
-    if (go_on(m, t, s, w, REFINED, &again)) {
+    if (look_on(m, t, s, w, REFINED, &again)) {
         finer = longest(f, &again, h);
         step = fmin(step, finer);
     }
@@ -156,14 +158,14 @@ int bg_check_step(bg_model *m, double t, double h, const double *s, const double
     bg_weigh(m, h);
     bg_reach(m, h, s);
     if (f->noise == 0) {
-        begin(m, &found);
-        go_on(m, t, s, w, ROUNDS, &found);
+        begin_fit(m, &found);
+        look_on(m, t, s, w, ROUNDS, &found);
     }
-    seen = look(m, t, s, w, BG_DIFFERENCE, f->direction, m->work.next, &found) == BG_OK;
+    seen = look_along(m, t, s, w, BG_DIFFERENCE, f->direction, m->work.next, &found) == BG_OK;
     if (seen && sided && longest(f, &found, h) < h)
         step = confirmed(m, t, h, s, w, &found);
     else if (seen)
-        keep(m, &found, m->work.next);
+        keep_direction(m, &found, m->work.next);
     m->where = -1;
     if (!(step < h))
         return BG_OK;

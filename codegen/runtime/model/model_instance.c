@@ -55,12 +55,6 @@ void bg_model_outputs(const bg_snapshot *shot, double *outputs)
         outputs[i] = shot->y[bg_output_readings[i]];
 }
 
-static double *put(double *to, int count, const double *from)
-{
-    memcpy(to, from, sizeof(double) * (size_t)count);
-    return to + count;
-}
-
 /* Probes the model where one component of [s, w, dw] is BG_FAR and all others are 0. */
 static int probe(bg_model *m, const int *mode, int at, double *column)
 {
@@ -75,13 +69,13 @@ static int probe(bg_model *m, const int *mode, int at, double *column)
         m->work.point[at] = BG_FAR;
     status = bg_evaluate(m, 0.0, m->work.point, m->work.external[0], m->work.external[1], mode, 0,
                          &m->shot);
-    column = put(column, N, m->shot.x);
-    column = put(column, OWN, m->shot.z);
-    column = put(column, M, m->shot.u);
-    column = put(column, M, m->shot.du);
-    column = put(column, ROWS, m->shot.y);
-    column = put(column, BG_SIZE, m->shot.rate);
-    put(column, K, m->shot.caps);
+    column = bg_put(column, N, m->shot.x);
+    column = bg_put(column, OWN, m->shot.z);
+    column = bg_put(column, M, m->shot.u);
+    column = bg_put(column, M, m->shot.du);
+    column = bg_put(column, ROWS, m->shot.y);
+    column = bg_put(column, BG_SIZE, m->shot.rate);
+    bg_put(column, K, m->shot.caps);
     return status;
 }
 

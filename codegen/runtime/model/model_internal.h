@@ -62,12 +62,14 @@ void bg_known_rates(const bg_values *v, double *out);
 void bg_friction_values(const bg_values *v, double *out);
 void bg_prepare_rhs(bg_model *m);
 
-/* model_linear.c: by rows; n small or large. */
+/* model_linear.c: by rows; n small or large. The largest magnitude; a copy, and what is behind. */
 int bg_factor(int n, double *a, int *pivots);
 void bg_solve(int n, const double *a, const int *pivots, int columns, double *right);
 int bg_inverse(int n, double *a, int *pivots, double *inverse);
 void bg_multiply_add(int rows, int columns, const double *a, const double *x, double *y);
 int bg_finite(int count, const double *values);
+double bg_largest(int count, const double *values);
+double *bg_put(double *to, int count, const double *from);
 
 /* model_numbers.c */
 int bg_assemble(bg_model *m);

@@ -1,6 +1,7 @@
 /* Dense linear systems by rows: factors with pivots, products. */
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "model_internal.h"
 
@@ -16,10 +17,7 @@ static void swap_rows(int columns, double *a, double *b)
 /* Below this fraction of the largest entry a pivot is rounding. */
 static double negligible(int n, const double *a)
 {
-    double largest = 0.0;
-    for (int i = 0; i < n * n; i++)
-        largest = fmax(largest, fabs(a[i]));
-    return 2 * DBL_EPSILON * largest;
+    return 2 * DBL_EPSILON * bg_largest(n * n, a);
 }
 
 /* a becomes its factors L (unit diagonal) and U; 0 if it has no inverse. */
@@ -79,9 +77,7 @@ void bg_solve(int n, const double *a, const int *pivots, int columns, double *ri
 int bg_inverse(int n, double *a, int *pivots, double *inverse)
 {
     for (int i = 0; i < n; i++) {
-        double largest = 0.0;
-        for (int j = 0; j < n; j++)
-            largest = fmax(largest, fabs(a[i * n + j]));
+        const double largest = bg_largest(n, a + i * n);
         if (!(largest > 0) || !isfinite(largest))
             return 0;
         for (int j = 0; j < n; j++) {
@@ -112,4 +108,18 @@ int bg_finite(int count, const double *values)
         if (!isfinite(values[i]))
             return 0;
     return 1;
+}
+
+double bg_largest(int count, const double *values)
+{
+    double most = 0.0;
+    for (int i = 0; i < count; i++)
+        most = fmax(most, fabs(values[i]));
+    return most;
+}
+
+double *bg_put(double *to, int count, const double *from)
+{
+    memcpy(to, from, sizeof(double) * (size_t)count);
+    return to + count;
 }

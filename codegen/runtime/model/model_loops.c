@@ -18,14 +18,6 @@ typedef struct {
     int status;
 } search;
 
-static double largest(int count, const double *values)
-{
-    double most = 0.0;
-    for (int i = 0; i < count; i++)
-        most = fmax(most, fabs(values[i]));
-    return most;
-}
-
 /* What is left of the laws if the inputs have these values. */
 static void left_over(search *s, const double *values, double *left)
 {
@@ -46,8 +38,8 @@ static int solves(search *s, const double *values)
 {
     double left[SIZE];
     left_over(s, values, left);
-    return largest(s->loop->count, left)
-        <= BG_RESIDUAL * (BG_RESIDUAL_FLOOR + largest(s->loop->count, values));
+    return bg_largest(s->loop->count, left)
+        <= BG_RESIDUAL * (BG_RESIDUAL_FLOOR + bg_largest(s->loop->count, values));
 }
 
 static double one(void *self, double value)
@@ -85,7 +77,7 @@ static void newton(search *s, double *values)
     const int n = s->loop->count;
     left_over(s, values, now);
     for (int k = 0; k < ITERATIONS; k++) {
-        const double size = largest(n, now);
+        const double size = bg_largest(n, now);
         int halvings = 0;
         if (size == 0 || !newton_change(s, values, now, change))
             return;
@@ -93,7 +85,7 @@ static void newton(search *s, double *values)
             for (int i = 0; i < n; i++)
                 tried[i] = values[i] + change[i];
             left_over(s, tried, left);
-            if (largest(n, left) < size)
+            if (bg_largest(n, left) < size)
                 break;
             int moves = 0;
             for (int i = 0; i < n; i++) {

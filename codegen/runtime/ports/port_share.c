@@ -18,14 +18,6 @@ typedef struct {
     double rows[PORTS * PORTS], caps[PORTS];
 } directions;
 
-static double largest(int count, const double *values)
-{
-    double found = 0.0;
-    for (int i = 0; i < count; i++)
-        found = fmax(found, fabs(values[i]));
-    return found;
-}
-
 static void swap(int count, double *a, double *b)
 {
     for (int i = 0; i < count; i++) {
@@ -54,7 +46,7 @@ static void eliminate(directions *d, int k, int port)
  * itself among them. The rank. */
 static int reduce(directions *d, int size, const int *ports, int *pivots)
 {
-    const double least = BG_NOTHING * largest(d->free * d->count, d->rows);
+    const double least = BG_NOTHING * bg_largest(d->free * d->count, d->rows);
     int rank = 0;
     while (rank < d->free) {
         int row = rank, port = ports[0];
@@ -93,7 +85,7 @@ static int weigh(const directions *d, const int *ports, double *weights)
     for (int k = 0; k < d->free; k++)
         weights[pivots[k]] = -own.rows[k * d->count + last];
     for (int i = 0; i < d->count; i++)
-        if (fabs(weights[i]) <= BG_NOTHING * largest(d->count, weights))
+        if (fabs(weights[i]) <= BG_NOTHING * bg_largest(d->count, weights))
             weights[i] = 0.0;
     return 1;
 }
@@ -143,7 +135,7 @@ static double most_loaded(const directions *d, int moved, const int *ports, cons
 /* The ports that any direction moves. */
 static int moving(const directions *d, int *ports)
 {
-    const double least = BG_NOTHING * largest(d->free * d->count, d->rows);
+    const double least = BG_NOTHING * bg_largest(d->free * d->count, d->rows);
     int count = 0;
     for (int i = 0; i < d->count; i++) {
         double most = 0.0;
@@ -156,7 +148,7 @@ static int moving(const directions *d, int *ports)
 }
 
 /* Settles the ports of one load at its fraction, and leaves the directions that move none. */
-static void settle(directions *d, double *efforts)
+static void settle_load(directions *d, double *efforts)
 {
     double weights[PORTS] = {0}, fraction = 0.0;
     int ports[PORTS], pivots[PORTS], size = 0, rank;
@@ -185,12 +177,12 @@ void bg_fair_share(const bg_hold *held, const double *caps, double *efforts)
     directions d;
     if (BG_FRICTION < 2)
         return;
-    const double least = BG_LEAST_CAP * largest(held->count, efforts) + BG_TINY;
+    const double least = BG_LEAST_CAP * bg_largest(held->count, efforts) + BG_TINY;
     d.free = held->share_count;
     d.count = held->count;
     memcpy(d.rows, held->share, sizeof d.rows);
     for (int i = 0; i < d.count; i++)
         d.caps[i] = fmax(caps[i], least);
     while (d.free > 0)
-        settle(&d, efforts);
+        settle_load(&d, efforts);
 }

@@ -86,7 +86,7 @@ static void rule(bg_model *m, const int *mode, bg_ruling *ruling)
             ruling->rows[r][held->ports[c]] = held->share[r * held->count + c];
 }
 
-static void tell(void *view, const int *mode, const bg_instant *at, bg_port *ports,
+static void tell_ports(void *view, const int *mode, const bg_instant *at, bg_port *ports,
                  bg_ruling *ruling)
 {
     bg_view *const v = view;
@@ -100,7 +100,7 @@ static void tell(void *view, const int *mode, const bg_instant *at, bg_port *por
 
 bg_sight bg_view_sight(bg_view *v)
 {
-    return (bg_sight){v, BG_SIZE, K, bg_beside, v->shot.rate, v->point, bg_view_look, tell};
+    return (bg_sight){v, BG_SIZE, K, bg_beside, v->shot.rate, v->point, bg_view_look, tell_ports};
 }
 
 /* A term is the effect of a small relative change of a state. */

@@ -25,7 +25,8 @@ static int first_guess(bg_model *m, double h, int *near)
     int count = 0;
     for (int i = 0; i < K; i++) {
         double around, terms;
-        const double slip = bg_slip(m, &m->shot, i, &around), rate = bg_slip_rate(m, &m->shot, i, &terms);
+        const double slip = bg_slip(m, &m->shot, i, &around);
+        const double rate = bg_slip_rate(m, &m->shot, i, &terms);
         near[i] = fabs(slip) <= fmax(m->band[i], BG_STEP_ROUNDING * around) || bg_beside[i];
         /* An input that steps may turn a slip round too; what a step can't reach slips on. */
         near[i] |= m->started && slip * m->mode[i] < 0 && fabs(slip) <= 2 * h * fabs(rate);
@@ -62,7 +63,8 @@ static int caught(bg_model *m, const int *near)
         double terms, moves;
         if (!near[i] || m->mode[i] == 0)
             continue;
-        moves = bg_beside[i] ? bg_slip(m, &m->shot, i, &terms) : bg_slip_rate(m, &m->shot, i, &terms);
+        moves = bg_beside[i] ? bg_slip(m, &m->shot, i, &terms)
+                             : bg_slip_rate(m, &m->shot, i, &terms);
         if (moves * m->mode[i] < -BG_STEP_ROUNDING * terms) {
             m->mode[i] = 0;
             return 1;
@@ -72,7 +74,7 @@ static int caught(bg_model *m, const int *near)
 }
 
 /* Whether slips that only inputs rule are not zero though ports are to hold them there. */
-static int ruled_out(bg_model *m)
+static int rules_out(bg_model *m)
 {
     bg_hold *held = NULL;
     if (!sticks(m->mode) || bg_hold_of(m, m->mode, &held) != BG_OK)
@@ -130,7 +132,7 @@ static int numbered(bg_model *m, const int *near, const int *rest, int number)
 
 /* The first mode that contradicts nothing, those in which most ports stick first: where one change
  * at a time has come to what is no mode, for a reason that is told if there is none. */
-static int search(bg_model *m, const start *at, const int *near, int reason)
+static int search_all(bg_model *m, const start *at, const int *near, int reason)
 {
     int rest[PORTS] = {0}, kept[PORTS] = {0}, count = 0, total = 1;
     memcpy(rest, m->mode, sizeof m->mode);
@@ -141,7 +143,7 @@ static int search(bg_model *m, const start *at, const int *near, int reason)
     for (int stick = count; stick >= 0; stick--)
         for (int number = 0; number < total; number++) {
             if (numbered(m, near, rest, number) != stick || evaluate(m, at, m->mode) != BG_OK
-                || ruled_out(m))
+                || rules_out(m))
                 continue;
             memcpy(kept, m->mode, sizeof m->mode);
             if (!let_go(m) && !caught(m, near))
@@ -162,8 +164,8 @@ int bg_stick(bg_model *m, double t, double h, const double *s, const double *w)
         status = evaluate(m, at, m->mode);
         if (status == BG_NEEDS_SLOPE || status == BG_STRUCTURE)
             return status;
-        if (status != BG_OK || ruled_out(m))
-            return search(m, at, near, status != BG_OK ? status : BG_UNDECIDED);
+        if (status != BG_OK || rules_out(m))
+            return search_all(m, at, near, status != BG_OK ? status : BG_UNDECIDED);
         if (!let_go(m) && !caught(m, near))
             return BG_OK;
     }

@@ -8,7 +8,7 @@
 #include "run_pace.h"
 
 /* Where a run is. `began`, `end` [s]: of all of it; segment k of the inputs lasts to breaks[k], the
- * last one for ever. The modes 0, 1, -1 of the ports; what has happened, in `count` of `capacity`. */
+ * last one for ever. `count` of `capacity` events have happened. */
 typedef struct {
     bg_instant at;
     double began, end;
@@ -21,8 +21,8 @@ typedef struct {
 
 /* What runs. `see` takes the instant, which was looked at with friction slipping so, into what
  * rounding is relative to; `fastest` tells the largest rate [1/s] there in the mode so far; `rest`
- * takes the slips of ports that stick away; `advance` goes on to `stop` or the first event, and tells
- * whose it was in `touched`. All but the first give a status. */
+ * takes the slips of ports that stick away; `advance` goes on to `stop` or the first event, whose
+ * ports it tells in `touched`. All but the first give a status. */
 typedef struct {
     bg_sight sight;
     void *self;

@@ -297,7 +297,7 @@ SANITIZED = """
 import test_batch_energy as energy
 import test_batch_located as cases
 from codegen.engine import located
-from codegen.sweeps import batch_engine
+from codegen.batch import engine as batch_engine
 from oracles.sanitized import FLAGS
 located.LocatedLibrary.__init__.__defaults__ = (FLAGS,)
 batch_engine.batch_engine.__defaults__ = (FLAGS,)

@@ -145,7 +145,7 @@ def test_the_loop_compiles_without_warnings(monkeypatch: pytest.MonkeyPatch) -> 
 
 SANITIZED = """
 import test_batch_ports as cases
-from codegen.sweeps import batch_engine
+from codegen.batch import engine as batch_engine
 from oracles.sanitized import FLAGS
 batch_engine.batch_engine.__defaults__ = (FLAGS,)
 cases.test_blocks_on_top_of_each_other(31)

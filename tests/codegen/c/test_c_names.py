@@ -5,11 +5,17 @@ from collections import defaultdict
 from pathlib import Path
 
 import pytest
+from oracles.c_model import compiled
+from oracles.models import block
 
+import bondgraph as bg
 from codegen.batch import engine as batch_engine
+from codegen.batch import plan
+from codegen.c import structure
 from codegen.c.runtime import FOLDERS, runtime_file, runtime_names
 from codegen.engine import located, runs, sizes
 from codegen.engine.status import Status
+from codegen.program.lower import lower
 
 FILES = ("main.c", *(name for folder in FOLDERS for name in runtime_names(folder)))
 
@@ -83,6 +89,22 @@ def test_kinds_of_events_and_methods_are_those_of_c() -> None:
     assert _values("located_request.h", enum="bg_method") == methods
 
 
+def test_measures_are_those_of_c() -> None:
+    whats = {f"BATCH_{what.upper()}": at for at, what in enumerate(plan.WHATS)}
+    assert _values("batch_measure.h", enum="batch_what") == whats
+    record = re.search(
+        r"typedef struct \{\s*int ([^;]+);\s*\} batch_measure;", _plain("batch_measure.h")
+    )
+    assert record is not None
+    assert tuple(record[1].split(", ")) == plan.Entry._fields
+
+
+def test_matrices_come_in_the_order_of_c() -> None:
+    program = lower(bg.derive(block()), None, {"m": 2.0, "F_c": 3.0})
+    expected = {f"BG_{letter}": at for at, letter in enumerate(program.layout)}
+    assert _values("model_internal.h") == {**expected, "BG_MATRICES": len(expected)}
+
+
 def _constant(header: str, name: str) -> str:
     found = re.search(rf"\b{name} = ([^,}}]+?)\s*[,}}]", _plain(header))
     assert found is not None, name
@@ -91,6 +113,7 @@ def _constant(header: str, name: str) -> str:
 
 def test_sizes_are_those_of_c() -> None:
     assert int(_constant("port_choose.h", "BG_MOST_PORTS")) == sizes.MOST_PORTS
+    assert structure.MOST_PORTS == sizes.MOST_PORTS
     assert int(_constant("batch.h", "BATCH_STRIDE")) == batch_engine.STRIDE
     assert int(_constant("batch.h", "BATCH_SQUARES")) == batch_engine.SQUARES
     limit = batch_engine.MOST_MODES
@@ -110,8 +133,6 @@ def test_sizes_that_python_works_out_are_those_of_c(ports: int, tmp_path: Path) 
     for name, text in sources.items():
         (tmp_path / name).write_text(text)
     (tmp_path / "check.c").write_text(f'#include "exact.h"\n{checks}\n')
-    from oracles.c_model import compiled
-
     compiled(
         tmp_path, [str(tmp_path / "check.c"), *_units(tmp_path, sources)], "-O0", "-shared", "-fPIC"
     )

@@ -113,7 +113,7 @@ def test_engines_are_clean_under_valgrind(tmp_path: Path) -> None:
 
 def test_a_complaint_about_a_library_is_told_from_others() -> None:
     log = (
-        "==1== \n==1== Conditional jump\n==1==    at 0x1: largest (located_rounding.c:155)\n"
+        "==1== \n==1== Conditional jump\n==1==    at 0x1: largest (located_rates.c:155)\n"
         "==1== \n==1== Invalid read\n==1==    at 0x2: is_dst (dl-load.c:216)\n"
         "==1== \n==1== Use of uninitialised value\n==1==    at 0x3: ??? (in /cache/abc.so)\n"
     )

@@ -52,7 +52,9 @@ def check_script(script: str, folder: Path) -> str:
 def complaints(log: str, place: str) -> list[str]:
     """The complaints of a log that tell of a call of a library at this place or of its sources."""
     found = re.split(r"^==\d+== \n", log, flags=re.MULTILINE)
-    mine = re.compile(rf"\({re.escape('in ' + place)}|\((?:batch|bg|model|fmu)_?\w*\.c:\d+\)")
+    mine = re.compile(
+        rf"\({re.escape('in ' + place)}|\((?:batch|exact|fmu|located|model|port|run)_?\w*\.c:\d+\)"
+    )
     return [one for one in found if mine.search(one)]
 
 

@@ -1,6 +1,8 @@
 """Runs that slide along a jump of their rates are refused after a bounded number of steps, the same way in
 numpy and C; what only crosses jumps, however often, is run."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -10,6 +12,7 @@ import bondgraph as bg
 import codegen.runs.progress as counted
 from codegen import simulator
 from codegen.runs.arguments import settings_of, signals_for
+from codegen.tuning import TUNING
 
 V, X, Y = sp.symbols("f_r x y")
 REFUSED = (
@@ -110,9 +113,8 @@ def test_many_steps_at_a_jump_that_is_crossed_are_no_sliding(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Even where every few steps count as none: beyond the jump nothing pushes back."""
-    monkeypatch.setattr(counted, "SHORT", 1e9)
-    monkeypatch.setattr(counted, "TINY", 0.0)
-    monkeypatch.setattr(counted, "MANY", 5)
+    eager = replace(TUNING, short=1e9, shorter=0.0, lot=5)
+    monkeypatch.setattr(counted, "TUNING", eager)
     run = simulator(_mass("f_r + sign(sin(t/2) - 1/5)"), {})
     result = run.run([0.0, 1.0, 3.0], {"v": 1.0}, {"F": 0.0})
     # v' = 1 - v until sin(t/2) = 1/5, then v' = -1 - v.
