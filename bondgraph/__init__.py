@@ -9,7 +9,8 @@ from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.assignments import Assignment, assignments
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.declare.composition import assemble, prefixed
-from bondgraph.declare.elements import GY, TF, C, De, Df, I, Kind, One, R, Se, Sf, Sw, Switch, Zero
+from bondgraph.declare.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
+from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.declare.switching import in_mode, switches
 from bondgraph.declare.validate import validate

@@ -3,7 +3,6 @@
 from collections.abc import Hashable, Mapping, Sequence
 
 from bondgraph.algebra.exact import rows_of
-from bondgraph.declare.elements import Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
@@ -25,7 +24,7 @@ def merged_laws(
         state = declared.state if isinstance(declared, ExpressionLaw) else None
         closed = law(value, f"law at {name!r}", state)
         if isinstance(closed, DryFriction) and (
-            port.gives != "effort" or port.element.kind is not Kind.R
+            port.gives != "effort" or not port.element.kind.resists
         ):
             raise StructureError(f"law at {name!r}: dry friction closes an R that gives an effort")
         merged[name] = closed

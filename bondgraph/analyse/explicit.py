@@ -151,7 +151,7 @@ def _in_energy_states(
                 f"the field {element.owner!r} has dependent ports, so its momenta are no states of their own"
             )
         M.append({columns[other]: value for other, value in row if value != 0})
-        letter = "p" if element.kind == "I" else "q"
+        letter = element.kind.letter
         names.append(sp.Symbol(f"{letter}_{str(element.name).replace('.', '_')}"))
     solved = solve(M, [{i: sp.Integer(1)} for i in range(len(M))]) if M else []
     inverse = [sp.Add(*(e * names[j] for j, e in row.items())) for row in solved]

@@ -59,8 +59,8 @@ def stuck_ports(equations: StateEquations, stuck: Iterable[Hashable]) -> list[Po
     ports: list[Port] = []
     for name in stuck:
         port = by_name.get(name)
-        if port is None or port.element.kind != "R":
-            known = [str(n) for n, p in by_name.items() if p.element.kind == "R"]
+        if port is None or not port.element.kind.resists:
+            known = [str(n) for n, p in by_name.items() if p.element.kind.resists]
             raise StructureError(
                 f"no open port is called {name!r} that could stick; there are {', '.join(known) or 'none'}"
             )

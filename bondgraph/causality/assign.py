@@ -13,7 +13,6 @@ from bondgraph.causality.signals import causal_equations, causal_groups, loop_ro
 from bondgraph.causality.stories import contradiction_story
 from bondgraph.causality.strokes import StrokeSearch
 from bondgraph.causality.vanishing import elements_in, generic, told
-from bondgraph.declare.elements import SOURCES, STORAGES, TWO_PORTS, Kind
 from bondgraph.declare.switching import refuse_switches
 from bondgraph.declare.validate import validate, with_elements
 from bondgraph.errors import AlgebraicLoopError, BondGraphError, CausalityError
@@ -55,7 +54,7 @@ def _assigned(checked: "nx.DiGraph[Hashable]") -> CausalGraph:
 
 def _vanishing(checked: "nx.DiGraph[Hashable]") -> str:
     """The determinant that vanishes: of a loop of a causality that the graph has with other ratios."""
-    made, values = generic({n: e for n, e in elements_in(checked).items() if e.kind in TWO_PORTS})
+    made, values = generic({n: e for n, e in elements_in(checked).items() if e.kind.two_port})
     try:
         equations = causal_equations(_assigned(with_elements(checked, made)).assignment)
     except BondGraphError:
@@ -76,9 +75,9 @@ def _preferences(strokes: StrokeSearch) -> tuple[list[int], dict[int, str]]:
             continue
         if element.gives is not None:
             preferred[node] = element.gives
-            ranks[node] = (0 if element.kind in SOURCES else 1, 0, node)
-        elif element.kind in STORAGES:
-            preferred[node] = "flow" if element.kind is Kind.I else "effort"
+            ranks[node] = (0 if element.kind.supplies else 1, 0, node)
+        elif element.kind.stores:
+            preferred[node] = element.kind.gives
             ranks[node] = (2, -element.priority, node)
         else:
             preferred[node] = "effort"
@@ -127,7 +126,7 @@ Choice = tuple[int, int, int]
 def _try(strokes: StrokeSearch, choice: Choice) -> Contradiction | None:
     """Set the preferred stroke and all that follows; on a contradiction leave no trace and tell it."""
     bond, end, node = choice
-    storage = strokes.elements[node].kind in STORAGES
+    storage = strokes.elements[node].kind.stores
     text = "is tried in integral causality first" if storage else "is free to choose"
     return _assign_or_undo(strokes, bond, end, Reason(node, text))
 
@@ -194,9 +193,9 @@ def _search_with(
 def _causal_graph(graph: "nx.DiGraph[Hashable]", strokes: StrokeSearch) -> CausalGraph:
     declared = nx.get_edge_attributes(graph, "declared")
     storages = {
-        strokes.names[node]: strokes.gives(node) == ("flow" if element.kind is Kind.I else "effort")
+        strokes.names[node]: strokes.gives(node) == (element.kind.gives)
         for node, element in enumerate(strokes.elements)
-        if element.kind in STORAGES
+        if element.kind.stores
     }
     owners = [element.owner or strokes.names[at] for at, element in enumerate(strokes.elements)]
     ends = [owners[end] for end in strokes.end if end is not None]

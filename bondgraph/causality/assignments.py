@@ -13,7 +13,7 @@ from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.lines import Line, Rule, is_independent, owner, signal_lines, variable_of
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations, Term, causal_equations, causal_groups
-from bondgraph.declare.elements import JUNCTIONS, Bond, Kind
+from bondgraph.declare.elements import Bond
 from bondgraph.declare.names import named_by
 
 
@@ -118,9 +118,9 @@ def _names(
         which = "flow" if strokes.gives(node) == "effort" else "effort"
         yield variable_of(strokes.elements[node], which), signal, sign, False
     for node, element in enumerate(strokes.elements):
-        if element.kind not in JUNCTIONS:
+        if not element.kind.joins:
             continue
-        zero = element.kind is Kind.ZERO
+        zero = element.kind.common == "effort"
         source = next(b for b in strokes.at[node] if (strokes.end[b] == node) == zero)
         name = element.effort if zero else element.flow
         if name is not None:

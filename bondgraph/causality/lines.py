@@ -8,7 +8,7 @@ import sympy as sp
 from bondgraph.algebra.exact import Row, SingularError, solve
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations, Term
-from bondgraph.declare.elements import DETECTORS, JUNCTIONS, STORAGES, Element, Kind
+from bondgraph.declare.elements import Element
 from bondgraph.errors import AlgebraicLoopError
 
 Rule = Literal["given", "balance", "transfer", "law", "rate"]
@@ -26,8 +26,8 @@ def signal_lines(strokes: Strokes, equations: CausalEquations) -> Iterator[Line]
         if signal in equations.given:
             node, sign = equations.given[signal]
             yield _given(strokes, equations, node, sign, numbers, fields)
-        elif strokes.elements[owner(strokes, signal)].kind in JUNCTIONS:
-            zero = strokes.elements[owner(strokes, signal)].kind is Kind.ZERO
+        elif strokes.elements[owner(strokes, signal)].kind.joins:
+            zero = strokes.elements[owner(strokes, signal)].kind.common == "effort"
             balance = (signal % 2 == 1) == zero
             yield "balance" if balance else "transfer", list(terms), sp.Integer(0)
         else:
@@ -40,19 +40,19 @@ def _given(
 ) -> Line:  # fmt: skip
     """What a one-port gives; ``sign`` is the bond's over the element's."""
     element, none = strokes.elements[node], sp.Integer(0)
-    if element.kind in DETECTORS:
+    if element.kind.detects:
         return "given", [], none
     if is_independent(strokes, node):
         return "given", [], sign * variable_of(element, strokes.gives(node))
-    if element.kind in STORAGES and element.inverse is not None:
+    if element.kind.stores and element.inverse is not None:
         # The state as a function of what the element receives, written as a multiple of that.
         signal, known = equations.received[node]
         other = "effort" if strokes.gives(node) == "flow" else "flow"
         factor = element.inverse / variable_of(element, other)
         return "rate", [(signal, sign * known * factor)], none
-    if element.kind in STORAGES:
+    if element.kind.stores:
         row = element.row or ((element.name, element.constant),)
-        effort = element.kind is Kind.C
+        effort = element.kind.gives == "effort"
         stored = [(numbers[name], value) for name, value in row if value != 0]
         return "rate", [_term(strokes, at, effort, sign * value) for at, value in stored], none
     if not element.row:
@@ -76,10 +76,8 @@ def is_independent(strokes: Strokes, node: int) -> bool:
     """Whether a one-port gives a state or an input."""
     element = strokes.elements[node]
     if element.gives is not None:
-        return element.kind not in DETECTORS
-    return element.kind in STORAGES and strokes.gives(node) == (
-        "flow" if element.kind is Kind.I else "effort"
-    )
+        return not element.kind.detects
+    return element.kind.stores and strokes.gives(node) == (element.kind.gives)
 
 
 def variable_of(element: Element, which: str) -> sp.Symbol:

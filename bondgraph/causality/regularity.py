@@ -12,7 +12,6 @@ from collections.abc import Iterator, Sequence
 from bondgraph.algebra.elimination import ResidueRows, Row
 from bondgraph.algebra.residues import PRIME, residues
 from bondgraph.causality.record import Strokes
-from bondgraph.declare.elements import Kind
 from bondgraph.errors import AlgebraicLoopError, CausalityError
 
 
@@ -94,16 +93,16 @@ def _equations(strokes: Strokes) -> Iterator[Row]:
     value = residues()
     for node, element in enumerate(strokes.elements):
         bonds = strokes.at[node]
-        if element.kind in (Kind.ZERO, Kind.ONE):
-            common = 0 if element.kind is Kind.ZERO else 1
+        if element.kind.joins:
+            common = 0 if element.kind.common == "effort" else 1
             for bond in bonds[1:]:
                 yield {2 * bonds[0] + common: 1, 2 * bond + common: PRIME - 1}
             yield {
                 2 * b + 1 - common: 1 if strokes.bonds[b][1] == node else PRIME - 1 for b in bonds
             }
-        elif element.kind in (Kind.TF, Kind.GY):
+        elif element.kind.two_port:
             inward = next(b for b in bonds if strokes.bonds[b][1] == node)
             outward = next(b for b in bonds if strokes.bonds[b][0] == node)
-            modulus, gyrator = PRIME - value(element.value), element.kind is Kind.GY
+            modulus, gyrator = PRIME - value(element.value), element.kind.gyrates
             yield {2 * inward: 1, 2 * outward + gyrator: modulus}
             yield {2 * outward + (not gyrator): 1, 2 * inward + 1: modulus}

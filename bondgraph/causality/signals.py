@@ -12,7 +12,6 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph.causality.record import Strokes
-from bondgraph.declare.elements import POWER_INTO, Kind
 
 Term = tuple[int, sp.Expr]
 
@@ -44,7 +43,7 @@ def causal_equations(strokes: Strokes) -> CausalEquations:
             given[2 * bond + (not gives_effort)] = (node, sign if gives_effort else 1)
             received[node] = (2 * bond + gives_effort, 1 if gives_effort else sign)
         else:
-            rule = _two_port if element.kind in (Kind.TF, Kind.GY) else _junction
+            rule = _two_port if element.kind.two_port else _junction
             for signal, right in rule(strokes, node):
                 terms[signal] = right
     return CausalEquations(tuple(terms), MappingProxyType(given), MappingProxyType(received))
@@ -52,12 +51,12 @@ def causal_equations(strokes: Strokes) -> CausalEquations:
 
 def _effort_sign(strokes: Strokes, node: int, bond: int) -> int:
     tail = strokes.bonds[bond][0] == node
-    return -1 if tail and strokes.elements[node].kind in POWER_INTO else 1
+    return -1 if tail and strokes.elements[node].kind.absorbs else 1
 
 
 def _junction(strokes: Strokes, node: int) -> Iterator[tuple[int, tuple[Term, ...]]]:
     """The common variable handed on, and the balance solved for the bond that brings it."""
-    zero = strokes.elements[node].kind is Kind.ZERO
+    zero = strokes.elements[node].kind.common == "effort"
     common, balanced = (0, 1) if zero else (1, 0)
     bonds = strokes.at[node]
     source = next(b for b in bonds if (strokes.end[b] == node) == zero)
@@ -77,7 +76,7 @@ def _two_port(strokes: Strokes, node: int) -> Iterator[tuple[int, tuple[Term, ..
     value = strokes.elements[node].constant
     e_in, f_in, e_out, f_out = 2 * inward, 2 * inward + 1, 2 * outward, 2 * outward + 1
     gives_e_in = strokes.end[inward] != node
-    if strokes.elements[node].kind is Kind.TF:
+    if not strokes.elements[node].kind.gyrates:
         if gives_e_in:
             yield e_in, ((e_out, value),)
             yield f_out, ((f_in, value),)

@@ -3,7 +3,6 @@
 from collections.abc import Iterable
 
 from bondgraph.causality.record import Contradiction, Reason, Strokes
-from bondgraph.declare.elements import SOURCES, Kind
 
 LONGEST_STORY = 12
 """Lines of a chain that are told; of a longer one the middle is counted only."""
@@ -32,7 +31,7 @@ def contradiction_story(strokes: Strokes, conflict: Contradiction) -> str:
 
 def _headline(strokes: Strokes, conflict: Contradiction, nodes: list[int]) -> str:
     names = [repr(strokes.names[node]) for node in nodes]
-    if all(strokes.elements[node].kind in SOURCES for node in nodes):
+    if all(strokes.elements[node].kind.supplies for node in nodes):
         who = "source" if len(nodes) == 1 else "sources"
     else:
         who = "node" if len(nodes) == 1 else "nodes"
@@ -41,7 +40,7 @@ def _headline(strokes: Strokes, conflict: Contradiction, nodes: list[int]) -> st
     if len(nodes) != 2 or place is None:
         verb = "imposes what its" if len(nodes) == 1 else "impose what their"
         return f"{who} {listed} {verb} surroundings exclude"
-    zero = strokes.elements[place].kind is Kind.ZERO
+    zero = strokes.elements[place].kind.common == "effort"
     what, digit = ("effort", 0) if zero else ("flow", 1)
     return f"{who} {listed} both impose the {what} of {digit}-junction {strokes.names[place]!r}"
 
@@ -50,7 +49,7 @@ def _junction_of(strokes: Strokes, conflict: Contradiction) -> int | None:
     """The junction at which two efforts (0) or two flows (1) meet."""
     forced_by = strokes.reason[conflict.bonds[0]]
     places = [conflict.node] + ([forced_by.node] if forced_by is not None else [])
-    junctions = [p for p in places if strokes.elements[p].kind in (Kind.ZERO, Kind.ONE)]
+    junctions = [p for p in places if strokes.elements[p].kind.joins]
     return junctions[0] if junctions else None
 
 

@@ -6,7 +6,7 @@ from collections.abc import Hashable, Sequence
 import networkx as nx
 
 from bondgraph.causality.record import Contradiction, Reason, Strokes
-from bondgraph.declare.elements import Element, Kind
+from bondgraph.declare.elements import Element
 
 
 class StrokeSearch:
@@ -89,20 +89,20 @@ class StrokeSearch:
 
     def _is_special(self, node: int, bond: int) -> bool:
         """Whether the bond brings a junction what it takes from one bond only: effort (0), flow (1)."""
-        return (self.end[bond] == node) == (self.elements[node].kind is not Kind.ONE)
+        return (self.end[bond] == node) == (self.elements[node].kind.common != "flow")
 
     def _forced(self, node: int, bond: int) -> Sequence[tuple[int, int, Reason]] | Contradiction:
         kind = self.elements[node].kind
-        if kind in (Kind.ZERO, Kind.ONE):
+        if kind.joins:
             return self._forced_at_junction(node, bond)
-        if kind in (Kind.TF, Kind.GY):
+        if kind.two_port:
             return self._forced_at_two_port(node, bond)
         return self._checked_at_one_port(node, bond)
 
     def _forced_at_junction(
         self, node: int, bond: int
     ) -> Sequence[tuple[int, int, Reason]] | Contradiction:
-        zero = self.elements[node].kind is Kind.ZERO
+        zero = self.elements[node].kind.common == "effort"
         what, bonds = "effort" if zero else "flow", self.at[node]
         if self._special[node] > 1:
             both = tuple(b for b in bonds if self.end[b] is not None and self._is_special(node, b))
@@ -124,7 +124,7 @@ class StrokeSearch:
         first, second = self.at[node]
         across = second if bond == first else first
         receives = self.end[bond] == node
-        gyrator = self.elements[node].kind is Kind.GY
+        gyrator = self.elements[node].kind.gyrates
         text = "gyrates what it receives" if gyrator else "passes causality through"
         end = node if receives == gyrator else self.other(across, node)
         return [(across, end, Reason(node, text, (bond,)))]

@@ -8,7 +8,7 @@ import sympy as sp
 
 from bondgraph.algebra.exact import Row, determinant
 from bondgraph.algebra.residues import is_zero
-from bondgraph.declare.elements import TWO_PORTS, Element
+from bondgraph.declare.elements import Element
 
 MOST = 6
 """Determinants of more rows are too long to be read."""
@@ -22,7 +22,7 @@ def generic(
     values: dict[sp.Symbol, sp.Expr] = {}
     for name, element in elements.items():
         if element.value is not None and not element.row:
-            letter = "m" if element.kind in TWO_PORTS else str(element.kind)
+            letter = "m" if element.kind.two_port else str(element.kind)
             symbol = sp.Symbol(f"{letter}_{name}")
             made[name] = replace(element, value=symbol)
             values[symbol] = element.value

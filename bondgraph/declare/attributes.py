@@ -8,7 +8,8 @@ import sympy as sp
 from bondgraph.algebra.expressions import expression, number, symbol
 from bondgraph.algebra.residues import is_zero
 from bondgraph.declare import fields
-from bondgraph.declare.elements import KEYS, STORAGES, Kind, Switch
+from bondgraph.declare.elements import Switch
+from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, law
 from bondgraph.errors import ExpressionError, StructureError
 
@@ -34,8 +35,8 @@ def kind_of(attributes: Mapping[str, Any], where: str) -> Kind:
 def check_keys(kind: Kind, attributes: Mapping[str, Any], where: str) -> None:
     """Refuse attributes that a node of this kind does not have."""
     for key in attributes:
-        if key != "kind" and key not in KEYS[kind]:
-            allowed = ", ".join(sorted(KEYS[kind]))
+        if key != "kind" and key not in kind.nature.keys:
+            allowed = ", ".join(sorted(kind.nature.keys))
             raise StructureError(
                 f"{where}: unknown attribute {key!r}; kind {kind} may have {allowed}"
             )
@@ -108,8 +109,8 @@ def gives_of(kind: Kind, attributes: Mapping[str, Any], where: str, linear: bool
         if "gives" in attributes:
             raise StructureError(f"{where}: gives is for open ports and laws; leave it out here")
         return None
-    if kind in STORAGES:
-        return "flow" if kind is Kind.I else "effort"
+    if kind.stores:
+        return kind.gives
     return str(gives)
 
 
@@ -127,7 +128,7 @@ def energy_of(
 ) -> tuple[sp.Expr, ExpressionLaw]:
     """The energy of a one-port and the law that follows from it."""
     where = f"node {name!r}"
-    state = symbol(f"{'p' if kind is Kind.I else 'q'}_{name}", where)
+    state = symbol(f"{kind.letter}_{name}", where)
     energy, (slope,) = fields.gradient(attributes["energy"], [state], where)
     return energy, ExpressionLaw(slope, state)
 
@@ -135,8 +136,8 @@ def energy_of(
 def _law(name: Hashable, kind: Kind, given: object, gives: str | None) -> Law:
     where = f"node {name!r}, law"
     state = None
-    if kind in STORAGES:
-        state = symbol(f"{'p' if kind is Kind.I else 'q'}_{name}", where)
+    if kind.stores:
+        state = symbol(f"{kind.letter}_{name}", where)
     result = law(given, where, state)
     if isinstance(result, DryFriction) and gives != "effort":
         raise StructureError(f"{where}: dry friction gives an effort; leave gives='effort'")

@@ -22,15 +22,8 @@ from bondgraph.declare.attributes import (
     value_of,
     variable,
 )
-from bondgraph.declare.elements import (
-    DETECTORS,
-    JUNCTIONS,
-    SOURCES,
-    STORAGES,
-    TWO_PORTS,
-    Element,
-    Kind,
-)
+from bondgraph.declare.elements import OTHER, Element
+from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import ExpressionLaw, law
 from bondgraph.errors import StructureError
 
@@ -42,7 +35,7 @@ def elements_of(name: Hashable, attributes: Mapping[str, Any]) -> dict[Hashable,
     """
     if attributes.get("ports") is None:
         made = [_element(name, attributes)]
-        if made[0].kind in JUNCTIONS and (attributes.keys() & {"on", "off"}):
+        if made[0].kind.joins and (attributes.keys() & {"on", "off"}):
             made.append(_control(made[0], attributes))
         return {element.name: element for element in made}
     where = f"node {name!r}"
@@ -66,7 +59,7 @@ def _matrix_field(
             )
     if attributes.get("value") is None:
         raise StructureError(f"{where}: a field needs a matrix as value, or an energy")
-    rows = fields.matrix(attributes["value"], ports, kind in STORAGES, where)
+    rows = fields.matrix(attributes["value"], ports, kind.stores, where)
     parts = [fields.part(name, port) for port in ports]
     return [
         Element(
@@ -86,14 +79,14 @@ def _energy_field(
     for key in ("law", "value"):
         if attributes.get(key) is not None:
             raise StructureError(f"{where}: it has both an energy and a {key}; give one of them")
-    letter = "p" if kind is Kind.I else "q"
+    letter = kind.letter
     states = [symbol(f"{letter}_{name}_{port}", where) for port in ports]
     energy, slopes = fields.gradient(attributes["energy"], states, where)
     return [
         Element(
             fields.part(name, port), kind, None, *port_variables(name, port, attributes),
             law=ExpressionLaw(slope, state), priority=priority_of(attributes, where),
-            gives="flow" if kind is Kind.I else "effort", unit=unit_of(attributes, where),
+            gives=kind.gives, unit=unit_of(attributes, where),
             owner=name, energy=energy,
         )
         for port, state, slope in zip(ports, states, slopes, strict=True)
@@ -106,18 +99,18 @@ def _element(name: Hashable, attributes: Mapping[str, Any]) -> Element:
     kind = kind_of(attributes, where)
     check_keys(kind, attributes, where)
     unit = unit_of(attributes, where)
-    if kind in JUNCTIONS:
-        common = "effort" if kind is Kind.ZERO else "flow"
+    if kind.joins:
+        common = kind.common
         own = variable(attributes, common, name, strict=False)
-        effort, flow = (own, None) if kind is Kind.ZERO else (None, own)
+        effort, flow = (own, None) if kind.common == "effort" else (None, own)
         return Element(name, kind, None, effort, flow)
-    if kind in TWO_PORTS:
+    if kind.two_port:
         return Element(name, kind, value_of(attributes, where), None, None, unit=unit)
-    if kind in SOURCES:
+    if kind.supplies:
         return _source(name, kind, attributes, unit)
-    if kind in DETECTORS:
+    if kind.detects:
         return _detector(name, kind, attributes, unit)
-    if kind is Kind.SW:
+    if kind.switches:
         switch = switch_of(name, attributes, "effort")
         effort, flow = (variable(attributes, key, name) for key in ("effort", "flow"))
         return Element(name, kind, None, effort, flow, switch=switch)
@@ -129,14 +122,14 @@ def _source(name: Hashable, kind: Kind, attributes: Mapping[str, Any], unit: str
     where = f"node {name!r}"
     if attributes.get("value") is None:
         raise StructureError(f"{where} has no value; give the input's name or an expression")
-    gives, receives = ("effort", "flow") if kind is Kind.SE else ("flow", "effort")
+    gives, receives = kind.gives, OTHER[kind.gives]
     value = expression(attributes["value"], where)
     bare = isinstance(value, sp.Symbol) and value != TIME
     given = sp.Symbol(value.name) if bare else variable({}, gives, name)
     if bare and value != given:
         raise StructureError(f"{where}: the input {value} must be a symbol without assumptions")
     received = variable(attributes, receives, name)
-    effort, flow = (given, received) if kind is Kind.SE else (received, given)
+    effort, flow = (given, received) if gives == "effort" else (received, given)
     known = None if bare else law(value, where)
     return Element(name, kind, None, effort, flow, law=known, gives=gives, unit=unit)
 
@@ -150,8 +143,7 @@ def _detector(
         text = integral.name if isinstance(integral, sp.Symbol) else integral
         integral = symbol(text, f"node {name!r}, integrate")
     effort, flow = (variable(attributes, key, name) for key in ("effort", "flow"))
-    gives = "flow" if kind is Kind.DE else "effort"
-    return Element(name, kind, None, effort, flow, gives=gives, unit=unit, integral=integral)
+    return Element(name, kind, None, effort, flow, gives=kind.gives, unit=unit, integral=integral)
 
 
 def _passive(
@@ -162,13 +154,13 @@ def _passive(
     given = [key for key in ("value", "law", "energy") if attributes.get(key) is not None]
     if len(given) > 1:
         raise StructureError(f"{where} has both a {given[0]} and a {given[1]}; give one of them")
-    if kind in STORAGES and not given:
+    if kind.stores and not given:
         raise StructureError(f"{where} has no value; give a number, a name, an expression or a law")
     valued = given == ["value"]
     gives = gives_of(kind, attributes, where, valued)
     effort, flow = (variable(attributes, key, name) for key in ("effort", "flow"))
     closed = law_of(name, kind, attributes, gives)
-    inverse = inverse_of(attributes, closed, flow if kind is Kind.I else effort, where)
+    inverse = inverse_of(attributes, closed, flow if kind.gives == "flow" else effort, where)
     return Element(
         name,
         kind,
@@ -186,7 +178,7 @@ def _passive(
 
 def _control(junction: Element, attributes: Mapping[str, Any]) -> Element:
     """The switch that makes a junction a controlled one: a port of its own, ``<name>_switch``."""
-    gives = "effort" if junction.kind is Kind.ONE else "flow"
+    gives = OTHER[junction.kind.common]
     switch = switch_of(junction.name, attributes, gives)
     name = f"{junction.name}_switch"
     effort, flow = (variable({}, key, name) for key in ("effort", "flow"))

@@ -1,11 +1,11 @@
-"""The kinds of node, their constructors, and what each kind is, as data."""
+"""`Element`, a node that has been checked, and the constructors of nodes of every kind."""
 
 from collections.abc import Hashable
 from dataclasses import dataclass
-from enum import StrEnum
 
 import sympy as sp
 
+from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import Law
 
 Node = tuple[Hashable, dict[str, object]]
@@ -13,51 +13,8 @@ Node = tuple[Hashable, dict[str, object]]
 
 Bond = tuple[Hashable, Hashable]
 
-
-class Kind(StrEnum):
-    """The kinds of node; the plain-dict form has their text as ``kind``."""
-
-    SE = "Se"
-    SF = "Sf"
-    I = "I"  # noqa: E741  the field's own letter
-    C = "C"
-    R = "R"
-    TF = "TF"
-    GY = "GY"
-    ZERO = "Zero"
-    ONE = "One"
-    DE = "De"
-    DF = "Df"
-    SW = "Sw"
-
-
-SOURCES = frozenset({Kind.SE, Kind.SF})
-STORAGES = frozenset({Kind.I, Kind.C})
-TWO_PORTS = frozenset({Kind.TF, Kind.GY})
-JUNCTIONS = frozenset({Kind.ZERO, Kind.ONE})
-DETECTORS = frozenset({Kind.DE, Kind.DF})
-POWER_INTO = frozenset({Kind.I, Kind.C, Kind.R, Kind.SW, *DETECTORS})
-"""Power counts into these whichever way the arrow points."""
-
-KEYS: dict[Kind, frozenset[str]] = {
-    Kind.SE: frozenset({"value", "flow", "unit"}),
-    Kind.SF: frozenset({"value", "effort", "unit"}),
-    Kind.I: frozenset(
-        {"value", "effort", "flow", "law", "inverse", "energy", "ports", "priority", "unit"}
-    ),
-    Kind.C: frozenset(
-        {"value", "effort", "flow", "law", "inverse", "energy", "ports", "priority", "unit"}
-    ),
-    Kind.R: frozenset({"value", "effort", "flow", "law", "ports", "gives", "unit"}),
-    Kind.TF: frozenset({"value", "unit"}),
-    Kind.GY: frozenset({"value", "unit"}),
-    Kind.ZERO: frozenset({"effort", "on", "off"}),
-    Kind.ONE: frozenset({"flow", "on", "off"}),
-    Kind.DE: frozenset({"effort", "integrate", "unit"}),
-    Kind.DF: frozenset({"flow", "integrate", "unit"}),
-    Kind.SW: frozenset({"effort", "flow", "on", "off"}),
-}
-"""The attributes a node of each kind may carry beside ``kind``."""
+OTHER = {"effort": "flow", "flow": "effort"}
+"""The variable that a port receives, by the one that it gives."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +63,7 @@ class Element:
     @property
     def one_port(self) -> bool:
         """True for everything but transformers, gyrators and junctions."""
-        return self.kind not in JUNCTIONS and self.kind not in TWO_PORTS
+        return self.kind.one_port
 
     @property
     def constant(self) -> sp.Expr:
@@ -118,12 +75,26 @@ class Element:
     @property
     def given(self) -> sp.Symbol | None:
         """The variable the element imposes, where that is fixed: an input of the equations."""
-        return {"effort": self.effort, "flow": self.flow, None: None}[self.gives]
+        return None if self.gives is None else self.variable(self.gives)
 
     @property
     def received(self) -> sp.Symbol | None:
         """The variable the structure imposes on the element, where that is fixed."""
-        return {"effort": self.flow, "flow": self.effort, None: None}[self.gives]
+        return None if self.gives is None else self.variable(OTHER[self.gives])
+
+    @property
+    def co_energy(self) -> sp.Symbol | None:
+        """What a storage gives in integral causality: an inertia its flow, a compliance its effort."""
+        return self.variable(self.kind.gives)
+
+    @property
+    def common(self) -> sp.Symbol | None:
+        """The variable that the bonds of a junction have in common."""
+        return self.variable(self.kind.common)
+
+    def variable(self, which: str) -> sp.Symbol | None:
+        """Its effort or its flow."""
+        return self.effort if which == "effort" else self.flow
 
 
 def Se(name: Hashable, value: object, **more: object) -> Node:

@@ -7,7 +7,7 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.elements import SOURCES, Element
+from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.errors import StructureError
 
@@ -42,7 +42,7 @@ def _owned(element: Element) -> Iterable[sp.Symbol]:
 
 def _check_owner(owners: dict[sp.Symbol, Element], name: sp.Symbol, element: Element) -> None:
     other = owners.setdefault(name, element)
-    shared_input = all(one.kind in SOURCES and one.law is None for one in (other, element))
+    shared_input = all(one.kind.supplies and one.law is None for one in (other, element))
     if other is not element and not shared_input:
         raise StructureError(
             f"nodes {other.name!r} and {element.name!r} both impose a variable {name}; "

@@ -7,7 +7,7 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME, expression, normal
-from bondgraph.declare.elements import JUNCTIONS, KEYS, SOURCES, STORAGES, TWO_PORTS, Kind
+from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw
 from bondgraph.errors import StructureError
 
@@ -34,10 +34,10 @@ def quantities(
     kind = _kind(name, attributes)
     ports = attributes.get("ports")
     for key in ("effort", "flow"):
-        if kind in TWO_PORTS or (kind in JUNCTIONS and key not in KEYS[kind]):
+        if kind.two_port or (kind.joins and key not in kind.nature.keys):
             continue
         given = attributes.get(key)
-        if kind in SOURCES and key not in KEYS[kind]:
+        if kind.supplies and key not in kind.nature.keys:
             given = _bare(name, attributes.get("value"))
         if ports is None:
             yield key[0], "", name_text(given)
@@ -49,10 +49,10 @@ def quantities(
 def _further(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str, str, str | None]]:
     """The same beside effort and flow: states of laws, integrals, the ports of controlled junctions."""
     ports = attributes.get("ports")
-    if kind in STORAGES and any(attributes.get(key) is not None for key in ("law", "energy")):
+    if kind.stores and any(attributes.get(key) is not None for key in ("law", "energy")):
         for ending in ("",) if ports is None else (f"_{port}" for port in ports):
-            yield "p" if kind is Kind.I else "q", ending, None
-    if kind in JUNCTIONS and (attributes.keys() & {"on", "off"}):
+            yield kind.letter, ending, None
+    if kind.joins and (attributes.keys() & {"on", "off"}):
         yield from (("e", "_switch", None), ("f", "_switch", None))
     if attributes.get("integrate") is not None:
         yield "", "", name_text(attributes["integrate"])

@@ -7,7 +7,8 @@ from typing import Any
 import networkx as nx
 import sympy as sp
 
-from bondgraph.declare.elements import Element, Kind, Switch
+from bondgraph.declare.elements import Element, Switch
+from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.validate import validate, with_elements
 from bondgraph.errors import StructureError

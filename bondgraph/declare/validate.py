@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import networkx as nx
 
 from bondgraph.declare.declared import elements_of
-from bondgraph.declare.elements import JUNCTIONS, POWER_INTO, TWO_PORTS, Bond, Element
+from bondgraph.declare.elements import Bond, Element
 from bondgraph.declare.fields import part
 from bondgraph.declare.names import check_names, check_one_whole
 from bondgraph.errors import StructureError
@@ -142,7 +142,7 @@ def _ends(graph: _Validated, fields: set[Hashable], bond: Bond, attributes: dict
 def _oriented(graph: "nx.DiGraph[Hashable]", tail: Hashable, head: Hashable) -> Bond:
     """The bond turned so that it points into I, C or R, unless its other end needs its direction."""
     kinds = [graph.nodes[name]["element"].kind for name in (tail, head)]
-    if kinds[0] in POWER_INTO and kinds[1] not in POWER_INTO and kinds[1] not in TWO_PORTS:
+    if kinds[0].absorbs and not kinds[1].absorbs and not kinds[1].two_port:
         return head, tail
     return tail, head
 
@@ -151,13 +151,13 @@ def _check_degree(graph: "nx.DiGraph[Hashable]", name: Hashable) -> None:
     kind = graph.nodes[name]["element"].kind
     inward, outward = graph.in_degree(name), graph.out_degree(name)
     count = inward + outward
-    if kind in TWO_PORTS and (inward, outward) != (1, 1):
+    if kind.two_port and (inward, outward) != (1, 1):
         raise StructureError(
             f"{kind} {name!r} has {inward} bond(s) in and {outward} out; it needs one in and one out"
         )
-    if kind in JUNCTIONS and count == 0:
+    if kind.joins and count == 0:
         raise StructureError(f"junction {name!r} has no bonds; bond it or remove it")
-    if kind not in JUNCTIONS and kind not in TWO_PORTS and count != 1:
+    if not kind.joins and not kind.two_port and count != 1:
         raise StructureError(
             f"{kind} {name!r} has {count} bonds; it needs exactly one"
             + ("; put a junction between" if count else "; bond it or remove it")

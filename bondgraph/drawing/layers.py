@@ -9,9 +9,6 @@ import networkx as nx
 from bondgraph.drawing.subject import Subject
 from bondgraph.drawing.tight import extremes
 
-_SIDE_ORDER = ("I", "C", "Sw", "Df", "De", "Sf", "Se", "R")
-"""Who is first to lie beside its junction; the others hang under it."""
-
 
 @dataclass(frozen=True)
 class Layers:
@@ -58,7 +55,7 @@ def layered(subject: Subject) -> Layers:
 def _downwards(subject: Subject) -> "nx.DiGraph[int]":
     """The bonds away from the first source, and as they point where that does not tell; without cycles."""
     places = range(len(subject.items))
-    first = next((at for at in places if subject.items[at].symbol in ("Se", "Sf")), None)
+    first = next((at for at in places if subject.items[at].kind.supplies), None)
     bonds: nx.Graph[int] = nx.Graph()
     bonds.add_edges_from((link.tail, link.head) for link in subject.links)
     far = {} if first is None else nx.single_source_shortest_path_length(bonds, first)
@@ -91,7 +88,7 @@ def _beside(subject: Subject, down: "nx.DiGraph[int]") -> dict[int, tuple[int, .
         sources = [port for port in ports if port in above]
         if sources and len(sources) == len(above):
             ports.remove(sources[0])  # the first source stays on top
-        ports.sort(key=lambda port: _SIDE_ORDER.index(subject.items[port].symbol))
+        ports.sort(key=lambda port: subject.items[port].kind.nature.place)
         others = len(above) + len(below) - len(ports)
         if not others and ports:
             ports = ports[:-1]

@@ -27,7 +27,7 @@ def node_shape(item: Item, side: Side, caption: Side = "right") -> NodeShape:
     """
     if item.junction:
         labels = _junction(item, caption)
-    elif item.symbol in ("TF", "GY"):
+    elif item.kind.two_port:
         labels = _two_port(item, caption)
     else:
         labels = _element(item, side)

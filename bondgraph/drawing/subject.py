@@ -8,7 +8,8 @@ import sympy as sp
 
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
-from bondgraph.declare.elements import JUNCTIONS, TWO_PORTS, Bond, Element, Kind
+from bondgraph.declare.elements import Bond, Element
+from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.switching import switches
 from bondgraph.declare.validate import validate
@@ -18,17 +19,26 @@ from bondgraph.errors import AlgebraicLoopError, CausalityError
 
 @dataclass(frozen=True)
 class Item:
-    """A node: its symbol (0, 1, TF, Se, ...), what is written beside it, and whether it is dependent.
+    """A node: its kind, what is written beside it, and whether it is dependent.
 
-    ``junction``: what is beside it is its name only, small.
+    Beside a junction there is its name only, small. ``one_port``: with one bond, so no field.
     """
 
     name: Hashable
-    symbol: str
+    kind: Kind
     beside: Rich
-    junction: bool = False
     one_port: bool = False
     dependent: bool = False
+
+    @property
+    def symbol(self) -> str:
+        """0, 1, TF, Se, ..."""
+        return self.kind.symbol
+
+    @property
+    def junction(self) -> bool:
+        """Whether it is a 0- or a 1-junction."""
+        return self.kind.joins
 
 
 @dataclass(frozen=True)
@@ -100,9 +110,8 @@ def _item(
     owner: Hashable, ports: list[Element], dependent: frozenset[Hashable], values: bool
 ) -> Item:
     element = ports[0]
-    if element.kind in JUNCTIONS:
-        symbol = "0" if element.kind is Kind.ZERO else "1"
-        return Item(owner, symbol, named(owner), junction=True)
+    if element.kind.joins:
+        return Item(owner, element.kind, named(owner))
     switched = _switched(element)
     beside = named(owner)
     if switched:
@@ -111,16 +120,16 @@ def _item(
         beside = _value(element) or beside
     return Item(
         owner,
-        "Sw" if switched else str(element.kind),
+        Kind.SW if switched else element.kind,
         beside,
-        one_port=element.kind not in TWO_PORTS and len(ports) == 1,
+        one_port=not element.kind.two_port and len(ports) == 1,
         dependent=any(port.name in dependent for port in ports),
     )
 
 
 def _switched(element: Element) -> str:
     """On or off: what in_mode leaves of a switch is a port that gives zero of one of the two."""
-    if element.kind is Kind.R and element.law == ExpressionLaw(sp.Integer(0)):
+    if element.kind.resists and element.law == ExpressionLaw(sp.Integer(0)):
         return "on" if element.gives == "effort" else "off"
     return ""
 
@@ -128,7 +137,7 @@ def _switched(element: Element) -> str:
 def _value(element: Element) -> Rich | None:
     """What the element is by its value, or by its law if that is a short one."""
     given = element.value
-    if given is None and element.kind in (Kind.SE, Kind.SF) and element.owner is None:
+    if given is None and element.kind.supplies and element.owner is None:
         law = element.law
         given = law.expression if isinstance(law, ExpressionLaw) else element.given
     if given is None or element.owner is not None:
@@ -142,7 +151,7 @@ def _link(
     places: Mapping[Hashable, int], strokes: Mapping[Bond, Hashable],
 ) -> Link:  # fmt: skip
     """The bond, with the variables that its one-port or a junction at its ends has names for."""
-    ported = sorted((first, second), key=lambda element: element.kind in JUNCTIONS)
+    ported = sorted((first, second), key=lambda element: element.kind.joins)
     names = [
         next((named(name) for e in ported if (name := getattr(e, which)) is not None), ())
         for which in ("effort", "flow")

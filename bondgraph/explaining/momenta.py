@@ -8,7 +8,6 @@ import sympy as sp
 
 from bondgraph.algebra.exact import Row
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.elements import Kind
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.storages import field_row
@@ -45,7 +44,7 @@ def momenta(reduction: Reduction, taken: set[sp.Symbol]) -> Momenta:
         if isinstance(law, ExpressionLaw) and law.state is not None:
             symbols[at] = law.state
             continue
-        letter = "p" if port.element.kind is Kind.I else "q"
+        letter = port.element.kind.letter
         text = re.sub(r"\W", "_", f"{letter}_{port.element.name}")
         while text in names:
             text += "_"
@@ -69,4 +68,4 @@ def _stored(reduction: Reduction, at: int) -> Sum:
 def _variable(reduction: Reduction, at: int) -> sp.Symbol:
     """The flow of an inertia, the effort of a compliance."""
     element = reduction.structure.ports[at].element
-    return element.flow if element.kind is Kind.I else element.effort
+    return element.co_energy

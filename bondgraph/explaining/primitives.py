@@ -7,7 +7,7 @@ import sympy as sp
 from bondgraph.causality.assignments import Assignment
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations
-from bondgraph.declare.elements import Kind
+from bondgraph.declare.elements import OTHER
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.explaining.momenta import Momenta
@@ -22,7 +22,7 @@ def storages_step(reduction: Reduction, momenta: Momenta) -> Step:
     one = sp.Integer(1)
     for at in sorted((*reduction.states, *reduction.dependent)):
         port = reduction.structure.ports[at]
-        effect = port.element.effort if port.element.kind is Kind.I else port.element.flow
+        effect = port.element.variable(OTHER[port.element.kind.gives])
         name, stored = port.element.name, momenta.stored[at]
         if at in momenta.symbols:
             symbol = momenta.symbols[at]

@@ -9,14 +9,12 @@ from bondgraph.causality.assignments import Assignment
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.record import Reason, Strokes
 from bondgraph.causality.stories import deciding_nodes
-from bondgraph.declare.elements import JUNCTIONS, Bond, Kind
+from bondgraph.declare.elements import Bond
 from bondgraph.explaining.records import Step
 from bondgraph.reduce.sorting import Reduction
 
 Symbols = Mapping[tuple[Bond, Literal["effort", "flow"]], sp.Symbol]
 """The symbol of each bond's effort and flow."""
-
-KINDS = {Kind.ZERO: "0-junction", Kind.ONE: "1-junction"}
 
 MOST_NODES = 10
 """Of longer chains of nodes the middle is counted only."""
@@ -37,11 +35,11 @@ def _imposed(strokes: Strokes, symbols: Symbols) -> Iterator[str]:
         reason = strokes.reason[bond]
         if reason is None:
             continue
-        if strokes.elements[reason.node].kind not in JUNCTIONS or not reason.causes:
+        if not strokes.elements[reason.node].kind.joins or not reason.causes:
             yield _decision(strokes, symbols, bond, reason)
         for node in strokes.bonds[bond]:
-            zero = strokes.elements[node].kind is Kind.ZERO
-            if strokes.elements[node].kind in JUNCTIONS and (strokes.end[bond] == node) == zero:
+            zero = strokes.elements[node].kind.common == "effort"
+            if strokes.elements[node].kind.joins and (strokes.end[bond] == node) == zero:
                 yield _common(strokes, symbols, bond, node)
 
 
@@ -55,7 +53,7 @@ def _decision(strokes: Strokes, symbols: Symbols, bond: int, reason: Reason) -> 
 
 def _common(strokes: Strokes, symbols: Symbols, bond: int, node: int) -> str:
     """A junction, the one bond that brings its common variable, and those that take it from there."""
-    zero = strokes.elements[node].kind is Kind.ZERO
+    zero = strokes.elements[node].kind.common == "effort"
     what: Literal["effort", "flow"] = "effort" if zero else "flow"
     others = [strokes.other(b, node) for b in strokes.at[node] if b != bond]
     reason = strokes.reason[bond]
@@ -85,8 +83,7 @@ def _dependent(causal: CausalGraph, reduction: Reduction) -> Iterator[str]:
 
 
 def _called(strokes: Strokes, node: int) -> str:
-    kind = strokes.elements[node].kind
-    return f"{strokes.names[node]} ({KINDS.get(kind, str(kind))})"
+    return f"{strokes.names[node]} ({strokes.elements[node].kind.word})"
 
 
 def _listed(strokes: Strokes, nodes: Sequence[int]) -> str:

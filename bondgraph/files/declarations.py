@@ -9,7 +9,7 @@ from sympy.core.relational import Relational
 from sympy.logic.boolalg import BooleanAtom, BooleanFunction
 
 from bondgraph.algebra.expressions import MAX_DIGITS, expression, number
-from bondgraph.declare.elements import STORAGES
+from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.declare.validate import validate
 from bondgraph.errors import ExpressionError, FileFormatError
@@ -97,7 +97,7 @@ def _law(value: Any, kind: object, where: str) -> Any:
         return {part: _written(getattr(value, part), where) for part in FRICTION}
     if isinstance(value, ExpressionLaw):
         text = _written(value.expression, where)
-        if value.state is None or kind in STORAGES:
+        if value.state is None or Kind(str(kind)).stores:
             return text
         return {"expression": text, "state": _written(value.state, where)}
     return _written(value, where)

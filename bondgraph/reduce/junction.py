@@ -17,7 +17,6 @@ from bondgraph.algebra.exact import (
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations, causal_equations, causal_groups, loop_rows
-from bondgraph.declare.elements import SOURCES, Kind
 from bondgraph.errors import AlgebraicLoopError
 from bondgraph.reduce.structure import JunctionStructure, Port
 
@@ -37,9 +36,9 @@ def junction_structure(causal: CausalGraph) -> JunctionStructure:
         signal, sign = equations.received[node]
         rows.append(signals[signal] if sign == 1 else fixed(scaled(signals[signal], sign)))
     common = {
-        strokes.names[node]: signals[2 * strokes.at[node][0] + (element.kind is Kind.ONE)]
+        strokes.names[node]: signals[2 * strokes.at[node][0] + (element.kind.common == "flow")]
         for node, element in enumerate(strokes.elements)
-        if element.kind in (Kind.ZERO, Kind.ONE)
+        if element.kind.joins
     }
     pairs = zip(signals[::2], signals[1::2], strict=True)
     return JunctionStructure(
@@ -55,7 +54,7 @@ def junction_structure(causal: CausalGraph) -> JunctionStructure:
 def _port(strokes: Strokes, node: int) -> Port:
     element = strokes.elements[node]
     tail = strokes.bonds[strokes.at[node][0]][0] == node
-    inward = -1 if element.kind in SOURCES and tail else 1
+    inward = -1 if element.kind.supplies and tail else 1
     return Port(element, strokes.gives(node), inward)
 
 

@@ -6,7 +6,6 @@ import sympy as sp
 
 from bondgraph.algebra.exact import fixed
 from bondgraph.algebra.residues import is_zero
-from bondgraph.declare.elements import Kind
 from bondgraph.errors import StructureError
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction
@@ -38,7 +37,7 @@ def shown_signals(
         outputs = [
             port.element.name
             for port in structure.ports
-            if port.element.kind is Kind.R and port.element.gives and port.element.law is None
+            if port.element.kind.resists and port.element.gives and port.element.law is None
         ]
     if isinstance(outputs, str) or not isinstance(outputs, Iterable):
         raise StructureError(f"outputs must be a list of nodes, not {outputs!r}")
@@ -72,7 +71,7 @@ def _named_common(structure: JunctionStructure, name: Hashable) -> sp.Symbol:
 
 def _common(structure: JunctionStructure, name: Hashable) -> sp.Symbol | None:
     element = structure.elements[name]
-    return element.effort if element.kind is Kind.ZERO else element.flow
+    return element.common
 
 
 def _add(

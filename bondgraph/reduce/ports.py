@@ -7,7 +7,6 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.elements import Kind
 from bondgraph.errors import DependentSourceError
 from bondgraph.reduce.motion import Motion, moving_names, settled
 from bondgraph.reduce.record import Reading
@@ -30,7 +29,7 @@ def reduce_ports(structure: JunctionStructure) -> Reduction:
     resistive = tuple(
         i
         for i, port in enumerate(ports)
-        if port.element.kind is Kind.R and port.element.gives is None
+        if port.element.kind.resists and port.element.gives is None
     )
     imposed = tuple(i for i, port in enumerate(ports) if imposes(port) and not detects(port))
     inputs = tuple(dict.fromkeys(ports[i].given for i in imposed))
@@ -104,7 +103,7 @@ def signal_rows(structure: JunctionStructure) -> dict[sp.Symbol, Mapping[int, sp
         rows.setdefault(port.received, structure.rows[at])
     for name, row in structure.common.items():
         element = structure.elements[name]
-        symbol = element.effort if element.kind is Kind.ZERO else element.flow
+        symbol = element.common
         if symbol is not None:
             rows.setdefault(symbol, row)
     return rows

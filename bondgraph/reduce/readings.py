@@ -5,7 +5,6 @@ from collections.abc import Hashable, Mapping, Sequence
 import sympy as sp
 
 from bondgraph.algebra.exact import FixedRow
-from bondgraph.declare.elements import STORAGES
 from bondgraph.declare.laws import DryFriction, Law
 from bondgraph.errors import DependentSourceError, StructureError
 from bondgraph.reduce.record import Reading
@@ -38,7 +37,7 @@ def check_laws(
         if reading.H or reading.K or any(column in row for row in E):
             other = "flow" if port.gives == "effort" else "effort"
             way = f"let it give its {other} (gives={other!r})"
-            if port.element.kind in STORAGES:
+            if port.element.kind.stores:
                 way = "put a resistance between"
             raise DependentSourceError(
                 f"the law at {port.element.name!r} drives a dependent storage, so its slope in time "

@@ -8,7 +8,6 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.exact import combined
-from bondgraph.declare.elements import DETECTORS, STORAGES
 from bondgraph.reduce.motion import Motion
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import JunctionStructure, Port
@@ -56,12 +55,12 @@ class Reduction:
 
 def is_storage(port: Port) -> bool:
     """Whether the port is a storage whose causality is free: linear, or with a law and its inverse."""
-    return port.element.kind in STORAGES and not _is_fixed(port)
+    return port.element.kind.stores and not _is_fixed(port)
 
 
 def detects(port: Port) -> bool:
     """Whether the port only reads."""
-    return port.element.kind in DETECTORS
+    return port.element.kind.detects
 
 
 def _is_fixed(port: Port) -> bool:

@@ -8,7 +8,7 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.exact import FixedRow, matrix_of
-from bondgraph.declare.elements import Element, Kind
+from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import ExpressionLaw
 
 PortRow = FixedRow
@@ -39,7 +39,8 @@ class Port:
     @property
     def integral(self) -> bool:
         """Whether the port of a storage has integral causality."""
-        return self.gives == ("flow" if self.element.kind is Kind.I else "effort")
+        kind = self.element.kind
+        return kind.stores and self.gives == kind.gives
 
     @property
     def own_state(self) -> sp.Symbol | None:

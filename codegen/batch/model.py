@@ -9,7 +9,6 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from bondgraph.declare.elements import Kind
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from codegen.batch.engine import batch_engine
@@ -66,7 +65,7 @@ _models: WeakKeyDictionary[Family, BatchModel] = WeakKeyDictionary()
 
 def _checked_values(equations: StateEquations, program: Program) -> Callable[[Array], Flags]:
     """Whether storages and moduli are certain not to be zero, for rows of parameters."""
-    elements = [e for e in equations.elements.values() if e.kind is not Kind.R]
+    elements = [e for e in equations.elements.values() if not e.kind.resists]
     values = [sp.sympify(e.value) for e in elements if e.value is not None]
     known = {symbol.name for symbol in program.parameters}
     constant = [v for v in values if {s.name for s in v.free_symbols} <= known]

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.elements import SOURCES, STORAGES
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
 from bondgraph.reduce.record import Reading, ReadingSum
@@ -89,7 +88,7 @@ def with_signals(made: Accounts, names: Iterable[str]) -> Accounts:
 
 
 def _power(port: Port) -> Product:
-    supplies = port.element.kind in SOURCES and port.inward == 1
+    supplies = port.element.kind.supplies and port.inward == 1
     return Product(-1.0 if supplies else 1.0, port.given.name, port.received.name)
 
 
@@ -97,7 +96,7 @@ def _moved(equations: StateEquations, at: int) -> Reading | None:
     """``sum_j M_ij' v_j`` of a linear storage whose value moves; None for all others."""
     reduction = equations.reduction
     port, motion = reduction.structure.ports[at], reduction.motion
-    linear = port.element.kind in STORAGES and is_storage(port) and port.element.law is None
+    linear = port.element.kind.stores and is_storage(port) and port.element.law is None
     if motion is None or not linear:
         return None
     result = ReadingSum()

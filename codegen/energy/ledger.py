@@ -7,7 +7,6 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from bondgraph.declare.elements import DETECTORS, SOURCES, STORAGES
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError
 from codegen.energy.accounts import Account, Accounts, Product, accounts, with_signals
@@ -23,8 +22,8 @@ def sides(equations: StateEquations) -> dict[Hashable, str | None]:
     found: dict[Hashable, str | None] = {}
     ports = equations.reduction.structure.places
     for name, element in equations.elements.items():
-        side = TOOK if element.kind in STORAGES else GAVE if element.kind in SOURCES else LOST
-        conserves = name not in ports or element.kind in DETECTORS
+        side = TOOK if element.kind.stores else GAVE if element.kind.supplies else LOST
+        conserves = name not in ports or element.kind.detects
         found[element.owner or name] = None if conserves else side
     return found
 

@@ -5,7 +5,6 @@ from collections.abc import Hashable, Mapping, Sequence
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.elements import STORAGES, Kind
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, StructureError
@@ -24,7 +23,7 @@ def stored_energy(
     """
     ports = equations.reduction.structure.ports
     found = [p for p in ports if node in (p.element.name, p.element.owner)]
-    if not found or found[0].element.kind not in STORAGES:
+    if not found or not found[0].element.kind.stores:
         raise StructureError(f"{node!r} is not an I or a C; only storages have an energy")
     first = found[0].element
     if first.row and first.name == node:
@@ -38,10 +37,7 @@ def stored_energy(
 
 def _of_values(ports: Sequence[Port]) -> sp.Expr:
     """Half the value times the square of the co-energy variable; of fields the quadratic form."""
-    ruling = {
-        p.element.name: p.element.flow if p.element.kind is Kind.I else p.element.effort
-        for p in ports
-    }
+    ruling = {p.element.name: p.element.co_energy for p in ports}
     terms = []
     for port in ports:
         element = port.element

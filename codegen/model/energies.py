@@ -5,7 +5,7 @@ from collections.abc import Hashable, Iterator, Mapping
 import numpy as np
 import sympy as sp
 
-from bondgraph.declare.elements import STORAGES, Element
+from bondgraph.declare.elements import Element
 from bondgraph.equations import StateEquations
 from codegen.model.numbers import at_parameters
 from codegen.tuning import TUNING
@@ -33,7 +33,7 @@ def _negative(
     """The storages in question, a field by its own name."""
     fields: dict[Hashable, dict[Hashable, Element]] = {}
     for name, element in equations.elements.items():
-        if element.kind not in STORAGES or element.value is None:
+        if not element.kind.stores or element.value is None:
             continue
         if element.row:
             fields.setdefault(element.owner, {})[element.name] = element

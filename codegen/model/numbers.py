@@ -10,7 +10,6 @@ from bondgraph.algebra.elimination import ResidueRows
 from bondgraph.algebra.exact import FixedRow, Row, rows_of
 from bondgraph.algebra.expressions import normal, number
 from bondgraph.algebra.residues import residues
-from bondgraph.declare.elements import Kind
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from bondgraph.reduce.resistances import resistive_loops
@@ -138,7 +137,7 @@ def _check_elements(equations: StateEquations, parameters: Mapping[str, sp.Ratio
     """Refuse storages and moduli whose value is zero, or no finite number, at these parameters."""
     value = residues()
     for name, element in equations.elements.items():
-        if element.value is None or element.kind is Kind.R:
+        if element.value is None or element.kind.resists:
             continue
         try:
             zero = value(at_parameters(element.value, parameters)) == 0

@@ -7,7 +7,6 @@ import numpy as np
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.elements import SOURCES
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError
 from bondgraph.reduce.record import Reading
@@ -57,7 +56,7 @@ class Observer:
             if node in (port.element.name, port.element.owner):
                 given = self._values(self._equations.reduction.reading({at: sp.Integer(1)}))
                 received = self._values(self._equations.reduction.reading(structure.rows[at]))
-                supplies = port.element.kind in SOURCES and port.inward == 1
+                supplies = port.element.kind.supplies and port.inward == 1
                 powers.append(-given * received if supplies else given * received)
         if not powers:
             raise StructureError(

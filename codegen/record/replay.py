@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from bondgraph.declare.elements import STORAGES
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError
 from codegen.energy.accounts import Account
@@ -89,7 +88,7 @@ def held_in(model: ClosedModel) -> Callable[[float, Snapshot], float]:
     energies = []
     ports = model.equations.reduction.structure.ports
     found: dict[Hashable, None] = dict.fromkeys(
-        p.element.owner or p.element.name for p in ports if p.element.kind in STORAGES
+        p.element.owner or p.element.name for p in ports if p.element.kind.stores
     )
     for node in found:
         try:

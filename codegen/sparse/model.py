@@ -14,7 +14,6 @@ import scipy.sparse as sps
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.lines import variable_of
-from bondgraph.declare.elements import JUNCTIONS, Kind
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.errors import StructureError
 from codegen.inputs.signals import Constant
@@ -126,8 +125,8 @@ def _shown(signals: SignalRows, outputs: Iterable[Hashable]) -> tuple[list[str],
             other = "flow" if strokes.gives(node) == "effort" else "effort"
             names.append(str(variable_of(element, other)))
             rows.append(signals.received(node))
-        elif element.kind in JUNCTIONS:
-            flow = element.kind is Kind.ONE
+        elif element.kind.joins:
+            flow = element.kind.common == "flow"
             names.append(str(element.flow if flow else element.effort))
             rows.append(signals.rows[2 * strokes.at[node][0] + flow])
         else:

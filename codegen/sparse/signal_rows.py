@@ -17,7 +17,6 @@ from bondgraph.algebra.residues import PRIME, residues
 from bondgraph.causality.lines import is_independent, signal_lines, variable_of
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import causal_equations, causal_groups
-from bondgraph.declare.elements import STORAGES
 from bondgraph.errors import AlgebraicLoopError
 from codegen.numbers.arrays import Array
 
@@ -49,7 +48,7 @@ class SignalRows:
         self._equations = causal_equations(strokes)
         self._lines = list(signal_lines(strokes, self._equations))
         ports = [node for node, element in enumerate(strokes.elements) if element.one_port]
-        storages = [node for node in ports if strokes.elements[node].kind in STORAGES]
+        storages = [node for node in ports if strokes.elements[node].kind.stores]
         self.states = [n for n in storages if is_independent(strokes, n)]
         self.sources = [
             n for n in ports if strokes.elements[n].gives and is_independent(strokes, n)

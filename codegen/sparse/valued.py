@@ -6,7 +6,7 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.declare.elements import SOURCES, STORAGES, Element, Kind
+from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.names import named_by
 from bondgraph.declare.validate import validate, with_elements
@@ -42,15 +42,15 @@ def _valued(element: Element, exact: Mapping[str, sp.Rational], signals: Iterabl
     value, row = element.value, element.row
     if value is not None:
         value = _number(value, where, exact, signals)
-        if value.is_zero and element.kind is not Kind.R:
+        if value.is_zero and not element.kind.resists:
             raise ParameterError(f"{where}: its value {element.value} is zero or infinite")
-    if element.kind is Kind.R and value is not None and value.is_zero:
+    if element.kind.resists and value is not None and value.is_zero:
         # Nothing at all between effort and flow: it gives the effort zero, whatever flows.
         zero = ExpressionLaw(sp.Integer(0))
         return replace(element, value=None, row=(), gives="effort", law=zero)
     if row:
         row = tuple((name, _number(entry, where, exact, signals)) for name, entry in row)
-    if element.kind in STORAGES and (row or value is None or not value.is_positive):
+    if element.kind.stores and (row or value is None or not value.is_positive):
         raise SingularStorageError(
             f"{where} is a field or not positive: floats would decide whether A has an inverse; derive the "
             "graph, which decides it exactly"
@@ -64,7 +64,11 @@ def _law(
     """A constant law as a number; of an input that a parameter names, that number."""
     given, law = element.given, element.law
     if law is None:
-        named = given is not None and given.name in exact and element.kind in {*SOURCES, Kind.R}
+        named = (
+            given is not None
+            and given.name in exact
+            and (element.kind.supplies or element.kind.resists)
+        )
         return ExpressionLaw(exact[given.name]) if named and given is not None else None
     if not isinstance(law, ExpressionLaw) or law.state is not None or _moving(law, exact):
         raise StructureError(

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bondgraph.declare.elements import STORAGES
 from bondgraph.declare.switching import checked_modes
 from bondgraph.declare.validate import validate
 from bondgraph.equations import StateEquations
@@ -240,8 +239,8 @@ class _Journey:
         now = model.at(t, vector, [signal.piece(t) for signal in signals], slipping)
         after = handover.momenta(t, now)
         ports = model.equations.reduction.structure.ports
-        names = {p.given.name for p in ports if p.element.kind in STORAGES}
-        names |= {p.received.name for p in ports if p.element.kind in STORAGES}
+        names = {p.given.name for p in ports if p.element.kind.stores}
+        names |= {p.received.name for p in ports if p.element.kind.stores}
         stored = [p.one in names and p.other in names for account in self._whole for p in account]
         taken = handover.taken(t, now, momenta, after)
         impulses = handover.impulses(t, now, after - momenta)

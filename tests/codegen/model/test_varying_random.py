@@ -8,7 +8,6 @@ import pytest
 from references.random_graphs import random_graph
 
 import bondgraph as bg
-from bondgraph.declare.elements import STORAGES
 from codegen import Result, Sine, simulator
 
 STEP = 1e-3
@@ -62,7 +61,7 @@ SEEDS = [0, 3, 6, 7, 8, 9, 10, 11]
 def test_storages_gain_what_they_absorb(seed: int, followed: str) -> None:
     """Wrong rates of ratios would show here: power balances whatever storages give, energy does not."""
     equations, run = _run(seed, followed)
-    storages = [n for n, element in equations.elements.items() if element.kind in STORAGES]
+    storages = [n for n, element in equations.elements.items() if element.kind.stores]
     energy = sum(run.energy(node) for node in storages)
     power = sum(run.power(node) for node in storages)
     # Central differences of fourth order.

@@ -15,7 +15,6 @@ from references.random_graphs import random_graph
 from soak.families import seeds
 
 import bondgraph as bg
-from bondgraph.declare.elements import STORAGES
 from codegen import SparseModel, simulator, sparse_model
 
 if TYPE_CHECKING:
@@ -137,7 +136,7 @@ def test_random_graphs_are_of_all_sorts() -> None:
     assert 30 < len(equations) < 60
     assert sum(bool(found.E.todok()) for found in equations) >= 2
     assert sum(bool(found.G.todok()) for found in equations) > 10
-    storages = [[e for e in found.elements.values() if e.kind in STORAGES] for found in equations]
+    storages = [[e for e in found.elements.values() if e.kind.stores] for found in equations]
     dependent = [len(held) - len(e.states) for held, e in zip(storages, equations, strict=True)]
     assert sum(count > 0 for count in dependent) > 10
 

@@ -1,0 +1,140 @@
+"""`Kind`: the kinds of node, and the one table of what each of them is."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Literal
+
+Role = Literal[
+    "source", "storage", "resistance", "switch", "detector", "transformer", "gyrator", "junction"
+]
+
+_NAMED = frozenset({"value", "effort", "flow", "law", "unit", "ports"})
+_STORED = _NAMED | {"inverse", "energy", "priority"}
+
+
+@dataclass(frozen=True)
+class Nature:
+    """What a kind of node is; all that depends on the kind is read from here."""
+
+    role: Role
+    #: The attributes that a node may carry beside ``kind``.
+    keys: frozenset[str]
+    #: What it gives of itself, "effort" or "flow": sources and detectors always, storages where they can.
+    gives: str = ""
+    #: What the bonds of a junction have in common, "effort" or "flow".
+    common: str = ""
+    #: Stands for a junction in drawings, and begins its name in sentences: a 0-junction, a 1-junction.
+    digit: str = ""
+    #: Begins the name of the state that a storage's law has: a momentum p, a displacement q.
+    letter: str = ""
+    #: Which one-port is first to lie beside its junction in a drawing.
+    place: int = 0
+
+
+class Kind(StrEnum):
+    """The kinds of node; the plain-dict form has their text as ``kind``.
+
+    >>> Kind("I").stores, Kind("I").gives, Kind("C").letter, Kind("Zero").common
+    (True, 'flow', 'q', 'effort')
+    """
+
+    nature: Nature
+
+    SE = "Se", Nature("source", frozenset({"value", "flow", "unit"}), gives="effort", place=6)
+    SF = "Sf", Nature("source", frozenset({"value", "effort", "unit"}), gives="flow", place=5)
+    I = "I", Nature("storage", _STORED, gives="flow", letter="p")  # noqa: E741  the field's own letter
+    C = "C", Nature("storage", _STORED, gives="effort", letter="q", place=1)
+    R = "R", Nature("resistance", _NAMED | {"gives"}, place=7)
+    TF = "TF", Nature("transformer", frozenset({"value", "unit"}))
+    GY = "GY", Nature("gyrator", frozenset({"value", "unit"}))
+    ZERO = (
+        "Zero",
+        Nature("junction", frozenset({"effort", "on", "off"}), common="effort", digit="0"),
+    )
+    ONE = "One", Nature("junction", frozenset({"flow", "on", "off"}), common="flow", digit="1")
+    DE = "De", Nature("detector", frozenset({"effort", "integrate", "unit"}), gives="flow", place=4)
+    DF = "Df", Nature("detector", frozenset({"flow", "integrate", "unit"}), gives="effort", place=3)
+    SW = "Sw", Nature("switch", frozenset({"effort", "flow", "on", "off"}), place=2)
+
+    def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":
+        """One of the rows above; ``Kind("I")`` looks one up and makes none."""
+        if nature is None:
+            raise TypeError(f"the kind {text!r} has no nature")
+        kind = str.__new__(cls, text)
+        kind._value_, kind.nature = text, nature
+        return kind
+
+    @property
+    def supplies(self) -> bool:
+        """Whether it is a source."""
+        return self.nature.role == "source"
+
+    @property
+    def stores(self) -> bool:
+        """Whether it holds energy as a function of its state."""
+        return self.nature.role == "storage"
+
+    @property
+    def resists(self) -> bool:
+        """Whether effort and flow determine each other at once, by a value or by a law."""
+        return self.nature.role == "resistance"
+
+    @property
+    def switches(self) -> bool:
+        """Whether it is an ideal switch."""
+        return self.nature.role == "switch"
+
+    @property
+    def detects(self) -> bool:
+        """Whether it only reads, and takes no power."""
+        return self.nature.role == "detector"
+
+    @property
+    def gyrates(self) -> bool:
+        """Whether it turns efforts into flows and flows into efforts."""
+        return self.nature.role == "gyrator"
+
+    @property
+    def two_port(self) -> bool:
+        """Whether it passes power on from one bond to another."""
+        return self.nature.role in ("transformer", "gyrator")
+
+    @property
+    def joins(self) -> bool:
+        """Whether it is a junction."""
+        return self.nature.role == "junction"
+
+    @property
+    def one_port(self) -> bool:
+        """True for everything but transformers, gyrators and junctions."""
+        return not self.two_port and not self.joins
+
+    @property
+    def absorbs(self) -> bool:
+        """Whether power counts into it whichever way the arrow points."""
+        return self.one_port and not self.supplies
+
+    @property
+    def gives(self) -> str:
+        """What it gives of itself, "effort" or "flow"; of kinds that choose freely an empty text."""
+        return self.nature.gives
+
+    @property
+    def common(self) -> str:
+        """What the bonds of a junction have in common, "effort" or "flow"; else an empty text."""
+        return self.nature.common
+
+    @property
+    def symbol(self) -> str:
+        """What stands for it in a drawing."""
+        return self.nature.digit or str(self)
+
+    @property
+    def word(self) -> str:
+        """What a sentence calls it."""
+        return f"{self.nature.digit}-junction" if self.joins else str(self)
+
+    @property
+    def letter(self) -> str:
+        """The letter of a storage's own state, p or q; else an empty text."""
+        return self.nature.letter
