@@ -140,8 +140,6 @@ class Tuning:
     turns: float = _told(0.05, "radians, or powers of e, that known sources do little in")
 
     # What is numpy's alone, by the folders that read it
-    rtol: float = _told(1e-10, "relative tolerance of runs, unless it is told otherwise")
-    atol: float = _told(1e-11, "absolute tolerance of the same")
     sparse_rtol: float = _told(1e-8, "relative tolerance of runs of sparse models")
     sparse_atol: float = _told(1e-10, "absolute tolerance of the same")
     even: float = _told(1e-6, "part of a distance by which samples may be uneven for a spectrum")

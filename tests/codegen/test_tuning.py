@@ -1,5 +1,6 @@
 """Tolerances and choices of size have one home, and C has the same numbers."""
 
+import ast
 import re
 from dataclasses import FrozenInstanceError, fields
 from pathlib import Path
@@ -28,6 +29,25 @@ def test_c_has_no_small_number_of_its_own() -> None:
         text = re.sub(r"/\*.*?\*/|\"[^\"\n]*\"", "", runtime_file(name), flags=re.DOTALL)
         own = [number for number in NUMBER.findall(text) if 0 < float(number) < 1e-2]
         assert own == [], name
+
+
+def test_python_has_no_small_number_of_its_own() -> None:
+    """But pictures, whose sizes are on paper."""
+    top = Path(codegen.__path__[0])
+    for path in top.rglob("*.py"):
+        if path.name == "tuning.py" or path.relative_to(top).parts[0] in ("pictures", "plots"):
+            continue
+        nodes = list(ast.walk(ast.parse(path.read_text("utf-8"))))
+        constants = [node.value for node in nodes if isinstance(node, ast.Constant)]
+        own = [value for value in constants if isinstance(value, float) and 0 < value < 1e-2]
+        own += [ast.unparse(node) for node in nodes if _is_small_power(node)]
+        assert own == [], path
+
+
+def _is_small_power(node: ast.AST) -> bool:
+    """Such as ``2.0**-40``."""
+    raised = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow)
+    return raised and isinstance(node.left, ast.Constant) and isinstance(node.right, ast.UnaryOp)
 
 
 def test_every_number_is_used_and_told() -> None:
