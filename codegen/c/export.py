@@ -23,14 +23,14 @@ from codegen.runs.arguments import initial_values, signals_for
 from codegen.runs.steps import step_at_start
 from codegen.tuning import tuning_text
 
-STEPPED = (*runtime_names("model"), *runtime_names("ports"), *runtime_names("run"))
-"""What is the same for every model."""
+STEPPED = ("model", "ports", "run")
+"""Folders of what is the same for every model."""
+
+LOCATED = "located"
+"""The folder of what event-located runs need beside that .."""
 
 CALLING = ("located_rows.h", "located_rows.c")
-"""What calls a model for a table of a run."""
-
-LOCATED = tuple(name for name in runtime_names("located") if name not in CALLING)
-"""What event-located runs need beside that."""
+""".. but for what calls a model for a table of a run."""
 
 _HEAD = """\
 /* {name}
@@ -143,7 +143,8 @@ def texts(
 
     Its parameters are in ``defaults`` and ``longest`` alone, and in which sticking ports are redundant.
     """
-    runtime = {file: runtime_file(file) for file in STEPPED + LOCATED}
+    names = [name for folder in (*STEPPED, LOCATED) for name in runtime_names(folder)]
+    runtime = {name: runtime_file(name) for name in names if name not in CALLING}
     headers = [text for file, text in runtime.items() if file.endswith(".h")]
     macros = renamed(prefix, external_symbols(headers))
     program, equations = closed.program, closed.equations
@@ -167,7 +168,8 @@ def texts(
 
 def stepped(files: Mapping[str, str]) -> dict[str, str]:
     """An export without what only event-located runs need."""
-    return {name: text for name, text in files.items() if name not in LOCATED}
+    located = runtime_names(LOCATED)
+    return {name: text for name, text in files.items() if name not in located}
 
 
 def _head(program: Program, name: str, prefix: str) -> list[str]:

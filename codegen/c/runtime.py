@@ -4,8 +4,8 @@ from functools import cache
 from importlib.resources import files
 
 FOLDERS = ("model", "ports", "run", "located", "exact", "batch", "fmu")
-"""Of `codegen/runtime`: what each may use comes before it, but that ``exact`` uses no ``located``."""
-
+"""Of `codegen/runtime`: evaluating a model; holding and choosing; the loop; steps with a tolerance; exact
+steps; many runs; units."""
 
 SHARED = ("port_choose.h", "port_choose.c", "port_events.h", "port_events.c", "port_rounding.h")
 """Of ``ports`` what needs no model."""

@@ -36,11 +36,8 @@ from codegen.runs.track import Settings
 from codegen.simulate import Simulator, guarded_simulator
 from codegen.tuning import TUNING
 
-GLUE: Mapping[str, tuple[str, ...]] = {
-    version: tuple(name for name in runtime_names("fmu") if not name.startswith(f"fmu{other}"))
-    for version, other in (("2.0", 3), ("3.0", 2))
-}
-"""C sources that are the same for every unit, by FMI version."""
+OTHERS: Mapping[str, str] = {"2.0": "fmu3", "3.0": "fmu2"}
+"""How sources that a unit has no use for begin, by its FMI version."""
 
 _DATE = (1980, 1, 1, 0, 0, 0)
 
@@ -67,15 +64,16 @@ def write_fmu(
     unusable arguments, `MissingExtraError` without the extra ``export``, `WriteError` where the file cannot
     be written; what was there is kept.
     """
-    if version not in GLUE:
-        raise SignalError(f"FMI version {version!r}: there is {', '.join(GLUE)}")
+    if version not in OTHERS:
+        raise SignalError(f"FMI version {version!r}: there is {', '.join(OTHERS)}")
     target = Path(path)
     chosen = chosen_platforms(platforms)
     official = headers(version)
     model = _model(name or target.stem, equations, parameters, laws, initial or {}, inputs or {})
     closed, code = exported(equations, parameters, laws, name=model.name)
     warn_of_doubts(closed.program, equations, closed.parameters)
-    sources = stepped(code) | {file: runtime_file(file) for file in GLUE[version]}
+    own = [name for name in runtime_names("fmu") if not name.startswith(OTHERS[version])]
+    sources = stepped(code) | {name: runtime_file(name) for name in own}
     sources |= {"fmu_model.c": model_text(model), **official}
     units = sorted(file for file in sources if file.endswith(".c"))
     token = _token(sources, description(model, version, "", units), config_text(model, ""))

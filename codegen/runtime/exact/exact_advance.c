@@ -2,6 +2,7 @@
 #include "exact_internal.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 /* The first sample that is not before a time. */
@@ -34,8 +35,9 @@ int ex_check_levels(ex_context *c, double t, double *row)
 }
 
 /* Writes the state as the sample `p->at`, which is at p->t. */
-static int record(ex_context *c, ex_place *p)
+static int record(void *self, ex_context *c, ex_place *p)
 {
+    (void)self;
     double *row = c->task->rows[p->at];
     memcpy(row, p->z, sizeof p->z);
     ex_fill(&c->stretch, row);
@@ -45,7 +47,7 @@ static int record(ex_context *c, ex_place *p)
 }
 
 /* How many steps from the present sample on have one length, but for rounding; the stop, too. */
-int ex_alike(const ex_context *c, const ex_place *p, double *h)
+static int alike(const ex_context *c, const ex_place *p, double *h)
 {
     const double *times = c->task->times;
     int end = p->last;
@@ -62,7 +64,7 @@ int ex_alike(const ex_context *c, const ex_place *p, double *h)
 }
 
 /* Whether all triggers are armed; those are that have risen above rounding. */
-int ex_armed(ex_context *c, const double *row)
+static int armed(ex_context *c, const double *row)
 {
     int all = 1;
     for (int i = 0; i < EX_T; i++) {
@@ -127,8 +129,13 @@ static int steps(ex_context *c, ex_place *p, int count, long long *done)
 }
 
 /* Leaps over samples of one distance, as far as they reach. */
-static int leap_on(ex_context *c, ex_place *p, int count)
+static int leap_on(void *self, ex_context *c, ex_place *p, int count, double h)
 {
+    (void)self;
+    if (!c->stretch.leaping || c->stretch.entry->h != h) {
+        ex_leaps(c, &c->stretch, h, c->task->rows[p->base]);
+        ex_fill(&c->stretch, c->task->rows[p->base]);
+    }
     long long done;
     const int status = steps(c, p, count, &done), made = (int)(done / c->stretch.entry->parts);
     const int number = ex_number(c->run.mode), until = p->at + made;
@@ -142,19 +149,19 @@ static int leap_on(ex_context *c, ex_place *p, int count)
 }
 
 /* One step by power series, to the next sample or the stop. */
-static int step_on(ex_context *c, ex_place *p)
+static int step_on(ex_context *c, ex_place *p, const ex_recorder *to)
 {
     const int sample = p->at < p->last;
-    const double to = sample ? c->task->times[p->at] : p->stop;
+    const double next = sample ? c->task->times[p->at] : p->stop;
     double end;
-    const int status = ex_series(c, p->t, to - p->t, p->z, &end, &p->ports);
+    const int status = ex_series(c, p->t, next - p->t, p->z, &end, &p->ports);
     if (p->ports)
         p->stop = end;
     if (status || p->ports)
         return status;
-    p->t = to;
+    p->t = next;
     p->base = -1;
-    return sample ? record(c, p) : BG_OK;
+    return sample ? to->record(to->self, c, p) : BG_OK;
 }
 
 void ex_set_out(const ex_context *c, ex_place *p, double stop)
@@ -178,26 +185,27 @@ void ex_arrive(ex_context *c, const ex_place *p)
         c->run.at.touched[i] = p->ports >> i & 1u;
 }
 
-int ex_advance(ex_context *c, double stop)
+int ex_advance_by(ex_context *c, double stop, const ex_recorder *to)
 {
     ex_place p;
     int status = BG_OK;
-    if (EX_K == 0 && c->stretch.entry->norm * (stop - c->run.at.t) > BG_ROUNDED)
-        return ex_free(c, stop);
     ex_set_out(c, &p, stop);
     while (!status && !p.ports && (p.t < stop || p.at < p.last)) {
         double h = 0.0;
-        const int count = p.base >= 0 ? ex_alike(c, &p, &h) : 0;
-        if (count >= EX_STRIDE && ex_armed(c, c->task->rows[p.base])) {
-            if (!c->stretch.leaping || c->stretch.entry->h != h) {
-                ex_leaps(c, &c->stretch, h, c->task->rows[p.base]);
-                ex_fill(&c->stretch, c->task->rows[p.base]);
-            }
-            status = leap_on(c, &p, count);
-        } else {
-            status = step_on(c, &p);
-        }
+        const int count = p.base >= 0 ? alike(c, &p, &h) : 0;
+        if (count >= EX_STRIDE && armed(c, to->row ? to->row : c->task->rows[p.base]))
+            status = to->leap(to->self, c, &p, count, h);
+        else
+            status = step_on(c, &p, to);
     }
     ex_arrive(c, &p);
     return status;
+}
+
+int ex_advance(ex_context *c, double stop)
+{
+    const ex_recorder rows = {NULL, NULL, record, leap_on};
+    if (EX_K == 0 && c->stretch.entry->norm * (stop - c->run.at.t) > BG_ROUNDED)
+        return ex_free(c, stop);
+    return ex_advance_by(c, stop, &rows);
 }

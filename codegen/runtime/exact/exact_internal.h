@@ -147,13 +147,21 @@ int ex_leap(const ex_stretch *stretch, int count, double (*rows)[EX_ROW]);
 void ex_fill(const ex_stretch *stretch, double *row);
 void ex_uncertainty(const ex_stretch *stretch, const double *row, double *slack);
 
-/* exact_advance.c: to `stop` or the first event; and its parts. How many steps from the present sample
- * on have one length; whether all triggers are armed; a friction level below zero is refused. */
+/* What is done at samples: `record` takes the one that a step has come to, `leap` goes on over
+ * `count` samples at distances of h; the latest with its triggers is in `row`, or that of the task. */
+typedef struct {
+    void *self;
+    const double *row;
+    int (*record)(void *self, ex_context *c, ex_place *p);
+    int (*leap)(void *self, ex_context *c, ex_place *p, int count, double h);
+} ex_recorder;
+
+/* exact_advance.c: to `stop` or the first event, into the rows of the task or elsewhere; its ends. A
+ * friction level below zero is refused. */
 int ex_advance(ex_context *c, double stop);
+int ex_advance_by(ex_context *c, double stop, const ex_recorder *to);
 void ex_set_out(const ex_context *c, ex_place *p, double stop);
 void ex_arrive(ex_context *c, const ex_place *p);
-int ex_alike(const ex_context *c, const ex_place *p, double *h);
-int ex_armed(ex_context *c, const double *row);
 int ex_check_levels(ex_context *c, double t, double *row);
 
 /* exact_run.c: a run but for its last sample; a status. */
