@@ -17,8 +17,8 @@ ROOT = Path(__file__).parents[1]
 ORDER = {
     "bondgraph": "errors writing algebra declare causality reduce show equations derive analyse explaining "
     "drawing files",
-    "codegen": "numbers inputs program model ports modes energy runs pictures record plots analysis c engine "
-    "simulate trim packing family batch sweeps python switched sparse fmu",
+    "codegen": "standalone numbers inputs program model ports modes energy runs pictures record plots "
+    "analysis c engine simulate trim packing family batch sweeps python switched sparse fmu",
     "differentials": "laws parts pieces passive active topologies parameters model identification speeds "
     "scenarios scripts exporting figures report cli",
 }

@@ -7,11 +7,11 @@ import numpy as np
 
 from codegen.inputs.signal import Signal, sampled_rates, sampled_values
 from codegen.model.snapshot import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS
-from codegen.model.terms import without_rounding
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
 from codegen.runs.track import Track
+from codegen.standalone.levels import without_rounding
 
 STATES, LAW_STATES = 0, 1
 """Where the parts stand in an affine map, as in a `Snapshot`."""
@@ -56,7 +56,7 @@ def _by_modes(
     which = np.array([number[mode] for mode in track.modes])
     w = np.array([sampled_values(signal, times) for signal in signals]).reshape(-1, len(times))
     dw = np.zeros_like(w)
-    if model.rated and len(signals):
+    if model.program.rated and len(signals):
         dw[:] = [sampled_rates(signal, times) for signal in signals]
     vectors = np.column_stack([track.vectors, w.T, dw.T, np.ones(len(times))])
     tables: Array | None = None

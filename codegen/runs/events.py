@@ -13,8 +13,8 @@ from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.verdicts import Look, room
 from codegen.numbers.arrays import Array
-from codegen.numbers.roots import root
 from codegen.runs.track import Dense
+from codegen.standalone.roots import root
 
 CHECKS = 6
 """Points inside each step at which events are looked for."""

@@ -5,7 +5,7 @@
 
 #include "config.h"
 
-enum { BG_MOST_PORTS = 6, BG_NO_MODE = -1 };
+enum { BG_MOST_PORTS = 8, BG_NO_MODE = -1 };
 
 #define BG_ROUNDING 1e-10 /* of the terms that make up a slip, an effort or a level: that is zero */
 #define BG_LOOK_AHEAD 1e-4 /* ties are decided this fraction of the shortest time constant later */

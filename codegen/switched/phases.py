@@ -16,7 +16,6 @@ from bondgraph.errors import BondGraphError, SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.model.doubts import warn_of_doubts
 from codegen.model.snapshot import Mode
-from codegen.model.terms import TOLERANCE
 from codegen.modes.choose import a_moment_later, decide
 from codegen.modes.guards import guard_values
 from codegen.modes.pace import LOOK_AHEAD, look_ahead, time_constant
@@ -25,6 +24,7 @@ from codegen.numbers.arrays import Array
 from codegen.runs.legs import Leg
 from codegen.runs.track import Settings
 from codegen.simulate import Simulator, guarded_simulator
+from codegen.standalone.levels import TOLERANCE
 from codegen.switched.handover import Handover
 
 On = frozenset[Hashable]
