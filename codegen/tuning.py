@@ -115,6 +115,7 @@ class Tuning:
 
     # Fixed steps
     band: float = _told(1e-6, "dead band of a port, unless it is told otherwise")
+    still: float = _told(1e-12, "dead band where only an instant is asked for")
     step_rounding: float = _told(1e-9, "of what makes a slip or its rate up: zero to a step")
     difference: float = _told(1e-7, "of the states' magnitudes: a difference for the fastest rates")
     farther: float = _told(8.0, "a second one, so many times as large, must find a like slope")

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import bondgraph as bg
 from bondgraph.analyse.state_space import StateSpace
-from codegen.numbers.roots import root
+from codegen.standalone.roots import root
 from differentials.model import Model, model
 from differentials.parameters import checked
 

@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 import sympy as sp
 from sympy.printing.codeprinter import PrintMethodNotImplementedError
 
-from bondgraph.algebra.expressions import TIME
 from bondgraph.errors import ExpressionError
 from codegen.c.text import comment, statement
 from codegen.program.identifiers import identifiers
+from codegen.program.layout import readable
 from codegen.program.printing import printed
 from codegen.program.records import Block, Program
 
@@ -32,16 +32,9 @@ def names_for(symbols: Sequence[sp.Symbol]) -> Mapping[str, str]:
 
 def places(program: Program) -> Mapping[sp.Symbol, str]:
     """Where each name's value stands in an instant ``v``; a parameter before an input that it holds."""
-    found = {name: f"v->p[{at}]" for at, name in enumerate(program.parameters)}
-    found.setdefault(TIME, "v->t")
-    listed = (
-        ("x", program.states), ("z", program.law_states), ("y", program.readings),
-        ("u", program.inputs), ("w", program.external), ("dw", program.external_rates),
-    )  # fmt: skip
-    for part, symbols in listed:
-        for at, name in enumerate(symbols):
-            found.setdefault(name, f"v->{part}[{at}]")
-    return found
+    return readable(
+        program, lambda _, part, at, name: "v->t" if part == "t" else f"v->{part}[{at}]"
+    )
 
 
 def text_of(expr: sp.Expr, names: Mapping[str, str]) -> str:
@@ -68,17 +61,11 @@ def body(code: Block, where: Mapping[sp.Symbol, str], result: str) -> list[str]:
     return lines
 
 
-def operations(code: Block) -> int:
-    """Additions, products and functions of a block, each assignment once."""
-    values = [*(value for _, value in code.assignments), *code.results]
-    return sum(int(sp.count_ops(value)) for value in values)
-
-
 def function(
     name: str, what: str, code: Block, where: Mapping[sp.Symbol, str], local: bool = True
 ) -> list[str]:
     """A block as a function that writes its results to ``out``."""
-    count = operations(code)
+    count = code.operations
     counted = f"{count} operation{'s' if count != 1 else ''}"
     unused = [
         *([] if code.arguments else ["    (void)v;"]),

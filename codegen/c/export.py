@@ -6,19 +6,19 @@ from typing import Any
 
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
-from codegen.c.blocks import function, operations, places
+from codegen.c.blocks import function, places
 from codegen.c.prefix import external_symbols, renamed
 from codegen.c.rates import plain_rates, straight_rates
 from codegen.c.rhs import straight
 from codegen.c.runtime import runtime_file, runtime_names
 from codegen.c.scenario import scenario_text
-from codegen.c.structure import structures
 from codegen.c.tables import config, group_tables, name_tables, program_tables, structure_table
 from codegen.c.text import comment
 from codegen.model.doubts import warn_of_doubts
 from codegen.modes.closed import ClosedModel
+from codegen.ports.holds import held_sets
 from codegen.program.lower import lower
-from codegen.program.records import Block, Program
+from codegen.program.records import Program
 from codegen.runs.arguments import initial_values, signals_for
 from codegen.runs.steps import step_at_start
 from codegen.tuning import tuning_text
@@ -155,7 +155,7 @@ def texts(
         "",
         *program_tables(program, defaults, [closed.coupled_directly(i) for i in ports]),
         "",
-        *structure_table(structures(program, closed.slips)),
+        *structure_table(held_sets(program, closed.slips).values(), program.coupled.inputs),
         *_functions(program),
         "",
         *group_tables(program),
@@ -184,7 +184,7 @@ def _head(program: Program, name: str, prefix: str) -> list[str]:
         rows += comment(f"{what}: {listed}")
     names = "\n".join(f" * {row.removeprefix('/* ').removesuffix(' */')}" for row in rows)
     title = comment(name)[0].removeprefix("/* ").removesuffix(" */")
-    count = sum(operations(code) for code in _blocks(program))
+    count = sum(code.operations for code in program.blocks)
     text = _HEAD.format(
         name=title,
         version=version("bondgraph-toolkit"),
@@ -193,14 +193,6 @@ def _head(program: Program, name: str, prefix: str) -> list[str]:
         together=_BESIDE.format(prefix=prefix) if prefix else _ALONE,
     )
     return text.splitlines() + [""]
-
-
-def _blocks(program: Program) -> tuple[Block, ...]:
-    groups = (program.known, *program.groups, program.coupled)
-    return (
-        program.coefficients, *(group.values for group in groups), program.known_rates,
-        program.friction_values,
-    )  # fmt: skip
 
 
 def _functions(program: Program) -> list[str]:

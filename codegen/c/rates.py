@@ -4,7 +4,7 @@ import re
 from typing import Any
 
 from bondgraph.algebra.expressions import TIME
-from codegen.c.blocks import body, function, operations, places
+from codegen.c.blocks import body, function, places
 from codegen.c.rhs import Straight
 from codegen.c.text import comment, integers
 from codegen.program.records import Block, Program
@@ -31,7 +31,7 @@ def straight_rates(program: Program, fast: Straight) -> list[str]:
         f"    bg_inverse_entries(m, {len(rows)}, inverse_rows, inverse_columns,"
         f" m->constants + {count});",
         "}", "",
-        *comment(f"Rates of slipping friction: {operations(fast.code)} operations."),
+        *comment(f"Rates of slipping friction: {fast.code.operations} operations."),
         *_SIGNATURE,
     ]  # fmt: skip
     found = _rate_places(program, fast)

@@ -6,11 +6,11 @@ import sympy as sp
 
 from bondgraph.equations import StateEquations
 from codegen.c.rhs import Straight
-from codegen.c.structure import Structure
 from codegen.c.text import array, comment, doubles, integers, quoted, strings
 from codegen.program.records import Group, Program
 from codegen.program.units import units
 from codegen.runs.steps import told_step
+from codegen.standalone.holding import HeldSet
 
 MOST_HOLDS = 4
 """Holding equations of all sets of so many friction ports are kept once they are found."""
@@ -82,7 +82,7 @@ def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:
         "AFFINE": int(program.affine),
         "JOINT": int(program.joint),
         "DRIVEN": int(bool(program.layout["E"].rows)),
-        "RATED": int(any(program.layout[letter].rows for letter in "EDHK")),
+        "RATED": int(program.rated),
         "STRAIGHT": int(fast is not None),
     }
 
@@ -113,15 +113,16 @@ def program_tables(
     """Places of laws, friction ports, readings and outputs in the arrays."""
     readings = list(program.readings)
     friction, known = program.friction, set(program.known.inputs)
-    outside = [program.inputs.index(one) for one in program.external if one in program.inputs]
     rubbed = {port.input for port in friction}
-    differentiable = [int(j in known | rubbed | {*outside}) for j in range(len(program.inputs))]
+    differentiable = [
+        int(j in known | rubbed | {*program.given}) for j in range(len(program.inputs))
+    ]
     tables: list[tuple[str, Sequence[int]]] = [
         ("bg_law_rates", program.law_rates),
         ("bg_friction_inputs", [port.input for port in friction]),
         ("bg_friction_readings", [port.reading for port in friction]),
         ("bg_beside", [int(one) for one in beside]),
-        ("bg_outside_inputs", outside),
+        ("bg_outside_inputs", program.given),
         ("bg_differentiable", differentiable),
         ("bg_output_readings", [readings.index(one) for one in program.outputs]),
     ]
@@ -141,11 +142,12 @@ def _layout(program: Program) -> list[str]:
     return [*lines, *array("const bg_pattern bg_layout[BG_MATRICES]", rows)]
 
 
-def structure_table(found: Sequence[Structure]) -> list[str]:
-    """What holds each set of sticking ports, by its bits."""
+def structure_table(found: Iterable[HeldSet], coupled: Sequence[int]) -> list[str]:
+    """What holds each set of sticking ports, by its bits; ``coupled``: inputs of laws that friction moves."""
     rows = []
     for one in found:
-        parts = (one.moved, one.direct, one.direct_columns, one.null, one.kept, one.kept_columns)
+        moved = tuple(coupled.index(j) for j in one.moved)
+        parts = (moved, one.direct, one.direct_columns, one.null, one.kept, one.kept_columns)
         listed = ", ".join(f"{{{', '.join(map(str, part)) or '0'}}}" for part in parts)
         counts = (len(one.moved), len(one.direct), len(one.null), len(one.kept), int(one.ruled))
         rows.append(f"{{{', '.join(map(str, counts))}, {listed}}}")

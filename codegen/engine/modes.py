@@ -10,7 +10,7 @@ from codegen.engine.sizes import Engine, view
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
-from codegen.ports.friction import SlopeNeededError
+from codegen.ports.refusals import SlopeNeededError
 from codegen.program.affine import AffineMap
 from codegen.program.layout import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, STATES
 

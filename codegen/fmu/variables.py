@@ -53,11 +53,6 @@ def moved(program: Program) -> bool:
     return bool(program.layout["E"].rows) and not program.varying
 
 
-def rated(program: Program) -> bool:
-    """Whether anything asks for the rates of inputs."""
-    return any(program.layout[letter].rows for letter in "EDHK")
-
-
 def variables(
     program: Program, equations: StateEquations, starts: Starts, indicators: int
 ) -> tuple[Variable, ...]:
@@ -104,7 +99,7 @@ class _Listing:
                 program.external[at], "FMU_INPUT", at, "input", initial=None,
                 start=starts.inputs[at],
             )  # fmt: skip
-        for at in free if rated(program) else []:
+        for at in free if program.rated else []:
             name = f"der({program.external[at].name})"
             self._made(name, "FMU_SLOPE", at, causality="input", initial=None, start=0.0)
         for at, symbol in enumerate((*program.states, *program.law_states)):

@@ -6,7 +6,7 @@ from math import comb
 import numpy as np
 
 from codegen.numbers.arrays import Array
-from codegen.numbers.roots import root
+from codegen.standalone.roots import root
 from codegen.tuning import TUNING
 
 

@@ -1,13 +1,12 @@
 """A program with numbers for its parameters: dense arrays, checked exactly before floats are trusted."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 import sympy as sp
 
 from bondgraph.algebra.elimination import ResidueRows
-from bondgraph.algebra.exact import FixedRow, Row, rows_of
+from bondgraph.algebra.exact import FixedRow, rows_of
 from bondgraph.algebra.expressions import normal, number
 from bondgraph.algebra.residues import residues
 from bondgraph.equations import StateEquations
@@ -16,26 +15,7 @@ from bondgraph.reduce.resistances import resistive_loops
 from codegen.model.numpy_backend import compiled
 from codegen.numbers.arrays import Array, read_only, real_values
 from codegen.program.records import Program
-
-
-@dataclass(frozen=True)
-class Numbers:
-    """The equations in numbers, solved for the rates; n states, m inputs, p readings.
-
-    x' = P x + Q u + R u'
-     y = F x + D u + G u'
-    """
-
-    #: n x n, n x m, n x m: A^-1 J, A^-1 B, A^-1 E
-    P: Array
-    Q: Array
-    R: Array
-    #: n x n
-    A: Array
-    #: p x n, p x m, p x m
-    F: Array
-    D: Array
-    G: Array
+from codegen.standalone.matrices import Numbers, solved
 
 
 def exact_parameters(parameters: Mapping[str, object]) -> dict[str, sp.Rational]:
@@ -82,20 +62,7 @@ def assembled(program: Program, values: Array) -> Numbers:
         end = start + len(pattern.rows)
         matrix[list(pattern.rows), list(pattern.columns)] = values[start:end]
         matrices[name], start = matrix, end
-    A = matrices["A"]
-    solved = scaled_solve(A, np.hstack([matrices["J"], matrices["B"], matrices["E"]]))
-    n, m = len(program.states), len(program.inputs)
-    P, Q, R = solved[:, :n], solved[:, n : n + m], solved[:, n + m :]
-    F, D, H, K = (matrices[name] for name in "FDHK")
-    return Numbers(P, Q, R, A, F=F + H @ P, D=D + H @ Q, G=K + H @ R)
-
-
-def scaled_solve(A: Array, right: Array) -> Array:
-    """``A^-1 right`` with rows and columns scaled first: storages may differ by many powers of ten."""
-    scale = 1 / np.sqrt(np.abs(np.diag(A)))
-    scale[~np.isfinite(scale)] = 1.0
-    solved = np.linalg.solve(A * np.outer(scale, scale), scale[:, None] * right)
-    return np.asarray(scale[:, None] * solved, dtype=float)
+    return solved(**matrices)
 
 
 def _values(
@@ -133,6 +100,15 @@ def at_parameters(expr: sp.Expr, parameters: Mapping[str, sp.Rational]) -> sp.Ex
     )
 
 
+def residue_rows(
+    rows: Iterable[Mapping[int, sp.Expr]], parameters: Mapping[str, sp.Rational]
+) -> list[dict[int, int]]:
+    """Rows in residues at these parameters, less what is zero there."""
+    value = residues()
+    found = [{j: value(at_parameters(e, parameters)) for j, e in row.items()} for row in rows]
+    return [{j: entry for j, entry in row.items() if entry} for row in found]
+
+
 def _check_elements(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
     """Refuse storages and moduli whose value is zero, or no finite number, at these parameters."""
     value = residues()
@@ -157,7 +133,6 @@ def _listed(expr: sp.Expr, parameters: Mapping[str, sp.Rational]) -> str:
 
 def _check_loops(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
     """Refuse parameters at which a loop of bonds or resistances has no solution, by exact rank."""
-    value = residues()
     reduction = equations.reduction
     ports = reduction.structure.ports
     loops: list[tuple[str, Sequence[FixedRow]]] = [
@@ -167,10 +142,7 @@ def _check_loops(equations: StateEquations, parameters: Mapping[str, sp.Rational
         names = ", ".join(repr(ports[i].element.name) for i in group)
         loops.append((f"the resistances {names}", inside))
     for what, rows in loops:
-        found = [
-            {j: value(at_parameters(entry, parameters)) for j, entry in row.items()} for row in rows
-        ]
-        exact = ResidueRows({j: entry for j, entry in row.items() if entry} for row in found)
+        exact = ResidueRows(residue_rows(rows, parameters))
         if not all(exact.pivot(i, jordan=False) for i in range(len(rows))):
             raise ParameterError(
                 f"at these parameters {what} form a loop without a solution; change one, or put the number "
@@ -180,13 +152,7 @@ def _check_loops(equations: StateEquations, parameters: Mapping[str, sp.Rational
 
 def _check_regular(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
     """Refuse parameters at which A has no inverse, by exact rank."""
-    value = residues()
-    rows: list[dict[int, int]] = []
-    exact: list[Row] = rows_of(equations.A)
-    for row in exact:
-        found = {j: value(at_parameters(entry, parameters)) for j, entry in row.items()}
-        rows.append({j: entry for j, entry in found.items() if entry})
-    eliminated = ResidueRows(rows)
+    eliminated = ResidueRows(residue_rows(rows_of(equations.A), parameters))
     for i, state in enumerate(equations.states):
         if not eliminated.pivot(i, jordan=False):
             raise ParameterError(

@@ -61,7 +61,7 @@ class _Forms:
     def rates(self) -> list[Form]:
         """The rate of each component of s; the steps are those of `ClosedModel.evaluate`."""
         program, matrices = self._program, self._matrices
-        outside = [program.inputs.index(n) for n in program.external if n in program.inputs]
+        outside = program.given
         for at, column in enumerate(outside):
             self._u[column], self._du[column] = self._w[at], self._dw[at]
         x: list[Form] = []

@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 from typing import Protocol
 
-from codegen.model.numbers import Numbers
-from codegen.numbers.arrays import Array
+import numpy as np
 
-Mode = tuple[int, ...]
-"""For each friction port: 0 sticking, +1 or -1 the sign of its slip."""
+from codegen.standalone.arrays import Array
+from codegen.standalone.arrays import Mode as Mode
+from codegen.standalone.instant import Instant
+from codegen.standalone.matrices import Numbers
 
 
 class Run(Protocol):
@@ -34,3 +35,8 @@ class Snapshot:
     caps: Array
     external: Array
     numbers: Numbers
+
+    def instant(self, t: float) -> Instant:
+        """The same for formulas, external inputs at rest."""
+        parts = (self.x, self.z, self.u, self.du, self.y, self.external)
+        return Instant(t, *parts, np.zeros(len(self.external)), self.caps, self.numbers)

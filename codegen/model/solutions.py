@@ -12,12 +12,13 @@ import numpy as np
 import sympy as sp
 
 from bondgraph.errors import SimulationError
-from codegen.model.loops import searched
+from codegen.model.hybrid import hybrid
 from codegen.model.numbers import at_parameters
 from codegen.model.real_roots import Roots, roots_of
 from codegen.numbers.arrays import Array
 from codegen.program.gains import shown, written_out
 from codegen.program.records import Group, Program
+from codegen.standalone.loops import searched
 
 Numbers = Mapping[str, sp.Rational]
 Point = dict[sp.Symbol, sp.Integer]
@@ -173,7 +174,7 @@ def _taken(loop: Loop, point: Point, unknown: sp.Symbol) -> float | None:
         D = np.array(loop.D.xreplace(rest).tolist(), dtype=float)
         received = np.array([expr.xreplace(nothing) for expr in loop.received], dtype=float)
         with np.errstate(all="ignore"):
-            values, _ = searched(left, D, received)
+            values, _ = searched(left, D, received, hybrid)
     except (ArithmeticError, TypeError, ValueError, SimulationError):
         return None
     return None if values is None else float(values[list(loop.unknowns).index(unknown)])

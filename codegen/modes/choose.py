@@ -11,7 +11,7 @@ from codegen.modes.rounding import Peaks, scales
 from codegen.modes.trials import evaluated
 from codegen.modes.verdicts import Look, ruled_out, ruled_out_later
 from codegen.numbers.arrays import Array
-from codegen.ports.friction import SlopeNeededError
+from codegen.ports.refusals import SlopeNeededError
 
 
 def decide(

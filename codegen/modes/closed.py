@@ -14,21 +14,24 @@ import numpy as np
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
-from codegen.model.instant import Binding, Evaluation, Instant
-from codegen.model.loops import solve_loop
-from codegen.model.numbers import Numbers, assembled, check_values, exact_parameters, numbers
+from codegen.model.instant import Binding
+from codegen.model.numbers import assembled, check_values, exact_parameters, numbers
 from codegen.model.sharp import NotAffineError, sharp_rates
 from codegen.model.snapshot import Mode, Run, Snapshot
-from codegen.model.terms import without_rounding
 from codegen.numbers.arrays import Array
 from codegen.numbers.pairs import Pair, pair
-from codegen.ports.friction import Hold
-from codegen.ports.rubbing import Rubbing
-from codegen.ports.slips import SlipRows
+from codegen.ports.forming import formed, rubbing
+from codegen.ports.refusals import refusals
+from codegen.ports.slips import slip_rows
 from codegen.program.affine import AffineMap, check_finite, probed
 from codegen.program.gains import check_gains
 from codegen.program.layout import CAPS, INPUTS, RATE, RATES_OF_INPUTS
-from codegen.program.records import Group, Program
+from codegen.program.records import Program
+from codegen.standalone.evaluation import Point, evaluated, vector
+from codegen.standalone.holding import Hold
+from codegen.standalone.instant import Instant
+from codegen.standalone.levels import without_rounding
+from codegen.standalone.matrices import Numbers
 
 
 class ClosedModel:
@@ -43,17 +46,15 @@ class ClosedModel:
         self.friction_inputs = [port.input for port in program.friction]
         self.friction_readings = [port.reading for port in program.friction]
         binding = Binding(program, exact)
-        self._known = binding.function(program.known.values)
-        self._known_rates = binding.function(program.known_rates)
-        self._groups = [binding.function(group.values) for group in program.groups]
-        self._rubbing = Rubbing(program, equations, exact, binding)
         self._guards = binding.function(program.guards)
-        self._outside = [program.inputs.index(n) for n in program.external if n in program.inputs]
         self._coefficients = binding.function(program.coefficients)
         self._constant = None if program.varying else numbers(program, equations, exact)
         if program.varying:
             check_values(equations, exact)
-        self._rated = any(program.layout[name].rows for name in "EDHK")
+        #: What friction ports receive, exact.
+        self.slips = slip_rows(program, equations, exact)
+        self._form = formed(program, binding, self.numbers)
+        self._friction = rubbing(program, binding, self._form, self.slips)
         self._maps: dict[Mode, AffineMap | None] = {}
         self._run: Run | None = None
 
@@ -77,16 +78,12 @@ class ClosedModel:
 
     def coupled_directly(self, port: int) -> bool:
         """Whether a friction port's slip depends at once on efforts of friction ports."""
-        return self._rubbing.coupled_directly(port)
-
-    @property
-    def slips(self) -> SlipRows:
-        """What friction ports receive, exact."""
-        return self._rubbing.slips
+        return self._friction.ports.beside[port]
 
     def hold(self, mode: Mode, numbers: Numbers) -> Hold:
         """The holding equations of the ports that stick in a mode, with the matrices of an instant."""
-        return self._rubbing.hold(mode, numbers)
+        with refusals():
+            return self._friction.hold(mode, numbers)
 
     def numbers(self, now: Instant) -> Numbers:
         """The matrices at an instant, of which the states and the external inputs must be known.
@@ -124,20 +121,12 @@ class ClosedModel:
         """The integrated vector at a state: x less what inputs that drive dependent storages add."""
         s = np.zeros(self.size)
         s[: len(state)] = state
-        if self.program.layout["E"].rows and not self.program.varying:
-            slipping = tuple(1 for _ in self.friction_inputs)
-            known = self.evaluate(t, s, given, np.zeros(len(given)), slipping)
-            s[: len(self.program.states)] -= known.numbers.R @ known.u
-        return s
+        with refusals():
+            return vector(self._form, t, s, given, np.zeros(len(given)))
 
     def guards(self, t: float, now: Snapshot) -> Array:
         """The conditions at an instant: one below zero ends the run."""
-        zeros = np.zeros(len(now.external))
-        values = self._guards(
-            Instant(
-                t, now.x, now.z, now.u, now.du, now.y, now.external, zeros, now.caps, now.numbers
-            )
-        )
+        values = self._guards(now.instant(t))
         if not np.isfinite(values).all():
             at = int(np.argmin(np.isfinite(values)))
             raise SimulationError(
@@ -149,14 +138,9 @@ class ClosedModel:
     def given(self, t: float, pieces: Sequence[Piece]) -> tuple[Array, Array]:
         """The external inputs, and their rates where anything asks for them."""
         w = np.array([piece(t) for piece in pieces])
-        if not self._rated:
+        if not self.program.rated:
             return w, np.zeros(len(w))
         return w, np.array([piece.derivative(t) for piece in pieces])
-
-    @property
-    def rated(self) -> bool:
-        """Whether anything asks for the rates of the external inputs."""
-        return self._rated
 
     def rates(self, pieces: Sequence[Piece], mode: Mode) -> Callable[[float, Array], Array]:
         """The rate of s in a mode as a function of t and s; quicker than `at`, which gives all else too."""
@@ -175,36 +159,11 @@ class ClosedModel:
         self, t: float, s: Array, w: Array, dw: Array, mode: Mode, checked: bool = True
     ) -> Snapshot:
         """As `at`, from the external inputs' values and rates; ``checked``: friction levels, for sign."""
-        program = self.program
-        n, own = len(program.states), len(program.law_states)
-        m, p = len(program.inputs), len(program.readings)
-        xi, z = s[:n], s[n : n + own]
-        u, du, y, caps = np.zeros(m), np.zeros(m), np.zeros(p), np.zeros(len(mode))
-        now = Instant(t, xi, z, u, du, y, w, dw, caps, None)  # type: ignore[arg-type]
-        now.seen = None if self._run is None else self._run.largest
-        now.u[self._outside], now.du[self._outside] = (
-            w[: len(self._outside)],
-            dw[: len(self._outside)],
-        )
-        known = list(program.known.inputs)
-        now.u[known] = self._known(now)
-        if self._rated:
-            now.du[known] = self._known_rates(now)
-        numbers = now.numbers = self.numbers(now)
-        if not program.varying:
-            now.x = xi + numbers.R @ now.u
-        now.y = numbers.F @ now.x + numbers.D @ now.u + numbers.G @ now.du
-        for group, function in zip(program.groups, self._groups, strict=True):
-            self._give(now, group, function)
-        if mode:
-            self._rubbing.rub(now, mode, checked)
-        rate = np.zeros(self.size)
-        rate[:n] = numbers.P @ now.x + numbers.Q @ now.u
-        if program.varying:
-            rate[:n] += numbers.R @ now.du
-        rate[n : n + own] = now.y[list(program.law_rates)]
-        rate += self._rubbing.correction(mode, rate, now.du, numbers)
-        return Snapshot(now.x, z, now.u, now.du, now.y, rate, now.caps, w, numbers)
+        contact = self._friction if self.program.friction else None
+        seen = None if self._run is None else self._run.largest
+        with refusals():
+            now = evaluated(self._form, contact, Point(t, s, w, dw, seen), mode, checked)
+        return Snapshot(now.x, now.z, now.u, now.du, now.y, now.rate, now.caps, w, now.numbers)
 
     def affine_map(self, mode: Mode, inputs: int) -> AffineMap | None:
         """An affine mode's matrix; None for other models, and where redundant ports share a load."""
@@ -235,14 +194,7 @@ class ClosedModel:
         affine = probed(point, self.size + 2 * inputs, RATE)
         check_finite(affine.rows(INPUTS), affine.matrix, self.program.inputs)
         rate, du = affine.rows(RATE), affine.rows(RATES_OF_INPUTS)
-        rate += self._rubbing.correction(mode, rate, du, self.constant)
+        if 0 in mode:
+            n = len(self.program.states)
+            rate[:n] += self.hold(mode, self.constant).correction(rate[:n], du)
         return affine
-
-    def _give(self, now: Instant, group: Group, function: Evaluation) -> None:
-        """Evaluate one group of laws, or solve it if it is a loop."""
-        columns, D = list(group.inputs), now.numbers.D
-        if group.loop:
-            rows = list(group.readings)
-            solve_loop(now, columns, rows, D, lambda at: at.u[columns] - function(at), group.ports)
-        else:
-            now.give(columns, function(now), D)

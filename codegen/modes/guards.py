@@ -9,42 +9,31 @@ from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks
 from codegen.numbers.arrays import Array
+from codegen.standalone.levels import terms_of
 from codegen.tuning import TUNING
 
 
 def guard_rounding(
-    model: ClosedModel,
-    t: float,
-    s: Array,
-    pieces: Sequence[Piece],
-    mode: Mode,
-    peaks: Peaks | None = None,
+    model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode, peaks: Peaks | None
 ) -> Array:
     """Below these the guards count as zero, from the magnitude of the terms that make them up.
 
-    A component's term is the effect of a small relative change of it, divided by the change. At rest a
-    state is rounding itself: of what moves it within a time constant.
+    At rest a state is rounding itself: of what moves it within a time constant.
     """
-    now = model.at(t, s, pieces, mode)
-    values = model.guards(t, now)
-    terms = np.abs(values)
-    n = len(model.program.states)
-    sizes = s.copy()
-    if peaks is not None:
-        moving = np.abs(now.numbers.P) @ np.abs(now.x) + np.abs(now.numbers.Q) @ np.abs(now.u)
-        least = np.maximum(peaks.x, peaks.time * moving)
-        sizes[:n] = np.where(sizes[:n] < 0, -1, 1) * np.maximum(np.abs(sizes[:n]), least)
-    for j in np.flatnonzero(sizes):
-        moved = s.copy()
-        moved[j] += TUNING.term * sizes[j]
-        change = model.guards(t, model.at(t, moved, pieces, mode)) - values
-        terms += np.nan_to_num(np.abs(change) / TUNING.term, nan=0.0, posinf=0.0)
-    w = np.array([piece(t) for piece in pieces])
-    for j in np.flatnonzero(w):
-        given = w.copy()
-        given[j] *= 1 + TUNING.term
-        change = model.guards(t, model.evaluate(t, s, given, np.zeros(len(w)), mode)) - values
-        terms += np.nan_to_num(np.abs(change) / TUNING.term, nan=0.0, posinf=0.0)
+    peaks = peaks or Peaks.none(model)
+    now, w, n = model.at(t, s, pieces, mode), np.array([piece(t) for piece in pieces]), len(peaks.x)
+    moving = np.abs(now.numbers.P) @ np.abs(now.x) + np.abs(now.numbers.Q) @ np.abs(now.u)
+    sizes = np.abs(s)
+    sizes[:n] = np.maximum(sizes[:n], np.maximum(peaks.x, peaks.time * moving))
+
+    def by_state(at: Array) -> Array:
+        return model.guards(t, model.at(t, at, pieces, mode))
+
+    def by_input(at: Array) -> Array:
+        return model.guards(t, model.evaluate(t, s, at, np.zeros(len(w)), mode))
+
+    terms = terms_of(by_state, s, sizes, np.flatnonzero(sizes)) - np.abs(model.guards(t, now))
+    terms += terms_of(by_input, w, np.abs(w), np.flatnonzero(w))
     late = 16 * np.spacing(abs(t)) * _slopes(model, t, s, pieces, mode)
     return np.asarray(TUNING.rounding * terms + late + np.finfo(float).tiny, dtype=float)
 

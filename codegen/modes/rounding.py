@@ -11,6 +11,7 @@ from codegen.modes.closed import ClosedModel
 from codegen.modes.sizes import input_terms
 from codegen.modes.trials import evaluated
 from codegen.numbers.arrays import Array
+from codegen.standalone.friction import slip_rates as rates_of_slips
 from codegen.tuning import TUNING
 
 
@@ -76,7 +77,4 @@ def scales(model: ClosedModel, now: Snapshot, t: float = 0.0, peaks: Peaks | Non
 
 def slip_rates(model: ClosedModel, now: Snapshot) -> Array:
     """How fast each friction port's slip changes, inputs that cannot be differentiated held."""
-    readings, numbers = model.friction_readings, now.numbers
-    x_rate = numbers.P @ now.x + numbers.Q @ now.u + numbers.R @ now.du
-    result: Array = numbers.F[readings] @ x_rate + numbers.D[readings] @ now.du
-    return result
+    return rates_of_slips(now.instant(0.0), np.array(model.friction_readings, dtype=int))

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.layout import INPUTS
-from codegen.tuning import TUNING
+from codegen.standalone.levels import terms_of
 
 
 def input_terms(
@@ -27,14 +26,4 @@ def input_terms(
         matrix = affine.rows(INPUTS)
         ones = np.concatenate((np.abs(s), np.abs(w), np.zeros(len(w)), (1.0,)))
         return np.asarray(np.abs(matrix) @ ones, dtype=float)
-    now = model.at(t, s, pieces, mode)
-    terms = np.abs(now.u)
-    for j in np.flatnonzero(s):
-        moved = s.copy()
-        moved[j] *= 1 + TUNING.term
-        try:
-            change = np.abs(model.at(t, moved, pieces, mode).u - now.u) / TUNING.term
-        except SimulationError:
-            continue
-        terms += np.nan_to_num(change, nan=0.0, posinf=0.0)
-    return terms
+    return terms_of(lambda at: model.at(t, at, pieces, mode).u, s, np.abs(s), np.flatnonzero(s))

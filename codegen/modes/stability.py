@@ -1,9 +1,4 @@
-"""The longest step with which Runge's and Kutta's classical method of fourth order stays stable on a model.
-
-A rate l is stable under a step h while ``|R(h l)| <= 1``, ``R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24``: up to
-``h l = -2.7853`` on the real axis and ``2.8284i`` on the imaginary one (Hairer and Wanner, Solving Ordinary
-Differential Equations II, section IV.2).
-"""
+"""The longest step with which the classical Runge-Kutta method stays stable on a model."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator
@@ -16,38 +11,11 @@ from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.layout import RATE
+from codegen.standalone.stability import stable_step
 from codegen.tuning import TUNING
-
-REAL_LIMIT, IMAGINARY_LIMIT = 2.785293563405282, 2.0 * math.sqrt(2.0)
-"""How far the stable part of the negative real axis and of the imaginary one reaches."""
-
-NEAREST, FARTHEST = 2.6156, 2.9603
-"""The least and the largest distance of the boundary in the left half plane."""
 
 ALL_SIGNS = 3
 """Up to so many friction ports every mode is looked at; of more, every set that sticks."""
-
-
-def stable_step(rate: complex) -> float:
-    """The longest stable step [s] for one rate of the linearised model [1/s].
-
-    What grows by itself, at a rate of positive real part, is no fault of the step; it must not turn too far.
-
-    >>> round(stable_step(-10), 5), round(stable_step(10j), 5), stable_step(3)
-    (0.27853, 0.28284, inf)
-    """
-    if rate.real >= 0:
-        return IMAGINARY_LIMIT / abs(rate.imag) if rate.imag else math.inf
-    ray = rate / abs(rate)
-    low, high = NEAREST - TUNING.bracket, FARTHEST + TUNING.bracket
-    for _ in range(50):
-        middle = (low + high) / 2
-        z = middle * ray
-        if abs(1 + z * (1 + z / 2 * (1 + z / 3 * (1 + z / 4)))) > 1:
-            high = middle
-        else:
-            low = middle
-    return low / abs(rate)
 
 
 def longest_stable_step(

@@ -8,8 +8,7 @@ from typing import Any, TypeGuard
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
-"""Double precision, any shape; docstrings tell which."""
+from codegen.standalone.arrays import Array as Array
 
 NUMBER = int | float | np.integer | np.floating
 """What is a number by itself; truth values are integers, too, and are refused with `is_number`."""

@@ -1,26 +1,31 @@
-"""What friction ports receive as exact rows, and which of their parts the ports' own efforts move."""
+"""What friction ports receive as exact rows, and the ranks of what holds sets of them, by residues."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
 
+from bondgraph.algebra.residues import PRIME
 from bondgraph.equations import StateEquations
-from codegen.model.numbers import at_parameters
+from codegen.model.numbers import residue_rows
 from codegen.program.gains import written_out
 from codegen.program.records import Program
+from codegen.standalone.holding import HeldSet
+
+Residues = Mapping[int, int]
+"""A sparse row modulo the prime."""
 
 
 @dataclass(frozen=True)
 class SlipRows:
-    """The slips ``F x + D u``, a row for each friction port; D is over all inputs.
+    """The slips ``F x + D u`` in residues, a row for each friction port; D is over all inputs.
 
     ``own``: the input each port gives. ``moved``: the inputs of the laws that each port's effort moves,
     which are solved together with it: a damper in series gives way and so lets a port hold.
     """
 
-    F: sp.Matrix
-    D: sp.Matrix
+    F: tuple[Residues, ...]
+    D: tuple[Residues, ...]
     own: tuple[int, ...]
     moved: tuple[tuple[int, ...], ...]
 
@@ -32,46 +37,21 @@ class SlipRows:
 
     def coupled(self, port: int) -> bool:
         """Whether a slip depends at once on friction, by itself or by a law that friction moves."""
-        return any(self.D[port, j] != 0 for j in self.answering(range(len(self.own))))
-
-
-@dataclass(frozen=True)
-class Independence:
-    """Which slips of a set of sticking ports are independent; rows are over the ports of the set.
-
-    ``direct``: ports whose rows determine efforts at once. ``null``: combinations of slips that no
-    effort moves at once; ``kept``: those of them, by position, that are independent in the states.
-    ``share``: combinations that the states do not see either: there efforts are shared. ``ruled``:
-    whether one of these is ruled by other inputs, sources or laws, which alone let the set hold.
-    """
-
-    direct: tuple[int, ...]
-    null: sp.Matrix
-    kept: tuple[int, ...]
-    share: sp.Matrix
-    ruled: bool
+        return any(j in self.D[port] for j in self.answering(range(len(self.own))))
 
 
 def slip_rows(
     program: Program, equations: StateEquations, parameters: Mapping[str, sp.Rational]
 ) -> SlipRows:
-    """The rows of a program at these parameters, exact."""
+    """The rows of a program at these parameters."""
     readings = list(equations.readings.values())
     rows = [readings[port.reading] for port in program.friction]
-    F = sp.zeros(len(rows), len(program.states))
-    D = sp.zeros(len(rows), len(program.inputs))
-    for i, row in enumerate(rows):
-        for j, entry in row.F.items():
-            F[i, j] = at_parameters(entry, parameters)
-        for j, entry in row.D.items():
-            D[i, j] = at_parameters(entry, parameters)
-    own = tuple(port.input for port in program.friction)
-    return SlipRows(F, D, own, moved_laws(program, equations))
-
-
-def moved_laws(program: Program, equations: StateEquations) -> tuple[tuple[int, ...], ...]:
-    """For each friction port the inputs of the coupled laws that its effort moves."""
-    return tuple(_moved(program, equations, port.input) for port in program.friction)
+    return SlipRows(
+        tuple(residue_rows((row.F for row in rows), parameters)),
+        tuple(residue_rows((row.D for row in rows), parameters)),
+        tuple(port.input for port in program.friction),
+        tuple(_moved(program, equations, port.input) for port in program.friction),
+    )
 
 
 def _moved(program: Program, equations: StateEquations, column: int) -> tuple[int, ...]:
@@ -88,19 +68,47 @@ def _moved(program: Program, equations: StateEquations, column: int) -> tuple[in
     return tuple(sorted(reached - {column}))
 
 
-def independence(rows: SlipRows, ports: Sequence[int]) -> Independence:
-    """What holds a set of sticking ports, by exact rank."""
-    chosen = list(ports)
-    D = rows.D.extract(chosen, rows.answering(chosen))
-    null = _stacked([vector.T for vector in D.T.nullspace()], len(chosen))
-    constrained = null * rows.F.extract(chosen, list(range(rows.F.cols)))
-    kept = constrained.T.rref()[1] if constrained.rows and constrained.cols else ()
-    free = constrained.T.nullspace() if constrained.rows else []
-    share = _stacked([(null.T * vector).T for vector in free], len(chosen))
-    ruling = share * rows.D.extract(chosen, list(range(rows.D.cols)))
-    direct = tuple(D.T.rref()[1]) if D.rows and D.cols else ()
-    return Independence(direct, null, tuple(kept), share, not ruling.is_zero_matrix)
+Row = dict[tuple[int, int], int]
+"""A row in parts; a key is the part and the place in it."""
 
 
-def _stacked(rows: Sequence[sp.Matrix], width: int) -> sp.Matrix:
-    return sp.Matrix.vstack(*rows) if rows else sp.zeros(0, width)
+def held_set(rows: SlipRows, ports: Sequence[int]) -> HeldSet:
+    """What holds a set of sticking ports, by exact rank.
+
+    Rows ``[D over what answers, F, D]`` are eliminated in the first part, what vanishes there in the second;
+    and what then is left in the third is ruled by other inputs alone.
+    """
+    answering = rows.answering(ports)
+    parts: list[Row] = []
+    for i in ports:
+        answers = {(0, at): rows.D[i][j] for at, j in enumerate(answering) if j in rows.D[i]}
+        states = {(1, j): entry for j, entry in rows.F[i].items()}
+        parts.append({**answers, **states, **{(2, j): entry for j, entry in rows.D[i].items()}})
+    direct, direct_columns, null, left = _eliminated(parts, 0)
+    kept, kept_columns, _, ruling = _eliminated(left, 1)
+    moved, ruled = tuple(answering[len(direct) + len(null) :]), any(ruling)
+    return HeldSet(moved, direct, direct_columns, null, kept, kept_columns, ruled)
+
+
+Places = tuple[int, ...]
+
+
+def _eliminated(rows: Sequence[Row], part: int) -> tuple[Places, Places, Places, list[Row]]:
+    """Rows that are independent in a part, and where; the others, and what is left of them elsewhere."""
+    basis: dict[int, tuple[int, Row]] = {}
+    others, rests = [], []
+    for at, row in enumerate(rows):
+        left = dict(row)
+        for column, (_, pivot) in basis.items():
+            factor = left.get((part, column), 0)
+            for key, entry in pivot.items() if factor else ():
+                left[key] = (left.get(key, 0) - factor * entry) % PRIME
+        left = {key: entry for key, entry in left.items() if entry}
+        leading = min((column for where, column in left if where == part), default=None)
+        if leading is None:
+            others.append(at)
+            rests.append(left)
+        else:
+            scale = pow(left[part, leading], -1, PRIME)
+            basis[leading] = at, {key: entry * scale % PRIME for key, entry in left.items()}
+    return tuple(at for at, _ in basis.values()), tuple(sorted(basis)), tuple(others), rests

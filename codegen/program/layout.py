@@ -1,6 +1,14 @@
 """What stands where at an instant: one order of parts, for numpy, C and exported Python."""
 
+from collections.abc import Callable
+from typing import TypeVar
+
+import sympy as sp
+
+from bondgraph.algebra.expressions import TIME
 from codegen.program.records import Program
+
+Where = TypeVar("Where")
 
 STATES, LAW_STATES, INPUTS, RATES_OF_INPUTS, READINGS, RATE, CAPS, EXTERNAL = range(8)
 """The parts of an instant: x, z, u, u', y, the rate of s, what ports may hold, external inputs."""
@@ -26,6 +34,27 @@ def recorded(program: Program) -> tuple[int, ...]:
     """How many numbers each part has that is kept of a sample."""
     sizes = widths(program)
     return tuple(sizes[part] for part in RECORDED)
+
+
+def readable(
+    program: Program, where: Callable[[int, str, int, str], Where]
+) -> dict[sp.Symbol, Where]:
+    """For each name that formulas read where its value stands; a parameter before an input that it holds.
+
+    ``where``: of the place among all (t, x, z, y, u, w, w', parameters), part, place in that, and name.
+    """
+    parts = {
+        "t": (TIME,), "x": program.states, "z": program.law_states, "y": program.readings,
+        "u": program.inputs, "w": program.external, "dw": program.external_rates,
+        "p": program.parameters,
+    }  # fmt: skip
+    listed = [(part, at, name) for part, names in parts.items() for at, name in enumerate(names)]
+    first = len(listed) - len(program.parameters)
+    found: dict[sp.Symbol, Where] = {}
+    for k in (*range(first, len(listed)), *range(first)):
+        part, at, name = listed[k]
+        found.setdefault(name, where(k, part, at, name.name))
+    return found
 
 
 def places(program: Program) -> dict[str, int]:

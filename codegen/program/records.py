@@ -17,6 +17,12 @@ class Block:
     assignments: tuple[tuple[sp.Symbol, sp.Expr], ...]
     results: tuple[sp.Expr, ...]
 
+    @property
+    def operations(self) -> int:
+        """Additions, products and functions, each assignment once."""
+        values = [*(value for _, value in self.assignments), *self.results]
+        return sum(int(sp.count_ops(value)) for value in values)
+
 
 @dataclass(frozen=True)
 class Pattern:
@@ -94,6 +100,22 @@ class Program:
     varying: bool
     #: Whether each friction mode is an affine system with constant coefficients.
     affine: bool
+
+    @property
+    def blocks(self) -> tuple[Block, ...]:
+        """Every block that a target evaluates."""
+        laws = (group.values for group in (self.known, *self.groups, self.coupled))
+        return (self.coefficients, *laws, self.known_rates, self.friction_values)
+
+    @property
+    def given(self) -> list[int]:
+        """The places among the inputs of those external inputs that are some."""
+        return [self.inputs.index(name) for name in self.external if name in self.inputs]
+
+    @property
+    def rated(self) -> bool:
+        """Whether anything asks for the rates of the external inputs."""
+        return any(self.layout[letter].rows for letter in "EDHK")
 
     @property
     def asked(self) -> tuple[sp.Symbol, ...]:

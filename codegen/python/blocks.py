@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from bondgraph.algebra.expressions import TIME
 from bondgraph.errors import ExpressionError
 from codegen.program.identifiers import identifiers
+from codegen.program.layout import readable
 from codegen.program.printing import printed
 from codegen.program.records import Block, Group, Pattern, Program
 from codegen.python.text import WIDTH, assignment, plain, quoted
@@ -31,36 +31,14 @@ class Names:
 
 def names_of(program: Program) -> Names:
     """Identifiers, and where each value stands; a parameter before an input that it holds."""
-    places = {name.name: f"parameters[{quoted(name.name)}]" for name in program.parameters}
-    places.setdefault(TIME.name, "now.t")
-    listed = (
-        ("x", program.states), ("z", program.law_states), ("y", program.readings),
-        ("u", program.inputs), ("w", program.external), ("dw", program.external_rates),
-    )  # fmt: skip
-    for part, symbols in listed:
-        for at, name in enumerate(symbols):
-            places.setdefault(name.name, f"now.{part}[{at}]")
-    temporaries = [name.name for code in blocks(program) for name, _ in code.assignments]
-    return Names(identifiers([*temporaries, *places], "python", TAKEN), places)
 
+    def where(_: int, part: str, at: int, name: str) -> str:
+        plain = {"t": "now.t", "p": f"parameters[{quoted(name)}]"}
+        return plain.get(part, f"now.{part}[{at}]")
 
-def blocks(program: Program) -> tuple[Block, ...]:
-    """Every block of a program that a target evaluates."""
-    groups = (program.known, *program.groups, program.coupled)
-    return (
-        program.coefficients, *(group.values for group in groups), program.known_rates,
-        program.friction_values,
-    )  # fmt: skip
-
-
-def operations(program: Program) -> int:
-    """Additions, products and functions in all blocks, each assignment once."""
-    expressions = [
-        expr
-        for code in blocks(program)
-        for expr in (*(value for _, value in code.assignments), *code.results)
-    ]
-    return sum(int(sp.count_ops(expr)) for expr in expressions)
+    found = {name.name: place for name, place in readable(program, where).items()}
+    temporaries = [name.name for code in program.blocks for name, _ in code.assignments]
+    return Names(identifiers([*temporaries, *found], "python", TAKEN), found)
 
 
 def law_names(program: Program) -> list[str]:

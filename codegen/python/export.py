@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
-from importlib.resources import files
 from typing import Any
 
 from bondgraph.equations import StateEquations
@@ -10,25 +9,24 @@ from bondgraph.errors import ParameterError
 from codegen.model.doubts import warn_of_doubts
 from codegen.model.numbers import exact_parameters
 from codegen.modes.closed import ClosedModel
+from codegen.ports.holds import unlike_plain
 from codegen.program.lower import lower
 from codegen.program.records import Program
+from codegen.program.units import units
 from codegen.python.blocks import (
     Names,
     coefficients_function,
     group_function,
     law_names,
     names_of,
-    operations,
     values_function,
 )
-from codegen.python.sticking import sticking_ranks
-from codegen.python.tables import flags, friction_tables, places, public, step_settings, units
-from codegen.python.text import chosen, filled, listing, plain, quoted, table
+from codegen.python.closing import closing, needed
+from codegen.python.modules import written_out
+from codegen.python.tables import friction_tables, places, public, step_settings
+from codegen.python.text import RULE, filled, plain, table
 from codegen.runs.arguments import initial_values, signals_for
 from codegen.runs.steps import step_at_start
-
-TEMPLATE = "templates/standalone.py.txt"
-"""What is the same for every model; lines between ``#% if`` and ``#% end`` where they apply."""
 
 _HEAD = '''"""{title}: the equations of a bond graph, and their simulation in fixed steps.
 
@@ -36,7 +34,8 @@ _HEAD = '''"""{title}: the equations of a bond graph, and their simulation in fi
        y = F x + D u + G u'
 
 Written by bondgraph-toolkit {version}; change the graph rather than this file. Needs numpy only.
-{operations} operations in all assignments, matrices included.
+{operations} operations in all assignments, matrices included. Names, numbers and formulas of the model
+stand first, then what is the same for every model, and `Model` and `simulate` last.
 
     run = simulate(time, initial, inputs)    fixed steps, friction with Karnopp's dead band
     model = Model(parameters)                model.rhs(t, x, u), model.outputs(t, x, u)
@@ -44,12 +43,7 @@ Written by bondgraph-toolkit {version}; change the graph rather than this file. 
 {names}
 """
 
-import itertools
-import math
-from functools import partial
-from types import SimpleNamespace
-
-import numpy as np
+{imports}
 '''
 
 
@@ -72,8 +66,11 @@ def to_python(
     ``rhs`` and ``outputs``; and ``simulate``, which takes fixed Runge-Kutta steps, lets friction ports stick
     inside a dead band and raises the module's ``UnstableStep`` for steps beyond the method's stability.
 
-    Raises what `simulator` raises; `StructureError` or `ParameterError`, naming the ports, where what holds
-    sticking ports differs with other numbers; `ExpressionError` for functions Python lacks.
+    What holds sticking ports is decided for the parameters given; the module raises an `ArithmeticError` that
+    names the ports with others at which other ones are redundant, and as `simulator` does.
+
+    Raises what `simulator` raises; `StructureError`, naming the ports, for more of them that share loads or
+    lie beside resistances than a table takes; `ExpressionError` for functions Python lacks.
     """
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
@@ -85,30 +82,27 @@ def to_python(
     external = [symbol.name for symbol in program.external]
     signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)
     longest = step_at_start(closed, initial_values(initial or {}, states), signals)
-    held = sticking_ranks(program, equations, exact) if program.friction else {}
     names = names_of(program)
     used = {symbol.name: float(exact[symbol.name]) for symbol in program.parameters}
-    body, fixed = _functions(program, names), chosen(_template(), flags(program, equations, held))
+    imports, fixed = written_out(needed(program))
     lines = [
-        *_head(program, equations, name, body, fixed),
+        *_head(program, equations, name, imports),
         *("", *table("PARAMETERS", used)),
         *("", *public(program)),
         *("", *places(program)),
-        *friction_tables(program, equations, held),
+        *(friction_tables(program, closed.slips) if program.friction else ()),
         *step_settings(longest),
-        *body,
+        *_functions(program, names),
     ]
-    return "\n".join(lines) + "\n\n\n" + fixed
-
-
-def _template() -> str:
-    return files("codegen").joinpath(TEMPLATE).read_text(encoding="utf-8")
+    same = [RULE, "# What follows is the same for every model.", "", "", fixed]
+    tail = closing(program, unlike_plain(program, closed.slips))
+    return "\n".join([*lines, "", "", *same, "", "", *tail]) + "\n"
 
 
 def _head(
-    program: Program, equations: StateEquations, name: str, body: Sequence[str], fixed: str
+    program: Program, equations: StateEquations, name: str, imports: Sequence[str]
 ) -> list[str]:
-    """The docstring, and the imports that body and fixed part need."""
+    """The docstring, and the imports."""
     known = units(equations)
     groups = (
         ("states", (*program.states, *program.law_states)),
@@ -117,19 +111,19 @@ def _head(
     )
     rows = []
     for title, symbols in groups:
-        listed = [plain(f"{one.name} {known.get(one.name, '')}") for one in symbols] or ["none"]
+        listed = [
+            plain(f"{one.name} [{known[one]}]" if one in known else one.name) for one in symbols
+        ] or ["none"]
         lines = filled([f"{one}, " for one in listed[:-1]] + listed[-1:], 4)
         rows += [f"{title}: {lines[0].strip()}"] if len(lines) == 1 else [f"{title}:", *lines]
     text = _HEAD.format(
         title=plain(name),
         version=version("bondgraph-toolkit"),
-        operations=operations(program),
+        operations=sum(code.operations for code in program.blocks),
         names="\n".join(rows),
+        imports="\n".join(imports),
     )
-    code = [line for line in body if not line.lstrip().startswith(("#", '"'))]
-    used = {"math": any("math." in line for line in code), "itertools": "itertools." in fixed}
-    unused = {f"import {module}" for module, needed in used.items() if not needed}
-    return [line for line in text.splitlines() if line not in unused]
+    return text.splitlines()
 
 
 def _functions(program: Program, names: Names) -> list[str]:
@@ -141,7 +135,6 @@ def _functions(program: Program, names: Names) -> list[str]:
     lines += values_function("known_law_rates", doc, program.known_rates, rates, names)
     for name, group in zip(law_names(program), program.groups, strict=True):
         lines += group_function(name, group, program, names)
-    lines += _in_turn(program)
     if program.friction:
         what = ("level", "breakaway effort", "curve", "curve at rest")
         rows = [f"{plain(str(port.name))}: {part}" for port in program.friction for part in what]
@@ -149,32 +142,4 @@ def _functions(program: Program, names: Names) -> list[str]:
         lines += values_function("friction_values", doc, program.friction_values, rows, names)
     if program.joint:
         lines += group_function("coupled_laws", program.coupled, program, names)
-    return [*lines, *(_laws(program) if program.friction else ())]
-
-
-def _laws(program: Program) -> list[str]:
-    """A table of the laws in turn with the inputs they give, for whoever asks how large their terms are."""
-    groups = [("known_laws", program.known), *zip(law_names(program), program.groups, strict=True)]
-    if program.joint:
-        groups.append(("coupled_laws", program.coupled))
-    rows = [f"({name}, {list(group.inputs)})" for name, group in groups if group.inputs]
-    return ["", "", *listing("LAWS = [", rows, "]", 0)]
-
-
-def _in_turn(program: Program) -> list[str]:
-    """The function that evaluates the groups of laws one after the other."""
-    lines = ["", "", "def laws_in_turn(parameters, now):"]
-    lines += ['    """The other laws, in an order in which each can be evaluated."""']
-    for name, group in zip(law_names(program), program.groups, strict=True):
-        values = f"values({name}, parameters, now, {len(group.inputs)})"
-        inputs = list(group.inputs)
-        if not group.loop:
-            lines += listing("give(", ["now", f"{inputs}", values], ")", 4)
-            continue
-        ports = [quoted(str(port)) for port in group.ports]
-        lines += [
-            *listing("solve(", ["now", f"{inputs}", f"{list(group.readings)}",
-                                f"lambda: now.u[{inputs}] - {values}",
-                                f"[{', '.join(ports)}]"], ")", 4),
-        ]  # fmt: skip
     return lines

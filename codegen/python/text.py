@@ -7,6 +7,8 @@ from itertools import pairwise
 WIDTH = 100
 """Lines are broken beyond this many characters, where they can be."""
 
+RULE = "# " + "-" * (WIDTH - 12)
+
 _BREAKS = re.compile(r"(?<= )(?=[-+*/] |if |else )|(?<=, )")
 """Places between the parts of an expression: before operators, after commas."""
 
@@ -74,12 +76,10 @@ def names_tuple(name: str, values: Sequence[object]) -> list[str]:
     return listing(f"{name} = (", [quoted(value) for value in values], closing)
 
 
-def table(name: str, entries: Mapping[str, object], indent: int = 0) -> list[str]:
+def table(name: str, entries: Mapping[str, object]) -> list[str]:
     """A constant that holds a dictionary, one entry a line."""
-    if not entries:
-        return [f"{' ' * indent}{name} = {{}}"]
     lines = [f"    {quoted(key)}: {value!r}," for key, value in entries.items()]
-    return [" " * indent + line for line in (f"{name} = {{", *lines, "}")]
+    return [f"{name} = {{", *lines, "}"] if lines else [f"{name} = {{}}"]
 
 
 def quoted(value: object) -> str:
@@ -98,21 +98,3 @@ def plain(text: str) -> str:
     """A text that may stand in a docstring or a comment, on one line."""
     shown = "".join(letter if letter.isprintable() else "?" for letter in " ".join(text.split()))
     return shown.replace("\\", "/").replace('"""', "'''")
-
-
-def chosen(template: str, flags: Mapping[str, bool]) -> str:
-    """A template's lines less those between ``#% if flag`` (or ``if not``) and ``#% end`` that don't apply.
-
-    >>> chosen("a\\n#% if b\\nc\\n#% end\\n#% if not b\\nd\\n#% end", {"b": False})
-    'a\\nd\\n'
-    """
-    lines, stack = [], [True]
-    for line in template.splitlines():
-        if line.startswith("#% if "):
-            words = line.split()[2:]
-            stack.append(stack[-1] and flags[words[-1]] is (words[0] != "not"))
-        elif line.startswith("#% end"):
-            stack.pop()
-        elif stack[-1]:
-            lines.append(line)
-    return "\n".join(lines) + "\n"

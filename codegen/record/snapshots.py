@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from codegen.inputs.signal import Signal, sampled_rates, sampled_values
-from codegen.model.terms import without_rounding
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
@@ -17,6 +16,7 @@ from codegen.program.layout import (
     RECORDED,
 )
 from codegen.runs.track import Track
+from codegen.standalone.levels import without_rounding
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def _by_modes(
     which = np.array([number[mode] for mode in track.modes])
     w = np.array([sampled_values(signal, times) for signal in signals]).reshape(-1, len(times))
     dw = np.zeros_like(w)
-    if model.rated and len(signals):
+    if model.program.rated and len(signals):
         dw[:] = [sampled_rates(signal, times) for signal in signals]
     vectors = np.column_stack([track.vectors, w.T, dw.T, np.ones(len(times))])
     tables: Array | None = None

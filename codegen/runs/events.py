@@ -13,9 +13,9 @@ from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.verdicts import Look, room
 from codegen.numbers.arrays import Array
-from codegen.numbers.roots import root
 from codegen.program.layout import CAPS, INPUTS, READINGS
 from codegen.runs.track import Dense
+from codegen.standalone.roots import root
 from codegen.tuning import TUNING
 
 

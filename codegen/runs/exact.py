@@ -10,7 +10,6 @@ from codegen.inputs.generators import generator
 from codegen.inputs.pieces import Piece
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.model.snapshot import Mode
-from codegen.model.terms import without_rounding
 from codegen.modes.closed import ClosedModel
 from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks, scales
@@ -19,6 +18,7 @@ from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
 from codegen.runs.track import Ended, Track
 from codegen.runs.watched import Steps, exponential, lasting, series, watched
+from codegen.standalone.levels import without_rounding
 from codegen.tuning import TUNING
 
 MOST_LENGTHS = 8

@@ -4,7 +4,7 @@ At that instant the efforts of dependent storages may be impulses; nothing else 
 the new phase's structure ``Pi = p_x - S_xd p_d`` does not change, and ``A x - E u = Pi`` gives its state.
 """
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
@@ -16,26 +16,17 @@ from bondgraph.errors import StructureError
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import is_storage
 from bondgraph.reduce.structure import JunctionStructure
-from codegen.model.instant import Binding, Evaluation, Instant
-from codegen.model.numbers import at_parameters, scaled_solve
+from codegen.model.instant import Binding
+from codegen.model.numbers import at_parameters
 from codegen.model.snapshot import Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.records import block
+from codegen.standalone.instant import Instant
+from codegen.standalone.matrices import scaled_solve
 
 _NONE: Array = np.zeros(0)
-_NOWHERE = Instant(
-    0.0,
-    _NONE,
-    _NONE,
-    _NONE,
-    _NONE,
-    _NONE,
-    _NONE,
-    _NONE,
-    _NONE,
-    numbers=None,  # type: ignore[arg-type]
-)
+_NOWHERE = Instant(0.0, _NONE, _NONE, _NONE, _NONE, _NONE, _NONE, _NONE, _NONE)
 """Enough for entries that are constant."""
 
 Rows = Sequence[Mapping[int, sp.Expr]]
@@ -85,7 +76,7 @@ class Handover:
         self, t: float, now: Snapshot, given: Mapping[str, float] = MappingProxyType({})
     ) -> Array:
         """What every storage holds at an instant, co-energy variables in ``given`` being as they say."""
-        at = _instant(t, now)
+        at = now.instant(t)
         ruling = self._x(at) @ now.x + self._u(at) @ now.u
         for i, name in enumerate(self.variables):
             ruling[i] = given.get(name, ruling[i])
@@ -96,7 +87,7 @@ class Handover:
 
         ``largest``: magnitudes that the states have reached.
         """
-        at = _instant(t, now)
+        at = now.instant(t)
         x = np.maximum(np.abs(now.x), largest)
         terms = np.abs(self._x(at)) @ x + np.abs(self._u(at)) @ np.abs(now.u)
         return np.asarray(np.abs(self._values(at)) @ terms, dtype=float)
@@ -111,19 +102,19 @@ class Handover:
             s[:n] = _solved(model.constant.A, self._kept(_NOWHERE) @ momenta)
             return s
         before = model.evaluate(t, s, w, dw, tuple(1 for _ in program.friction))
-        s[:n] = _solved(before.numbers.A, self._kept(_instant(t, before)) @ momenta)
+        s[:n] = _solved(before.numbers.A, self._kept(before.instant(t)) @ momenta)
         # x is integrated itself here, so what sources hold in dependent storages is added.
         s[:n] += before.numbers.R @ before.u
         return s
 
     def impulses(self, t: float, now: Snapshot, change: Array) -> Array:
         """The impulses in the readings as momenta change by so much."""
-        return np.asarray(self._shown(_instant(t, now)) @ change, dtype=float)
+        return np.asarray(self._shown(now.instant(t)) @ change, dtype=float)
 
     def taken(self, t: float, now: Snapshot, before: Array, after: Array) -> float:
         """What an impact takes that changes momenta so: the energy of the lost velocities (Carnot)."""
         change = after - before
-        lost = np.linalg.solve(self._values(_instant(t, now)), change)
+        lost = np.linalg.solve(self._values(now.instant(t)), change)
         return float(0.5 * change @ lost)
 
     def falling(self, t: float, now: Snapshot, change: Array) -> Array:
@@ -153,7 +144,7 @@ class Handover:
         row, dependent = equations.signals.get(name, {}), equations.reduction.dependent
         return {column[d]: entry for d, entry in row.items() if d in dependent}
 
-    def _matrix(self, rows: Rows, width: int) -> Evaluation:
+    def _matrix(self, rows: Rows, width: int) -> Callable[[Instant], Array]:
         """Sparse rows as a function of an instant that gives a matrix."""
         model = self._model
         places = [(i, j) for i, row in enumerate(rows) for j in row]
@@ -181,13 +172,6 @@ def _values(structure: JunctionStructure, port: int, column: Mapping[int, int]) 
     element = structure.ports[port].element
     row = element.row or ((element.name, element.constant),)
     return {column[structure.places[name]]: value for name, value in row if value != 0}
-
-
-def _instant(t: float, now: Snapshot) -> Instant:
-    zeros = np.zeros(len(now.external))
-    return Instant(
-        t, now.x, now.z, now.u, now.du, now.y, now.external, zeros, now.caps, now.numbers
-    )  # fmt: skip
 
 
 def _check_linear(equations: StateEquations) -> None:

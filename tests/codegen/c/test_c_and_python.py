@@ -37,14 +37,14 @@ def test_steps_agree(name: str, tmp_path: Path) -> None:
     start[: len(start) // 2] = 0.3
     signals = [lambda t, k=k: _inputs(t, names)[k] for k in range(len(names))]
     given = module.sampled(signals, 0.0, STEP)
-    s = python.vector(0.0, start, *given[0])
+    s = module.vector(python.form, 0.0, start, *given[0])
     mine = pair.c.vector(0.0, start, _inputs(0.0, names))
     pair.c.band(BAND)
     mode = None
     for k in range(COUNT):
         t = k * STEP
         given = module.sampled(signals, t, STEP)
-        mode, s = python.settled(t, s, *given[0], mode, BAND, STEP)
+        mode, s = python.settled(module.Point(t, s, *given[0]), mode, BAND, STEP)
         s = python.step(t, STEP, s, given, mode)
         status, mine = pair.c.step(t, STEP, mine, [w for w, _ in given])
         assert status == 0, pair.c.message(status)

@@ -13,7 +13,7 @@ from soak.families import whole
 
 import bondgraph as bg
 from codegen import switched_simulator, to_c
-from codegen.numbers.roots import root
+from codegen.standalone.roots import root
 
 #: A function in Python and in C, two points, its root, and how exactly it is known.
 CASES: list[tuple[Callable[[float], float], str, float, float, float, float]] = [

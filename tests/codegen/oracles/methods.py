@@ -121,9 +121,9 @@ def _in_python(made: Made, per_sample: int) -> Outcome:
     module = loaded(codegen.to_python(case.equations, case.parameters, case.laws))
     settled = module.Model.settled
 
-    def noted(model, t, *rest):
-        found = settled(model, t, *rest)
-        seen.append((t, found[0]))
+    def noted(model, at, *rest):
+        found = settled(model, at, *rest)
+        seen.append((at.t, found[0]))
         return found
 
     module.Model.settled = noted

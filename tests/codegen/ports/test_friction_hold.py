@@ -7,7 +7,7 @@ from oracles.models import block, clutches, stacked_blocks
 
 import bondgraph as bg
 from codegen import Constant, simulator
-from codegen.ports.sharing import fair_share
+from codegen.standalone.sharing import fair_share
 
 
 def _fraction(efforts: np.ndarray, caps: np.ndarray) -> float:

@@ -12,7 +12,7 @@ from references.build import bond_graph
 
 import bondgraph as bg
 from codegen import simulator, to_python
-from codegen.ports.sharing import fair_share
+from codegen.standalone.sharing import fair_share
 
 
 def _in_turn(efforts: np.ndarray, share: np.ndarray, caps: np.ndarray) -> np.ndarray:

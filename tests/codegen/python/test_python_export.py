@@ -76,8 +76,8 @@ def test_rates_and_outputs_are_the_simulators(name: str) -> None:
         du, t = du * (turn % 2), rng.uniform()
         rate, signals, _ = instant(ready, t, x, u, du)
         now = exported.instant(t, x, u, du, None)
-        terms = np.abs(now.m.P) @ np.abs(now.x) + np.abs(now.m.Q) @ np.abs(now.u) + 1e-3
-        terms += np.abs(now.m.R) @ np.abs(now.du)
+        terms = np.abs(now.numbers.P) @ np.abs(now.x) + np.abs(now.numbers.Q) @ np.abs(now.u) + 1e-3
+        terms += np.abs(now.numbers.R) @ np.abs(now.du)
         size = np.append(terms, np.full(len(x) - len(now.x), 1 + np.abs(now.y).max(initial=0)))
         assert (np.abs(exported.rhs(t, x, u, du) - rate) <= 1e-12 * size).all()
         if not du.any():
@@ -237,16 +237,40 @@ def test_other_numbers_at_run_time_and_what_is_refused() -> None:
         to_python(equations, {"k": 1.0, "F_c": 1.0})
 
 
-def test_ports_that_are_redundant_at_these_numbers_alone_are_refused_by_name() -> None:
-    """Two gears of one ratio by chance: with others the clutches would hold both shafts."""
+GEARS = {3.0: [0.0, 0.0], 2.0: [0.04, 0.08]}
+"""With unequal gears two clutches hold both shafts; with equal ones, 5 v' = 0.2 and w' = 2 v'."""
+
+
+@pytest.mark.parametrize(("written", "other"), [(3.0, 2.0), (2.0, 3.0)])
+def test_numbers_at_which_other_ports_are_redundant_are_refused_by_name(
+    written: float, other: float
+) -> None:
     nodes = [bg.Se("push", "P"), bg.One("n1"), bg.One("n2"), bg.I("m1", "m", flow="v"),
              bg.I("m2", "m", flow="w"), bg.Zero("a"), bg.Zero("b"), bg.TF("ga", "r_1"), bg.TF("gb", "r_2"),
              bg.R("left", law=bg.DryFriction("L")), bg.R("right", law=bg.DryFriction("L"))]  # fmt: skip
     graph = bond_graph(nodes, "push>n1>m1 n2>m2 n1>a>left a>ga>n2 n1>b>right b>gb>n2")
-    equations, numbers = bg.derive(graph), {"m": 1.0, "L": 1.0, "r_1": 2.0}
-    to_python(equations, numbers | {"r_2": 3.0})
-    with pytest.raises(bg.ParameterError, match="'left', 'right'"):
-        to_python(equations, numbers | {"r_2": 2.0})
+    numbers = {"m": 1.0, "L": 1.0, "r_1": 2.0, "r_2": written}
+    module = loaded(to_python(bg.derive(graph), numbers))
+    assert module.STATES == ("v", "w")
+    assert module.Model().rhs(0.0, [0, 0], [0.2]) == pytest.approx(GEARS[written], abs=1e-14)
+    refused = pytest.raises(ArithmeticError, match="other ports of 'left', 'right' are redundant")
+    with refused:
+        module.Model({"r_2": other}).rhs(0.0, [0, 0], [0.2])
+    slightly = module.Model({"L": 1.5}).rhs(0.0, [0, 0], [0.2], mode=[0, 0])
+    assert slightly == pytest.approx(GEARS[written], abs=1e-14)
+
+
+def test_a_slope_that_holding_would_need_is_told_by_the_module_as_by_the_simulator() -> None:
+    """The clutch holds only where v' = w', and w is what a law of v gives."""
+    nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"), bg.Zero("z"),
+             bg.R("law", law="sin(v)", gives="flow", flow="w"),
+             bg.R("rub", law=bg.DryFriction("L"))]  # fmt: skip
+    equations = bg.derive(bond_graph(nodes, "push>n>m n>z z>law z>rub"))
+    numbers, told = {"m": 1.0, "L": 1.0}, "holding 'rub' would need the slope in time of w"
+    with pytest.raises(bg.SimulationError, match=told):
+        simulator(equations, numbers).run([0, 0.1], {}, {"P": 0.5})
+    with pytest.raises(ArithmeticError, match=told):
+        loaded(to_python(equations, numbers)).simulate([0, 0.1], {}, {"P": 0.5})
 
 
 def test_a_law_of_the_speed_brakes_as_it_should() -> None:

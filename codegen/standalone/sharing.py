@@ -1,28 +1,26 @@
-"""How redundant ports share a load: the largest fraction of a port's breakaway effort is the least possible.
+"""How redundant ports share a load: the largest fraction of a breakaway effort is the least.
 
-Where efforts may change along the rows of ``share``, a weighted sum of efforts that no row changes is a
-load that its ports carry, whatever they share: a circuit, if no port can be left out. Its ports carry at
-least the fraction ``|load| / sum of |weight| cap``, and the circuit of the highest such fraction reaches
-it. Once its ports are settled the others share along what directions are left.
+Where efforts may change along the rows of ``share``, a weighted sum of efforts that no row
+changes is a load that its ports carry, whatever they share: a circuit, if no port can be left
+out. Its ports carry at least the fraction ``|load| / sum of |weight| cap``, and the circuit of
+the highest such fraction reaches it. Once its ports are settled the others share along what
+directions are left.
 """
 
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from codegen.numbers.arrays import Array
+from codegen.standalone.arrays import Array, Places
 from codegen.tuning import TUNING
-
-Places = NDArray[np.intp]
 
 
 def fair_share(efforts: Array, share: Array, caps: Array) -> Array:
-    """Efforts moved along ``share`` so that the largest fraction of a port's cap is the least possible.
+    """Efforts moved along ``share``: the largest fraction of a port's cap is the least possible.
 
-    Then the next largest of the ports that remain, and so on: there is one answer. So redundant ports hold
-    whenever any way of sharing the load would hold. A port with no cap carries nothing, if the others
-    can carry its part.
+    Then the next largest of the ports that remain, and so on: there is one answer. So redundant
+    ports hold whenever any way of sharing the load would hold. A port with no cap carries nothing,
+    if the others can carry its part.
 
     >>> fair_share(np.array([30.0, 0.0]), np.array([[1.0, -1.0]]), np.array([100.0, 200.0]))
     array([10., 20.])
@@ -44,7 +42,7 @@ def fair_share(efforts: Array, share: Array, caps: Array) -> Array:
 
 
 def _settled(efforts: Array, share: Array, caps: Array) -> tuple[Places, Array]:
-    """The ports of the circuit with the highest fraction, and that fraction with each port's sign."""
+    """The ports of the circuit of highest fraction, and that fraction with each port's sign."""
     free, count = share.shape
     chosen = np.array(list(combinations(range(count), free + 1)), dtype=int)
     if count == free:

@@ -1,4 +1,5 @@
-"""A root of a function between two points of different sign, however flat the function is there."""
+"""A root of a function between two points of different sign, however flat the function is
+there."""
 
 import sys
 from collections.abc import Callable
@@ -14,11 +15,11 @@ SLOW = 3
 def root(f: Callable[[float], float], a: float, b: float) -> float:
     """Where f changes its sign between a and b, to two units in the last place.
 
-    Inverse quadratic interpolation where three points promise it, else halves: T. R. Chandrupatla, A new
-    hybrid quadratic/bisection algorithm, Advances in Engineering Software 28 (1997) 145-149. Halving is
-    enforced where interpolation crawls, as along a root of many folds: it always ends. ``bg_root`` in
-    ``model_roots.c`` takes the same steps. f must not have the same sign at a and b; what is no number
-    counts as below zero.
+    Inverse quadratic interpolation where three points promise it, else halves: T. R. Chandrupatla,
+    A new hybrid quadratic/bisection algorithm, Advances in Engineering Software 28 (1997) 145-149.
+    Halving is enforced where interpolation crawls, as along a root of many folds: it always ends.
+    ``bg_root`` in ``model_roots.c`` takes the same steps. f must not have the same sign at a and b;
+    what is no number counts as below zero.
 
     >>> found = root(lambda x: x**2 - 2, 0.0, 2.0), root(lambda x: (x - 1) ** 9, -1.0, 2.0)
     >>> [round(place, 15) for place in found]
@@ -49,7 +50,7 @@ def root(f: Callable[[float], float], a: float, b: float) -> float:
 
 
 def _share(x: tuple[float, float, float], y: tuple[float, float, float]) -> float:
-    """How far from a to b inverse quadratic interpolation leads, where it is sure to; else a half."""
+    """How far from a to b inverse quadratic interpolation leads, where it surely does; or half."""
     (a, b, c), (at_a, at_b, at_c) = x, y
     if at_c in (at_a, at_b) or at_a == at_b:
         return 0.5

@@ -1,0 +1,53 @@
+"""A program with numbers for its parameters as what can be evaluated: laws, matrices, friction."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from codegen.model.hybrid import hybrid
+from codegen.model.instant import Binding
+from codegen.ports.slips import SlipRows, held_set
+from codegen.program.records import Group, Program
+from codegen.standalone.evaluation import Form, Laws
+from codegen.standalone.friction import Friction, Ports
+from codegen.standalone.instant import Instant
+from codegen.standalone.joint import JointFriction
+from codegen.standalone.loops import Loop
+from codegen.standalone.matrices import Numbers
+
+
+def formed(program: Program, binding: Binding, matrices: Callable[[Instant], Numbers]) -> Form:
+    """The form of a program, which binds its formulas to where everything stands."""
+    return Form(
+        states=len(program.states),
+        inputs=[name.name for name in program.inputs],
+        readings=[name.name for name in program.readings],
+        given=np.array(program.given, dtype=int),
+        known=_laws(program.known, binding),
+        known_rates=binding.function(program.known_rates) if program.rated else None,
+        matrices=matrices,
+        laws=[_laws(group, binding) for group in program.groups],
+        law_rates=np.array(program.law_rates, dtype=int),
+        varying=program.varying,
+    )
+
+
+def rubbing(program: Program, binding: Binding, form: Form, slips: SlipRows) -> Friction:
+    """The friction ports of a program; ``slips``: what these receive, exact."""
+    ports = Ports(
+        names=[port.name for port in program.friction],
+        inputs=np.array([port.input for port in program.friction], dtype=int),
+        readings=np.array([port.reading for port in program.friction], dtype=int),
+        beside=[slips.coupled(port) for port in range(len(program.friction))],
+        held=lambda stuck: held_set(slips, stuck),
+        values=binding.function(program.friction_values),
+        exact=True,
+    )
+    coupled = _laws(program.coupled, binding)
+    return JointFriction(ports, form, coupled, hybrid) if program.joint else Friction(ports, form)
+
+
+def _laws(group: Group, binding: Binding) -> Laws:
+    inputs, readings = np.array(group.inputs, dtype=int), np.array(group.readings, dtype=int)
+    parts = (binding.function(group.values), inputs, readings, group.ports)
+    return Loop(*parts, hybrid) if group.loop else Laws(*parts)

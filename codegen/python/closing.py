@@ -1,0 +1,114 @@
+"""The end of generated Python: the formulas put together with what is the same for every model."""
+
+from collections.abc import Mapping
+from dataclasses import astuple
+
+from codegen.program.records import Group, Program
+from codegen.python.blocks import law_names
+from codegen.python.text import RULE, listing, quoted
+from codegen.standalone.holding import HeldSet
+
+_FORM = '''def form(parameters):
+    """The formulas with these parameters, and where everything stands."""
+    return Form(
+        states=len(X),
+        inputs=U,
+        readings=Y,
+        given=GIVEN,
+        known=Laws(BlockFormula(known_laws, parameters, len(KNOWN)), KNOWN, [], []),
+        known_rates={rates},
+        matrices=matrices(coefficients, parameters, varying={varying}),
+        laws={laws},
+        law_rates=LAW_RATES,
+        varying={varying},
+    )'''
+
+_FRICTION = '''
+
+def friction(parameters):
+    """The friction ports."""
+    ports = Ports(
+        names=FRICTION,
+        inputs=FRICTION_INPUTS,
+        readings=FRICTION_READINGS,
+        beside=BESIDE,
+        held=lambda stuck: HELD.get(stuck) or plain_set(len(stuck)),
+        values=BlockFormula(friction_values, parameters, 4 * len(FRICTION)),
+        exact=parameters == PARAMETERS,
+    )'''
+
+_MODEL = '''
+
+class Model({base}):
+    """The model with numbers for its parameters.
+
+    ``rhs`` and ``outputs`` take x in the order of STATES and u in that of INPUTS.
+    """
+
+    def __init__(self, parameters=None):
+        self.parameters = named(parameters or {{}}, PARAMETERS, "parameter")
+        super().__init__({arguments})
+
+
+def simulate(time, initial, inputs, parameters=None, step=STEP, dead_band=1e-6):
+    """Integrate with steps of at most ``step`` [s] and sample at the times given.
+
+    ``initial``: states by name, the rest start at 0. ``inputs``: a number or a function of time for
+    each of INPUTS. ``dead_band``: slips below it may stick. The work of a step is bounded: nothing
+    is located inside it. Returns arrays by name: t, states, inputs, outputs, friction efforts.
+
+    Raises `UnstableStep` for a step beyond the stability of its method, with the longest that is
+    stable; LONGEST_STEP is that of the start.
+    """
+    return run(Model(parameters), time, initial, inputs, step, dead_band)'''
+
+
+def needed(program: Program) -> list[str]:
+    """The modules that a program's model works with, beside those that these import."""
+    also = {
+        "deadband": bool(program.friction),
+        "joint": program.joint,
+        "loops": any(group.loop for group in program.groups),
+    }
+    names = ["formulas", "running", *(name for name, wanted in also.items() if wanted)]
+    return [f"codegen.standalone.{name}" for name in names]
+
+
+def closing(program: Program, held: Mapping[tuple[int, ...], HeldSet]) -> list[str]:
+    """Functions that bind formulas and tables to the rest, the class `Model`, and `simulate`.
+
+    ``held``: ranks of the sets of sticking ports that are not plain.
+    """
+    lines = [RULE, "# How this model is put together.", "", "NAMES = Names(STATES, INPUTS, SHOWN)"]
+    base, arguments = "FixedSteps", "form(self.parameters), NAMES"
+    if program.friction:
+        base, arguments = "DeadBand", "NAMES, friction(self.parameters)"
+        note = "Sets of sticking ports of which not each slip binds the states by itself: what holds them."
+        rows = [f"    {ports}: HeldSet{astuple(one)}," for ports, one in held.items()]
+        lines += [f"# {note}", *(["HELD = {", *rows, "}"] if rows else ["HELD = {}"])]
+    lines += ["", "", *_form(program)]
+    lines += _friction(program) if program.friction else []
+    return [*lines, *_MODEL.format(base=base, arguments=arguments).splitlines()]
+
+
+def _form(program: Program) -> list[str]:
+    rates = "BlockFormula(known_law_rates, parameters, len(KNOWN))" if program.rated else None
+    laws: list[str] = []
+    for name, group in zip(law_names(program), program.groups, strict=True):
+        laws += _group("Loop(" if group.loop else "Laws(", name, group, "),", 12)
+    listed = "\n".join(["(", *laws, "        )"]) if laws else "()"
+    return _FORM.format(rates=rates, varying=program.varying, laws=listed).splitlines()
+
+
+def _group(opening: str, name: str, group: Group, closing: str, indent: int) -> list[str]:
+    ports = ", ".join(quoted(str(port)) for port in group.ports)
+    parts = [f"BlockFormula({name}, parameters, {len(group.inputs)})", f"{list(group.inputs)}"]
+    return listing(opening, [*parts, f"{list(group.readings)}", f"[{ports}]"], closing, indent)
+
+
+def _friction(program: Program) -> list[str]:
+    lines = _FRICTION.splitlines()
+    if not program.joint:
+        return [*lines, "    return Friction(ports, form(parameters))"]
+    coupled = _group("coupled = Laws(", "coupled_laws", program.coupled, ")", 4)
+    return [*lines, *coupled, "    return JointFriction(ports, form(parameters), coupled)"]

@@ -1,0 +1,1 @@
+"""What a model does in numbers, with numpy alone; `to_python` writes these modules out whole."""

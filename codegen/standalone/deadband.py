@@ -1,0 +1,136 @@
+"""Which ports stick in a fixed step, in a bounded number of turns: Karnopp's dead band."""
+
+from collections.abc import Sequence
+from itertools import product
+
+import numpy as np
+
+from codegen.standalone.arrays import Array, EvaluationError, Mode
+from codegen.standalone.evaluation import Point
+from codegen.standalone.friction import Friction, slip_rates, ways
+from codegen.standalone.instant import Instant
+from codegen.standalone.stepping import Chosen, FixedSteps, Names
+from codegen.tuning import TUNING
+
+
+class DeadBand(FixedSteps):
+    """A model in fixed steps whose friction ports stick inside a dead band."""
+
+    def __init__(self, names: Names, friction: Friction) -> None:
+        super().__init__(friction.form, names, friction)
+        self.friction, ports = friction, friction.ports
+        self.efforts, self.slips, self.beside = ports.inputs, ports.readings, np.array(ports.beside)
+
+    def decided(self, at: Point, previous: Chosen, dead_band: float, h: float = 0.0) -> Mode:
+        """Which ports stick (0) and which way the others slip (+1, -1).
+
+        A port may stick if its slip is inside the band, has changed its sign since the mode before,
+        a step of h ago, or depends on its effort at once. It does if what holds it is within its
+        breakaway effort; else it slips the way that effort points. One port changes at a time, in a
+        bounded number of turns; where that comes to what is no mode, all modes are tried.
+        """
+        now = self.any_of(at, previous or (0,) * len(self.slips))
+        slips = now.y[self.slips]
+        mode = [1 if slip > 0 else -1 for slip in slips]
+        near = (
+            np.abs(slips) <= np.maximum(dead_band, TUNING.step_rounding * self.terms(now))
+        ) | self.beside
+        if previous is not None:
+            # An input that steps may turn a slip round too; what a step of h can't reach slips on.
+            near |= (slips * previous < 0) & (
+                np.abs(slips) <= 2 * h * np.abs(slip_rates(now, self.slips))
+            )
+        for i in np.flatnonzero(near):
+            mode[i] = 0
+        for _ in range(4 * int(near.sum())):
+            try:
+                now = self.consistent(at, mode, dead_band)
+            except EvaluationError as error:
+                return self.searched(at, mode, near, dead_band, error)
+            change = self.let_go(now, mode) or self.caught(now, mode, near)
+            if change is None:
+                break
+            mode[change[0]] = change[1]
+        return tuple(mode)
+
+    def any_of(self, at: Point, mode: Mode) -> Instant:
+        """Every variable in the first mode that has values: laws may have no solution one way."""
+        refused: EvaluationError | None = None
+        for tried in ways(mode):
+            try:
+                return self.at(at, tried)
+            except EvaluationError as error:
+                refused = refused or error
+        raise refused or EvaluationError("there is no mode")
+
+    def consistent(self, at: Point, mode: Sequence[int], dead_band: float) -> Instant:
+        """Every variable in a mode, unless what other inputs rule does not let its ports stick."""
+        now = self.at(at, tuple(mode))
+        if 0 in mode and len(rows := self.friction.hold(tuple(mode), now.numbers).ruled):
+            stuck = np.flatnonzero(np.equal(mode, 0))
+            least = np.maximum(dead_band, TUNING.step_rounding * self.terms(now))[stuck]
+            if (np.abs(rows @ now.y[self.slips[stuck]]) > np.abs(rows) @ least).any():
+                raise EvaluationError(
+                    f"at t = {at.t:g} no way of sticking and slipping is consistent"
+                )
+        return now
+
+    def searched(
+        self, at: Point, rest: Sequence[int], near: Array, dead_band: float, reason: Exception
+    ) -> Mode:
+        """The first mode of the ports near rest that contradicts nothing, most sticking first."""
+        choices = product((0, 1, -1), repeat=int(near.sum()))
+        for choice in sorted(choices, key=lambda signs: -signs.count(0)):
+            mode = list(rest)
+            for i, sign in zip(np.flatnonzero(near), choice, strict=True):
+                mode[i] = sign
+            try:
+                now = self.consistent(at, mode, dead_band)
+            except EvaluationError:
+                continue
+            if self.let_go(now, mode) is None and self.caught(now, mode, near) is None:
+                return tuple(mode)
+        raise reason
+
+    def settled(
+        self, at: Point, previous: Chosen, dead_band: float, h: float
+    ) -> tuple[Mode, Array]:
+        """The mode, and s without the slips of the ports that stick: moved along A^-1 F^T."""
+        self.seen = np.maximum(self.seen, np.abs(at.s))
+        mode = self.decided(at, previous, dead_band, h)
+        if 0 not in mode:
+            return mode, at.s
+        now = self.at(at, mode)
+        hold, moved = self.friction.hold(mode, now.numbers), at.s.copy()
+        moved[: self.form.states] += hold.take_away @ hold.slips(now)
+        return mode, moved
+
+    def turned(self, now: Instant, mode: Mode) -> bool:
+        """Whether a port slips against its mode, in the moment of a change."""
+        return bool((now.y[self.slips] * mode < 0).any())
+
+    def let_go(self, now: Instant, mode: Sequence[int]) -> tuple[int, int] | None:
+        """The sticking port held farthest beyond its breakaway effort, and which way it goes."""
+        efforts = now.u[self.efforts]
+        over = np.where(np.equal(mode, 0), np.abs(efforts) - now.caps * (1 + TUNING.breakaway), 0.0)
+        if not (over > 0).any():
+            return None
+        i = int(np.argmax(over / (now.caps + TUNING.breakaway * np.abs(efforts).max())))
+        return i, 1 if efforts[i] > 0 else -1
+
+    def terms(self, now: Instant) -> Array:
+        """The magnitudes of the terms that make up the slips: what rounding is relative to."""
+        F, D = np.abs(now.numbers.F[self.slips]), np.abs(now.numbers.D[self.slips])
+        return np.asarray(F @ np.abs(now.x) + D @ np.abs(now.u), dtype=float)
+
+    def caught(self, now: Instant, mode: Sequence[int], near: Array) -> tuple[int, int] | None:
+        """A port let go that would slip against its direction, and so sticks after all."""
+        m, x, u = now.numbers, np.abs(now.x), np.abs(now.u)
+        terms = np.abs(m.F[self.slips]) @ (np.abs(m.P) @ x + np.abs(m.Q) @ u)
+        moves = np.where(self.beside, now.y[self.slips], slip_rates(now, self.slips)) * np.array(
+            mode
+        )
+        wrong = near & (
+            moves < -TUNING.step_rounding * np.where(self.beside, self.terms(now), terms)
+        )
+        return (int(np.argmax(wrong)), 0) if wrong.any() else None

@@ -1,0 +1,75 @@
+"""Generated functions as formulas of an instant."""
+
+from collections.abc import Callable, Mapping
+from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from codegen.standalone.arrays import Array, EvaluationError
+from codegen.standalone.instant import Formula, Instant
+from codegen.standalone.matrices import Numbers, solved
+
+Block = Callable[[Mapping[str, float], Any], Any]
+"""A generated function of parameters and of what it reads, by the letters of an instant."""
+
+PARTS = ("x", "z", "y", "u", "w", "dw")
+
+
+class BlockFormula(Formula):
+    """What a generated function gives: so many numbers; nan where it has no value."""
+
+    def __init__(self, block: Block, parameters: Mapping[str, float], count: int) -> None:
+        super().__init__(np.array([*parameters.values()]))
+        self.block, self.parameters, self.count = block, parameters, count
+
+    def __call__(self, now: Instant) -> Array:
+        """What it gives at an instant."""
+        return self._values(self.parameters, plain(now))
+
+    def of_pool(self, pool: Array, like: Instant) -> Array:
+        """What it gives, of a pool laid out like that of an instant."""
+        ends = np.cumsum([1, *(len(getattr(like, part)) for part in PARTS), len(self.parameters)])
+        parts = [pool[a:b].tolist() for a, b in pairwise(ends)]
+        parameters = dict(zip(self.parameters, parts.pop(), strict=True))
+        now = SimpleNamespace(t=float(pool[0]), **dict(zip(PARTS, parts, strict=True)))
+        return self._values(parameters, now)
+
+    def _values(self, parameters: Mapping[str, float], now: SimpleNamespace) -> Array:
+        try:
+            return np.array(self.block(parameters, now), dtype=float).reshape(self.count)
+        except (ArithmeticError, TypeError, ValueError):
+            return np.full(self.count, np.nan)
+
+
+def plain(now: Instant) -> SimpleNamespace:
+    """What formulas read, as plain numbers: quicker, and an error where they have no value."""
+    return SimpleNamespace(t=float(now.t), **{part: getattr(now, part).tolist() for part in PARTS})
+
+
+def matrix(shape: tuple[int, int], entries: Mapping[tuple[int, int], float]) -> Array:
+    """A dense matrix from its nonzero entries by place."""
+    result = np.zeros(shape)
+    for place, entry in entries.items():
+        result[place] = entry
+    return result
+
+
+def matrices(
+    coefficients: Block, parameters: Mapping[str, float], varying: bool
+) -> Callable[[Instant], Numbers]:
+    """The matrices as a function of an instant; found once where they do not vary."""
+    if not varying:
+        constant = solved(**coefficients(parameters, None))
+        return lambda now: constant
+
+    def found(now: Instant) -> Numbers:
+        try:
+            return solved(**coefficients(parameters, plain(now)))
+        except (ArithmeticError, TypeError, ValueError) as error:
+            raise EvaluationError(
+                f"at t = {now.t:g} the matrices have no values: {error}"
+            ) from None
+
+    return found

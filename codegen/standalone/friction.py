@@ -1,0 +1,120 @@
+"""Friction ports in numbers: against the slip, or whatever holds."""
+
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from codegen.standalone.arrays import Array, EvaluationError, HoldError, Mode, Places
+from codegen.standalone.evaluation import Correction, Form, Laws
+from codegen.standalone.holding import HeldSet, Hold, hold
+from codegen.standalone.instant import Formula, Instant
+from codegen.standalone.levels import level_terms, without_rounding
+from codegen.standalone.matrices import Numbers
+from codegen.tuning import TUNING
+
+
+@dataclass(frozen=True)
+class Ports:
+    """Friction ports: names, inputs they give, slips they receive, and what holds sets of them.
+
+    ``beside``: whether a slip depends at once on friction, or on laws that friction moves.
+    ``held``: from a set of sticking ports to its ranks. ``values``: level, breakaway effort, curve,
+    and curve at rest of each. ``exact``: whether the ranks were decided for the numbers used.
+    """
+
+    names: Sequence[Hashable]
+    inputs: Places
+    readings: Places
+    beside: Sequence[bool]
+    held: Callable[[tuple[int, ...]], HeldSet]
+    values: Formula
+    exact: bool
+
+
+class Friction:
+    """What friction ports give in a mode: ``level * curve(|slip|) * sign(slip)``, or what holds.
+
+    ``coupled``: laws that depend on what they give.
+    """
+
+    def __init__(self, ports: Ports, form: Form, *coupled: Laws) -> None:
+        self.ports, self.form = ports, form
+        self._holds: dict[Mode, Hold] = {}
+        self._laws = (form.known, *form.laws, *coupled)
+        self._differentiable = {*form.given, *form.known.inputs, *ports.inputs}
+
+    def __call__(self, now: Instant, mode: Mode, checked: bool) -> Correction:
+        """Complete an instant as the mode says; what rounding must be added to the rates of x."""
+        held = self.hold(mode, now.numbers) if 0 in mode else None
+        self.rub(now, mode, held, checked)
+        return None if held is None else held.correction
+
+    def hold(self, mode: Mode, numbers: Numbers) -> Hold:
+        """The holding equations of a mode's sticking ports, with the matrices of an instant."""
+        if mode not in self._holds or self.form.varying:
+            self._holds[mode] = self._hold(np.flatnonzero(np.equal(mode, 0)).tolist(), numbers)
+        return self._holds[mode]
+
+    def _hold(self, stuck: list[int], numbers: Numbers) -> Hold:
+        ports, names = self.ports, ", ".join(repr(self.ports.names[i]) for i in stuck)
+        held, places = ports.held(tuple(stuck)), (ports.inputs, ports.readings)
+        try:
+            found = hold(held, stuck, *places, numbers, self.form.varying, ports.exact)
+        except HoldError:
+            raise HoldError(
+                f"with these parameters other ports of {names} are redundant than with those for "
+                "which this was written; write it with these"
+            ) from None
+        for j in np.flatnonzero(
+            np.abs(found.V).max(axis=0, initial=0.0) > TUNING.nothing_held
+        ).tolist():
+            if j not in self._differentiable:
+                raise HoldError(
+                    f"holding {names} would need the slope in time of {self.form.inputs[j]}, which "
+                    "a law gives; put a storage between"
+                )
+        return found
+
+    def rub(self, now: Instant, mode: Mode, held: Hold | None, checked: bool) -> None:
+        """Complete an instant by the friction efforts of a mode; ``checked``: levels, for sign."""
+        inputs = self.ports.inputs
+        now.u[inputs] = self.against(now, mode, checked)
+        if held is not None:
+            now.u[held.inputs] = held.efforts(now)
+        now.y += now.numbers.D[:, inputs] @ now.u[inputs]
+
+    def against(self, now: Instant, mode: Mode, checked: bool) -> Array:
+        """Slipping ports' efforts, zero at sticking ones; notes every port's breakaway effort."""
+        values = self.ports.values(now)
+        if checked and (values < 0).any():
+            values = without_rounding(values, level_terms(now, self._laws, self.ports.values))
+        levels, caps, curves, at_rest = values.reshape(-1, 4).T
+        wrong = (levels < 0) | (curves < 0) | (caps < levels * at_rest * (1 - TUNING.breakaway))
+        if checked and wrong.any():
+            at = int(np.argmax(wrong))
+            raise EvaluationError(
+                f"at t = {now.t:g} the friction at {self.ports.names[at]!r} has level "
+                f"{levels[at]:g}, curve {curves[at]:g} and breakaway effort {caps[at]:g}: level "
+                "and curve must not be negative, the breakaway not below the friction at standstill"
+            )
+        now.caps = caps
+        efforts: Array = levels * curves * np.array(mode, dtype=float)
+        return efforts
+
+
+def slip_rates(now: Instant, rows: Places) -> Array:
+    """How fast slips change: F x' + D u'; inputs that cannot be differentiated are held."""
+    m = now.numbers
+    rates = m.F[rows] @ (m.P @ now.x + m.Q @ now.u + m.R @ now.du) + m.D[rows] @ now.du
+    return np.asarray(rates, dtype=float)
+
+
+def ways(mode: Mode) -> Iterator[Mode]:
+    """Slipping as a mode says, backwards where it is silent, the mode, any slipping, all stuck."""
+    yield tuple(sign or 1 for sign in mode)
+    yield tuple(sign or -1 for sign in mode)
+    yield mode
+    yield from product((1, -1), repeat=len(mode))
+    yield (0,) * len(mode)

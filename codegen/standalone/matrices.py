@@ -1,0 +1,54 @@
+"""The equations' matrices in numbers, solved for the rates."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from codegen.standalone.arrays import Array
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """The equations in numbers, solved for the rates; n states, m inputs, p readings.
+
+    x' = P x + Q u + R u'
+     y = F x + D u + G u'
+    """
+
+    #: n x n, n x m, n x m: A^-1 J, A^-1 B, A^-1 E
+    P: Array
+    Q: Array
+    R: Array
+    #: n x n
+    A: Array
+    #: p x n, p x m, p x m
+    F: Array
+    D: Array
+    G: Array
+
+
+def solved(
+    A: Array, J: Array, B: Array, E: Array, F: Array, D: Array, H: Array, K: Array
+) -> Numbers:
+    """``A x' = J x + B u + E u'``, ``y = F x + D u + H x' + K u'``, solved for the rates.
+
+    Raises `numpy.linalg.LinAlgError` where A has no inverse.
+    """
+    n, m = J.shape[1], B.shape[1]
+    found = scaled_solve(A, np.hstack([J, B, E]))
+    P, Q, R = found[:, :n], found[:, n : n + m], found[:, n + m :]
+    return Numbers(P, Q, R, A, F=F + H @ P, D=D + H @ Q, G=K + H @ R)
+
+
+def scales(A: Array) -> Array:
+    """Scales of rows and columns of A: storages may differ by many powers of ten."""
+    found: Array = 1 / np.sqrt(np.abs(np.diag(A)))
+    found[~np.isfinite(found)] = 1.0
+    return found
+
+
+def scaled_solve(A: Array, right: Array) -> Array:
+    """``A^-1 right``, with rows and columns scaled first."""
+    scale = scales(A)
+    found = np.linalg.solve(A * np.outer(scale, scale), scale[:, None] * right)
+    return np.asarray(scale[:, None] * found, dtype=float)
