@@ -2,6 +2,8 @@
 #ifndef BG_LOCATED_INTERNAL_H
 #define BG_LOCATED_INTERNAL_H
 
+#include <math.h>
+
 #include "model_located.h"
 #include "tuning.h"
 
@@ -23,9 +25,17 @@ int bg_progress_check(bg_located *c);
 int bg_watch_begin(bg_located *c);
 int bg_watch_step(bg_located *c, int *found, double *time, int *ports);
 
+/* The mean of values over scales, which repeat. */
+static inline double bg_norm(int count, const double *values, const double *scale)
+{
+    double sum = 0.0;
+    for (int i = 0; i < count; i++)
+        sum += values[i] / scale[i % BG_SIZE] * (values[i] / scale[i % BG_SIZE]);
+    return sqrt(sum / count);
+}
+
 /* located_solver.c: steps to no later than `stop` that keep the tolerance, and the state anywhere in
- * the latest; the mean of values over scales, which repeat. */
-double bg_norm(int count, const double *values, const double *scale);
+ * the latest. */
 int bg_solver_begin(bg_located *c, int method, double longest, double stop);
 int bg_solver_step(bg_located *c, double stop);
 int bg_solver_dense(bg_located *c, double t, double *s);

@@ -4,14 +4,6 @@
 
 #include "located_internal.h"
 
-double bg_norm(int count, const double *values, const double *scale)
-{
-    double sum = 0.0;
-    for (int i = 0; i < count; i++)
-        sum += values[i] / scale[i % BG_SIZE] * (values[i] / scale[i % BG_SIZE]);
-    return sqrt(sum / count);
-}
-
 /* A first step from the sizes of the state, its rate and its rate's rate (Hairer, Norsett, Wanner,
  * Solving Ordinary Differential Equations I, section II.4); tried no further than to `stop`, beyond
  * which inputs go on as they never do. */

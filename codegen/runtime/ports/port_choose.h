@@ -7,7 +7,7 @@
 #include "run_status.h"
 #include "tuning.h"
 
-enum { BG_MOST_PORTS = 6 };
+enum { BG_MOST_PORTS = 8 };
 
 /* What an instant is to a port: none of its own, its event, or an event that may be long past, as
  * whoever steps the model finds it no better. */
