@@ -148,16 +148,14 @@ class Tuning:
     one_length: float = _told(1e-13, "part by which lengths of stretches that are one may differ")
     unit_step: float = _told(1e-2, "s, the step of a unit that nothing bounds")
     unit_longest: float = _told(1e-3, "s, no step of a unit is longer where something moves")
-    usual_step: float = _told(
-        1e-4, "s, no step of exported Python is longer unless it is told otherwise"
-    )
+    usual_step: float = _told(1e-4, "s, the longest step of exported Python by itself")
     hardly: float = _told(2.0**-40, "of an interval, by which branches are told apart")
     resonance: float = _told(
         1e-3, "rates so near each other, over one of them, are summed as a series"
     )
     zero_value: float = _told(
         2.0**-49,
-        "of its terms: a value below is zero, and so is what an eighth of it in time changes",
+        "of its terms: a value of an input below is zero",
     )
     segment_rounding: float = _told(2.0**-50, "of an expression of time: its own rounding")
     flat: float = _told(2.0**-20, "of a segment, by which its ends are no part of it")

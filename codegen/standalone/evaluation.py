@@ -85,8 +85,8 @@ def begun(form: Form, at: Point) -> Instant:
     u[form.given] = at.w[:count]
     if len(known):
         u[known] = form.known.formula(now)
+    du[form.given] = at.dw[:count]
     if form.known_rates is not None:
-        du[form.given] = at.dw[:count]
         du[known] = form.known_rates(now)
     now.numbers = form.matrices(now)
     return now

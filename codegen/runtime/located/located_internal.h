@@ -34,8 +34,8 @@ static inline double bg_norm(int count, const double *values, const double *scal
     return sqrt(sum / count);
 }
 
-/* located_solver.c: steps to no later than `stop` that keep the tolerance, and the state anywhere in
- * the latest. */
+/* located_solver.c: steps to no later than `stop` that keep the tolerance, and the state anywhere
+ * in the latest. */
 int bg_solver_begin(bg_located *c, int method, double longest, double stop);
 int bg_solver_step(bg_located *c, double stop);
 int bg_solver_dense(bg_located *c, double t, double *s);
