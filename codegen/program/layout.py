@@ -21,11 +21,11 @@ NAMES = ("x", "z", "u", "du", "y", "rate", "caps", "external")
 
 
 def widths(program: Program) -> tuple[int, ...]:
-    """How many numbers each part has, in their order."""
+    """How many numbers each part has, in their order; s has one where there are no states."""
     states, own = len(program.states), len(program.law_states)
     inputs, readings = len(program.inputs), len(program.readings)
     return (
-        states, own, inputs, inputs, readings, states + own, len(program.friction),
+        states, own, inputs, inputs, readings, max(states + own, 1), len(program.friction),
         len(program.external),
     )  # fmt: skip
 

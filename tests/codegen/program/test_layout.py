@@ -27,3 +27,11 @@ def test_the_parts_of_an_instant_by_hand() -> None:
         "v": 0, "q_spring": 1, "P": 2, "e_brake": 3, "F": 4, "L": -2,
     }  # fmt: skip
     assert found["slip"] == 8 + [name.name for name in program.readings].index("slip")
+
+
+def test_a_model_without_states_has_one_rate() -> None:
+    """For integrators, which need something."""
+    graph = bond_graph([bg.Se("push", "P"), bg.R("air", "b")], "push>air")
+    program = lower(bg.derive(graph, outputs=["air"]), {}, ["b"])
+    assert widths(program)[5] == 1
+    assert widths(program)[:2] == (0, 0)
