@@ -58,8 +58,8 @@ class Hold:
     ``A^-1 F^T``.
     """
 
-    ports: list[int]
-    inputs: list[int]
+    ports: Places
+    inputs: Places
     X: Array
     U: Array
     V: Array
@@ -113,8 +113,9 @@ def hold(
     the ranks were decided. Raises `HoldError` where they have others, `EvaluationError` where there
     are no unique efforts.
     """
-    chosen = inputs[list(ports)].tolist()
-    F, D, G = (matrix[rows[list(ports)]] for matrix in (numbers.F, numbers.D, numbers.G))
+    stuck = np.array(ports, dtype=np.intp)
+    chosen = inputs[stuck]
+    F, D, G = (matrix[rows[stuck]] for matrix in (numbers.F, numbers.D, numbers.G))
     answers, kept, direct = D[:, [*chosen, *held.moved]], list(held.kept), list(held.direct)
     free = [k for k in range(len(held.null)) if k not in held.kept]
     try:
@@ -128,7 +129,7 @@ def hold(
     slip_x, slip_u, share = seen[kept], null[kept] @ D, share @ null
     U = np.vstack([D[direct], slip_x @ numbers.Q])
     return Hold(
-        list(ports),
+        stuck,
         chosen,
         X=np.vstack([F[direct], slip_x @ numbers.P]),
         U=U,

@@ -38,4 +38,4 @@ class JointFriction(Friction):
         if held and len(held.share):
             efforts = now.u[held.inputs]
             fair = fair_share(efforts, held.share, now.caps[held.ports])
-            now.give(np.array(held.inputs), fair - efforts)
+            now.give(held.inputs, fair - efforts)
