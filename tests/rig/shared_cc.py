@@ -13,6 +13,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
+from functools import cache
 
 ALONE = ("-c", "-E", "-S", "-fsyntax-only", "-M", "-MM", "-x", "-v", "-###")
 """Flags of calls that are no links of units."""
@@ -92,28 +93,38 @@ def fingerprint(compiler: str, unit: str, flags: Sequence[str], places: Sequence
     """All that the object of a unit depends on."""
     status = os.stat(compiler)
     parts = [compiler, str(status.st_mtime_ns), *flags, os.path.basename(unit)]
-    for name, text in texts(unit, places):
-        parts += [name, COMMENT.sub(lambda found: found[0] if found[0][0] == '"' else " ", text)]
+    for name, text in texts(unit, tuple(places)):
+        parts += [name, text]
     return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogateescape")).hexdigest()
 
 
-def texts(unit: str, places: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """The unit and what it includes, and so on; what is found nowhere is the system's."""
+def texts(unit: str, places: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+    """The unit and what it includes, and so on, less comments; what is found nowhere is the system's."""
     seen, waiting = set(), [unit]
     while waiting:
         path = waiting.pop()
         if path in seen:
             continue
         seen.add(path)
-        try:
-            with open(path, encoding="utf-8", errors="surrogateescape") as file:
-                text = file.read()
-        except OSError:
+        text, included = read(path)
+        if text is None:
             continue
         yield os.path.basename(path), text
-        for name in INCLUDED.findall(text):
+        for name in included:
             near = [os.path.join(place, name) for place in (os.path.dirname(path), *places)]
             waiting += [next((one for one in near if os.path.exists(one)), name)]
+
+
+@cache
+def read(path: str) -> tuple[str | None, tuple[str, ...]]:
+    """A file less its comments, and what it includes; many units of a call include the same."""
+    try:
+        with open(path, encoding="utf-8", errors="surrogateescape") as file:
+            text = file.read()
+    except OSError:
+        return None, ()
+    plain = COMMENT.sub(lambda found: found[0] if found[0][0] == '"' else " ", text)
+    return plain, tuple(INCLUDED.findall(text))
 
 
 def note(folder: str, word: str) -> None:
