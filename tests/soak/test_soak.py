@@ -42,6 +42,7 @@ def test_seeds_are_asked_for_here_alone() -> None:
     ("said", "expected"), [(None, range(4)), ("7", range(7)), ("30:40", range(30, 40))]
 )
 def test_the_environment_chooses_seeds(said, expected, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("BONDGRAPH_SLICE", raising=False)
     if said is not None:
         monkeypatch.setenv("BONDGRAPH_SOAK_DRAWN", said)
     assert DRAWN.seeds == expected
