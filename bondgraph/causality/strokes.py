@@ -5,11 +5,11 @@ from collections.abc import Hashable, Sequence
 
 import networkx as nx
 
-from bondgraph.causality.record import Contradiction, Reason, Strokes
+from bondgraph.causality.record import Contradiction, Ends, Reason, Strokes
 from bondgraph.declare.elements import Element
 
 
-class StrokeSearch:
+class StrokeSearch(Ends):
     """A partial assignment of strokes with a trail, so that trials can be undone.
 
     Nodes and bonds are numbered in declaration order. ``end[b]`` is the number of the node that
@@ -20,7 +20,9 @@ class StrokeSearch:
         self.names = list(graph)
         number = {name: at for at, name in enumerate(self.names)}
         self.elements: list[Element] = [graph.nodes[name]["element"] for name in self.names]
-        self.bonds = [(number[tail], number[head]) for tail, head in graph.edges]
+        self.bonds: list[tuple[int, int]] = [
+            (number[tail], number[head]) for tail, head in graph.edges
+        ]
         self.declared = [graph.edges[bond]["declared"] for bond in graph.edges]
         self.at: list[list[int]] = [[] for _ in self.names]
         for bond, ends in enumerate(self.bonds):
@@ -31,19 +33,6 @@ class StrokeSearch:
         self.trail: list[int] = []
         self._special = [0] * len(self.names)
         self._assigned = [0] * len(self.names)
-
-    def other(self, bond: int, node: int) -> int:
-        """The node at the bond's other end."""
-        tail, head = self.bonds[bond]
-        return head if node == tail else tail
-
-    def end_for(self, node: int, gives: str) -> int:
-        """Where the stroke lies on a one-port's bond when the one-port gives its effort, or its flow."""
-        return node if gives == "flow" else self.other(self.at[node][0], node)
-
-    def gives(self, node: int) -> str:
-        """What a one-port gives, "effort" or "flow", once its bond has a stroke."""
-        return "flow" if self.end[self.at[node][0]] == node else "effort"
 
     @property
     def found(self) -> Strokes:

@@ -96,7 +96,7 @@ def to_c(
     Which sticking ports are redundant is decided exactly, at these parameters; others at which that
     changes are refused when the model is run.
 
-    Raises what `simulator` raises; `StructureError` for more than six friction ports; `ExpressionError` for
+    Raises what `simulator` raises; `StructureError` for more than eight friction ports; `ExpressionError` for
     functions C lacks; `ParameterError` for a prefix that no name in C can begin with.
     """
     closed, files = exported(equations, parameters, laws, name, main, initial, inputs, prefix)
