@@ -5,7 +5,6 @@ from importlib.metadata import version
 from typing import Any
 
 from bondgraph.equations import StateEquations
-from bondgraph.errors import ParameterError
 from codegen.c.blocks import function, places
 from codegen.c.prefix import external_symbols, renamed
 from codegen.c.rates import plain_rates, straight_rates
@@ -17,10 +16,8 @@ from codegen.c.text import comment
 from codegen.model.doubts import warn_of_doubts
 from codegen.modes.closed import ClosedModel
 from codegen.ports.holds import held_sets
-from codegen.program.lower import lower
 from codegen.program.records import Program
-from codegen.runs.arguments import initial_values, signals_for
-from codegen.runs.steps import step_at_start
+from codegen.runs.start import start_of
 from codegen.tuning import tuning_text
 
 STEPPED = ("model", "ports", "run")
@@ -115,19 +112,12 @@ def exported(
     prefix: str = "",
 ) -> tuple[ClosedModel, dict[str, str]]:
     """As `to_c`, with the model in numbers; who asks for it tells what there is to be told of that."""
-    if not isinstance(parameters, Mapping):
-        raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
-    program = lower(equations, laws, parameters)
-    closed = ClosedModel(program, equations, parameters)
-    defaults = [float(closed.parameters[symbol.name]) for symbol in program.parameters]
-    states = [symbol.name for symbol in (*program.states, *program.law_states)]
-    external = [symbol.name for symbol in program.external]
-    signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)
-    start = initial_values(initial or {}, states)
-    longest = step_at_start(closed, start, signals)
-    files = texts(closed, name, defaults, prefix, longest)
+    start = start_of(equations, parameters, laws, initial, inputs)
+    closed = start.closed
+    defaults = [float(closed.parameters[symbol.name]) for symbol in closed.program.parameters]
+    files = texts(closed, name, defaults, prefix, start.longest)
     if main:
-        scenario = scenario_text(signals, start.tolist())
+        scenario = scenario_text(start.signals, start.states.tolist())
         files |= {"main.c": runtime_file("main.c"), "scenario.h": scenario}
     return closed, files
 

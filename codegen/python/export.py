@@ -5,12 +5,8 @@ from importlib.metadata import version
 from typing import Any
 
 from bondgraph.equations import StateEquations
-from bondgraph.errors import ParameterError
 from codegen.model.doubts import warn_of_doubts
-from codegen.model.numbers import exact_parameters
-from codegen.modes.closed import ClosedModel
 from codegen.ports.holds import unlike_plain
-from codegen.program.lower import lower
 from codegen.program.records import Program
 from codegen.program.units import units
 from codegen.python.blocks import (
@@ -25,8 +21,7 @@ from codegen.python.closing import closing, needed
 from codegen.python.modules import written_out
 from codegen.python.tables import friction_tables, places, public, step_settings
 from codegen.python.text import RULE, filled, plain, table
-from codegen.runs.arguments import initial_values, signals_for
-from codegen.runs.steps import step_at_start
+from codegen.runs.start import start_of
 
 _HEAD = '''"""{title}: the equations of a bond graph, and their simulation in fixed steps.
 
@@ -72,16 +67,10 @@ def to_python(
     Raises what `simulator` raises; `StructureError`, naming the ports, for more of them that share loads or
     lie beside resistances than a table takes; `ExpressionError` for functions Python lacks.
     """
-    if not isinstance(parameters, Mapping):
-        raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
-    program = lower(equations, laws, parameters)
-    exact = exact_parameters(parameters)
-    closed = ClosedModel(program, equations, parameters)
+    start = start_of(equations, parameters, laws, initial, inputs)
+    closed = start.closed
+    program, exact = closed.program, closed.parameters
     warn_of_doubts(program, equations, exact)
-    states = [symbol.name for symbol in (*program.states, *program.law_states)]
-    external = [symbol.name for symbol in program.external]
-    signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)
-    longest = step_at_start(closed, initial_values(initial or {}, states), signals)
     names = names_of(program)
     used = {symbol.name: float(exact[symbol.name]) for symbol in program.parameters}
     imports, fixed = written_out(needed(program))
@@ -91,7 +80,7 @@ def to_python(
         *("", *public(program)),
         *("", *places(program)),
         *(friction_tables(program, closed.slips) if program.friction else ()),
-        *step_settings(longest),
+        *step_settings(start.longest),
         *_functions(program, names),
     ]
     same = [RULE, "# What follows is the same for every model.", "", "", fixed]

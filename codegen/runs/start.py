@@ -1,0 +1,46 @@
+"""Where a run of an export begins: a model in numbers, its states and signals there, its longest step."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from bondgraph.equations import StateEquations
+from bondgraph.errors import ParameterError
+from codegen.inputs.signal import Signal
+from codegen.modes.closed import ClosedModel
+from codegen.numbers.arrays import Array
+from codegen.program.lower import lower
+from codegen.runs.arguments import initial_values, signals_for
+from codegen.runs.steps import step_at_start
+
+
+@dataclass(frozen=True)
+class Start:
+    """``states`` and ``signals`` in the program's order; ``longest``: the longest stable step there [s]."""
+
+    closed: ClosedModel
+    states: Array
+    signals: tuple[Signal, ...]
+    longest: float
+
+
+def start_of(
+    equations: StateEquations,
+    parameters: Mapping[str, object],
+    laws: Mapping[Any, object] | None,
+    initial: Mapping[str, float] | None,
+    inputs: Mapping[str, object] | None,
+) -> Start:
+    """Arguments as of `to_c`: states and inputs that are not named are zero.
+
+    Raises what `simulator` raises.
+    """
+    if not isinstance(parameters, Mapping):
+        raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
+    program = lower(equations, laws, parameters)
+    closed = ClosedModel(program, equations, parameters)
+    names = [symbol.name for symbol in (*program.states, *program.law_states)]
+    external = [symbol.name for symbol in program.external]
+    signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)
+    states = initial_values(initial or {}, names)
+    return Start(closed, states, tuple(signals), step_at_start(closed, states, signals))
