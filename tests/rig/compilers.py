@@ -1,7 +1,7 @@
 """Compilers that share: what one test has compiled, no other compiles again, whichever process it runs in.
 
 For one run of the tests a folder is made with programs `cc` and `gcc` that stand before the system's;
-they keep each unit's object by what it depends on (see `shared_cc.py`). The folder is also where compiled
+they keep what they compile by what it depends on (see `shared_cc.py`). The folder is also where compiled
 libraries are kept that else go to the user's cache, so that nothing of an earlier run is found.
 """
 
@@ -72,6 +72,6 @@ class Shared:
 
 
 def counted() -> Counter[str]:
-    """How many units this run's compilers compiled, and how many they took from what they had compiled."""
+    """How many programs were compiled as one, were taken again, or were compiled in parts."""
     log = Path(os.environ[FOLDER]) / "log"
     return Counter(log.read_text("utf-8").split() if log.exists() else ())

@@ -1,4 +1,4 @@
-"""What a run of the tests took, printed before its last line: minutes, and units compiled."""
+"""What a run of the tests took, printed before its last line: minutes, and programs compiled."""
 
 import os
 import resource
@@ -40,8 +40,8 @@ class Summary:
         # Children of this process are those that have told already, if there are any.
         own = used(resource.RUSAGE_SELF)
         whole = own + (self.elsewhere or used(resource.RUSAGE_CHILDREN))
-        lasted, units = time.monotonic() - self.began, counted()
+        lasted, programs = time.monotonic() - self.began, counted()
         terminalreporter.write_line(
             f"{lasted / 60:.1f} minutes, {whole / 60:.1f} of a processor ({os.cpu_count()} here); "
-            f"C units: {units['compiled']} compiled, {units['shared']} shared"
+            f"C programs: {programs['compiled']} compiled, {programs['shared']} shared, {programs['apart']} in parts"
         )

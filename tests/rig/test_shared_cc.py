@@ -33,33 +33,40 @@ def _status(folder: Path, *flags: str, **changed: str) -> tuple[int, list[str]]:
     return subprocess.run([to], check=False).returncode, (folder / "log").read_text().split()
 
 
-def test_units_are_compiled_once(tmp_path: Path) -> None:
-    assert _status(tmp_path) == (7, ["compiled"] * 2)
-    assert _status(tmp_path) == (7, ["shared"] * 2)
+def test_a_program_is_compiled_once(tmp_path: Path) -> None:
+    assert _status(tmp_path) == (7, ["compiled"])
+    assert _status(tmp_path) == (7, ["shared"])
 
 
 def test_other_headers_flags_and_texts_make_other_objects(tmp_path: Path) -> None:
     _status(tmp_path)
-    assert _status(tmp_path, sizes_h="#define ONE 5\n") == (5, ["shared", "compiled"])
-    assert _status(tmp_path, "-O2") == (7, ["compiled"] * 2)
-    assert _status(tmp_path, "-UX", "-D", "Y") == (7, ["compiled"] * 2)
+    assert _status(tmp_path, sizes_h="#define ONE 5\n") == (5, ["compiled"])
+    assert _status(tmp_path, "-O2") == (7, ["compiled"])
+    assert _status(tmp_path, "-UX", "-D", "Y") == (7, ["compiled"])
     text = FILES["one.c"].replace("ONE;", "ONE + 1;")
-    assert _status(tmp_path, one_c=text) == (8, ["shared", "compiled"])
+    assert _status(tmp_path, one_c=text) == (8, ["compiled"])
 
 
 def test_only_comments_do_not_count(tmp_path: Path) -> None:
     _status(tmp_path)
-    assert _status(tmp_path, sizes_h="/* Of another. */\n#define ONE 7\n")[1] == ["shared"] * 2
+    assert _status(tmp_path, sizes_h="/* Of another. */\n#define ONE 7\n")[1] == ["shared"]
     quoted = FILES["one.c"] + 'const char *said(void) { return "%s"; }\n'
     _status(tmp_path, one_c=quoted % "/* a */")
-    assert _status(tmp_path, one_c=quoted % "/* b */")[1] == ["shared", "compiled"]
+    assert _status(tmp_path, one_c=quoted % "/* b */")[1] == ["compiled"]
 
 
-def test_units_with_warnings_are_not_kept(tmp_path: Path, capfd) -> None:
+def test_what_has_warnings_is_not_kept(tmp_path: Path, capfd) -> None:
     text = FILES["one.c"] + "static int unused(void) { return 0; }\n"
     for _ in range(2):
-        assert _status(tmp_path, "-Wall", one_c=text)[0] == 7
+        assert _status(tmp_path, "-Wall", one_c=text) == (7, ["apart"])
         assert "unused" in capfd.readouterr().err
+
+
+def test_files_that_are_no_program_as_one_are_compiled_one_by_one(tmp_path: Path, capfd) -> None:
+    one = "enum { N = 7 };\nint one(void) { return N; }\n"
+    main = "enum { N = 1 };\nint one(void);\nint main(void) { return one() + N; }\n"
+    assert _status(tmp_path, one_c=one, main_c=main) == (8, ["apart"])
+    assert capfd.readouterr().err == ""
 
 
 def test_what_is_refused_has_the_compilers_status(tmp_path: Path, capfd) -> None:
@@ -73,7 +80,8 @@ def test_what_is_refused_has_the_compilers_status(tmp_path: Path, capfd) -> None
 
 @pytest.mark.parametrize(
     "arguments", [["--version"], ["-c", "one.c", "-o", "one.o"], ["one.c"], ["-E", "one.c", "-o", "x"],
-                  ["-print-file-name=libasan.so"], ["one.o", "-o", "run"]]
+                  ["-print-file-name=libasan.so"], ["one.o", "-o", "run"],
+                  ["-Werror", "one.c", "-o", "run"]]
 )  # fmt: skip
 def test_other_calls_are_the_compilers_own(arguments: list[str]) -> None:
     assert shared_cc.split(arguments) is None
@@ -96,5 +104,5 @@ def test_arguments_of_a_build_are_told_apart() -> None:
         "-lm",
     ]
     flags = ["-O1", "-shared", "-fPIC", "-D", "X=1"]
-    rest = ["-o", "a.so", "one.c", "two.c", "-L", "lib", "-lm"]
+    rest = ["-o", "a.so", "-L", "lib", "-lm"]
     assert shared_cc.split(said) == (["one.c", "two.c"], flags, ["."], rest)

@@ -5,7 +5,7 @@
 #include "batch_gauss.h"
 #include "located_internal.h"
 
-enum { N = BG_STATES, OWN = BG_LAW_STATES, M = BG_INPUTS, OWN_PARAMETERS = BG_PARAMETERS };
+enum { OWN_PARAMETERS = BG_PARAMETERS };
 
 /* A signal by its place, see batch_measure.h. */
 static double value_of(int place, const double *w, const bg_snapshot *shot)

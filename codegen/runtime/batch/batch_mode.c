@@ -4,40 +4,40 @@
 #include <math.h>
 #include <string.h>
 
-enum { N = EX_N, STATES = BG_STATES, M = BG_INPUTS, ROUNDS = 3 };
+enum { SQUARES = 3 };
 
 /* What an affine map over fewer inputs has in a column of the engine's maps; -1 for none. */
 static int column_of(int j)
 {
-    if (j < N)
+    if (j < EX_N)
         return j;
     if (j == EX_L - 1)
         return BATCH_COLUMNS - 1;
-    const int rate = j >= N + EX_W, input = (j - N) % EX_W;
-    return input < BG_EXTERNAL ? N + rate * BG_EXTERNAL + input : -1;
+    const int rate = j >= EX_N + EX_W, input = (j - EX_N) % EX_W;
+    return input < BG_EXTERNAL ? EX_N + rate * BG_EXTERNAL + input : -1;
 }
 
 /* The largest magnitude. */
-static double largest_rate_of(double (*matrix)[N])
+static double largest_rate_of(double (*matrix)[EX_N])
 {
-    double most[N] = {0}, size = 0.0;
-    for (int i = 0; i < N; i++)
+    double most[EX_N] = {0}, size = 0.0;
+    for (int i = 0; i < EX_N; i++)
 #pragma GCC unroll 1
-        for (int j = 0; j < N; j++)
+        for (int j = 0; j < EX_N; j++)
             most[j] = bg_greater(fabs(matrix[i][j]), most[j]);
-    for (int j = 0; j < N; j++)
+    for (int j = 0; j < EX_N; j++)
         size = bg_greater(most[j], size);
     return size;
 }
 
-static void squared(double (*restrict matrix)[N], double factor, double (*restrict to)[N])
+static void squared(double (*restrict matrix)[EX_N], double factor, double (*restrict to)[EX_N])
 {
-    for (int i = 0; i < N; i++)
+    for (int i = 0; i < EX_N; i++)
 #pragma GCC unroll 1
-        for (int j = 0; j < N; j++) {
+        for (int j = 0; j < EX_N; j++) {
             double sum = 0.0;
 #pragma GCC unroll 32
-            for (int l = 0; l < N; l++)
+            for (int l = 0; l < EX_N; l++)
                 sum += matrix[i][l] * matrix[l][j];
             to[i][j] = factor * sum;
         }
@@ -45,11 +45,12 @@ static void squared(double (*restrict matrix)[N], double factor, double (*restri
 
 /* The largest magnitude of an eigenvalue, nearly: from a high power of a balanced matrix. It is
  * scaled at every second square only. */
-static double spectral_radius(double (*matrix)[N])
+static double spectral_radius(double (*matrix)[EX_N])
 {
-    double power[N][N], other[N][N], size = largest_rate_of(matrix), logarithm = 0.0, share = 1.0;
+    double power[EX_N][EX_N], other[EX_N][EX_N];
+    double size = largest_rate_of(matrix), logarithm = 0.0, share = 1.0;
     memcpy(power, matrix, sizeof power);
-    for (int k = 0; k < ROUNDS && size > 0.0; k++) {
+    for (int k = 0; k < SQUARES && size > 0.0; k++) {
         const double shrink = 1.0 / size;
         logarithm += share * log(size);
         share /= 4;
@@ -61,16 +62,16 @@ static double spectral_radius(double (*matrix)[N])
 }
 
 /* One over the scales, powers of 2, that make rows and columns alike. */
-static void balance_rates(double (*matrix)[N], double *weight)
+static void balance_rates(double (*matrix)[EX_N], double *weight)
 {
-    double scale[N];
-    for (int i = 0; i < N; i++)
+    double scale[EX_N];
+    for (int i = 0; i < EX_N; i++)
         weight[i] = scale[i] = 1.0;
     for (int changed = 1, turn = 0; changed && turn < 50; turn++) {
         changed = 0;
-        for (int i = 0; i < N; i++) {
+        for (int i = 0; i < EX_N; i++) {
             double row = 0.0, column = 0.0, factor = 1.0;
-            for (int j = 0; j < N; j++) {
+            for (int j = 0; j < EX_N; j++) {
                 row += j == i ? 0.0 : fabs(matrix[i][j]) * scale[j];
                 column += j == i ? 0.0 : fabs(matrix[j][i]) * weight[j];
             }
@@ -108,12 +109,12 @@ static double push_of(const double *map, const bg_numbers *a, int reading, int c
     for (int j = 0; j < M; j++)
         if (a->D[reading * M + j] != 0.0)
             sum += a->D[reading * M + j] * map[(BATCH_AT_U + M + j) * BATCH_COLUMNS + column];
-    for (int l = 0; l < STATES; l++) {
-        const double factor = a->F[reading * STATES + l];
+    for (int l = 0; l < N; l++) {
+        const double factor = a->F[reading * N + l];
         if (factor != 0.0 && !BG_DRIVEN)
             sum += factor * map[(BATCH_AT_RATE + l) * BATCH_COLUMNS + column];
         else if (factor != 0.0)
-            sum += factor * (product(map, 0, STATES, a->P + l * STATES, column)
+            sum += factor * (product(map, 0, N, a->P + l * N, column)
                              + product(map, BATCH_AT_U, M, a->Q + l * M, column)
                              + product(map, BATCH_AT_U + M, M, a->R + l * M, column));
     }
@@ -122,7 +123,7 @@ static double push_of(const double *map, const bg_numbers *a, int reading, int c
 
 static void fill_column(const double *map, const bg_numbers *a, int column, double *shot)
 {
-    for (int i = 0; i < STATES; i++)
+    for (int i = 0; i < N; i++)
         shot[EX_AT_X + i] = map[i * BATCH_COLUMNS + column];
     for (int i = 0; i < M; i++)
         shot[EX_AT_U + i] = map[(BATCH_AT_U + i) * BATCH_COLUMNS + column];
@@ -133,7 +134,7 @@ static void fill_column(const double *map, const bg_numbers *a, int column, doub
         shot[EX_AT_CAP + k] = map[(BATCH_AT_CAP + k) * BATCH_COLUMNS + column];
         shot[EX_AT_PUSH + k] = push_of(map, a, reading, column);
     }
-    for (int i = 0; i < N; i++)
+    for (int i = 0; i < EX_N; i++)
         shot[EX_AT_RATE + i] = map[(BATCH_AT_RATE + i) * BATCH_COLUMNS + column];
 }
 
@@ -142,10 +143,10 @@ static void fill_column(const double *map, const bg_numbers *a, int column, doub
 static void find_fastest(batch_room *room, int at)
 {
     ex_mode *const made = room->mode + at;
-    double own[N][N];
+    double own[EX_N][EX_N];
     for (int k = 0; k < at; k++) {
         int same = 1;
-        for (int j = 0; j < N && same; j++)
+        for (int j = 0; j < EX_N && same; j++)
             same = memcmp(made->shot[j] + EX_AT_RATE, room->mode[k].shot[j] + EX_AT_RATE,
                           sizeof own[j]) == 0;
         if (same) {
@@ -154,12 +155,12 @@ static void find_fastest(batch_room *room, int at)
             return;
         }
     }
-    for (int i = 0; i < N; i++)
-        for (int j = 0; j < N; j++)
+    for (int i = 0; i < EX_N; i++)
+        for (int j = 0; j < EX_N; j++)
             own[i][j] = made->shot[j][EX_AT_RATE + i];
     balance_rates(own, made->weight);
-    for (int i = 0; i < N; i++)
-        for (int j = 0; j < N; j++)
+    for (int i = 0; i < EX_N; i++)
+        for (int j = 0; j < EX_N; j++)
             own[i][j] *= made->weight[i] / made->weight[j];
     made->fastest = spectral_radius(own);
 }
@@ -168,7 +169,7 @@ static void find_fastest(batch_room *room, int at)
 static void fill_held(ex_mode *made, const bg_hold *held)
 {
     for (int k = 0; k < held->kept; k++)
-        for (int i = 0; i < STATES; i++)
+        for (int i = 0; i < N; i++)
             made->take_away[k][i] = held->take_away[i * held->kept + k];
     made->held = held->kept;
     made->ruled = held->ruled;
@@ -187,7 +188,7 @@ static void fill(ex_mode *made, const double *map, const bg_numbers *a, const bg
             continue;
         fill_column(map, a, column, made->shot[j]);
         for (int k = 0; k < made->held; k++)
-            made->left[j][k] = product(map, 0, STATES, held->slip_x + k * STATES, column)
+            made->left[j][k] = product(map, 0, N, held->slip_x + k * N, column)
                                + product(map, BATCH_AT_U, M, held->slip_u + k * M, column);
     }
 }
@@ -198,7 +199,7 @@ static void fill_readers(const batch_job *job, const double *map, double (*reade
         for (int j = 0; j < EX_L; j++) {
             const int row = job->signal[s], column = column_of(j);
             if (row < 0)
-                readers[s][j] = j == N - 1 - row;
+                readers[s][j] = j == EX_N - 1 - row;
             else
                 readers[s][j] = column < 0 ? 0.0 : map[row * BATCH_COLUMNS + column];
         }

@@ -8,7 +8,6 @@
 
 #include "batch_doubt.h"
 
-enum { K = BG_FRICTION, N = BG_STATES, OWN = BG_LAW_STATES, M = BG_INPUTS, ROWS = BG_READINGS };
 
 int batch_model_begin(batch_instance *own, const double *parameters)
 {

@@ -4,7 +4,6 @@
 
 #include "fmu_common.h"
 
-enum { K = BG_FRICTION, W = BG_EXTERNAL };
 /* Whether a mode is one affine map of s, w and w'; redundant ports that share a load are not. */
 static int is_affine(fmu_instance *f)
 {

@@ -5,7 +5,7 @@
 #include "located_explicit_table.h"
 #include "located_internal.h"
 
-static const double SAFETY = 0.9, SHRINK = 0.2, GROW = 10.0;
+static const double SAFETY = 0.9;
 
 /* Stage i of a step, at `tried`. */
 static int stage(bg_located *c, int i, double h)
@@ -14,13 +14,13 @@ static int stage(bg_located *c, int i, double h)
     for (int k = 0; k < BG_SIZE; k++)
         s->tried[k] = 0.0;
     for (int j = 0; j < i; j++) {
-        const double weight = h * A[i][j];
+        const double weight = h * DOP_A[i][j];
         for (int k = 0; k < BG_SIZE && weight != 0.0; k++)
             s->tried[k] += weight * s->stage[j][k];
     }
     for (int k = 0; k < BG_SIZE; k++)
         s->tried[k] += s->y_old[k];
-    return bg_located_rate(c, s->t_old + C[i] * h, s->tried, s->stage[i]);
+    return bg_located_rate(c, s->t_old + DOP_C[i] * h, s->tried, s->stage[i]);
 }
 
 /* The error over what the tolerance allows: below 1 the step is good. */
@@ -32,7 +32,7 @@ static double explicit_error(const bg_located *c, double h)
         const double size = fmax(fabs(s->y_old[k]), fabs(s->tried[k]));
         const double scale = c->asked->atol + c->asked->rtol * size;
         double e5 = 0.0, e3 = 0.0;
-        for (int i = 0; i <= STAGES; i++) {
+        for (int i = 0; i <= DOP_STAGES; i++) {
             e5 += E5[i] * s->stage[i][k];
             e3 += E3[i] * s->stage[i][k];
         }
@@ -49,7 +49,7 @@ static double explicit_error(const bg_located *c, double h)
 static int attempt(bg_located *c, double h, double *error)
 {
     int status = BG_OK;
-    for (int i = 1; i <= STAGES && status == BG_OK; i++)
+    for (int i = 1; i <= DOP_STAGES && status == BG_OK; i++)
         status = stage(c, i, h);
     *error = status == BG_OK ? explicit_error(c, h) : INFINITY;
     return status == BG_NOT_FINITE || status == BG_NO_SOLUTION ? BG_OK : status;
@@ -79,7 +79,7 @@ int bg_explicit_step(bg_located *c, double stop)
     }
     memcpy(s->y, s->tried, sizeof s->y);
     memcpy(s->f_old, s->f, sizeof s->f);
-    memcpy(s->f, s->stage[STAGES], sizeof s->f);
+    memcpy(s->f, s->stage[DOP_STAGES], sizeof s->f);
     s->h = h;
     s->next = h * (error > 0.0 ? fmin(grow, SAFETY * pow(error, -0.125)) : grow);
     return BG_OK;
@@ -88,7 +88,7 @@ int bg_explicit_step(bg_located *c, double stop)
 int bg_explicit_dense(bg_located *c)
 {
     bg_solver *const s = &c->solver;
-    for (int i = STAGES + 1; i < ALL; i++) {
+    for (int i = DOP_STAGES + 1; i < DOP_ALL; i++) {
         const int status = stage(c, i, s->h);
         if (status != BG_OK)
             return status;
@@ -100,7 +100,7 @@ int bg_explicit_dense(bg_located *c)
         s->interpolation[2][k] = 2 * change - s->h * (s->f[k] + s->f_old[k]);
         for (int r = 0; r < 4; r++) {
             double sum = 0.0;
-            for (int i = 0; i < ALL; i++)
+            for (int i = 0; i < DOP_ALL; i++)
                 sum += D[r][i] * s->stage[i][k];
             s->interpolation[3 + r][k] = s->h * sum;
         }

@@ -4,10 +4,10 @@
 #ifndef BG_LOCATED_EXPLICIT_TABLE_H
 #define BG_LOCATED_EXPLICIT_TABLE_H
 
-enum { STAGES = 12, ALL = 16 };
+enum { DOP_STAGES = 12, DOP_ALL = 16 };
 
 /* Row i: how stage i is made of those before it; row 12 is the step. */
-static const double A[ALL][ALL] = {
+static const double DOP_A[DOP_ALL][DOP_ALL] = {
     {
         0,
     },
@@ -71,23 +71,23 @@ static const double A[ALL][ALL] = {
         2.9475147891527724, -9.15095847217987,
     },
 };
-static const double C[ALL] = {
+static const double DOP_C[DOP_ALL] = {
     0, 0.05260015195876773, 0.0789002279381516, 0.1183503419072274, 0.2816496580927726,
     0.3333333333333333, 0.25, 0.3076923076923077, 0.6512820512820513, 0.6, 0.8571428571428571,
     1.0, 1.0, 0.1, 0.2, 0.7777777777777778,
 };
 /* Errors of orders 5 and 3. */
-static const double E5[STAGES + 1] = {
+static const double E5[DOP_STAGES + 1] = {
     0.01312004499419488, 0, 0, 0, 0, -1.2251564463762044, -0.4957589496572502,
     1.6643771824549864, -0.35032884874997366, 0.3341791187130175, 0.08192320648511571,
     -0.022355307863886294, 0,
 };
-static const double E3[STAGES + 1] = {
+static const double E3[DOP_STAGES + 1] = {
     -0.18980075407240762, 0, 0, 0, 0, 4.450312892752409, 1.8915178993145003, -5.801203960010585,
     -0.4226823213237919, -0.1521609496625161, 0.20136540080403034, 0.02265179219836082, 0,
 };
 /* The interpolant's upper coefficients. */
-static const double D[4][ALL] = {
+static const double D[4][DOP_ALL] = {
     {
         -8.428938276109013, 0, 0, 0, 0, 0.5667149535193777, -3.0689499459498917,
         2.38466765651207, 2.117034582445028, -0.871391583777973, 2.2404374302607883,

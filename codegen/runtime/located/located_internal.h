@@ -4,8 +4,12 @@
 
 #include <math.h>
 
+#include "model_internal.h"
 #include "model_located.h"
-#include "tuning.h"
+
+/* By how much a step may be smaller or larger than the one before it. */
+#define SHRINK 0.2
+#define GROW 10.0
 
 /* located_run.c: rates of s at t in the present segment and mode. */
 int bg_located_rate(bg_located *c, double t, const double *s, double *rate);

@@ -4,8 +4,7 @@
 
 #include "located_internal.h"
 
-enum { K = BG_FRICTION, POINTS = BG_CHECKS + 2, SECTIONS = 44 };
-#define PORTS BG_ROOM(BG_FRICTION)
+enum { POINTS = BG_CHECKS + 2, SECTIONS = 44 };
 
 /* What a search for a root asks: trigger `port` less `level` inside the latest step. */
 typedef struct {

@@ -8,9 +8,8 @@
 
 #include "model_internal.h"
 
-enum { K = BG_FRICTION, ALL = BG_STATES + BG_LAW_STATES };
 enum {
-    ROUNDS = 4,   /* before the first verdict */
+    FIRST_ROUNDS = 4,   /* before the first verdict */
     AVERAGED = 8, /* rounds in the mean growth */
     REFINED = 16  /* before a refusal tells the longest step */
 };
@@ -159,7 +158,7 @@ int bg_check_step(bg_model *m, double t, double h, const double *s, const double
     bg_reach(m, h, s);
     if (f->noise == 0) {
         begin_fit(m, &found);
-        look_on(m, t, s, w, ROUNDS, &found);
+        look_on(m, t, s, w, FIRST_ROUNDS, &found);
     }
     seen = look_along(m, t, s, w, BG_DIFFERENCE, f->direction, m->work.next, &found) == BG_OK;
     if (seen && sided && longest(f, &found, h) < h)

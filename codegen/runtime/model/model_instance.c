@@ -4,7 +4,6 @@
 
 #include "model_internal.h"
 
-enum { K = BG_FRICTION, N = BG_STATES, OWN = BG_LAW_STATES, M = BG_INPUTS, ROWS = BG_READINGS };
 void bg_model_parameters(double *parameters)
 {
     memcpy(parameters, bg_defaults, sizeof(double) * BG_PARAMETERS);

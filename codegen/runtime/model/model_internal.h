@@ -5,13 +5,20 @@
 #include "model_runtime.h"
 #include "tuning.h"
 
+/* The sizes of a model, as its files write them: friction ports, states, law states, both, inputs,
+ * external inputs, readings; room for the ports, which may be none. */
+enum {
+    K = BG_FRICTION, N = BG_STATES, OWN = BG_LAW_STATES, ALL = N + OWN, M = BG_INPUTS,
+    W = BG_EXTERNAL, ROWS = BG_READINGS, PORTS = BG_ROOM(K)
+};
+
 /* Where the nonzero entries of a matrix stand. */
 typedef struct {
     int count;
     const int *rows, *columns;
 } bg_pattern;
 
-enum { BG_A, BG_J, BG_B, BG_E, BG_F, BG_D, BG_H, BG_K, BG_MATRICES };
+enum bg_matrix { BG_A, BG_J, BG_B, BG_E, BG_F, BG_D, BG_H, BG_K, BG_MATRICES };
 
 typedef void bg_block(const bg_values *v, double *out);
 

@@ -7,16 +7,15 @@
 #include "model_internal.h"
 
 enum {
-    K = BG_FRICTION, N = BG_STATES, M = BG_INPUTS, ROWS = BG_READINGS,
     READ = sizeof(bg_values) / sizeof(double),
-    MOST = 4 * K > BG_LARGEST ? 4 * K : BG_LARGEST
+    MOST_TERMS = 4 * K > BG_LARGEST ? 4 * K : BG_LARGEST
 };
 
 /* The sum of the magnitudes of the terms of each result; what is read is as large as in `sizes`. */
 static void terms_of(bg_model *m, bg_block *block, int count, const double *sizes, double *terms)
 {
     double *const read = (double *)&m->now;
-    double values[BG_ROOM(MOST)] = {0}, moved[BG_ROOM(MOST)] = {0};
+    double values[BG_ROOM(MOST_TERMS)] = {0}, moved[BG_ROOM(MOST_TERMS)] = {0};
     block(&m->now, values);
     for (int k = 0; k < count; k++)
         terms[k] = fabs(values[k]);
@@ -52,7 +51,7 @@ static void show(const bg_model *m, bg_values *sizes)
 /* What laws give is as large as their own terms. */
 static void give(bg_model *m, const bg_group *group, bg_values *sizes)
 {
-    double terms[BG_ROOM(MOST)] = {0};
+    double terms[BG_ROOM(MOST_TERMS)] = {0};
     show(m, sizes);
     terms_of(m, group->values, group->count, (const double *)sizes, terms);
     for (int k = 0; k < group->count; k++)
@@ -63,7 +62,7 @@ void bg_without_rounding(bg_model *m, double *values)
 {
     bg_values *const sizes = &m->work.sizes;
     const double *const read = (const double *)&m->now;
-    double *const size = (double *)sizes, terms[BG_ROOM(MOST)] = {0};
+    double *const size = (double *)sizes, terms[BG_ROOM(MOST_TERMS)] = {0};
     for (int j = 0; j < READ; j++)
         size[j] = fabs(read[j]);
     for (int i = 0; i < N; i++)

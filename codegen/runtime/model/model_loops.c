@@ -6,9 +6,7 @@
 
 #include "model_internal.h"
 
-enum { ITERATIONS = 60 };
-#define SQUARE BG_TABLE(BG_LOOP, BG_LOOP)
-#define SIZE BG_ROOM(BG_LOOP)
+enum { ITERATIONS = 60, LOOPS = BG_ROOM(BG_LOOP) };
 
 /* One search: the instant as it was before, and the status of what could not be evaluated at all.
  * */
@@ -36,7 +34,7 @@ static void left_over(search *s, const double *values, double *left)
 
 static int solves(search *s, const double *values)
 {
-    double left[SIZE];
+    double left[LOOPS];
     left_over(s, values, left);
     return bg_largest(s->loop->count, left)
         <= BG_RESIDUAL * (BG_RESIDUAL_FLOOR + bg_largest(s->loop->count, values));
@@ -44,7 +42,7 @@ static int solves(search *s, const double *values)
 
 static double one(void *self, double value)
 {
-    double left[SIZE];
+    double left[LOOPS];
     left_over(self, &value, left);
     return left[0];
 }
@@ -52,7 +50,7 @@ static double one(void *self, double value)
 /* Slopes by differences; the change to make, or 0 if there is none. */
 static int newton_change(search *s, double *values, const double *now, double *change)
 {
-    double moved[SIZE];
+    double moved[LOOPS];
     double *const slopes = s->m->work.slopes;
     const int n = s->loop->count;
     for (int j = 0; j < n; j++) {
@@ -73,7 +71,7 @@ static int newton_change(search *s, double *values, const double *now, double *c
 /* Newton's iteration; a step that does not help is halved. */
 static void newton(search *s, double *values)
 {
-    double now[SIZE], change[SIZE], tried[SIZE], left[SIZE];
+    double now[LOOPS], change[LOOPS], tried[LOOPS], left[LOOPS];
     const int n = s->loop->count;
     left_over(s, values, now);
     for (int k = 0; k < ITERATIONS; k++) {
@@ -106,8 +104,8 @@ static void newton(search *s, double *values)
 /* The inputs for which the ports receive nothing; zero where there are none. */
 static void nothing_received(const bg_model *m, const bg_loop *loop, double *values)
 {
-    double system[SQUARE];
-    int pivots[SIZE];
+    double system[LOOPS * LOOPS];
+    int pivots[LOOPS];
     const int n = loop->count;
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++)
@@ -117,13 +115,13 @@ static void nothing_received(const bg_model *m, const bg_loop *loop, double *val
     if (bg_factor(n, system, pivots))
         bg_solve(n, system, pivots, 1, values);
     else
-        memset(values, 0, sizeof(double) * SIZE);
+        memset(values, 0, sizeof(double) * LOOPS);
 }
 
 int bg_solve_loop(bg_model *m, const bg_loop *loop)
 {
     search s = {m, loop, BG_OK};
-    double start[SIZE] = {0}, values[SIZE] = {0};
+    double start[LOOPS] = {0}, values[LOOPS] = {0};
     nothing_received(m, loop, start);
     memcpy(m->work.u, m->now.u, sizeof m->work.u);
     memcpy(m->work.y, m->now.y, sizeof m->work.y);

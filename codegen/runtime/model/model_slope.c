@@ -4,7 +4,6 @@
 
 #include "model_internal.h"
 
-enum { N = BG_STATES, OWN = BG_LAW_STATES, ALL = BG_STATES + BG_LAW_STATES };
 
 /* Weights near those of energy, by which states of any unit compare. A law's state is weighed by
  * the most that energy can drive it, at the limit's rate. */

@@ -4,9 +4,6 @@
 
 #include "model_internal.h"
 
-enum { K = BG_FRICTION, N = BG_STATES, M = BG_INPUTS };
-#define SQUARE BG_TABLE(BG_FRICTION, BG_FRICTION)
-#define PORTS BG_ROOM(BG_FRICTION)
 
 static void copy_direct(const bg_model *m, const bg_structure *s, bg_hold *held)
 {
@@ -52,7 +49,7 @@ static void rule_states(const bg_model *m, const bg_structure *s, const double *
 
 static int invert_system(const bg_structure *s, bg_hold *held)
 {
-    double system[SQUARE];
+    double system[PORTS * PORTS];
     int pivots[PORTS];
     const int count = held->count, ruled = s->direct + s->kept;
     for (int c = 0; c < count; c++) {
@@ -67,7 +64,7 @@ static int invert_system(const bg_structure *s, bg_hold *held)
 /* -A^-1 S^T (S A^-1 S^T)^-1: the impulse that stops the slips S x, and moves nothing else. */
 static int find_take_away(bg_model *m, bg_hold *held)
 {
-    double inner[SQUARE], inverse[SQUARE], *const moved = m->work.moved;
+    double inner[PORTS * PORTS], inverse[PORTS * PORTS], *const moved = m->work.moved;
     int pivots[PORTS];
     const int kept = held->kept;
     for (int i = 0; i < N; i++)
@@ -98,7 +95,7 @@ static int check_slopes(const bg_structure *s, const bg_hold *held)
 
 static int build(bg_model *m, const bg_structure *s, bg_hold *held)
 {
-    double null[SQUARE];
+    double null[PORTS * PORTS];
     if (!bg_independent(m, s, held, null))
         return BG_STRUCTURE;
     held->kept = s->kept;

@@ -6,16 +6,13 @@
 
 #include "model_internal.h"
 
-enum { K = BG_FRICTION, N = BG_STATES };
-#define SQUARE BG_TABLE(BG_FRICTION, BG_FRICTION)
-#define PORTS BG_ROOM(BG_FRICTION)
 #define ANSWERING BG_TABLE(BG_FRICTION, BG_FRICTION + BG_COUPLED)
 
 /* factors[j]: row `row` of a as a combination of `count` independent rows; 0 unless it is one. */
 static int combination(int columns, const double *a, int count, const int *rows,
                        const int *pivot_columns, int row, double *factors)
 {
-    double system[SQUARE];
+    double system[PORTS * PORTS];
     int pivots[PORTS];
     for (int j = 0; j < count; j++) {
         for (int i = 0; i < count; i++)
@@ -42,7 +39,7 @@ static int null_rows(const bg_structure *s, int count, const double *D, double *
 {
     const int columns = count + s->moved;
     double factors[PORTS];
-    memset(null, 0, sizeof(double) * SQUARE);
+    memset(null, 0, sizeof(double) * PORTS * PORTS);
     for (int r = 0; r < s->null; r++) {
         if (!combination(columns, D, s->direct, s->direct_rows, s->direct_columns, s->null_rows[r],
                          factors))

@@ -10,7 +10,6 @@
 
 #include "model_internal.h"
 
-#define PORTS BG_ROOM(BG_FRICTION)
 
 /* Directions over all ports, by rows, and what each port can hold. */
 typedef struct {

@@ -3,7 +3,6 @@
 
 #include "port_sight.h"
 
-enum { K = BG_FRICTION, N = BG_STATES, M = BG_INPUTS };
 
 int bg_view_look(void *view, double t, const double *s, const int *mode)
 {

@@ -3,7 +3,6 @@
 
 #include "model_internal.h"
 
-enum { N = BG_STATES, M = BG_INPUTS };
 
 double bg_slip(const bg_model *m, const bg_snapshot *now, int port, double *terms)
 {

@@ -6,8 +6,6 @@
 #include "model_internal.h"
 #include "port_choose.h"
 
-enum { K = BG_FRICTION };
-#define PORTS BG_ROOM(BG_FRICTION)
 
 static int sticks(const int *mode)
 {

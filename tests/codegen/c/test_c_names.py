@@ -54,7 +54,37 @@ def test_no_function_or_type_is_defined_twice() -> None:
     assert {one: files for one, files in where.items() if len(files) > 1} == {}
 
 
+def _constants(text: str) -> list[str]:
+    """Names of values outside functions: enumerators, macros that are numbers, tables."""
+    bodies = re.findall(r"^(?:typedef )?enum ?\w* ?\{(.*?)\}", text, re.MULTILINE | re.DOTALL)
+    entries = [
+        re.sub(r"\([^()]*\)|\?.*", "", entry) for body in bodies for entry in body.split(",")
+    ]
+    found = [entry.split("=")[0].strip() for entry in entries]
+    found += re.findall(r"^#\s*define (\w+)[ (]", text, re.MULTILINE)
+    for line in re.findall(r"^static const [\w ]*?\w+ (\w[^;{]* = .*)", text, re.MULTILINE):
+        found += re.findall(r"(\w+)(?:\[[^\]]*\])* =", line)
+    return [name for name in found if name]
+
+
+def test_no_constant_is_defined_twice() -> None:
+    """A letter is the same size wherever it is met, so that all files together are one program, too.
+
+    Of the two versions of the interface of units a program has one.
+    """
+    where = defaultdict(list)
+    for name in FILES:
+        text = re.sub(r"/\*.*?\*/", "", runtime_file(name), flags=re.DOTALL)
+        for one in _constants(text):
+            where[one].append(name.replace("fmu3", "fmu2"))
+    assert {"K", "N", "BG_ROOM", "DOP_C", "RADAU_C", "SAFETY", "STAGES"} <= set(where)
+    twice = {one: files for one, files in where.items() if len(files) > 1}
+    assert {one for one, files in twice.items() if len(set(files)) > 1} - {"REFUSED", "VR"} == set()
+
+
 def test_the_search_sees_what_it_has_to() -> None:
+    read = "static const double A = 0.9, B[2] = {1.0, 2.0};\nenum { C = 3, D };\n#define E(n) (n)\n"
+    assert sorted(_constants(read + "#define F 2.0\n")) == ["A", "B", "C", "D", "E", "F"]
     text = "static double *put(int a,\n  int b)\n{\n}\nint bg_run(void);\ntypedef int bg_block(void);\n"
     text += (
         "typedef struct {\n    int a;\n} bg_one;\nenum bg_two { BG_A };\ntypedef double three[4];\n"
@@ -102,7 +132,10 @@ def test_measures_are_those_of_c() -> None:
 def test_matrices_come_in_the_order_of_c() -> None:
     program = lower(bg.derive(block()), None, {"m": 2.0, "F_c": 3.0})
     expected = {f"BG_{letter}": at for at, letter in enumerate(program.layout)}
-    assert _values("model_internal.h") == {**expected, "BG_MATRICES": len(expected)}
+    assert _values("model_internal.h", enum="bg_matrix") == {
+        **expected,
+        "BG_MATRICES": len(expected),
+    }
 
 
 def _constant(header: str, name: str) -> str:
