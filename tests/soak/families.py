@@ -169,7 +169,7 @@ FAMILIES = (
     Family(
         "audits-rectifying", "codegen/energy/test_audit.py::test_networks_with_diodes_close", 4, 200
     ),
-    Family("audits-swept", "codegen/energy/test_audit.py::test_random_sweeps_in_c_close", 1, 300),
+    Family("audits-swept", "codegen/energy/test_audit.py::test_random_sweeps_in_c_close", 1, 500),
     Family("memory", "codegen/engine/test_memory.py", 0, 1),
     Family("flat", "codegen/numbers/test_roots.py", 0, 1),
     Family("agreements", "differentials/test_agreement.py", 0, 1),
