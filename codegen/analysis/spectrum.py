@@ -4,7 +4,6 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.signal import detrend, find_peaks, periodogram
 
 from bondgraph.errors import SignalError
 from codegen.numbers.arrays import Array, read_only
@@ -50,6 +49,9 @@ class Spectrum:
         Each lies where the parabola through the logarithms of three amplitudes has its top, which is
         a fraction of the resolution ``1 / (end - begin)``.
         """
+        # Here, for it takes as long to import as all else.
+        from scipy.signal import find_peaks
+
         tops, told = find_peaks(self.amplitude, prominence=np.finfo(float).tiny)
         slowest = 2 / (self.end - self.begin)
         steady = self.frequency[tops] >= slowest
@@ -100,6 +102,8 @@ def spectrum(
 
     Raises `SignalError` for an unknown name, samples that are not evenly spaced or fewer than 8.
     """
+    from scipy.signal import detrend, periodogram
+
     values = values_of(result, name)
     first = float(result.time[0]) if begin is None else begin
     last = float(result.time[-1]) if end is None else end

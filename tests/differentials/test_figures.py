@@ -67,13 +67,15 @@ def test_a_picture_is_the_same_bytes_every_time(tmp_path: Path) -> None:
     assert one[:8] == b"\x89PNG\r\n\x1a\n"
 
 
-def test_what_is_drawn_is_the_run_with_its_lock_marked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_drawn_is_the_run_with_its_lock_marked(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     figure, result = _short()
     drawn: list[Any] = []
     monkeypatch.setattr(
         "matplotlib.figure.Figure.savefig", lambda self, *_, **__: drawn.append(self)
     )
-    draw(figure, (result,), "nowhere.png")
+    draw(figure, (result,), tmp_path / "nowhere.png")
     (picture,) = drawn
     for axis, panel in zip(picture.axes, figure.panels, strict=True):
         assert axis.get_ylabel() == panel.label

@@ -43,5 +43,6 @@ class Summary:
         lasted, programs = time.monotonic() - self.began, counted()
         terminalreporter.write_line(
             f"{lasted / 60:.1f} minutes, {whole / 60:.1f} of a processor ({os.cpu_count()} here); "
-            f"C programs: {programs['compiled']} compiled, {programs['shared']} shared, {programs['apart']} in parts"
+            f"C programs: {programs['compiled']} compiled, {programs['shared']} shared, "
+            f"{programs['apart']} in parts"
         )
