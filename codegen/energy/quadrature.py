@@ -85,7 +85,7 @@ def _long(rows: Rows, z: Array, h: float) -> Array:
     for begin in range(0, len(rows.one), width):
         part = slice(begin, begin + width)
         W = _doubled(rows.M, rows.one[part], rows.other[part], rows.norm, h)
-        parts.append(np.einsum("si,kij,sj->sk", z, W, z, optimize=True))
+        parts.append(np.einsum("si,kis->sk", z, W @ z.T))
     return np.hstack(parts) if parts else np.zeros((len(z), 0))
 
 
@@ -93,12 +93,12 @@ def _doubled(M: Array, one: Array, other: Array, norm: float, h: float) -> Array
     """W(h), K x n x n."""
     doublings = max(0, int(np.ceil(np.log2(norm * h))))
     step = h / 2**doublings
-    W = np.zeros((len(one), *M.shape))
-    for node, weight in zip(NODES.tolist(), WEIGHTS.tolist(), strict=True):
-        moved = np.eye(len(M)) + _growth(M * (node * step))
-        W += (weight * step) * (one @ moved)[:, :, None] * (other @ moved)[:, None, :]
+    growths = _growth(M * (step * np.append(NODES, 1.0))[:, None, None])
+    moved = np.eye(len(M)) + growths[:-1]
+    weighted = (WEIGHTS * step)[:, None, None] * (one @ moved)
+    W = np.einsum("pki,pkj->kij", weighted, other @ moved)
     # What exp(M h) adds to 1 is kept: slow parts are small beside it in every step.
-    growth = _growth(M * step)
+    growth = growths[-1]
     for _ in range(doublings):
         W = W + _between(W, growth)
         growth = 2 * growth + growth @ growth
@@ -112,8 +112,8 @@ def _between(W: Array, growth: Array) -> Array:
 
 
 def _growth(B: Array) -> Array:
-    """``exp(B) - 1`` of a small matrix."""
+    """``exp(B) - 1`` of small matrices."""
     total = np.zeros_like(B)
     for k in range(TUNING.degree, 0, -1):
-        total = (np.eye(len(B)) + total) @ B / k
+        total = (B + total @ B) / k
     return total
