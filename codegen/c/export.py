@@ -16,6 +16,7 @@ from codegen.c.text import comment
 from codegen.model.doubts import warn_of_doubts
 from codegen.modes.closed import ClosedModel
 from codegen.ports.holds import held_sets
+from codegen.program.layout import layout_text
 from codegen.program.records import Program
 from codegen.runs.start import start_of
 from codegen.tuning import tuning_text
@@ -152,8 +153,8 @@ def texts(
         *(straight_rates(program, fast) if fast else plain_rates()),
     ]
     sizes = config(program, fast, name, macros, longest)
-    model = {"config.h": sizes, "tuning.h": tuning_text(), "model.c": "\n".join(lines) + "\n"}
-    return {**model, **runtime}
+    told = {"config.h": sizes, "layout.h": layout_text(), "tuning.h": tuning_text()}
+    return {**told, "model.c": "\n".join(lines) + "\n", **runtime}
 
 
 def stepped(files: Mapping[str, str]) -> dict[str, str]:

@@ -12,7 +12,7 @@ from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
 from codegen.program.affine import AffineMap
-from codegen.program.layout import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, STATES
+from codegen.program.layout import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, SHOT, STATES
 
 
 def mode_of(number: int, ports: int) -> Mode:
@@ -134,10 +134,14 @@ class Tables:
 
 
 def _parts(model: ClosedModel, affine: AffineMap) -> list[Array]:
-    """Rows of states, inputs, slips, friction efforts, caps, how fast slips change, and rates."""
+    """The rows of each part of the engine's snapshot, in their order."""
     numbers, readings = model.constant, model.friction_readings
     x, u, du = (affine.rows(part) for part in (STATES, INPUTS, RATES_OF_INPUTS))
     moving = numbers.P @ x + numbers.Q @ u + numbers.R @ du
     pushes = numbers.F[readings] @ moving + numbers.D[readings] @ du
     efforts, slips = u[model.friction_inputs], affine.rows(READINGS)[readings]
-    return [x, u, slips, efforts, affine.rows(CAPS), pushes, affine.rows(RATE)]
+    found = {
+        "x": x, "u": u, "slip": slips, "effort": efforts, "cap": affine.rows(CAPS), "push": pushes,
+        "rate": affine.rows(RATE),
+    }  # fmt: skip
+    return [found[part] for part in SHOT]

@@ -17,7 +17,36 @@ RECORDED = (STATES, LAW_STATES, INPUTS, RATES_OF_INPUTS, READINGS, RATE, EXTERNA
 """The parts that are kept of each sample."""
 
 NAMES = ("x", "z", "u", "du", "y", "rate", "caps", "external")
-"""What the parts are called in records of numpy and C, in their order."""
+"""What the parts are called in records of numpy and C."""
+
+
+SHOT = ("x", "u", "slip", "effort", "cap", "push", "rate")
+"""What the exact engine knows of an instant: of friction ports slips, efforts, what they may hold, and how
+fast slips change; `exact.h` has the same order."""
+
+SIZES = (
+    "BG_STATES", "BG_LAW_STATES", "BG_INPUTS", "BG_INPUTS", "BG_READINGS", "BG_SIZE", "BG_FRICTION",
+    "BG_EXTERNAL",
+)  # fmt: skip
+"""How many numbers each part has, as C calls it."""
+
+
+def layout_text() -> str:
+    """The order as C, ``layout.h``: macros that do something with each part in turn."""
+    shown = [f"each({NAMES[part]}, {SIZES[part]})" for part in range(EXTERNAL)]
+    kept = [
+        f"given(w, {SIZES[part]})" if part == EXTERNAL
+        else f"shown({NAMES[part]}, {SIZES[part]})" for part in RECORDED
+    ]  # fmt: skip
+    return "\n".join([
+        "/* What stands where at an instant; written by bondgraph-toolkit. */",
+        "#ifndef BG_LAYOUT_H", "#define BG_LAYOUT_H", "",
+        "/* The parts of a snapshot: states, law states, inputs, their rates, readings, the rate of s,",
+        " * what ports may hold. */",
+        " \\\n    ".join(["#define BG_PARTS(each)", *shown]), "",
+        "/* What is kept of a sample; external inputs, w, are given beside the snapshot. */",
+        " \\\n    ".join(["#define BG_RECORDED(shown, given)", *kept]), "", "#endif", "",
+    ])  # fmt: skip
 
 
 def widths(program: Program) -> tuple[int, ...]:

@@ -8,13 +8,6 @@
 #include "port_sight.h"
 
 enum {
-    BATCH_COLUMNS = EX_N + 2 * BG_EXTERNAL + 1,
-    /* where the parts of an affine map begin */
-    BATCH_AT_U = BG_STATES + BG_LAW_STATES,
-    BATCH_AT_Y = BATCH_AT_U + 2 * BG_INPUTS,
-    BATCH_AT_RATE = BATCH_AT_Y + BG_READINGS,
-    BATCH_AT_CAP = BATCH_AT_RATE + EX_N,
-    BATCH_ROWS = BATCH_AT_CAP + EX_K,
     /* rows that are followed: triggers, thirds of their changes in a step, then signals */
     BATCH_OWN = 2 * EX_T,
     BATCH_POWERS = 4 /* two to the power of 0 .. 3 is the stride */

@@ -12,13 +12,12 @@ static double value_of(int place, const double *w, const bg_snapshot *shot)
 {
     if (place < 0)
         return w[-1 - place];
-    if (place < N)
-        return shot->x[place];
-    if (place < N + OWN)
-        return shot->z[place - N];
-    if (place < N + OWN + M)
-        return shot->u[place - N - OWN];
-    return shot->y[place - N - OWN - 2 * M];
+#define AMONG(part, count) \
+    if (place < BG_AT_##part + (count)) \
+        return shot->part[place - BG_AT_##part];
+    BG_PARTS(AMONG)
+#undef AMONG
+    return NAN;
 }
 
 static void keep_signals(void *to, int sample, const double *w, const int *mode,

@@ -12,7 +12,7 @@ static int column_of(int j)
     if (j < EX_N)
         return j;
     if (j == EX_L - 1)
-        return BATCH_COLUMNS - 1;
+        return BG_MAP_COLUMNS - 1;
     const int rate = j >= EX_N + EX_W, input = (j - EX_N) % EX_W;
     return input < BG_EXTERNAL ? EX_N + rate * BG_EXTERNAL + input : -1;
 }
@@ -98,7 +98,7 @@ static double product(const double *map, int first, int count, const double *fac
 {
     double sum = 0.0;
     for (int i = 0; i < count; i++)
-        sum += factors[i] * map[(first + i) * BATCH_COLUMNS + column];
+        sum += factors[i] * map[(first + i) * BG_MAP_COLUMNS + column];
     return sum;
 }
 
@@ -108,15 +108,15 @@ static double push_of(const double *map, const bg_numbers *a, int reading, int c
     double sum = 0.0;
     for (int j = 0; j < M; j++)
         if (a->D[reading * M + j] != 0.0)
-            sum += a->D[reading * M + j] * map[(BATCH_AT_U + M + j) * BATCH_COLUMNS + column];
+            sum += a->D[reading * M + j] * map[(BG_AT_du + j) * BG_MAP_COLUMNS + column];
     for (int l = 0; l < N; l++) {
         const double factor = a->F[reading * N + l];
         if (factor != 0.0 && !BG_DRIVEN)
-            sum += factor * map[(BATCH_AT_RATE + l) * BATCH_COLUMNS + column];
+            sum += factor * map[(BG_AT_rate + l) * BG_MAP_COLUMNS + column];
         else if (factor != 0.0)
             sum += factor * (product(map, 0, N, a->P + l * N, column)
-                             + product(map, BATCH_AT_U, M, a->Q + l * M, column)
-                             + product(map, BATCH_AT_U + M, M, a->R + l * M, column));
+                             + product(map, BG_AT_u, M, a->Q + l * M, column)
+                             + product(map, BG_AT_du, M, a->R + l * M, column));
     }
     return sum;
 }
@@ -124,18 +124,18 @@ static double push_of(const double *map, const bg_numbers *a, int reading, int c
 static void fill_column(const double *map, const bg_numbers *a, int column, double *shot)
 {
     for (int i = 0; i < N; i++)
-        shot[EX_AT_X + i] = map[i * BATCH_COLUMNS + column];
+        shot[EX_AT_X + i] = map[i * BG_MAP_COLUMNS + column];
     for (int i = 0; i < M; i++)
-        shot[EX_AT_U + i] = map[(BATCH_AT_U + i) * BATCH_COLUMNS + column];
+        shot[EX_AT_U + i] = map[(BG_AT_u + i) * BG_MAP_COLUMNS + column];
     for (int k = 0; k < EX_K; k++) {
         const int reading = bg_friction_readings[k], input = bg_friction_inputs[k];
-        shot[EX_AT_SLIP + k] = map[(BATCH_AT_Y + reading) * BATCH_COLUMNS + column];
-        shot[EX_AT_EFFORT + k] = map[(BATCH_AT_U + input) * BATCH_COLUMNS + column];
-        shot[EX_AT_CAP + k] = map[(BATCH_AT_CAP + k) * BATCH_COLUMNS + column];
+        shot[EX_AT_SLIP + k] = map[(BG_AT_y + reading) * BG_MAP_COLUMNS + column];
+        shot[EX_AT_EFFORT + k] = map[(BG_AT_u + input) * BG_MAP_COLUMNS + column];
+        shot[EX_AT_CAP + k] = map[(BG_AT_caps + k) * BG_MAP_COLUMNS + column];
         shot[EX_AT_PUSH + k] = push_of(map, a, reading, column);
     }
     for (int i = 0; i < EX_N; i++)
-        shot[EX_AT_RATE + i] = map[(BATCH_AT_RATE + i) * BATCH_COLUMNS + column];
+        shot[EX_AT_RATE + i] = map[(BG_AT_rate + i) * BG_MAP_COLUMNS + column];
 }
 
 /* How fast the states are by themselves, and what balances them: as of a mode that has the same
@@ -189,7 +189,7 @@ static void fill(ex_mode *made, const double *map, const bg_numbers *a, const bg
         fill_column(map, a, column, made->shot[j]);
         for (int k = 0; k < made->held; k++)
             made->left[j][k] = product(map, 0, N, held->slip_x + k * N, column)
-                               + product(map, BATCH_AT_U, M, held->slip_u + k * M, column);
+                               + product(map, BG_AT_u, M, held->slip_u + k * M, column);
     }
 }
 
@@ -201,14 +201,14 @@ static void fill_readers(const batch_job *job, const double *map, double (*reade
             if (row < 0)
                 readers[s][j] = j == EX_N - 1 - row;
             else
-                readers[s][j] = column < 0 ? 0.0 : map[row * BATCH_COLUMNS + column];
+                readers[s][j] = column < 0 ? 0.0 : map[row * BG_MAP_COLUMNS + column];
         }
 }
 
 int batch_supply(batch_room *room, int number)
 {
     static const int signs[3] = {0, 1, -1};
-    double map[BATCH_ROWS * BATCH_COLUMNS];
+    double map[BG_MAP_ROWS * BG_MAP_COLUMNS];
     int mode[EX_PORTS] = {0}, digits = number;
     batch_instance *const own = room->model;
     bg_hold *held = NULL;

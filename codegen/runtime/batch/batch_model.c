@@ -64,13 +64,9 @@ static int probe_base(bg_model *m, int at, batch_map *map)
     point[at] = at < BG_MAP_COLUMNS - 1 ? BG_FAR : 0.0;
     const int status = bg_evaluate(m, 0.0, point, point + BG_SIZE, point + BG_SIZE + BG_EXTERNAL,
                                    forward, 0, &m->shot);
-    put_column(N, shot->x, at, map->x);
-    put_column(OWN, shot->z, at, map->z);
-    put_column(M, shot->u, at, map->u);
-    put_column(M, shot->du, at, map->du);
-    put_column(ROWS, shot->y, at, map->y);
-    put_column(BG_SIZE, shot->rate, at, map->rate);
-    put_column(K, shot->caps, at, map->caps);
+#define PUT(part, count) put_column(count, shot->part, at, map->part);
+    BG_PARTS(PUT)
+#undef PUT
     return status;
 }
 
@@ -164,13 +160,9 @@ static double *copy(double *to, int count, batch_row *rows)
 /* The parts one after the other, without the room of those that are empty. */
 static void flatten(batch_map *map, double *matrix)
 {
-    matrix = copy(matrix, N, map->x);
-    matrix = copy(matrix, OWN, map->z);
-    matrix = copy(matrix, M, map->u);
-    matrix = copy(matrix, M, map->du);
-    matrix = copy(matrix, ROWS, map->y);
-    matrix = copy(matrix, BG_SIZE, map->rate);
-    copy(matrix, K, map->caps);
+#define COPY(part, count) matrix = copy(matrix, count, map->part);
+    BG_PARTS(COPY)
+#undef COPY
 }
 
 /* Redundant ports share a load, and that is not affine; but what rules their slips does not depend

@@ -7,10 +7,9 @@
 typedef double batch_row[BG_MAP_COLUMNS];
 
 /* The parts of a map over [s, w, dw, 1]. */
+#define BATCH_FIELD(part, count) batch_row part[BG_ROOM(count)];
 typedef struct {
-    batch_row x[BG_ROOM(BG_STATES)], z[BG_ROOM(BG_LAW_STATES)];
-    batch_row u[BG_ROOM(BG_INPUTS)], du[BG_ROOM(BG_INPUTS)], y[BG_ROOM(BG_READINGS)];
-    batch_row rate[BG_SIZE], caps[BG_ROOM(BG_FRICTION)];
+    BG_PARTS(BATCH_FIELD)
 } batch_map;
 
 /* An instance; where `based`, without friction, and the efforts of slipping forwards. */

@@ -4,13 +4,11 @@ static void put_row(void *to, int sample, const double *w, const int *mode, cons
 {
     double *row = (double *)to + (size_t)sample * BG_ROW_WIDTH;
     (void)mode;
-    row = bg_put(row, BG_STATES, shot->x);
-    row = bg_put(row, BG_LAW_STATES, shot->z);
-    row = bg_put(row, BG_INPUTS, shot->u);
-    row = bg_put(row, BG_INPUTS, shot->du);
-    row = bg_put(row, BG_READINGS, shot->y);
-    row = bg_put(row, BG_SIZE, shot->rate);
-    bg_put(row, BG_EXTERNAL, w);
+#define SHOWN(part, count) row = bg_put(row, count, shot->part);
+#define GIVEN(part, count) row = bg_put(row, count, part);
+    BG_RECORDED(SHOWN, GIVEN)
+#undef SHOWN
+#undef GIVEN
 }
 
 void bg_rows_sizes(unsigned long *sizes)

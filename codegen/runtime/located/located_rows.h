@@ -4,10 +4,9 @@
 
 #include "model_located.h"
 
-/* A row: x, z, u, u', y, the rate of s, external inputs. */
-enum {
-    BG_ROW_WIDTH = BG_STATES + BG_LAW_STATES + 2 * BG_INPUTS + BG_READINGS + BG_SIZE + BG_EXTERNAL
-};
+/* A row: what is kept of a sample, part by part. */
+#define BG_WIDTH(part, count) +(count)
+enum { BG_ROW_WIDTH = BG_RECORDED(BG_WIDTH, BG_WIDTH) };
 
 /* The sizes of an instance, a run and a row, in bytes. */
 void bg_rows_sizes(unsigned long *sizes);

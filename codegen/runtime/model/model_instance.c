@@ -68,28 +68,23 @@ static int probe(bg_model *m, const int *mode, int at, double *column)
         m->work.point[at] = BG_FAR;
     status = bg_evaluate(m, 0.0, m->work.point, m->work.external[0], m->work.external[1], mode, 0,
                          &m->shot);
-    column = bg_put(column, N, m->shot.x);
-    column = bg_put(column, OWN, m->shot.z);
-    column = bg_put(column, M, m->shot.u);
-    column = bg_put(column, M, m->shot.du);
-    column = bg_put(column, ROWS, m->shot.y);
-    column = bg_put(column, BG_SIZE, m->shot.rate);
-    bg_put(column, K, m->shot.caps);
+#define PUT(part, count) column = bg_put(column, count, m->shot.part);
+    BG_PARTS(PUT)
+#undef PUT
     return status;
 }
 
 /* Slips that stick must not drift by the rounding of the matrix either. */
 static void correct_map(const bg_hold *held, bg_work *work, double *matrix)
 {
-    const int du_row = N + OWN + M, rate_row = N + OWN + 2 * M + ROWS;
     for (int j = 0; j < BG_MAP_COLUMNS; j++) {
         for (int i = 0; i < BG_SIZE; i++)
-            work->point[i] = matrix[(rate_row + i) * BG_MAP_COLUMNS + j];
+            work->point[i] = matrix[(BG_AT_rate + i) * BG_MAP_COLUMNS + j];
         for (int i = 0; i < M; i++)
-            work->u[i] = matrix[(du_row + i) * BG_MAP_COLUMNS + j];
+            work->u[i] = matrix[(BG_AT_du + i) * BG_MAP_COLUMNS + j];
         bg_correct(held, work->point, work->u);
         for (int i = 0; i < BG_SIZE; i++)
-            matrix[(rate_row + i) * BG_MAP_COLUMNS + j] = work->point[i];
+            matrix[(BG_AT_rate + i) * BG_MAP_COLUMNS + j] = work->point[i];
     }
 }
 

@@ -7,6 +7,7 @@
 #include <stddef.h>
 
 #include "config.h"
+#include "layout.h"
 #include "run_status.h"
 
 /* Arrays of a length that may be zero have room for one. */
@@ -16,9 +17,12 @@
 enum {
     /* The integrated vector s: states less what driven dependent storages add, then law states. */
     BG_SIZE = BG_ROOM(BG_STATES + BG_LAW_STATES),
-    BG_MAP_COLUMNS = BG_SIZE + 2 * BG_EXTERNAL + 1,
-    BG_MAP_ROWS = BG_STATES + BG_LAW_STATES + 2 * BG_INPUTS + BG_READINGS + BG_SIZE + BG_FRICTION
+    BG_MAP_COLUMNS = BG_SIZE + 2 * BG_EXTERNAL + 1
 };
+
+/* Where each part of an instant begins, BG_AT_x and so on, one after the other. */
+#define BG_PLACE(part, count) BG_AT_##part, BG_LAST_##part = BG_AT_##part + (count) - 1,
+enum { BG_PARTS(BG_PLACE) BG_MAP_ROWS };
 
 /* One instant: time, states, law states, readings, inputs, external inputs and their rates. */
 typedef struct {
@@ -28,11 +32,11 @@ typedef struct {
     double p[BG_ROOM(BG_PARAMETERS)];
 } bg_values;
 
-/* Everything at one instant; `rate` is the rate of s, `caps` are breakaway efforts. */
+/* Everything at one instant: states, law states, inputs and their rates, readings, the rate of s,
+ * breakaway efforts. */
+#define BG_FIELD(part, count) double part[BG_ROOM(count)];
 typedef struct {
-    double x[BG_ROOM(BG_STATES)], z[BG_ROOM(BG_LAW_STATES)];
-    double u[BG_ROOM(BG_INPUTS)], du[BG_ROOM(BG_INPUTS)], y[BG_ROOM(BG_READINGS)];
-    double rate[BG_SIZE], caps[BG_ROOM(BG_FRICTION)];
+    BG_PARTS(BG_FIELD)
 } bg_snapshot;
 
 /* x' = P x + Q u + R u',  y = F x + D u + G u', by rows; A factored, its rows and columns scaled.
@@ -127,7 +131,7 @@ int bg_model_evaluate(bg_model *m, double t, const double *s, const double *w, c
 /* The outputs of a snapshot. */
 void bg_model_outputs(const bg_snapshot *shot, double *outputs);
 
-/* BG_MAP_ROWS x BG_MAP_COLUMNS: x, z, u, du, y, rate, caps as a matrix times [s, w, dw, 1]. */
+/* BG_MAP_ROWS x BG_MAP_COLUMNS: the parts of an instant as a matrix times [s, w, dw, 1]. */
 int bg_model_affine_map(bg_model *m, const int *mode, double *matrix);
 
 /* The rate of s of slipping friction in straight-line code; signs: +1 or -1 a friction port. For
