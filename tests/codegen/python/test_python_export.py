@@ -136,7 +136,7 @@ def test_a_dependent_storage_follows_its_source() -> None:
     module, ready = loaded(to_python(lever(), numbers)), simulator(lever(), numbers)
     for drive in (Step(0.5, 1.2) + Step(1.5, -0.4), Ramp(0.5, 1.9), Ramp(0.5, 2.1)):
         expected = ready.run(times, inputs={"V": drive})
-        run = module.simulate(times, {}, {"V": drive}, step=5e-4)
+        run = module.simulate(times, {}, {"V": drive}, step=1e-3)
         assert run["v_1"] == pytest.approx(expected["v_1"], abs=6e-3)
 
 
