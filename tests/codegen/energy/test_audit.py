@@ -36,8 +36,8 @@ def test_textbook_cases_close(name: str) -> None:
     assert np.isfinite([*audit.gave.values(), *audit.took.values(), *audit.lost.values()]).all()
 
 
-ROUNDING = 1e-24
-"""Work where nothing moves: an effort and a flow that both are the rounding of numbers near 1."""
+ROUNDING = 1e-16
+"""Of numbers near 1, which is all that is seen where nothing moves; work is a product of two."""
 
 
 def _nodes(case: Case) -> list[object]:
@@ -56,10 +56,10 @@ def _check_swept(case: Case, found: list[Array]) -> None:
     turned = result.audit().turned_over
     assert found[0] < CLOSED
     works = [result.work(node)[-1] for node in nodes]
-    assert found[1 : 1 + len(nodes)] == pytest.approx(works, abs=2e-8 * turned + ROUNDING)
+    assert found[1 : 1 + len(nodes)] == pytest.approx(works, abs=2e-8 * turned + ROUNDING**2)
     size = max(abs(result[state]).max() for state in states) * float(np.ptp(case.times))
     integrals = [result.integral(state)[-1] for state in states]
-    assert found[1 + len(nodes) :] == pytest.approx(integrals, abs=1e-8 * size)
+    assert found[1 + len(nodes) :] == pytest.approx(integrals, abs=1e-8 * size + ROUNDING)
 
 
 @pytest.mark.parametrize(
