@@ -16,7 +16,7 @@ def main(arguments: Sequence[str] | None = None, program: str = "bondgraph") -> 
     except ImportError:
         print(MISSING, file=sys.stderr)
         sys.exit(2)
-    from differentials.cli.app import app
+    from differentials.commands.app import app
 
     app.main(arguments, program)
 

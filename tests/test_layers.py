@@ -21,7 +21,7 @@ ORDER = {
     "record plots analysis c engine simulate trim packing family batch sweeps python switched sparse fmu "
     "exports",
     "differentials": "laws parts pieces passive active topologies parameters model identification speeds "
-    "scenarios exporting figures report cli",
+    "scenarios exporting figures report commands",
 }
 """Each imports only earlier ones."""
 

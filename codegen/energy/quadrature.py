@@ -96,7 +96,7 @@ def _doubled(M: Array, one: Array, other: Array, norm: float, h: float) -> Array
     growths = _growth(M * (step * np.append(NODES, 1.0))[:, None, None])
     moved = np.eye(len(M)) + growths[:-1]
     weighted = (WEIGHTS * step)[:, None, None] * (one @ moved)
-    W = np.einsum("pki,pkj->kij", weighted, other @ moved)
+    W: Array = np.einsum("pki,pkj->kij", weighted, other @ moved)
     # What exp(M h) adds to 1 is kept: slow parts are small beside it in every step.
     growth = growths[-1]
     for _ in range(doublings):

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 from click.testing import Result
 
-from differentials.cli.app import app
+from differentials.commands.app import app
 
 Call = Callable[..., Result]
 

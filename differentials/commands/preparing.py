@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 import bondgraph as bg
 import codegen
 from codegen import Result
-from differentials.cli.names import check_names
-from differentials.cli.options import Asked
-from differentials.cli.subject import Subject, nodes_called
+from differentials.commands.names import check_names
+from differentials.commands.options import Asked
+from differentials.commands.subject import Subject, nodes_called
 from differentials.model import model
 from differentials.scenarios import SAMPLE, Prepared, named, prepared
 

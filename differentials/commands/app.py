@@ -7,14 +7,14 @@ from typing import Any, NoReturn
 import click
 
 import bondgraph as bg
-import differentials.cli.options as options
-from differentials.cli.exporting import export
-from differentials.cli.graphs import convert, draw
-from differentials.cli.linearising import linear, modes
-from differentials.cli.reading import derive, explain, list_all, show
-from differentials.cli.running import simulate
-from differentials.cli.sweeping import sweep
-from differentials.cli.tours import demo, draw_figures
+import differentials.commands.options as options
+from differentials.commands.exporting import export
+from differentials.commands.graphs import convert, draw
+from differentials.commands.linearising import linear, modes
+from differentials.commands.reading import derive, explain, list_all, show
+from differentials.commands.running import simulate
+from differentials.commands.sweeping import sweep
+from differentials.commands.tours import demo, draw_figures
 
 FAILED, REFUSED = 1, 2
 """Status where something went wrong on the way, and where the command can't be meant so."""

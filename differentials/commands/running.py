@@ -5,15 +5,15 @@ from pathlib import Path
 
 import click
 
-import differentials.cli.options as options
+import differentials.commands.options as options
 from codegen import Result
 from codegen.runs.methods import CHOICES
-from differentials.cli.names import FileOf, OneOf
-from differentials.cli.options import Asked
-from differentials.cli.pictures import FORMATS, picture, save, save_all, told
-from differentials.cli.preparing import run
-from differentials.cli.printing import print_json, written
-from differentials.cli.subject import Subject
+from differentials.commands.names import FileOf, OneOf
+from differentials.commands.options import Asked
+from differentials.commands.pictures import FORMATS, picture, save, save_all, told
+from differentials.commands.preparing import run
+from differentials.commands.printing import print_json, written
+from differentials.commands.subject import Subject
 from differentials.report import events_text
 
 

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import bondgraph as bg
-import differentials.cli.options as options
+import differentials.commands.options as options
 from bondgraph.analyse.state_space import StateSpace
-from differentials.cli.names import check_names
-from differentials.cli.options import START, Command
-from differentials.cli.printing import print_json
-from differentials.cli.subject import Subject, nodes_called
+from differentials.commands.names import check_names
+from differentials.commands.options import START, Command
+from differentials.commands.printing import print_json
+from differentials.commands.subject import Subject, nodes_called
 from differentials.identification import numbers
 from differentials.model import model
 from differentials.report import modes_text, table

@@ -3,7 +3,7 @@
 import pytest
 from click.shell_completion import ShellComplete
 
-from differentials.cli.app import app
+from differentials.commands.app import app
 
 
 def completed(*words: str) -> set[str]:

@@ -9,15 +9,15 @@ import click
 
 import bondgraph as bg
 import codegen
-import differentials.cli.options as options
+import differentials.commands.options as options
 from bondgraph.writing import write_bytes
 from codegen.record.tables import write_columns
-from differentials.cli.grids import FORM, GRID, measure_options, measures
-from differentials.cli.names import FileOf, check_names
-from differentials.cli.options import Asked
-from differentials.cli.preparing import prepare
-from differentials.cli.printing import print_json, with_folder, written
-from differentials.cli.subject import Subject
+from differentials.commands.grids import FORM, GRID, measure_options, measures
+from differentials.commands.names import FileOf, check_names
+from differentials.commands.options import Asked
+from differentials.commands.preparing import prepare
+from differentials.commands.printing import print_json, with_folder, written
+from differentials.commands.subject import Subject
 from differentials.report import table
 from differentials.scenarios import Prepared
 

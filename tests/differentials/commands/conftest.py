@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
-from differentials.cli.app import app
+from differentials.commands.app import app
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 

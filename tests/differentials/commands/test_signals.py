@@ -4,7 +4,7 @@ import pytest
 
 import bondgraph as bg
 from codegen import Constant, Lag, Ramp, Sine, Step
-from differentials.cli.signals import law, signal
+from differentials.commands.signals import law, signal
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,10 @@ from typing import Any
 import click
 
 import bondgraph as bg
-import differentials.cli.options as options
-from differentials.cli.names import FileOf
-from differentials.cli.printing import with_folder, written
-from differentials.cli.subject import ENDINGS, Subject
+import differentials.commands.options as options
+from differentials.commands.names import FileOf
+from differentials.commands.printing import with_folder, written
+from differentials.commands.subject import ENDINGS, Subject
 
 
 @options.command(

@@ -10,7 +10,7 @@ import pytest
 from click.testing import Result
 
 import differentials
-from differentials.cli.grids import grid
+from differentials.commands.grids import grid
 
 Call = Callable[..., Result]
 

@@ -9,9 +9,9 @@ from typing import Any
 import click
 
 from codegen.simulate import BACKENDS
-from differentials.cli.names import Assigned, OneOf
-from differentials.cli.signals import law, signal
-from differentials.cli.subject import SubjectType
+from differentials.commands.names import Assigned, OneOf
+from differentials.commands.signals import law, signal
+from differentials.commands.subject import SubjectType
 from differentials.scenarios import scenarios
 
 Command = Callable[..., Any]

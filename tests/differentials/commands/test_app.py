@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from click.testing import Result
 
-from differentials.cli.app import app
+from differentials.commands.app import app
 
 Call = Callable[..., Result]
 

@@ -9,9 +9,9 @@ import numpy as np
 
 import bondgraph as bg
 import codegen
-from differentials.cli.names import Assigned, check_names
-from differentials.cli.options import Command
-from differentials.cli.subject import nodes_called
+from differentials.commands.names import Assigned, check_names
+from differentials.commands.options import Command
+from differentials.commands.subject import nodes_called
 
 FORM = "NAME=FROM:TO:COUNT"
 

@@ -5,9 +5,9 @@ from typing import Any
 import click
 
 import bondgraph as bg
-import differentials.cli.options as options
-from differentials.cli.printing import causality_data, equations_data, headed, print_json
-from differentials.cli.subject import Subject, causality_of, mode_text
+import differentials.commands.options as options
+from differentials.commands.printing import causality_data, equations_data, headed, print_json
+from differentials.commands.subject import Subject, causality_of, mode_text
 from differentials.identification import linear_model
 from differentials.model import model
 from differentials.report import modes_text, parameters_text, table

@@ -5,14 +5,14 @@ from pathlib import Path
 
 import click
 
-import differentials.cli.options as options
+import differentials.commands.options as options
 from codegen.exports import TARGETS
 from codegen.fmu.binaries import PLATFORMS
-from differentials.cli.names import OneOf, check_names
-from differentials.cli.options import Asked
-from differentials.cli.preparing import prepare
-from differentials.cli.printing import print_json
-from differentials.cli.subject import Subject
+from differentials.commands.names import OneOf, check_names
+from differentials.commands.options import Asked
+from differentials.commands.preparing import prepare
+from differentials.commands.printing import print_json
+from differentials.commands.subject import Subject
 from differentials.exporting import write
 
 

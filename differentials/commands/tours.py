@@ -6,13 +6,13 @@ from pathlib import Path
 import click
 
 import bondgraph as bg
-import differentials.cli.options as options
+import differentials.commands.options as options
 from bondgraph.writing import made_folder
 from codegen import Result
-from differentials.cli.names import OneOf
-from differentials.cli.pictures import save_all, told
-from differentials.cli.printing import headed
-from differentials.cli.subject import causality_of
+from differentials.commands.names import OneOf
+from differentials.commands.pictures import save_all, told
+from differentials.commands.printing import headed
+from differentials.commands.subject import causality_of
 from differentials.figures import Figure, draw, figures
 from differentials.identification import linear_model
 from differentials.parameters import PRINTED_FREQUENCIES

@@ -9,8 +9,8 @@ import click
 import bondgraph as bg
 import codegen
 from codegen import Result
-from differentials.cli.printing import with_folder, written
-from differentials.cli.subject import Subject
+from differentials.commands.printing import with_folder, written
+from differentials.commands.subject import Subject
 from differentials.figures import Figure, draw, panels, save_picture
 
 FORMATS = (".csv", ".nc", ".png")
