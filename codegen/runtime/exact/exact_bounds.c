@@ -33,7 +33,8 @@ static void first_leap(ex_entry *e, double (*E)[EX_Z])
     }
 }
 
-/* A norm of M^2: the largest weighted column sum. */
+/* A norm of M^2: the largest weighted column sum, and no more than what the norm of M allows, as
+ * weights that are far apart make much of rounding. */
 static double square_norm(ex_context *c, const ex_entry *e)
 {
     double (*const square)[EX_Z] = c->work[0], norm = 0.0;
@@ -44,7 +45,7 @@ static double square_norm(ex_context *c, const ex_entry *e)
             sum += e->weight[i] * fabs(square[j][i]);
         norm = bg_greater(norm, sum / e->weight[j]);
     }
-    return norm;
+    return bg_lesser(norm, e->norm * e->norm);
 }
 
 /* Bounds on the fourth derivatives of triggers during the next EX_RENEWAL steps, as weights of the
@@ -73,7 +74,9 @@ void ex_bound(ex_context *c, ex_entry *e, double (*E)[EX_Z])
     for (int j = 0; j < EX_Z; j++)
         for (int i = 0; i < EX_T; i++) {
             const double between = bend / (1.0 - bend) * most[i] * e->weight[j];
-            e->fourth[j][i] = scale * (e->fourth[j][i] + between) * (1.0 + BG_BOUND_SLACK);
+            const double bound = scale * (e->fourth[j][i] + between) * (1.0 + BG_BOUND_SLACK);
+            /* Written so that what is no number is too large as well: nothing is certain then. */
+            e->fourth[j][i] = bound < BG_HUGE ? bound : BG_HUGE;
         }
 }
 

@@ -250,6 +250,11 @@ def test_random_drivelines_move_as_the_judge_finds(seed: int) -> None:
     assert _complaints(seed, "numpy") == []
 
 
+def test_leaps_see_what_inputs_rule_where_storages_hang_on_one_another_one_way() -> None:
+    """A slip that a sine alone rules, beside a stuck port: what balances rates puts them far apart."""
+    assert _complaints(1471, "c") == []
+
+
 @pytest.mark.parametrize("seed", seeds("ruled-friction-in-c"))
 def test_random_drivelines_move_as_the_judge_finds_in_c(seed: int) -> None:
     assert _complaints(seed, "c") == []
