@@ -12,7 +12,7 @@ from pathlib import Path
 from bondgraph.errors import MissingExtraError, SignalError, SimulationError
 from bondgraph.writing import telling
 from codegen.engine.cache import workshop
-from codegen.engine.compiler import call, system_compiler
+from codegen.engine.compiler import call, system_compiler, words
 
 FLAGS = ("-std=c99", "-O2", "-g0", "-fvisibility=hidden", "-shared")
 
@@ -86,7 +86,10 @@ def headers(version: str) -> dict[str, str]:
 def binaries(
     sources: Mapping[str, str], identifier: str, platforms: Sequence[str], version: str
 ) -> dict[str, bytes]:
-    """Shared libraries by their path in the unit. On this machine its own compiler is taken."""
+    """Shared libraries by their path in the unit. On this machine its own compiler is taken.
+
+    ``CFLAGS`` of the environment come after its flags, and override them.
+    """
     made: dict[str, dict[str, bytes]] = {}
     with workshop(Path(tempfile.gettempdir())) as folder:
         with telling(folder):
@@ -104,7 +107,8 @@ def _compiled(folder: Path, sources: Mapping[str, str], identifier: str, where: 
     library = f"{identifier}{where.ending}"
     units = sorted(name for name in sources if name.endswith(".c"))
     flags = [*FLAGS, *([] if where.ending == ".dll" else ["-fPIC"])]
-    command = [*_compiler(where), *flags, "-I.", "-o", library, *units]
+    compiler, own = _compiler(where)
+    command = [*compiler, *flags, *own, "-I.", "-o", library, *units]
     command += [] if where.ending == ".dll" else ["-lm"]
     try:
         call(command, folder, folder / library)
@@ -113,14 +117,14 @@ def _compiled(folder: Path, sources: Mapping[str, str], identifier: str, where: 
     return (folder / library).read_bytes()
 
 
-def _compiler(where: Platform) -> list[str]:
-    """The system's compiler for this machine if there is one, else ziglang's for any."""
+def _compiler(where: Platform) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The system's compiler for this machine, if there is one, with the user's flags; else ziglang's."""
     if where.name == this_platform():
         found = system_compiler()
         if found is not None:
-            return [*found]
+            return found, words("CFLAGS")
     _package("ziglang", f"binaries for {where.name} are made by ziglang's compiler")
-    return [sys.executable, "-m", "ziglang", "cc", "-target", where.target, "-s"]
+    return (sys.executable, "-m", "ziglang", "cc", "-target", where.target, "-s"), ()
 
 
 def _package(name: str, why: str) -> Path:

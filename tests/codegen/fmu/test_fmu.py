@@ -28,6 +28,14 @@ def _description(path: Path) -> ET.Element:
     return ET.fromstring(zipfile.ZipFile(path).read("modelDescription.xml"))
 
 
+def test_flags_of_the_environment_are_the_compilers(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("CFLAGS", "-include nowhere.h")
+    with pytest.raises(bg.SimulationError, match=r"nowhere\.h"):
+        belt().written(tmp_path / "unit.fmu", "3.0")
+
+
 @pytest.mark.usefixtures("_no_binaries")
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 @pytest.mark.parametrize("make", [duffing, divider, figure_11])

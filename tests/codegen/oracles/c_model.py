@@ -15,7 +15,7 @@ from codegen.modes.closed import ClosedModel
 from codegen.program.lower import lower
 from codegen.program.records import Program
 
-STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic")
 HARNESS = Path(__file__).parent / "harness.c"
 
 
@@ -28,12 +28,12 @@ def written(folder: Path, files: Mapping[str, str]) -> list[str]:
 
 
 def compiled(folder: Path, sources: Sequence[str], *flags: str, to: str = "run") -> Path:
-    """Compile C files with warnings as errors; the test is skipped where there is no gcc."""
+    """Compile C files without a warning; the test is skipped where there is no gcc."""
     if shutil.which("gcc") is None:
         pytest.skip("no gcc")
     command = ["gcc", *STRICT, *flags, "-I", str(folder), *sources, "-o", str(folder / to), "-lm"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    assert (done.returncode, done.stderr) == (0, "")
     return folder / to
 
 
