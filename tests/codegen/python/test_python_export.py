@@ -276,7 +276,7 @@ def test_a_slope_that_holding_would_need_is_told_by_the_module_as_by_the_simulat
 def test_a_law_of_the_speed_brakes_as_it_should() -> None:
     nodes = [bg.One("n"), bg.I("m", 1, flow="v"), bg.R("r", law="tanh(v)")]
     module = loaded(to_python(bg.derive(bond_graph(nodes, "n>m n>r")), {}))
-    run = module.simulate([0, 1.0], {"v": 1.0}, {})
+    run = module.simulate([0, 1.0], {"v": 1.0}, {}, step=1e-3)
     assert np.sinh(run["v"][-1]) == pytest.approx(np.sinh(1) * np.exp(-1), rel=1e-9)
 
 
