@@ -22,7 +22,7 @@ FILES = (
 """Below `tests`."""
 
 SLOW = Path(__file__).with_name("slow.txt")
-"""Tests that take more than a fifth of a second, averaged over what they are given; `used.py` writes it."""
+"""Tests that take more than an eighth of a second, averaged over what they are given; `used.py` writes it."""
 
 COMPILERS = ("cc", "gcc", "clang")
 

@@ -8,7 +8,7 @@ import pytest
 
 from rig.needs import SLOW, function
 
-LONGEST = 0.2
+LONGEST = 0.12
 """Seconds of a processor, on average over what a test is parametrized with."""
 
 
