@@ -81,8 +81,11 @@ SCRIPT = """
 from oracles.sweeping import *
 from codegen import sweep
 from pathlib import Path
+import signal
 
 if __name__ == "__main__":
+    # What starts the tests in the background may have it ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     folder = Path({folder!r})
     sweep(spring_mass(), {{"v": np.arange(1.0, 41.0)}}, TIMES, {{"end": Logged(folder, 0.3)}},
           inputs={{"P": 0.0}}, workers=1, store=folder / "store", chunk=1)
