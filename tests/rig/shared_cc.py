@@ -72,19 +72,11 @@ def compiled(
         known = os.path.exists(kept)
         if not known:
             made = f"{kept}.{os.getpid()}"
-            options = [
-                *flags,
-                *(f"-I{place}" for place in places),
-                "-x",
-                "c",
-                "-",
-                "-c",
-                "-o",
-                made,
-            ]
+            near = [f"-I{place}" for place in places]
+            command = [compiler, *flags, *near, "-x", "c", "-", "-c", "-o", made]
             text = "".join(f'#include "{os.path.abspath(one)}"\n' for one in files)
             done = subprocess.run(
-                [compiler, *options], input=os.fsencode(text), capture_output=True, check=False
+                command, input=os.fsencode(text), capture_output=True, check=False
             )
             if done.returncode or done.stderr:
                 note(folder, "apart")

@@ -283,7 +283,7 @@ def test_a_pickled_job_has_its_loop_again() -> None:
     assert one.tolist() == other.tolist()
 
 
-STRICT = ("-O1", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion",
+STRICT = ("-O3", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion",
           "-Wno-sign-conversion")  # fmt: skip
 
 

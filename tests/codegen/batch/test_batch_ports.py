@@ -131,7 +131,7 @@ def test_runs_whose_parameters_do_not_change() -> None:
         assert np.abs(row - expected).max() <= 1e-9
 
 
-STRICT = ("-O1", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion",
+STRICT = ("-O3", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion",
           "-Wno-sign-conversion")  # fmt: skip
 
 

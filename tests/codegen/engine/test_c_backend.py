@@ -237,7 +237,7 @@ def test_a_run_tells_what_ran_it() -> None:
         assert fast.run([0, 1], {"v": 1.0}, method="CVODE").backend == "numpy"
 
 
-STRICT = ("-O1", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion",
+STRICT = ("-O3", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion",
           "-Wno-sign-conversion")  # fmt: skip
 
 

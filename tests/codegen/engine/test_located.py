@@ -283,7 +283,7 @@ def test_the_main_program_runs_a_scenario_with_events_located(tmp_path: Path) ->
     assert table[:, 1] == pytest.approx(80.0, abs=1e-2)
 
 
-STRICT = ("-O1", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+STRICT = ("-O2", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
 
 
 @pytest.mark.parametrize("name", ["duffing", "diode", "stacked", "crank", "clutches_with_loss"])

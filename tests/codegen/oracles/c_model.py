@@ -28,7 +28,10 @@ def written(folder: Path, files: Mapping[str, str]) -> list[str]:
 
 
 def compiled(folder: Path, sources: Sequence[str], *flags: str, to: str = "run") -> Path:
-    """Compile C files without a warning; the test is skipped where there is no gcc."""
+    """Compile C files without a warning; the test is skipped where there is no gcc.
+
+    With ``-Werror`` among the flags each file by itself, as users do, so that none lacks an include.
+    """
     if shutil.which("gcc") is None:
         pytest.skip("no gcc")
     command = ["gcc", *STRICT, *flags, "-I", str(folder), *sources, "-o", str(folder / to), "-lm"]
