@@ -19,7 +19,6 @@ RECORDED = (STATES, LAW_STATES, INPUTS, RATES_OF_INPUTS, READINGS, RATE, EXTERNA
 NAMES = ("x", "z", "u", "du", "y", "rate", "caps", "external")
 """What the parts are called in records of numpy and C."""
 
-
 SHOT = ("x", "u", "slip", "effort", "cap", "push", "rate")
 """What the exact engine knows of an instant: of friction ports slips, efforts, what they may hold, and how
 fast slips change; `exact.h` has the same order."""

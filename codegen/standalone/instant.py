@@ -1,5 +1,6 @@
 """One instant under evaluation, and what a formula is."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -42,7 +43,7 @@ class Instant:
         self.y += self.numbers.D[:, inputs] @ amounts
 
 
-class Formula:
+class Formula(ABC):
     """What laws give at an instant, or of a pool, all that is read in one array.
 
     ``constants``: the numbers of the parameters, the end of a pool.
@@ -59,9 +60,9 @@ class Formula:
         """The pool of an instant: t, x, z, y, u, w, w' and the parameters."""
         return np.concatenate(((now.t,), now.x, now.z, now.y, now.u, now.w, now.dw, self.constants))
 
+    @abstractmethod
     def of_pool(self, pool: Array, like: Instant) -> Array:
         """What the laws give, of a pool laid out like that of an instant."""
-        raise NotImplementedError
 
     def read(self, pool: Array) -> Sequence[int]:
         """The places in a pool that may be read."""

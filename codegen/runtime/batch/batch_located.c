@@ -5,8 +5,6 @@
 #include "batch_gauss.h"
 #include "located_internal.h"
 
-enum { OWN_PARAMETERS = BG_PARAMETERS };
-
 /* A signal by its place, see batch_measure.h. */
 static double value_of(int place, const double *w, const bg_snapshot *shot)
 {
@@ -85,7 +83,7 @@ void located_batch(located_room *room, const batch_job *job, const located_runs 
 {
     room->job = job;
     for (int k = 0; k < runs->runs; k++)
-        runs->status[k] = run_located_once(room, runs->parameters + (long)k * OWN_PARAMETERS,
+        runs->status[k] = run_located_once(room, runs->parameters + (long)k * BG_PARAMETERS,
                               runs->states + (long)k * (N + OWN), runs->inputs[k],
                               runs->results + (long)k * job->width);
 }

@@ -8,7 +8,6 @@
 
 #include "batch_doubt.h"
 
-
 int batch_model_begin(batch_instance *own, const double *parameters)
 {
     bg_model *const m = &own->m;

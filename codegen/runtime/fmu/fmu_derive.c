@@ -35,7 +35,6 @@ static int push_along(const unsigned *knowns, size_t columns, const double *seed
     return 1;
 }
 
-
 /* The values far out along the seed less those at the origin, exactly: the model is affine. */
 static fmu_error far_difference(fmu_instance *f, const unsigned *unknowns, size_t rows,
                                 const unsigned *knowns, size_t columns, const double *seed,

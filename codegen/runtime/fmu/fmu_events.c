@@ -4,7 +4,6 @@
 
 #include "fmu_common.h"
 
-
 /* How far ports that stick are from leaving what inputs rule of their slips at zero. */
 static void keep_at_rest(fmu_instance *f, const bg_snapshot *now, double *values)
 {

@@ -4,7 +4,6 @@
 
 #include "fmu_common.h"
 
-
 /* What the instant is to each port: by the indicators of the mode that was. An importer may find an
  * event of a slip no better than to its own steps. */
 static void note_touched(fmu_instance *f, int *touched)

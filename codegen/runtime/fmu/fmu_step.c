@@ -5,7 +5,6 @@
 
 #include "fmu_common.h"
 
-
 /* What went wrong in an internal step of h from t. */
 static fmu_error told(fmu_instance *f, int status, double t, double h)
 {

@@ -4,7 +4,6 @@
 
 #include "located_internal.h"
 
-
 /* External inputs in the present segment, for the view. */
 static int inputs_now(const void *self, double t, double *w, double *dw)
 {

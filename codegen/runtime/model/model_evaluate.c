@@ -4,7 +4,6 @@
 
 #include "model_internal.h"
 
-
 /* Adds to inputs, and to the readings that show them at once. */
 void bg_give(bg_model *m, int count, const int *columns, const double *values)
 {

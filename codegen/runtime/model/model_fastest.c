@@ -9,9 +9,9 @@
 #include "model_internal.h"
 
 enum {
-    FIRST_ROUNDS = 4,   /* before the first verdict */
-    AVERAGED = 8, /* rounds in the mean growth */
-    REFINED = 16  /* before a refusal tells the longest step */
+    FIRST_ROUNDS = 4, /* before the first verdict */
+    AVERAGED = 8,     /* rounds in the mean growth */
+    REFINED = 16      /* before a refusal tells the longest step */
 };
 
 /* l^2 = a l + b for the fastest rates l, or l = a; the part left unexplained; its error bound. */

@@ -4,7 +4,6 @@
 
 #include "model_internal.h"
 
-
 /* Weights near those of energy, by which states of any unit compare. A law's state is weighed by
  * the most that energy can drive it, at the limit's rate. */
 void bg_weigh(bg_model *m, double h)

@@ -5,7 +5,6 @@
 
 #include "model_internal.h"
 
-
 /* Rates of the external inputs of the parabola through their three values. */
 static void external_rates(double h, const double *w, double rates[3][BG_ROOM(BG_EXTERNAL)])
 {

@@ -4,7 +4,6 @@
 
 #include "model_internal.h"
 
-
 static void copy_direct(const bg_model *m, const bg_structure *s, bg_hold *held)
 {
     for (int r = 0; r < s->direct; r++) {

@@ -10,7 +10,6 @@
 
 #include "model_internal.h"
 
-
 /* Directions over all ports, by rows, and what each port can hold. */
 typedef struct {
     int free, count;

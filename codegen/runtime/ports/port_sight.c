@@ -3,7 +3,6 @@
 
 #include "port_sight.h"
 
-
 int bg_view_look(void *view, double t, const double *s, const int *mode)
 {
     bg_view *const v = view;

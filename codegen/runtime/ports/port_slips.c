@@ -3,7 +3,6 @@
 
 #include "model_internal.h"
 
-
 double bg_slip(const bg_model *m, const bg_snapshot *now, int port, double *terms)
 {
     const int row = bg_friction_readings[port];

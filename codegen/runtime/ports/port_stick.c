@@ -6,7 +6,6 @@
 #include "model_internal.h"
 #include "port_choose.h"
 
-
 static int sticks(const int *mode)
 {
     int any = 0;
