@@ -13,7 +13,6 @@ from bondgraph.causality.signals import causal_equations, causal_groups, loop_ro
 from bondgraph.causality.stories import contradiction_story
 from bondgraph.causality.strokes import StrokeSearch
 from bondgraph.causality.vanishing import elements_in, generic, told
-from bondgraph.declare.switching import refuse_switches
 from bondgraph.declare.validate import validate, with_elements
 from bondgraph.errors import AlgebraicLoopError, BondGraphError, CausalityError
 
@@ -24,16 +23,15 @@ TRIALS_PER_BOND = 20
 def assign_causality(graph: Any) -> CausalGraph:
     """Give every bond its causal stroke; storages get integral causality wherever that is possible.
 
-    Order: sources and ports of fixed causality; storages by ``priority``, then declaration; linear
-    resistances; what is left. Accepts a declared or a validated graph.
+    Order: sources and ports of fixed causality; storages by ``priority``, then declaration; switches
+    and linear resistances; what is left. Accepts a declared or a validated graph.
 
     Raises `CausalityError` when sources and fixed ports contradict each other, `AlgebraicLoopError`
     when the structure is singular under every causality. Both are genuine: a graph is refused only
-    if the determinant of its bond equations vanishes identically. `StructureError` for a graph with
-    switches, which has a causality in each of its modes: see `in_mode`.
+    if the determinant of its bond equations vanishes identically. A switch has one causality for all of
+    its modes: it gives zero in one, and in the other whatever keeps at zero what it receives.
     """
     checked = validate(graph)
-    refuse_switches(checked)
     try:
         return _assigned(checked)
     except AlgebraicLoopError as error:
@@ -45,7 +43,9 @@ def _assigned(checked: "nx.DiGraph[Hashable]") -> CausalGraph:
     order, preferred = _preferences(strokes)
     _impose_fixed(strokes, order)
     found = _search(strokes, order, preferred)
-    if not found or _has_loop(strokes):
+    # By strokes alone a switch may come to drive a dependent storage; by exact rank it never does, as
+    # a storage is dependent only on what comes before it.
+    if not found or _has_loop(strokes) or _switches_beside_dependent(strokes):
         chosen = regular_ports(strokes.found, order, preferred)
         if not found or any(strokes.gives(node) != gives for node, gives in chosen.items()):
             _search_with(strokes, order, preferred, chosen)
@@ -80,7 +80,7 @@ def _preferences(strokes: StrokeSearch) -> tuple[list[int], dict[int, str]]:
             preferred[node] = element.kind.gives
             ranks[node] = (2, -element.priority, node)
         else:
-            preferred[node] = "effort"
+            preferred[node] = element.switch.gives if element.switch else "effort"
             ranks[node] = (3, 0, node)
     return sorted(ranks, key=ranks.__getitem__), preferred
 
@@ -167,6 +167,15 @@ def _turn_back(
 
 def _has_loop(strokes: StrokeSearch) -> bool:
     return any(len(group) > 1 for group in causal_groups(causal_equations(strokes.found).terms))
+
+
+def _switches_beside_dependent(strokes: StrokeSearch) -> bool:
+    elements = strokes.elements
+    dependent = any(
+        element.kind.stores and strokes.gives(node) != element.kind.gives
+        for node, element in enumerate(elements)
+    )
+    return dependent and any(element.kind.switches for element in elements)
 
 
 def _search_with(

@@ -68,5 +68,6 @@ def _is_fixed(port: Port) -> bool:
 
 
 def imposes(port: Port) -> bool:
-    """Whether what the port gives is an input: of fixed causality, or a law's in integral causality."""
-    return _is_fixed(port) or (port.element.law is not None and port.integral)
+    """Whether what the port gives is an input: of fixed causality, a switch's, or a law's if integral."""
+    law = port.element.law is not None and port.integral
+    return _is_fixed(port) or port.element.kind.switches or law
