@@ -1,14 +1,14 @@
 """`simulator` and what it returns: a model with numbers, ready to run, and the record of a run."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-import sympy as sp
 from numpy.typing import ArrayLike
 
+from bondgraph.declare.switching import checked_modes
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, SignalError
 from codegen.energy.ledger import Ledger
@@ -22,24 +22,26 @@ from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
 from codegen.model.doubts import warn_of_doubts
 from codegen.model.sources import source_signals
-from codegen.modes.choose import decide
+from codegen.modes.choose import Occasion, decide
 from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks
 from codegen.numbers.arrays import Array, is_finite, is_number, read_only
 from codegen.program.lower import lower
 from codegen.program.records import Program
 from codegen.program.units import told_units
-from codegen.record.columns import named_columns
+from codegen.record.columns import named_columns, with_switches
 from codegen.record.replay import Run
 from codegen.record.result import Result
 from codegen.record.snapshots import snapshots
 from codegen.runs.arguments import (
+    check_names,
     checked_times,
     initial_values,
     numbers_of,
     settings_of,
     signals_for,
 )
+from codegen.runs.completion import beginning
 from codegen.runs.hybrid import run_hybrid
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.methods import EXACT
@@ -55,7 +57,7 @@ class Simulator:
     """A model with numbers for its parameters; every call returns fresh arrays.
 
     ``states``: names in the order of ``x``, states that laws own last. ``inputs``: names in the order
-    of ``u``, what the model must be given. ``signals``: every name a `Result` holds. ``laws``: over
+    of ``u``, what the model must be given. ``switches``: switches and controlled junctions. ``laws``: over
     those declared. ``engine`` and ``located``: the C that runs it, exactly where it is affine, and with
     step control.
     """
@@ -63,6 +65,7 @@ class Simulator:
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
+    switches: tuple[Hashable, ...]
     closed: ClosedModel
     laws: Mapping[Any, object] | None = field(default=None, repr=False, compare=False)
     engine: CRuns | None = field(default=None, repr=False, compare=False)
@@ -91,16 +94,8 @@ class Simulator:
         slipping, peaks = self._all_slipping(), Peaks.none(self.closed)
         with np.errstate(all="ignore"):
             peaks.see(self.closed, t, s, pieces, slipping)
-            mode = decide(
-                self.closed,
-                t,
-                s,
-                pieces,
-                slipping,
-                frozenset(),
-                TUNING.look_ahead * TUNING.standing,
-                peaks,
-            )
+            ahead = TUNING.look_ahead * TUNING.standing
+            mode, s, _ = decide(Occasion(self.closed, t, pieces, slipping, ahead, peaks), s)
             now = self.closed.at(t, s, pieces, mode)
         n = len(self.closed.program.states)
         rate = now.rate[: len(self.states)].copy()
@@ -116,6 +111,7 @@ class Simulator:
         method: str = "auto",
         rtol: float = TUNING.rtol,
         atol: float = TUNING.atol,
+        initially_on: Iterable[Hashable] = (),
     ) -> Result:
         """Integrate over the given times [s] and sample every signal at them.
 
@@ -123,13 +119,16 @@ class Simulator:
         of ``inputs``. ``method``: "exact" (matrix exponentials, for models that are affine in each friction
         mode), "DOP853", "Radau" (stiff models), "auto" of these, or "CVODE" (SUNDIALS; the extra
         ``sundae``): backward differences, Adams's formulas where a mode is affine and not stiff.
+        ``initially_on``: the switches that are on at first, as far as their conditions let them; each
+        switch is a column of the result, 1 or 0. States that are not named then follow what these hold:
+        the result's ``completed`` has them, and a `ModelWarning` tells.
 
         What backend "c" cannot go on with is run by numpy, and a `BackendWarning` tells why.
 
         Raises `SignalError` for unusable arguments, `SimulationError` if the run can't go on,
         `MissingExtraError` for what the method needs.
         """
-        return self.run_telling(tell, time, initial, inputs, method, rtol, atol)
+        return self.run_telling(tell, time, initial, inputs, method, rtol, atol, initially_on)
 
     def run_telling(
         self,
@@ -140,6 +139,7 @@ class Simulator:
         method: str = "auto",
         rtol: float = TUNING.rtol,
         atol: float = TUNING.atol,
+        initially_on: Iterable[Hashable] = (),
     ) -> Result:
         """As `run`; ``tell`` is called where numpy runs what C was asked to.
 
@@ -152,20 +152,26 @@ class Simulator:
         settings = settings_of(method, rtol, atol)
         refuse_impulses(self.closed, signals, times)
         at_start = np.array([signal(times[0]) for signal in signals])
-        states = initial_values({} if initial is None else initial, self.states)
-        start = self.vector(float(times[0]), states, at_start)
+        on = checked_modes(self.switches, initially_on)
+        initial = {} if initial is None else initial
+        states = initial_values(initial, self.states)
+        begin = float(times[0])
+        start = self.vector(begin, states, at_start)
         with np.errstate(all="ignore"):
+            pieces = [signal.piece(begin) for signal in signals]
+            begun = beginning(self.closed, begin, start, pieces, on, {str(n) for n in initial})
+            start = begun.s
             found = self._in_c(times, states, start, signals, settings)
             if not isinstance(found, Recorded):
                 stopped = found
                 if stopped is not None and stopped.limit:
                     tell(stopped)
-                begin = float(times[0])
-                run = run_hybrid(self.closed, times, start, signals, settings, begin, begin)
+                run = run_hybrid(self.closed, times, start, signals, settings, first=begun.mode)
                 found = self._recorded(times, signals, run.track, "numpy")
                 if stopped is not None and not stopped.limit:
                     tell(stopped)
             columns, observer = named_columns(self.closed, times, found.shots)
+        columns = with_switches(columns, self.closed.program, found.modes)
         return Result(
             times,
             self.states,
@@ -182,10 +188,12 @@ class Simulator:
                     read_only(start),
                     tuple(asked),
                     settings,
+                    begun.mode,
                 )
             ),
             told_units(self.closed.equations),
             found.backend,
+            begun.completed,
         )
 
     def _ledger(self, run: Run) -> Ledger:
@@ -217,7 +225,7 @@ class Simulator:
         self, times: Array, signals: Sequence[Signal], track: Track, backend: str
     ) -> Recorded:
         shots = snapshots(self.closed.within(track), times, signals, track)
-        return Recorded(tuple(track.events), shots, backend)
+        return Recorded(tuple(track.events), shots, backend, tuple(track.modes))
 
     def steady(
         self, inputs: Mapping[str, float], initial: Mapping[str, float]
@@ -262,7 +270,7 @@ def simulator(
     """
     if backend not in BACKENDS:
         raise SignalError(f"unknown backend {backend!r}; there is {', '.join(BACKENDS)}")
-    ready = guarded_simulator(equations, parameters, laws, ())
+    ready = bare_simulator(equations, parameters, laws)
     warn_of_doubts(ready.closed.program, equations, ready.closed.parameters)
     return with_engine(ready, backend)
 
@@ -279,20 +287,16 @@ def with_engine(ready: Simulator, backend: str, library: LocatedLibrary | None =
     return replace(ready, located=located)
 
 
-def guarded_simulator(
+def bare_simulator(
     equations: StateEquations,
     parameters: Mapping[str, object],
     laws: Mapping[Any, object] | None,
-    guards: Sequence[sp.Expr],
     timed: bool = True,
 ) -> Simulator:
-    """A simulator whose model has guards: conditions that end a stretch where one falls below zero.
-
-    ``timed``: as `lower` takes it.
-    """
+    """A simulator in numpy, without a word on what is doubtful; ``timed``: as `lower` takes it."""
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
-    return bound(lower(equations, laws, parameters, guards, timed), equations, parameters, laws)
+    return bound(lower(equations, laws, parameters, timed), equations, parameters, laws)
 
 
 def bound(
@@ -301,10 +305,12 @@ def bound(
 ) -> Simulator:  # fmt: skip
     """A simulator of a program that was lowered for parameters of these names, with these laws."""
     closed = ClosedModel(program, equations, parameters)
+    check_names(program, equations)
     return Simulator(
         tuple(name.name for name in (*program.states, *program.law_states)),
         tuple(name.name for name in program.asked),
         tuple(name.name for name in program.outputs),
+        tuple(port.name for port in program.switches),
         closed,
         None if laws is None else MappingProxyType(dict(laws)),
     )

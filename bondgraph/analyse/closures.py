@@ -20,6 +20,10 @@ def merged_laws(
     for key, value in overrides.items():
         port = port_called(equations.ports, key)
         name = port.element.name
+        if port.element.kind.switches:
+            raise StructureError(
+                f"law at {name!r}: a switch is told by its on and off, not by a law"
+            )
         declared = equations.laws.get(name)
         state = declared.state if isinstance(declared, ExpressionLaw) else None
         closed = law(value, f"law at {name!r}", state)

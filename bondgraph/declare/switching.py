@@ -57,6 +57,17 @@ def checked_modes(known: Sequence[Hashable], on: Any) -> frozenset[Hashable]:
     return frozenset(chosen)
 
 
+def one_sided(switch: Switch, given: sp.Symbol | None, other: sp.Symbol | None) -> int:
+    """The side of a switch that is on while ``side * other >= 0`` and off while ``side * given <= 0``; else 0.
+
+    ``given``: the variable that is zero while it is on, ``other`` the one that is zero while it is off.
+    So it is told where it turns on by a multiple of the one and off by the reversed one of the other.
+    """
+    ratios = switch.on / given, -switch.off / other
+    signs = [1 if ratio.is_positive else -1 if ratio.is_negative else 0 for ratio in ratios]
+    return signs[0] if signs[0] == signs[1] else 0
+
+
 def refuse_switches(graph: "nx.DiGraph[Hashable]") -> None:
     """Refuse a validated graph whose switches are in no mode."""
     names = [switch.name for switch in switches(graph)]

@@ -12,6 +12,7 @@ from codegen.model.snapshot import Mode, Run, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.layout import RATE
+from codegen.runs.track import Struck
 
 Dense = Callable[[float | Array], Array]
 
@@ -20,7 +21,8 @@ Dense = Callable[[float | Array], Array]
 class Tally:
     """Integrals of pairs of signals through one run of a model, by their places in a snapshot.
 
-    ``other``: the second signal of each product, None for a product with nothing. ``held``: the energies
+    ``other``: the second signal of each product, None for a product with nothing. ``stored``: which of
+    the products are those of storages. ``held``: the energies
     of storages as a function of time and snapshot. ``total``: the integrals so far; ``taken``: what
     ports that came to rest and impacts took from the storages. ``rows``: both at each sample, at a step or
     an event just after it.
@@ -29,6 +31,7 @@ class Tally:
     model: ClosedModel
     one: Sequence[int]
     other: Sequence[int | None]
+    stored: Array
     held: Callable[[float, Snapshot], float]
     times: Array
     total: Array = field(init=False)
@@ -98,29 +101,28 @@ class Tally:
         pushed, turned = self._pair(impulses)
         self.total = self.total + one * turned * self._double + pushed * other
 
-    def pair(self, now: Snapshot) -> tuple[Array, Array]:
-        """Both signals of each product at an instant."""
-        return self._pair(vector_of(now))
-
     def impact(
-        self, before: tuple[Array, Array], after: Snapshot, impulses: Array, stored: Array,
-        taken: float,
-    ) -> None:  # fmt: skip
-        """Switches that change over: impulses in the readings, and what the impact took.
+        self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, struck: Struck
+    ) -> None:
+        """Switches that come to hold: impulses, and what the impact took.
 
-        An impulse works on what there is after it; in storages, whose products are ``stored``, on the mean
-        of before and after.
+        An impulse works on what there is after it; in storages on the mean of before and after.
         """
-        jump = np.zeros(_length(after))
-        first = len(after.x) + len(after.z) + 2 * len(after.u)
-        jump[first : first + len(after.y)] = impulses
+        slipping = tuple(sign or 1 for sign in mode)
+        a = self.model.at(t, before, pieces, slipping)
+        b = self.model.at(t, struck.s, pieces, slipping)
+        jump = np.zeros(_length(b))
+        inputs = len(b.x) + len(b.z)
+        readings = inputs + 2 * len(b.u)
+        jump[[inputs + at for at in self.model.friction_inputs]] = struck.given
+        jump[readings : readings + len(b.y)] = struck.received
         one, other = (
-            np.where(stored, (past + now) / 2, now)
-            for past, now in zip(before, self.pair(after), strict=True)
+            np.where(self.stored, (past + now) / 2, now)
+            for past, now in zip(*(self._pair(vector_of(end)) for end in (a, b)), strict=True)
         )
         pushed, turned = self._pair(jump)
         self.total = self.total + one * turned * self._double + pushed * other
-        self.taken += taken
+        self.taken += struck.taken
 
     def rest(
         self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, after: Array

@@ -17,6 +17,7 @@ from codegen.engine.sizes import aligned, declarations
 from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
 from codegen.inputs.tables import SignalTable, signal_table
+from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.layout import recorded
@@ -43,6 +44,7 @@ class Recorded:
     events: tuple[Event, ...]
     shots: Snapshots
     backend: str
+    modes: tuple[Mode, ...] = ()
 
 
 class LocatedLibrary:

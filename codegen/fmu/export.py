@@ -33,7 +33,7 @@ from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import Leg
 from codegen.runs.steps import round_step, step_at_start
 from codegen.runs.track import Settings
-from codegen.simulate import Simulator, guarded_simulator
+from codegen.simulate import Simulator, bare_simulator
 from codegen.tuning import TUNING
 
 OTHERS: Mapping[str, str] = {"2.0": "fmu3", "3.0": "fmu2"}
@@ -97,8 +97,8 @@ def _model(
     inputs: Mapping[str, object],
 ) -> FmuModel:
     """Everything about the unit but its sources."""
-    ready = guarded_simulator(equations, parameters, laws, (), timed=False)
-    told = guarded_simulator(equations, parameters, laws, ())
+    ready = bare_simulator(equations, parameters, laws, timed=False)
+    told = bare_simulator(equations, parameters, laws)
     program, exact = ready.closed.program, ready.closed.parameters
     signals = _signals(ready, inputs)
     inside = {at: one for at, one in enumerate(signals) if not isinstance(one, float)}

@@ -1,70 +1,161 @@
-"""Which friction ports stick and which way the others slip: one consistent mode at one instant."""
+"""Which ports hold and which are let go, and which way these slip: one consistent mode at one instant."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import product
+from typing import NamedTuple
+
+import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
+from codegen.modes.guards import guard_rounding
+from codegen.modes.impact import Impact, impact, pushed
 from codegen.modes.rounding import Peaks, scales
+from codegen.modes.switchings import Broken, flipped, ways
 from codegen.modes.trials import evaluated
 from codegen.modes.verdicts import Look, ruled_out, ruled_out_later
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
+from codegen.tuning import TUNING
+
+NONE: Broken = frozenset()
 
 
-def decide(
-    model: ClosedModel,
-    t: float,
-    s: Array,
-    pieces: Sequence[Piece],
-    previous: Mode,
-    at_zero: frozenset[int],
-    ahead: float,
-    peaks: Peaks | None = None,
-    touched: frozenset[int] = frozenset(),
-) -> Mode:
-    """The mode just after t: every port in ``at_zero`` sticks if it can, else slips the way it is pushed.
+@dataclass(frozen=True)
+class Occasion:
+    """An instant at which a mode is to be decided.
 
-    Other ports slip the way their slip shows. Where several modes are consistent, ports not ``touched``
-    by the event keep their state. ``ahead`` [s] is how far to look where the instant itself
-    does not decide. A mode that cannot be evaluated is none: laws without a solution in it, ports without
-    unique holding efforts. Raises `SimulationError`, with the numbers, if no mode is consistent.
+    ``loose``: friction ports that stick if they are at rest and can. ``touched``: ports whose event it
+    is. ``ahead`` [s]: how far to look where the instant itself does not decide.
     """
-    if not previous:
-        return ()
-    undecided = set(at_zero) | {i for i in range(len(previous)) if model.coupled_directly(i)}
-    _, now = evaluated(model, t, s, pieces, previous)
-    slips = now.y[model.friction_readings]
-    near = scales(model, now, t, peaks).slip
-    undecided |= {i for i, slip in enumerate(slips) if abs(slip) <= near[i]}
-    tried: dict[Mode, str] = {}
-    errors: set[str] = set()
-    for mode in _candidates(previous, slips, sorted(undecided), touched):
+
+    model: ClosedModel
+    t: float
+    pieces: Sequence[Piece]
+    previous: Mode
+    ahead: float
+    peaks: Peaks | None = None
+    loose: frozenset[int] = frozenset()
+    touched: frozenset[int] = frozenset()
+
+
+class Decision(NamedTuple):
+    """A mode, the integrated vector with which it begins, and the impact that led to it, if there is one."""
+
+    mode: Mode
+    s: Array
+    impact: Impact | None
+
+
+class _Refusal(NamedTuple):
+    """Why there is no mode with the switches so, and which of them would have to change over."""
+
+    reason: str
+    broken: Broken
+
+
+def decide(now: Occasion, s: Array) -> Decision:
+    """The mode just after an instant, of the integrated vector s before it.
+
+    Every loose port at rest sticks if it can, else slips the way it is pushed; other ports slip the way
+    their slip shows. Where several modes are consistent, ports not touched keep their state; switches that
+    are touched change over. A mode that cannot be evaluated is none: laws without a solution in it, ports
+    without unique holding efforts.
+
+    Raises `SimulationError`, with the numbers, if no mode is consistent.
+    """
+    if not now.previous:
+        return Decision((), s, None)
+    switching = now.model.switching
+    switches = [i for i, switch in enumerate(switching) if switch is not None]
+    refused: dict[Mode, str] = {}
+    tries = ways(flipped(now.previous, now.touched & set(switches)), switches)
+    mode = next(tries)
+    while True:
+        found = _tried(now, s, mode)
+        if isinstance(found, Decision):
+            return found
+        refused[mode] = found.reason
         try:
-            complaint = _complaint(model, t, s, pieces, mode, sorted(undecided), ahead, peaks)
-        except SlopeNeededError:
-            raise
-        except SimulationError as error:
-            complaint = str(error)
-            errors.add(complaint)
-        if complaint is None:
-            return mode
-        tried[mode] = complaint
-    if errors == set(tried.values()) and len(errors) == 1:
-        raise SimulationError(errors.pop())
-    names = ", ".join(repr(port.name) for port in model.program.friction)
-    listed = "; ".join(f"{mode}: {complaint}" for mode, complaint in tried.items())
-    raise SimulationError(
-        f"at t = {t:.9g} no way of sticking and slipping at {names} is consistent "
-        f"(slips {slips.tolist()}); tried {listed}"
+            mode = tries.send(found.broken)
+        except StopIteration:
+            raise _none_consistent(now, refused) from None
+
+
+def _none_consistent(now: Occasion, refused: dict[Mode, str]) -> SimulationError:
+    if not now.model.program.switches:
+        return SimulationError(next(iter(refused.values())))
+    ports = now.model.program.friction
+    told = []
+    for mode, reason in list(refused.items())[:8]:
+        on = [
+            repr(port.name) for port, sign in zip(ports, mode, strict=True)
+            if port.switch is not None and port.switch.word(sign) == "on"
+        ]  # fmt: skip
+        told.append(f"on {', '.join(on) or 'none'}: {reason}")
+    return SimulationError(
+        f"at t = {now.t:.9g} no mode of the switches is consistent; tried {'; '.join(told)}. "
+        "A switch that both modes send back needs a hysteresis: an off of its own"
     )
 
 
+def _tried(now: Occasion, before: Array, switched: Mode) -> Decision | _Refusal:
+    """The first consistent mode with the switches as in this one."""
+    model = now.model
+    try:
+        jump = impact(model, now.t, before, now.pieces, switched, now.peaks)
+        s = before if jump is None else jump.s
+        slips, undecided = _undecided(now, s, switched)
+    except SlopeNeededError:
+        raise
+    except SimulationError as error:
+        return _Refusal(str(error), NONE)
+    tried: dict[Mode, str] = {}
+    errors: set[str] = set()
+    broken = NONE
+    for mode in _candidates(switched, model, slips, undecided, now.touched):
+        try:
+            complaint, wrong = _complaint(now, s, mode, undecided, jump)
+        except SlopeNeededError:
+            raise
+        except SimulationError as error:
+            complaint, wrong = str(error), NONE
+            errors.add(complaint)
+        if complaint is None:
+            return Decision(mode, s, jump)
+        tried[mode], broken = complaint, broken or wrong
+    if len(tried) == 1 or (errors == set(tried.values()) and len(errors) == 1):
+        return _Refusal(next(iter(tried.values())), broken)
+    names = ", ".join(repr(port.name) for port in model.program.friction if port.switch is None)
+    listed = "; ".join(f"{mode}: {complaint}" for mode, complaint in tried.items())
+    return _Refusal(
+        f"at t = {now.t:.9g} no way of sticking and slipping at {names} is consistent "
+        f"(slips {slips.tolist()}); tried {listed}",
+        broken,
+    )
+
+
+def _undecided(now: Occasion, s: Array, switched: Mode) -> tuple[Array, list[int]]:
+    """The slips, and the friction ports that may stick: at rest, or moved by efforts at once."""
+    model = now.model
+    _, shot = evaluated(model, now.t, s, now.pieces, switched)
+    slips = shot.y[model.friction_readings]
+    near = scales(model, shot, now.t, now.peaks).slip
+    wide = np.where([i in now.loose for i in range(len(slips))], TUNING.wide, 1.0)
+    return slips, [
+        i for i, slip in enumerate(slips)
+        if model.switching[i] is None
+        and (model.coupled_directly(i) or abs(slip) <= wide[i] * near[i])
+    ]  # fmt: skip
+
+
 def _candidates(
-    previous: Mode, slips: Array, undecided: list[int], touched: frozenset[int]
-) -> Iterator[Mode]:
+    previous: Mode, model: ClosedModel, slips: Array, undecided: list[int],
+    touched: frozenset[int],
+) -> Iterator[Mode]:  # fmt: skip
     """Modes by the number of ports that stick, most first; then those that change least."""
 
     def rank(choice: tuple[int, ...]) -> tuple[int, int]:
@@ -77,41 +168,61 @@ def _candidates(
         key=rank,
     )
     for choice in choices:
-        mode = [1 if slip > 0 else -1 for slip in slips]
+        mode = [
+            sign if switch is not None else 1 if slip > 0 else -1
+            for sign, switch, slip in zip(previous, model.switching, slips, strict=True)
+        ]
         for i, sign in zip(undecided, choice, strict=True):
             mode[i] = sign
         yield tuple(mode)
 
 
+def look_at(now: Occasion, s: Array, mode: Mode) -> Look:
+    """A mode at an instant, with what counts as zero there. Raises `SimulationError` if it is no mode."""
+    model = now.model
+    shot = model.at(now.t, s, now.pieces, mode)
+    size = scales(model, shot, now.t, now.peaks)
+    if not model.program.guards.results:
+        return Look(model, mode, shot, size)
+    near = guard_rounding(model, now.t, s, now.pieces, mode, now.peaks)
+    return Look(model, mode, shot, size, model.guards(now.t, shot), near)
+
+
 def _complaint(
-    model: ClosedModel,
-    t: float,
-    s: Array,
-    pieces: Sequence[Piece],
-    mode: Mode,
-    undecided: Sequence[int],
-    ahead: float,
-    peaks: Peaks | None,
-) -> str | None:
-    """What contradicts a mode; None if it is consistent. Raises `SimulationError` if it is no mode."""
-    now = model.at(t, s, pieces, mode)
-    look = Look(model, mode, now, scales(model, now, t, peaks))
+    now: Occasion, s: Array, mode: Mode, undecided: Sequence[int], jump: Impact | None
+) -> tuple[str | None, Broken]:
+    """What contradicts a mode, None if it is consistent; and the switches that do.
+
+    Raises `SimulationError` if it is no mode.
+    """
+    model = now.model
+    look = look_at(now, s, mode)
     wrong = ruled_out(look)
     if wrong is not None:
-        return wrong
+        return wrong, NONE
     verdicts = {i: look.verdict(i) for i in undecided}
-    wrong = next((_contradiction(look, i) for i, sure in verdicts.items() if sure < 0), None)
+    switches = [i for i, switch in enumerate(model.switching) if switch is not None]
+    shocks = np.zeros(len(mode), dtype=int) if jump is None else pushed(look, now.t, jump)
+    verdicts |= {i: int(shocks[i]) or look.verdict(i) for i in switches}
+    contrary = [i for i, sure in verdicts.items() if sure < 0]
     tied = [i for i, sure in verdicts.items() if sure == 0]
-    if wrong is not None or not (tied or len(look.ruled[0])):
-        return wrong
-    later = a_moment_later(model, t, s, pieces, mode, ahead)
-    wrong = ruled_out_later(look, later)
-    lost = (_contradiction(look, i) for i in tied if look.later_verdict(i, later) < 0)
-    return wrong or next(lost, None)
+    if not contrary and (tied or len(look.ruled[0])):
+        later = a_moment_later(model, now.t, s, now.pieces, mode, now.ahead)
+        guards = model.guards(now.t + now.ahead, later) if len(look.guards) else look.guards
+        then = Look(model, mode, later, look.size, guards, look.near)
+        wrong = ruled_out_later(look, then)
+        contrary = [i for i in tied if look.later_verdict(i, then) < 0]
+    if wrong is not None or not contrary:
+        return wrong, NONE
+    rubbing = [i for i in contrary if model.switching[i] is None]
+    broken = NONE if rubbing else frozenset(contrary)
+    return _contradiction(look, (rubbing or contrary)[0]), broken
 
 
 def _contradiction(look: Look, port: int) -> str:
     name, sign = look.model.program.friction[port].name, look.mode[port]
+    if look.model.switching[port] is not None:
+        return f"{name!r} would change over at once"
     if sign:
         return f"{name!r} would not slip in the direction {sign:+d}"
     effort = look.now.u[look.model.friction_inputs[port]]

@@ -45,6 +45,8 @@ class ClosedModel:
         check_gains(program, exact)
         self.friction_inputs = [port.input for port in program.friction]
         self.friction_readings = [port.reading for port in program.friction]
+        #: Of each port that is a switch when it changes over, None of the others.
+        self.switching = [port.switch for port in program.friction]
         binding = Binding(program, exact)
         self._guards = binding.function(program.guards)
         self._coefficients = binding.function(program.coefficients)
@@ -56,6 +58,7 @@ class ClosedModel:
         self._form = formed(program, binding, self.numbers)
         self._friction = rubbing(program, binding, self._form, self.slips)
         self._maps: dict[Mode, AffineMap | None] = {}
+        self._guard_maps: dict[Mode, Array] = {}
         self._run: Run | None = None
 
     def within(self, run: Run) -> "ClosedModel":
@@ -125,15 +128,34 @@ class ClosedModel:
             return vector(self._form, t, s, given, np.zeros(len(given)))
 
     def guards(self, t: float, now: Snapshot) -> Array:
-        """The conditions at an instant: one below zero ends the run."""
+        """The conditions of switches at an instant, to turn on and to turn off in turn."""
         values = self._guards(now.instant(t))
         if not np.isfinite(values).all():
             at = int(np.argmin(np.isfinite(values)))
+            port = next(
+                port for port in self.program.switches
+                if port.switch is not None and port.switch.guard in (at, at - 1)
+            )  # fmt: skip
             raise SimulationError(
-                f"at t = {t:.9g} the condition of switch number {at + 1}, in the order of their declaration, "
-                "has no finite value"
+                f"at t = {t:.9g} the condition of switch {port.name!r} has no finite value"
             )
         return values
+
+    def guard_rows(self, mode: Mode, inputs: int) -> Array | None:
+        """The conditions of switches in an affine mode, as rows over [s, w, w', 1]; None where they are not."""
+        affine = self.affine_map(mode, inputs)
+        if affine is None or not self.program.guards_affine:
+            return None
+        if mode not in self._guard_maps:
+            size = self.size
+
+            def point(v: Array) -> list[Array]:
+                s, w, dw = np.split(v, [size, size + inputs])
+                parts = affine(s, w, dw)
+                return [self._guards(Snapshot(*parts, w, self.constant).instant(0.0))]
+
+            self._guard_maps[mode] = probed(point, size + 2 * inputs, 0).matrix
+        return self._guard_maps[mode]
 
     def given(self, t: float, pieces: Sequence[Piece]) -> tuple[Array, Array]:
         """The external inputs, and their rates where anything asks for them."""

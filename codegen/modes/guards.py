@@ -1,4 +1,4 @@
-"""Guards, the conditions that end a run in one phase: what counts as zero, and which have fallen."""
+"""Conditions of switches: what counts as zero."""
 
 from collections.abc import Sequence
 
@@ -44,21 +44,3 @@ def _slopes(model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mod
     moment = TUNING.guard_moment * max(abs(t), TUNING.guard_floor)
     later = model.guards(t + moment, model.at(t + moment, s + moment * now.rate, pieces, mode))
     return np.asarray(np.nan_to_num(np.abs(later - model.guards(t, now)) / moment), dtype=float)
-
-
-def fallen_guards(
-    model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode, peaks: Peaks
-) -> frozenset[int]:
-    """The guards that are below zero, by more than rounding."""
-    if not model.program.guards.results:
-        return frozenset()
-    values, limits = guard_values(model, t, s, pieces, mode, peaks)
-    return frozenset(np.flatnonzero(values < -limits).tolist())
-
-
-def guard_values(
-    model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode, peaks: Peaks
-) -> tuple[Array, Array]:
-    """The guards, and below what they count as zero."""
-    values = model.guards(t, model.at(t, s, pieces, mode))
-    return values, guard_rounding(model, t, s, pieces, mode, peaks)

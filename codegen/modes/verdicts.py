@@ -1,6 +1,6 @@
-"""Whether a friction port goes with a mode, and whether what only sources rule lets a set of ports hold."""
+"""Whether a port goes with a mode, and whether what only sources rule lets a set of ports hold."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -14,14 +14,23 @@ from codegen.tuning import TUNING
 NOTHING: Array = np.zeros(0)
 
 
+def _nothing() -> Array:
+    return NOTHING
+
+
 @dataclass(frozen=True)
 class Look:
-    """A mode at an instant, with what counts as zero there."""
+    """A mode at an instant, with what counts as zero there.
+
+    ``guards``: conditions of switches, and ``near`` below what they count as zero.
+    """
 
     model: ClosedModel
     mode: Mode
     now: Snapshot
     size: Scales
+    guards: Array = field(default_factory=_nothing)
+    near: Array = field(default_factory=_nothing)
 
     def slip(self, port: int) -> float:
         """The port's slip."""
@@ -31,18 +40,31 @@ class Look:
         """How far what the port gives is below its breakaway effort."""
         return float(self.now.caps[port] - abs(self.now.u[self.model.friction_inputs[port]]))
 
+    def stays(self, port: int) -> tuple[float, float]:
+        """How far a switch is from changing over, and below what that counts as zero."""
+        part, at, sign = kept_by(self.model, self.mode, port)
+        slips = self.now.y[self.model.friction_readings]
+        efforts = self.now.u[self.model.friction_inputs]
+        value = sign * (slips, efforts, self.guards)[part][at]
+        return float(value), float((self.size.slip, self.size.effort, self.near)[part][at])
+
     def verdict(self, port: int) -> int:
         """1: the port goes with the mode; -1: it contradicts it; 0: a tie."""
         sign = self.mode[port]
+        if self.model.switching[port] is not None:
+            return _sign(*self.stays(port))
         if sign == 0:
             return _sign(self.margin(port), self.size.effort[port])
         if not self.model.coupled_directly(port):
             return _sign(sign * self.rates[port], self.size.acceleration[port])
         return _sign(sign * self.slip(port), self.size.slip[port])
 
-    def later_verdict(self, port: int, later: Snapshot) -> int:
+    def later_verdict(self, port: int, then: "Look") -> int:
         """A tie decided a little later: still holding to rounding, or really moving off."""
-        then, sign = Look(self.model, self.mode, later, self.size), self.mode[port]
+        sign = self.mode[port]
+        if self.model.switching[port] is not None:
+            (value, least), (after, _) = self.stays(port), then.stays(port)
+            return -1 if after - value < -TUNING.seen * least else 1
         if sign == 0:
             return 1 if then.margin(port) >= -self.size.effort[port] else -1
         if self.model.coupled_directly(port):
@@ -79,6 +101,29 @@ class Look:
         return slips, rows @ self.rates, size @ self.size.slip, size @ self.size.acceleration
 
 
+SLIPS, EFFORTS, GUARDS = range(3)
+"""What keeps a switch: what it receives, what it gives, a condition of its own."""
+
+
+def kept_by(model: ClosedModel, mode: Mode, port: int) -> tuple[int, int, int]:
+    """What keeps a switch from changing over, its place there, and the sign with which it is positive."""
+    switch, sign = model.switching[port], mode[port]
+    assert switch is not None
+    if not switch.side:
+        return GUARDS, switch.guard + (switch.on == (sign == 0)), -1
+    return (SLIPS, port, switch.side) if sign else (EFFORTS, port, -switch.side)
+
+
+def limits_of(look: Look) -> Array:
+    """Below these what keeps a port in its mode counts as zero."""
+    size, mode = look.size, look.mode
+    limits = np.where(np.array(mode, dtype=int) == 0, size.effort, size.slip)
+    for i, switch in enumerate(look.model.switching):
+        if switch is not None:
+            limits[i] = look.stays(i)[1]
+    return limits
+
+
 def _sign(value: float, least: float) -> int:
     return 0 if abs(value) <= least else (1 if value > 0 else -1)
 
@@ -94,10 +139,10 @@ def ruled_out(look: Look) -> str | None:
     return None
 
 
-def ruled_out_later(look: Look, later: Snapshot) -> str | None:
+def ruled_out_later(look: Look, later: Look) -> str | None:
     """The same from a little later, where the instant itself is a tie."""
     slips, _, near, slow = look.ruled
-    then, rates, *_ = Look(look.model, look.mode, later, look.size).ruled
+    then, rates, *_ = later.ruled
     moved = (np.abs(then - slips) > TUNING.moving * near) | (np.abs(rates) > TUNING.moving * slow)
     return "a slip that only sources rule is about to leave zero" if moved.any() else None
 

@@ -19,7 +19,8 @@ class Closing:
     """The laws by the input they give, sorted by what they depend on.
 
     ``known``: of time, parameters and external inputs. ``order``: groups of the others in the order of
-    their evaluation, with whether each is a loop. ``friction``: inputs given by dry friction.
+    their evaluation, with whether each is a loop. ``friction``: inputs given by dry friction, and by ideal
+    switches, which let go give nothing.
     ``coupled``: laws that depend on friction, solved together with it. ``law_states``: each law's own
     state and the reading that is its rate.
     """
@@ -59,6 +60,8 @@ def close_ports(
         # An open input that parameters name is held at that number.
         if name not in by_port and port.given.name in parameters:
             by_port[name] = ExpressionLaw(port.given)
+    switching = {port.given for port in equations.ports if port.element.kind.switches}
+    by_port |= {name: DryFriction(0) for name, p in ports.items() if p.given in switching}
     laws: dict[sp.Symbol, Law] = {}
     for name, closed in by_port.items():
         if laws.setdefault(ports[name].given, closed) != closed:
@@ -71,7 +74,7 @@ def close_ports(
         if isinstance(closed, ExpressionLaw) and closed.state is not None
     }
     states = {**states, **equations.integrals}
-    sorted_laws = _sort(equations, laws, set(states), parameters)
+    sorted_laws = _sort(equations, laws, set(states), parameters, switching)
     known, order, friction, coupled, joint = sorted_laws
     return Closing(
         equations,
@@ -144,6 +147,7 @@ def _sort(
     laws: Mapping[sp.Symbol, Law],
     law_states: set[sp.Symbol],
     parameters: set[str],
+    switching: set[sp.Symbol],
 ) -> Sorted:
     held = {name for name, law in laws.items() if law == ExpressionLaw(name)}
     held = {name for name in held if name.name in parameters}
@@ -152,8 +156,9 @@ def _sort(
     known = tuple(name for name in laws if not depends_on_signals(laws[name], signals))
     needs: nx.DiGraph[sp.Symbol] = nx.DiGraph()
     needs.add_nodes_from(name for name in laws if name not in known)
+    # What a switch gives let go is nothing, whatever it receives.
     for name in needs:
-        for source in _reads(equations, laws, name):
+        for source in _reads(equations, laws, name) if name not in switching else ():
             if source in needs:
                 needs.add_edge(source, name)
     after: set[sp.Symbol] = set().union(*(nx.descendants(needs, name) for name in friction))

@@ -13,7 +13,7 @@ from codegen.program.affine import is_affine
 from codegen.program.closing import Closing, close_ports
 from codegen.program.gains import check_gains
 from codegen.program.records import Program, block
-from codegen.program.sections import coefficients, friction, group, known_rates, uses
+from codegen.program.sections import coefficients, friction, group, known_rates, switches, uses
 from codegen.program.timed import Sources
 
 
@@ -21,15 +21,14 @@ def lower(
     equations: StateEquations,
     laws: Mapping[Any, object] | None = None,
     parameters: Iterable[str] = (),
-    guards: Sequence[sp.Expr] = (),
     timed: bool = False,
 ) -> Program:
     """Sort names into parameters and inputs, order the laws, and share common subexpressions.
 
     ``laws``: node (or the input it gives) to the law that closes its port, over those declared.
     ``parameters``: the names that will be given numbers; any other name in a law is an input.
-    ``guards``: expressions that end a run where one of them falls below zero. ``timed``: what holds the
-    time and parameters alone becomes an input of its own, one of ``Program.sources``.
+    ``timed``: what holds the time and parameters alone becomes an input of its own, one of
+    ``Program.sources``.
 
     Raises `ParameterError` if the matrices use a name that is no parameter, `DependentSourceError`
     if a law would have to be differentiated.
@@ -40,13 +39,15 @@ def lower(
         raise ParameterError(
             f"missing parameter(s) {', '.join(missing)}; give each a number in parameters"
         )
-    watched = frozenset[sp.Symbol]().union(*(guard.free_symbols for guard in guards))
+    conditions = (c for p in equations.ports if (s := p.element.switch) for c in (s.on, s.off))
+    watched = frozenset[sp.Symbol]().union(*(condition.free_symbols for condition in conditions))
     closing = close_ports(equations, {} if laws is None else laws, given, watched)
     equations = closing.equations
     _check_varying(closing)
     taken = _all_names(equations, closing) | watched
     expressions, layout = coefficients(equations)
     sources = Sources(closing, given, taken)
+    _, guards = switches(closing)
     if timed:
         expressions = [sources.parted(entry) for entry in expressions]
         guards = [sources.parted(guard) for guard in guards]
@@ -78,6 +79,7 @@ def lower(
         joint=closing.joint,
         read=_read(closing),
         guards=block(guards, taken),
+        guards_affine=is_affine(guards, given),
         varying=bool(equations.varying),
         affine=_is_affine(closing, values, given),
     )

@@ -46,12 +46,38 @@ class Group:
 
 
 @dataclass(frozen=True)
+class Switching:
+    """When an ideal switch changes over: let go it gives zero, held it receives zero.
+
+    ``on``: whether it is on while it is held. ``side``: of a one-sided switch, which is let go while
+    ``side * y >= 0`` and held while ``side * u <= 0``; 0: of one that is told by the two guards from
+    ``guard`` on, its conditions to turn on and off.
+    """
+
+    on: bool
+    side: int
+    guard: int = -1
+
+    def word(self, sign: int) -> str:
+        """What it is in a mode, held being 0: "on" or "off"."""
+        return "on" if self.on == (sign == 0) else "off"
+
+    def sign(self, on: bool) -> int:
+        """The mode in which it is on, or off."""
+        return 0 if on == self.on else 1
+
+
+@dataclass(frozen=True)
 class FrictionPort:
-    """A port with dry friction: its node, the input it gives and the reading it receives."""
+    """A port that is held or let go: its node, the input it gives and the reading it receives.
+
+    ``switch``: of an ideal switch, when it changes over; None where it is dry friction.
+    """
 
     name: Hashable
     input: int
     reading: int
+    switch: Switching | None = None
 
 
 @dataclass(frozen=True)
@@ -94,8 +120,10 @@ class Program:
     joint: bool
     #: Readings that a step must not turn into an impulse: outputs, and what laws read.
     read: tuple[int, ...]
-    #: Conditions that end a run where one falls below zero.
+    #: Conditions of switches, to turn on and to turn off in turn: each changes over above zero.
     guards: Block
+    #: Whether these are affine, as long as everything else is.
+    guards_affine: bool
     #: Whether coefficients change in time, with states, external inputs or the time itself.
     varying: bool
     #: Whether each friction mode is an affine system with constant coefficients.
@@ -105,7 +133,12 @@ class Program:
     def blocks(self) -> tuple[Block, ...]:
         """Every block that a target evaluates."""
         laws = (group.values for group in (self.known, *self.groups, self.coupled))
-        return (self.coefficients, *laws, self.known_rates, self.friction_values)
+        return (self.coefficients, *laws, self.known_rates, self.friction_values, self.guards)
+
+    @property
+    def switches(self) -> tuple[FrictionPort, ...]:
+        """The ports that are ideal switches."""
+        return tuple(port for port in self.friction if port.switch is not None)
 
     @property
     def given(self) -> list[int]:

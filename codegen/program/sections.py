@@ -1,4 +1,4 @@
-"""The sections of a program: matrices, groups of laws and their rates, friction."""
+"""The sections of a program: matrices, groups of laws and their rates, ports that are held or let go."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
@@ -6,10 +6,12 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
+from bondgraph.declare.elements import OTHER
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
+from bondgraph.declare.switching import one_sided
 from bondgraph.equations import StateEquations
 from codegen.program.closing import Closing
-from codegen.program.records import FrictionPort, Group, Pattern, block
+from codegen.program.records import FrictionPort, Group, Pattern, Switching, block
 
 
 def coefficients(
@@ -77,8 +79,12 @@ def expression(law: Law) -> sp.Expr:
 
 
 def friction(closing: Closing) -> tuple[tuple[FrictionPort, ...], list[sp.Expr]]:
-    """Friction ports; level, breakaway level, curve and curve at rest of each in turn."""
+    """Ports that are held or let go; level, breakaway level, curve and curve at rest of each in turn.
+
+    Those of switches, which have no limit and let go give nothing, are zero and one.
+    """
     readings = list(closing.equations.readings)
+    switching, _ = switches(closing)
     ports: list[FrictionPort] = []
     values: list[sp.Expr] = []
     for name in closing.friction:
@@ -91,8 +97,32 @@ def friction(closing: Closing) -> tuple[tuple[FrictionPort, ...], list[sp.Expr]]
                 closing.port_names[name],
                 closing.equations.inputs.index(name),
                 readings.index(received),
+                switching.get(name),
             )
         )
         curves = [law.curve.subs(SLIP, slip) for slip in (sp.Abs(received), 0)]
         values += [law.level, law.breakaway * law.level, *curves]
     return tuple(ports), values
+
+
+def switches(closing: Closing) -> tuple[dict[sp.Symbol, Switching], list[sp.Expr]]:
+    """When each switch changes over, by the input that it gives; and the conditions of those that say."""
+    found: dict[sp.Symbol, Switching] = {}
+    conditions: list[sp.Expr] = []
+    for port in closing.equations.ports:
+        switch = port.element.switch
+        if switch is None:
+            continue
+        # Let go, a port that gives zero effort is a closed switch, one that gives zero flow an open one.
+        on = switch.gives != port.gives
+        given, other = (
+            port.element.variable(switch.gives),
+            port.element.variable(OTHER[switch.gives]),
+        )
+        side = one_sided(switch, given, other)
+        if side:
+            found[port.given] = Switching(on, -side if on else side)
+        else:
+            found[port.given] = Switching(on, 0, len(conditions))
+            conditions += [switch.on, switch.off]
+    return found, conditions

@@ -1,13 +1,15 @@
 """Samples as columns by name."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
 
 from bondgraph.errors import SimulationError
+from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array, read_only
+from codegen.program.records import Program
 from codegen.record.observer import Observer
 from codegen.record.snapshots import Snapshots
 
@@ -50,3 +52,15 @@ def _check_finite(times: Array, columns: Mapping[str, Array]) -> None:
             f"at t = {times[first[name]]:.9g} {name} is not finite: it has grown past the largest number "
             "in double precision; run it for a shorter time, or in larger units"
         )
+
+
+def with_switches(
+    columns: Mapping[str, Array], program: Program, modes: Sequence[Mode]
+) -> Mapping[str, Array]:
+    """The columns, and one for each switch: 1 while it is on, 0 while it is off."""
+    found = dict(columns)
+    for at, port in enumerate(program.friction):
+        if port.switch is not None:
+            on = [float(port.switch.word(mode[at]) == "on") for mode in modes]
+            found[str(port.name)] = read_only(np.array(on))
+    return MappingProxyType(found)

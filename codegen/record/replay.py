@@ -9,12 +9,12 @@ import sympy as sp
 
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError
-from codegen.energy.accounts import Account
+from codegen.energy.accounts import Account, Product
 from codegen.energy.ledger import Integrated
 from codegen.energy.stored import stored_energy
 from codegen.energy.tally import Tally, vector_of
 from codegen.inputs.signal import Signal
-from codegen.model.snapshot import Snapshot
+from codegen.model.snapshot import Mode, Snapshot
 from codegen.model.sources import source_signals
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array, read_only
@@ -36,6 +36,8 @@ class Run:
     start: Array
     signals: tuple[Signal, ...]
     settings: Settings
+    #: The mode before the first sample.
+    first: Mode
 
     def again(self, equations: StateEquations, whole: Sequence[Account]) -> Integrated:
         """The run once more, in Python, with accounts integrated."""
@@ -45,7 +47,7 @@ class Run:
         signals = [*self.signals, *source_signals(model.program, model.parameters, begin, end)]
         with np.errstate(all="ignore"):
             run = run_hybrid(
-                model, self.times, self.start, signals, self.settings, begin, begin, tally
+                model, self.times, self.start, signals, self.settings, tally, self.first
             )
             shots = snapshots(model.within(run.track), self.times, signals, run.track)
         _, observer = named_columns(model, self.times, shots)
@@ -56,12 +58,10 @@ class Run:
 
 def closed_model(
     equations: StateEquations, laws: Mapping[Any, object] | None,
-    parameters: Mapping[str, sp.Rational], guards: Sequence[sp.Expr] = (),
+    parameters: Mapping[str, sp.Rational],
 ) -> ClosedModel:  # fmt: skip
     """The model of a run, with more signals told."""
-    return ClosedModel(
-        lower(equations, laws, parameters, guards, timed=True), equations, parameters
-    )
+    return ClosedModel(lower(equations, laws, parameters, timed=True), equations, parameters)
 
 
 def tally_of(model: ClosedModel, whole: Sequence[Account], times: Array) -> Tally:
@@ -70,7 +70,14 @@ def tally_of(model: ClosedModel, whole: Sequence[Account], times: Array) -> Tall
     products = [product for account in whole for product in account]
     one = [at[product.one] for product in products]
     other = [at[product.other] if product.other else None for product in products]
-    return Tally(model, one, other, held_in(model), times)
+    return Tally(model, one, other, _stored(model, products), held_in(model), times)
+
+
+def _stored(model: ClosedModel, products: Sequence[Product]) -> Array:
+    """Which products are those of storages."""
+    ports = model.equations.reduction.structure.ports
+    names = {name.name for p in ports if p.element.kind.stores for name in (p.given, p.received)}
+    return np.array([p.one in names and p.other in names for p in products], dtype=bool)
 
 
 def shares(whole: Sequence[Account]) -> Array:

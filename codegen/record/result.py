@@ -58,7 +58,7 @@ class Result:
     shows the instant just after. ``columns``: the signals that a table of the run holds: states, inputs,
     outputs and what laws read; they and ``time`` are read-only arrays. ``units``: of those signals of which
     elements tell it. ``backend``: what ran it; what the C of a simulator cannot go on with is run by "numpy"
-    from the start.
+    from the start. ``completed``: the states that were not named and at the start followed what switches hold.
     """
 
     time: Array = field(repr=False)
@@ -71,6 +71,7 @@ class Result:
     ledger: Accountant = field(repr=False, compare=False)
     units: Mapping[str, str] = field(repr=False, default_factory=_no_units)
     backend: str = "numpy"
+    completed: Mapping[str, float] = field(repr=False, default_factory=dict)
 
     def __getitem__(self, name: str) -> Array:
         """The values of one signal; `KeyError` naming what there is."""

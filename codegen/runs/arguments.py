@@ -6,10 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bondgraph.algebra.expressions import normal
-from bondgraph.errors import SignalError
+from bondgraph.equations import StateEquations
+from bondgraph.errors import SignalError, StructureError
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import as_signal
 from codegen.numbers.arrays import Array, is_finite, is_number, read_only, real_array
+from codegen.program.records import Program
 from codegen.runs.methods import CHOICES
 from codegen.runs.track import Settings
 
@@ -84,3 +86,15 @@ def settings_of(method: str, rtol: float, atol: float) -> Settings:
     if method not in CHOICES:
         raise SignalError(f"unknown method {method!r}; there are {', '.join(CHOICES)}")
     return Settings(method, rtol, atol)
+
+
+def check_names(program: Program, equations: StateEquations) -> None:
+    """Refuse switches whose columns would hide a signal's."""
+    taken = {str(name) for name in (*equations.signals, *program.law_states, *program.asked)}
+    for port in program.switches:
+        if str(port.name) in taken:
+            raise StructureError(
+                f"switch {port.name!r} is called like a signal or another switch, and each is a column of a "
+                "result; rename it"
+            )
+        taken.add(str(port.name))

@@ -1,4 +1,4 @@
-"""Events inside one integration step: where a slip, a margin or a guard falls through zero."""
+"""Events inside one integration step: where a slip, a margin or a condition falls through zero."""
 
 from collections.abc import Sequence
 
@@ -8,10 +8,10 @@ from scipy.optimize import minimize_scalar
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.guards import guard_rounding
+from codegen.modes.choose import Occasion, look_at
 from codegen.modes.pace import moment
-from codegen.modes.rounding import Peaks, scales
-from codegen.modes.verdicts import Look, room
+from codegen.modes.rounding import Peaks
+from codegen.modes.verdicts import kept_by, limits_of, room
 from codegen.numbers.arrays import Array
 from codegen.program.layout import CAPS, INPUTS, READINGS
 from codegen.runs.track import Dense
@@ -20,11 +20,11 @@ from codegen.tuning import TUNING
 
 
 class Watch:
-    """Watches the friction ports, and then the guards, through one leg.
+    """Watches the ports through one leg.
 
-    Each port has a trigger that is positive while the mode holds: the magnitude of its slip, or, where
-    it sticks, the margin to its breakaway effort; a guard is one itself. A trigger that
-    starts at zero is armed once it has risen above rounding; until then only a fall well below zero
+    Each has a trigger that is positive while the mode holds: of friction the magnitude of its slip, or,
+    where it sticks, the margin to its breakaway effort; of a switch what keeps it from changing over. A
+    trigger that starts at zero is armed once it has risen above rounding; until then only a fall well below zero
     counts, and only after a moment too short to matter, so that a leg out of complete rest makes progress.
     """
 
@@ -39,24 +39,19 @@ class Watch:
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
         self._blind = t + moment(peaks.time if peaks else 0.0)
-        guarded = bool(model.program.guards.results)
-        affine = model.affine_map(mode, len(pieces)) if mode and not guarded else None
+        affine = model.affine_map(mode, len(pieces)) if mode else None
+        if model.program.guards.results:
+            affine = None
         self._affine = None if affine is None else (
             affine.rows(INPUTS)[model.friction_inputs],
             affine.rows(READINGS)[model.friction_readings],
             affine.rows(CAPS),
         )  # fmt: skip
-        now = self._snapshot(t, s)
-        self._limits = np.zeros(0)
-        size = scales(model, now, t, peaks)
-        self._look = Look(model, mode, now, size)
-        if mode:
-            self._limits = np.where(np.array(mode) == 0, size.effort, size.slip)
-        if guarded:
-            limits = guard_rounding(model, t, s, pieces, mode, peaks)
-            self._limits = np.concatenate([self._limits, limits])
+        self._look = look_at(Occasion(model, t, pieces, mode, 0.0, peaks), s, mode)
+        self._switching = [i for i, switch in enumerate(model.switching) if switch is not None]
+        self._limits = limits_of(self._look)
         self._armed = [False] * len(self._limits)
-        self._before = self._triggers(t, now)
+        self._before = self._triggers(t, self._look.now)
 
     def first_event(
         self, t_old: float, t_new: float, dense: Dense
@@ -102,23 +97,27 @@ class Watch:
         if caps.min() < 0:
             # One by one, so that a friction level below zero is refused with its time.
             return [self._triggers(t, self._snapshot(t, dense(t))) for t in times]
-        return list(self._of_ports(efforts, slips, caps))
+        return list(self._of_ports(efforts, slips, caps, np.zeros((len(times), 0))))
 
     def _snapshot(self, t: float, s: Array) -> Snapshot:
         return self._model.at(t, s, self._pieces, self._mode)
 
     def _triggers(self, t: float, now: Snapshot) -> Array:
         efforts, slips = now.u[self._model.friction_inputs], now.y[self._model.friction_readings]
-        ports = self._of_ports(efforts[None], slips[None], now.caps[None])[0]
-        return np.concatenate([ports, self._model.guards(t, now)])
+        guards = self._model.guards(t, now)
+        return self._of_ports(efforts[None], slips[None], now.caps[None], guards[None])[0]
 
-    def _of_ports(self, efforts: Array, slips: Array, caps: Array) -> Array:
+    def _of_ports(self, efforts: Array, slips: Array, caps: Array, guards: Array) -> Array:
         """The triggers of ports, by rows; one that sticks lets go where sources move it, too."""
         signs, margins = np.array(self._mode, dtype=float), caps - np.abs(efforts)
         if len(self._look.ruling):
             rest = caps + 4 * self._look.size.effort
             margins = np.minimum(margins, rest * room(self._look, slips))
-        return np.where(signs == 0, margins, signs * slips)
+        found = np.where(signs == 0, margins, signs * slips)
+        for i in self._switching:
+            part, at, sign = kept_by(self._model, self._mode, i)
+            found[:, i] = sign * (slips, efforts, guards)[part][:, at]
+        return found
 
     def _fall(
         self, i: int, t_a: float, t_b: float, a: float, b: float, dense: Dense

@@ -10,10 +10,11 @@ from codegen.inputs.generators import generator
 from codegen.inputs.pieces import Piece
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.model.snapshot import Mode
+from codegen.modes.choose import Occasion, look_at
 from codegen.modes.closed import ClosedModel
 from codegen.modes.pace import moment
-from codegen.modes.rounding import Peaks, scales
-from codegen.modes.verdicts import Look
+from codegen.modes.rounding import Peaks
+from codegen.modes.verdicts import limits_of
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
 from codegen.runs.track import Ended, Track
@@ -44,11 +45,10 @@ class ExactLeg:
         made = generator(pieces, t)
         self._n, self._mode, self._t = len(s), mode, t
         self._model, self._pieces = model, pieces
-        now = model.at(t, s, pieces, mode)
-        size = scales(model, now, t, peaks)
-        ruled = Look(model, mode, now, size).ruling.any(axis=0)
-        limits = np.where((np.array(mode) == 0) & ~ruled, size.effort, size.slip)
-        rest = np.where(ruled, TUNING.left * size.slip, np.inf)
+        look = look_at(Occasion(model, t, pieces, mode, 0.0, peaks), s, mode)
+        ruled, limits = look.ruling.any(axis=0), limits_of(look)
+        limits = np.where(ruled, look.size.slip, limits)
+        rest = np.where(ruled, TUNING.left * look.size.slip, np.inf)
         self._system = watched(model, affine, made, mode, len(s), rest)
         self._z = np.concatenate([s, made.start])
         self._blind = moment(peaks.time)

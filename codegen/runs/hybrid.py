@@ -1,4 +1,4 @@
-"""The event-driven loop: smooth legs between breakpoints, sticking, release and zero crossings."""
+"""The event-driven loop: smooth legs between breakpoints, and what ports do where these meet."""
 
 import math
 from collections import deque
@@ -11,9 +11,9 @@ from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.inputs.signal import Signal
 from codegen.model.snapshot import Mode
-from codegen.modes.choose import decide
+from codegen.modes.choose import Occasion, decide
 from codegen.modes.closed import ClosedModel
-from codegen.modes.guards import fallen_guards
+from codegen.modes.impact import Impact
 from codegen.modes.pace import hardly_apart, look_ahead, time_constant
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.trials import evaluated
@@ -28,17 +28,11 @@ from codegen.tuning import TUNING
 
 @dataclass(frozen=True)
 class Stretch:
-    """How far a run came: the end of its time, or the first instant at which guards fell.
-
-    ``time`` [s]: the shortest time constant there.
-    """
+    """A run to its end: what it recorded, and the integrated vector and the mode there."""
 
     track: Track
-    t: float
     s: Array
     mode: Mode
-    fallen: frozenset[int]
-    time: float
 
 
 def run_hybrid(
@@ -47,47 +41,41 @@ def run_hybrid(
     start: Array,
     signals: Sequence[Signal],
     settings: Settings,
-    begin: float,
-    origin: float,
     tally: Accumulating | None = None,
-    before: Mode | None = None,
+    first: Mode | None = None,
 ) -> Stretch:
-    """Integrate from ``begin`` to the last of ``times`` [s], recording the vector at each of them.
+    """Integrate over ``times`` [s], recording the vector at each of them.
 
-    At a breakpoint or an event a sample shows the instant just after. ``origin`` [s]: where the run
-    began, of which this may be the rest, and ``before`` the friction mode in which it was: what changes
-    at ``begin`` is an event, too. ``tally``: what is integrated on the way. Ends where a guard falls below
-    zero.
+    At a breakpoint or an event a sample shows the instant just after. ``tally``: what is integrated on
+    the way. ``first``: how switches are before the run begins, friction as it likes; all let go unless told.
     """
-    course = _Course(model, times, start, signals, settings, begin, origin, before)
+    course = _Course(model, times, start, signals, settings, first)
     course.track.tally = tally
     if tally is not None:
         tally.within(course.track)
-    fallen = frozenset[int]()
-    while course.unfinished and not fallen:
-        fallen = course.settle()
-        if not fallen and course.t < course.end:
-            fallen = course.advance()
-    if not fallen:
-        course.track.record(course.s, course.mode)
-        if tally is not None:
-            tally.record()
-    return Stretch(course.track, course.t, course.s, course.mode, fallen, course.time)
+    while course.unfinished:
+        course.settle()
+        if course.t < course.end:
+            course.advance()
+    course.track.record(course.s, course.mode)
+    if tally is not None:
+        tally.record()
+    return Stretch(course.track, course.s, course.mode)
 
 
 class _Course:
-    """Where a run is: time, integrated vector, friction mode; and the ports whose event it has come to."""
+    """Where a run is: time, integrated vector, mode; and the ports whose event it has come to."""
 
     def __init__(
         self, model: ClosedModel, times: Array, start: Array, signals: Sequence[Signal],
-        settings: Settings, begin: float, origin: float, before: Mode | None,
+        settings: Settings, first: Mode | None,
     ) -> None:  # fmt: skip
+        begin = float(times[0])
         self.t, self.s, self.end = begin, start, float(times[-1])
-        self.mode: Mode = tuple(1 for _ in model.friction_inputs) if before is None else before
-        self._continued = before is not None
+        self.mode: Mode = tuple(1 for _ in model.friction_inputs) if first is None else first
         self.track = Track(np.zeros((len(times), model.size)), [], np.abs(start))
         self._model, self._times, self._signals = model.within(self.track), times, signals
-        self._settings, self._origin = settings, origin
+        self._settings, self._origin = settings, begin
         points = {b for signal in signals for b in signal.breakpoints if begin < b <= self.end}
         self._breaks = sorted(points)
         self._touched = frozenset[int]()
@@ -102,11 +90,6 @@ class _Course:
         return undecided or self.t < self.end or bool(self._touched)
 
     @property
-    def time(self) -> float:
-        """The shortest time constant [s] at the latest instant that was decided."""
-        return self._peaks.time
-
-    @property
     def _pieces(self) -> list[Piece]:
         return [signal.piece(self.t) for signal in self._signals]
 
@@ -116,11 +99,11 @@ class _Course:
         coupled = self._model.coupled_directly
         return frozenset(i for i, sign in enumerate(self.mode) if sign and not coupled(i))
 
-    def settle(self) -> frozenset[int]:
-        """Decide the mode just after t and bring sticking ports to rest; the guards that have fallen."""
+    def settle(self) -> None:
+        """Decide the mode just after t, and bring ports that hold to rest."""
         model, t, pieces, peaks = self._model, self.t, self._pieces, self._peaks
         peaks.see(model, t, self.s, pieces, self.mode)
-        if self.mode or model.program.guards.results:
+        if self.mode:
             mode, _ = evaluated(model, t, self.s, pieces, self.mode, slipping=False)
             fastest = self._leg(pieces, mode).fastest(t, self.s)
             peaks.time = time_constant(fastest, t - self._origin)
@@ -131,29 +114,32 @@ class _Course:
             self._touched |= _still(model, t, self.s, pieces, self.mode, self._slipping, peaks)
         # A breakpoint may set the slips anew, so sticking ports are decided again with the others.
         loose = self._touched | {i for i, sign in enumerate(self.mode) if sign == 0}
-        at_zero = _still(model, t, self.s, pieces, self.mode, loose, peaks)
-        new = decide(model, t, self.s, pieces, self.mode, at_zero, ahead, peaks, self._touched)
-        if self._settled is not None or self._continued:
+        occasion = Occasion(model, t, pieces, self.mode, ahead, peaks, loose, self._touched)
+        new, after, impact = decide(occasion, self.s)
+        if self._settled is not None:
             _note(model, self.track.events, t, self.mode, new)
-            if self._touched:
-                _check_progress(self._rounds, t, hardly_apart(peaks.time), self.track.events)
-        self.mode, self._touched = new, frozenset()
-        self._come_to_rest(pieces, new)
-        # Where a run or a phase begins, whoever began it has looked at the guards.
-        first, self._settled = self._settled is None, t
-        return frozenset() if first else fallen_guards(model, t, self.s, pieces, new, peaks)
+        if self._settled is not None and self._touched:
+            _check_progress(self._rounds, t, hardly_apart(peaks.time), self.track.events)
+        self._come_to_rest(pieces, new, after, impact)
+        self.mode, self._touched, self._settled = new, frozenset(), t
 
-    def _come_to_rest(self, pieces: list[Piece], mode: Mode) -> None:
+    def _come_to_rest(
+        self, pieces: list[Piece], mode: Mode, struck: Array, impact: Impact | None
+    ) -> None:
         before, tally = self.s, self.track.tally
-        self.s = _at_rest(self._model, self.t, before, pieces, mode)
-        if tally is not None and self._before is not None:
-            tally.step(self.t, self._before, pieces, before, mode)
-            tally.rest(self.t, pieces, mode, before, self.s)
+        self.s = _at_rest(self._model, self.t, struck, pieces, mode)
+        if tally is not None:
+            # What happens before the first sample is not of the run.
+            if self._before is not None:
+                tally.step(self.t, self._before, pieces, before, mode)
+                if impact is not None:
+                    tally.impact(self.t, pieces, mode, before, impact)
+                tally.rest(self.t, pieces, mode, struck, self.s)
         self._before = pieces
 
-    def advance(self) -> frozenset[int]:
-        """Integrate to the next breakpoint or event; the guards that fell."""
-        pieces, ports = self._pieces, len(self.mode)
+    def advance(self) -> None:
+        """Integrate to the next breakpoint or event."""
+        pieces = self._pieces
         stop = next((b for b in self._breaks if b > self.t), self.end)
         exact = self._exact(pieces, stop)
         if exact is not None:
@@ -163,8 +149,7 @@ class _Course:
         else:
             leg = self._leg(pieces, self.mode)
             self.t, self.s, ended = leg.run(self.t, self.s, stop, self._times, self.track)
-        self._touched = frozenset(i for i in ended if i < ports)
-        return frozenset(i - ports for i in ended if i >= ports)
+        self._touched = ended
 
     def _integrate(self, pieces: list[Piece], begin: float, s: Array, first: int) -> None:
         """An exact stretch is integrated from sample to sample, however it was stepped."""
@@ -182,20 +167,16 @@ class _Course:
         model, method = self._model, self._settings.method
         if method not in ("auto", EXACT):
             return None
-        reason = "the model has switches"
-        if not model.program.guards.results:
-            reason = "the model is not affine, or ports that stick share a load"
-            affine = model.affine_map(self.mode, len(pieces))
-            if affine is not None:
-                leg = ExactLeg(model, affine, pieces, self.mode, self.t, self.s, self._peaks)
-                if (
-                    not self.mode
-                    and leg.steps(stop) > TUNING.rounded
-                    and model.sharp_rates is not None
-                ):
-                    return FreeLeg(model.sharp_rates, pieces, self.t, self.s)
-                return leg if leg.quick(stop, method == EXACT) else None
+        affine = model.affine_map(self.mode, len(pieces))
+        if affine is not None and model.program.guards_affine:
+            leg = ExactLeg(model, affine, pieces, self.mode, self.t, self.s, self._peaks)
+            if not self.mode and leg.steps(stop) > TUNING.rounded and model.sharp_rates is not None:
+                return FreeLeg(model.sharp_rates, pieces, self.t, self.s)
+            return leg if leg.quick(stop, method == EXACT) else None
         if method == EXACT:
+            reason = "a condition of a switch is not affine"
+            if affine is None:
+                reason = "the model is not affine, or ports that stick share a load"
             raise SimulationError(
                 f"at t = {self.t:.9g} {reason} for exact steps; let method be auto"
             )
@@ -234,7 +215,9 @@ def _at_rest(model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mo
 
 def _note(model: ClosedModel, events: list[Event], t: float, old: Mode, new: Mode) -> None:
     for port, before, after in zip(model.program.friction, old, new, strict=True):
-        if before != after:
+        if before != after and port.switch is not None:
+            events.append(Event(t, port.name, port.switch.word(after)))
+        elif before != after:
             kind = "stick" if after == 0 else ("slip" if before == 0 else "cross")
             events.append(Event(t, port.name, kind))
 

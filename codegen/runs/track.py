@@ -27,7 +27,16 @@ class Event(NamedTuple):
 
 
 Ended = tuple[float, Array, frozenset[int]]
-"""How a stretch ended: time, integrated vector, and the ports and guards whose event it was."""
+"""How a stretch ended: time, integrated vector, and the ports whose event it was."""
+
+
+class Struck(Protocol):
+    """An impact: the vector after it, impulses that ports give and readings have, and the energy taken."""
+
+    s: Array
+    given: Array
+    received: Array
+    taken: float
 
 
 class Accumulating(Protocol):
@@ -48,6 +57,11 @@ class Accumulating(Protocol):
         self, t: float, before: Sequence[Piece], after: Sequence[Piece], s: Array, mode: Mode
     ) -> None:
         """Inputs that may step at t."""
+
+    def impact(
+        self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, struck: Struck
+    ) -> None:
+        """Switches that came to hold at t, with impulses."""
 
     def rest(
         self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, after: Array

@@ -8,6 +8,7 @@ import scipy.linalg
 from codegen.inputs.generators import Generator
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
+from codegen.modes.verdicts import kept_by
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
 from codegen.program.layout import CAPS, INPUTS, RATE, READINGS
@@ -19,7 +20,7 @@ class Watched:
     """``z' = M z`` with z = [s, g], and the rows over z of triggers; ``ports``: whose trigger each row is.
 
     A sticking port has two: the distances of its effort to both breakaway efforts, or of its slip to what
-    is no longer zero, where only sources rule it: it gives nothing then.
+    is no longer zero, where only sources rule it: it gives nothing then. A switch has what keeps it.
     """
 
     M: Array
@@ -50,8 +51,15 @@ def watched(
     efforts = over_z(affine.rows(INPUTS)[model.friction_inputs], made, n)
     slips = over_z(affine.rows(READINGS)[model.friction_readings], made, n)
     caps = over_z(affine.rows(CAPS), made, n)
+    guards = model.guard_rows(mode, len(made.C))
+    conditions = np.zeros((0, len(M))) if guards is None else over_z(guards, made, n)
     triggers, ports = [np.zeros((0, len(M)))], []
     for i, sign in enumerate(mode):
+        if model.switching[i] is not None and not np.isfinite(rest[i]):
+            part, at, way = kept_by(model, mode, i)
+            triggers.append(way * (slips, efforts, conditions)[part][[at]])
+            ports.append(i)
+            continue
         below, moved = caps[i], efforts[i]
         if np.isfinite(rest[i]):
             below, moved = rest[i] * np.eye(1, len(M), n)[0], slips[i]

@@ -55,7 +55,8 @@ class Hold:
     them: the ports hold only while these are zero. ``slip_x``, ``slip_u``: the slips that constrain
     the states, independent, as ``slip_x x + slip_u u``; ``fixed``: how their rates beside those of
     s depend on u'. ``take_away``: what to add to x per unit of those slips to remove them, along
-    ``A^-1 F^T``.
+    ``A^-1 F^T``. ``mix``: what those slips are of the ports' own; ``free``: directions, by columns,
+    in which efforts may be impulses, as they change no slip at once.
     """
 
     ports: Places
@@ -71,6 +72,8 @@ class Hold:
     slip_u: Array
     fixed: Array
     take_away: Array
+    mix: Array
+    free: Array
 
     @property
     def shares(self) -> bool:
@@ -142,6 +145,8 @@ def hold(
         slip_u=slip_u,
         fixed=slip_u if varying else slip_u + slip_x @ numbers.R,
         take_away=_take_away(numbers, slip_x),
+        mix=null[kept],
+        free=_free(answers, held, len(stuck)),
     )
 
 
@@ -175,6 +180,22 @@ def vanishing(
         factors = np.linalg.solve(square.T, matrix[np.ix_(others, columns)].T).T
         result[:, list(independent)] = -factors
     return result
+
+
+def _free(answers: Array, held: HeldSet, count: int) -> Array:
+    """The right null space of ``D_ss`` as it is over the ports' own inputs, by columns.
+
+    Where a law would have to answer with an impulse of its own, there is no such direction.
+    """
+    rows, columns = list(held.direct), list(held.direct_columns)
+    result = []
+    for column in (c for c in range(count) if c not in columns):
+        way = np.eye(1, answers.shape[1], column)[0]
+        if rows:
+            way[columns] = -np.linalg.solve(answers[np.ix_(rows, columns)], answers[rows, column])
+        if not way[count:].any():
+            result.append(way[:count])
+    return np.array(result).reshape(-1, count).T
 
 
 def _take_away(numbers: Numbers, slip_x: Array) -> Array:

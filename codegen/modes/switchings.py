@@ -1,0 +1,62 @@
+"""Which switches hold: the ways to try, from the one at hand to those with more and more changes."""
+
+from collections.abc import Generator, Iterable
+from itertools import combinations
+
+from codegen.model.snapshot import Mode
+
+Broken = frozenset[int]
+"""Ports that contradict a mode."""
+
+ALL_WAYS = 12
+"""With more switches than these, further ways are those of few changes only."""
+
+FEW = 2
+"""So many changes at once, of more switches."""
+
+TURNS = 50
+"""So often for each switch the first that contradicts is changed over, before ways are tried in turn."""
+
+
+def flipped(mode: Mode, ports: Iterable[int]) -> Mode:
+    """The mode with these switches changed over.
+
+    >>> flipped((1, 0, -1), [0, 1])
+    (0, 1, -1)
+    """
+    changed = set(ports)
+    return tuple(1 - sign if i in changed else sign for i, sign in enumerate(mode))
+
+
+def ways(first: Mode, switches: list[int]) -> Generator[Mode, Broken, None]:
+    """Modes to try, each once; after each the switches that contradict it are sent.
+
+    First all that contradict change over, until that has been tried; then the first of them (Murty's
+    rule, which ends where the modes' conditions are a linear complementarity problem with positive
+    minors: Cottle, Pang, Stone 1992, section 4.2); then all, by how many changes they are away.
+    """
+    seen: set[Mode] = set()
+    mode, broken = first, frozenset[int]()
+    while mode not in seen:
+        seen.add(mode)
+        broken = yield mode
+        if not broken:
+            break
+        mode, last = flipped(mode, broken), mode
+    if broken:
+        mode = flipped(last, [min(broken)])
+        for _ in range(TURNS * len(switches)):
+            if mode in seen:
+                break
+            seen.add(mode)
+            broken = yield mode
+            if not broken:
+                break
+            mode = flipped(mode, [min(broken)])
+    most = len(switches) if len(switches) <= ALL_WAYS else FEW
+    for count in range(1, most + 1):
+        for changed in combinations(switches, count):
+            mode = flipped(first, changed)
+            if mode not in seen:
+                seen.add(mode)
+                yield mode

@@ -1,0 +1,59 @@
+"""A start: how switches are, and states that were not named completed by what switches hold."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from codegen.inputs.pieces import Piece
+from codegen.model.snapshot import Mode
+from codegen.modes.closed import ClosedModel
+from codegen.modes.trials import evaluated
+from codegen.numbers.arrays import Array
+from codegen.tuning import TUNING
+
+NOTHING: Mapping[str, float] = MappingProxyType({})
+
+
+@dataclass(frozen=True)
+class Beginning:
+    """The integrated vector at the first sample, the mode before it, and the states that were completed."""
+
+    s: Array
+    mode: Mode
+    completed: Mapping[str, float]
+
+
+def beginning(
+    model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], on: Collection[object],
+    named: Collection[str],
+) -> Beginning:  # fmt: skip
+    """A run's start from the vector s, in which the states that are not ``named`` are free.
+
+    ``on``: the switches that are on; friction completes nothing.
+    """
+    mode = tuple(
+        1 if port.switch is None else port.switch.sign(port.name in on)
+        for port in model.program.friction
+    )
+    if 0 not in mode:
+        return Beginning(s, mode, NOTHING)
+    states = [name.name for name in model.program.states]
+    free = [j for j, name in enumerate(states) if name not in named]
+    _, now = evaluated(model, t, s, pieces, tuple(1 for _ in mode))
+    hold = model.hold(mode, now.numbers)
+    slips = hold.slip_x @ now.x + hold.slip_u @ now.u
+    if not len(free) or not slips.any():
+        return Beginning(s, mode, NOTHING)
+    # Weighted by the storages: what is heavy moves least.
+    A = now.numbers.A[np.ix_(free, free)]
+    rows = hold.slip_x[:, free]
+    way = np.linalg.solve(A, rows.T)
+    moved = -way @ np.linalg.lstsq(rows @ way, slips, rcond=TUNING.nothing)[0]
+    made = s.copy()
+    made[free] += moved
+    found = {
+        states[j]: float(now.x[j] + change) for j, change in zip(free, moved, strict=True) if change
+    }
+    return Beginning(made, mode, MappingProxyType(found))
