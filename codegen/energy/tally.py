@@ -138,6 +138,10 @@ class Tally:
         """The next sample."""
         self.rows.append(np.append(self.total, self.taken))
 
+    def unrecord(self, count: int) -> None:
+        """Forget samples beyond so many."""
+        del self.rows[count:]
+
     @property
     def _next(self) -> float:
         return float(self.times[len(self.rows)]) if len(self.rows) < len(self.times) else np.inf

@@ -13,7 +13,7 @@ from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.modes.guards import guard_rounding
 from codegen.modes.impact import Impact, impact, pushed
-from codegen.modes.rounding import Peaks, scales
+from codegen.modes.rounding import Peaks, holding, scales
 from codegen.modes.switchings import Broken, flipped, ways
 from codegen.modes.trials import evaluated
 from codegen.modes.verdicts import Look, ruled_out, ruled_out_later
@@ -182,6 +182,8 @@ def look_at(now: Occasion, s: Array, mode: Mode) -> Look:
     model = now.model
     shot = model.at(now.t, s, now.pieces, mode)
     size = scales(model, shot, now.t, now.peaks)
+    if model.program.switches:
+        size = holding(size, model, mode, shot, now.peaks)
     if not model.program.guards.results:
         return Look(model, mode, shot, size)
     near = guard_rounding(model, now.t, s, now.pieces, mode, now.peaks)

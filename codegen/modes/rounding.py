@@ -1,7 +1,7 @@
 """What counts as zero: slips, efforts and accelerations to the rounding of the terms that make them up."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -73,6 +73,25 @@ def scales(model: ClosedModel, now: Snapshot, t: float = 0.0, peaks: Peaks | Non
         TUNING.rounding * (efforts + driven) + tiny,
         TUNING.rounding * TUNING.pushes * moved + tiny,
     )
+
+
+def holding(
+    size: Scales, model: ClosedModel, mode: Mode, now: Snapshot, peaks: Peaks | None
+) -> Scales:
+    """The same with efforts of ports that hold by the terms of the equations that they follow from.
+
+    A switch has no limit beside which its effort's rounding could be seen.
+    """
+    if 0 not in mode:
+        return size
+    held, peaks = model.hold(mode, now.numbers), peaks or Peaks.none(model)
+    x, u = np.maximum(np.abs(now.x), peaks.x), np.maximum(np.abs(now.u), peaks.u)
+    terms = np.abs(held.X) @ x + np.abs(held.U) @ u + np.abs(held.V) @ np.abs(now.du)
+    efforts = size.effort.copy()
+    if held.inverse.size:
+        own = np.abs(held.inverse[:, : len(terms)]) @ terms
+        efforts[held.ports] = np.maximum(efforts[held.ports], TUNING.rounding * own)
+    return replace(size, effort=efforts)
 
 
 def slip_rates(model: ClosedModel, now: Snapshot) -> Array:

@@ -133,10 +133,16 @@ def ruled_out(look: Look) -> str | None:
     slips, rates, near, slow = look.ruled
     for k in range(len(slips)):
         if abs(slips[k]) > near[k]:
-            return f"a slip of {slips[k]:.6g} that only sources rule would have to be zero"
+            return f"{_ruled_at(look, k)} would have to be zero, not {slips[k]:.6g}"
         if abs(rates[k]) > slow[k]:
-            return f"a slip that only sources rule would have to stay zero, not change by {rates[k]:.6g}"
+            return f"{_ruled_at(look, k)} would have to stay zero, not change by {rates[k]:.6g}"
     return None
+
+
+def _ruled_at(look: Look, row: int) -> str:
+    """What other inputs rule, by its ports."""
+    names = [repr(look.model.program.friction[i].name) for i in np.flatnonzero(look.ruling[row])]
+    return f"what {' and '.join(names)} receives, which only sources rule,"
 
 
 def ruled_out_later(look: Look, later: Look) -> str | None:

@@ -85,16 +85,17 @@ def friction(closing: Closing) -> tuple[tuple[FrictionPort, ...], list[sp.Expr]]
     """
     readings = list(closing.equations.readings)
     switching, _ = switches(closing)
+    called = {port.given: port.element.switch for port in closing.equations.ports}
     ports: list[FrictionPort] = []
     values: list[sp.Expr] = []
     for name in closing.friction:
         law = closing.laws[name]
         if not isinstance(law, DryFriction):
             continue
-        received = closing.received[name]
+        received, switch = closing.received[name], called[name]
         ports.append(
             FrictionPort(
-                closing.port_names[name],
+                closing.port_names[name] if switch is None else switch.name,
                 closing.equations.inputs.index(name),
                 readings.index(received),
                 switching.get(name),

@@ -10,6 +10,7 @@ from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.modes.trials import evaluated
+from codegen.modes.verdicts import kept_by
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING
 
@@ -37,11 +38,14 @@ def beginning(
         1 if port.switch is None else port.switch.sign(port.name in on)
         for port in model.program.friction
     )
+    if not model.program.switches:
+        return Beginning(s, mode, NOTHING)
+    _, now = evaluated(model, t, s, pieces, tuple(1 for _ in mode))
+    mode = _as_told(model, model.guards(t, now), mode)
     if 0 not in mode:
         return Beginning(s, mode, NOTHING)
     states = [name.name for name in model.program.states]
     free = [j for j, name in enumerate(states) if name not in named]
-    _, now = evaluated(model, t, s, pieces, tuple(1 for _ in mode))
     hold = model.hold(mode, now.numbers)
     slips = hold.slip_x @ now.x + hold.slip_u @ now.u
     if not len(free) or not slips.any():
@@ -57,3 +61,13 @@ def beginning(
         states[j]: float(now.x[j] + change) for j, change in zip(free, moved, strict=True) if change
     }
     return Beginning(made, mode, MappingProxyType(found))
+
+
+def _as_told(model: ClosedModel, guards: Array, mode: Mode) -> Mode:
+    """The mode with those switches changed over whose conditions say so."""
+    result = list(mode)
+    for i, switch in enumerate(model.switching):
+        if switch is not None and not switch.side:
+            _, at, sign = kept_by(model, mode, i)
+            result[i] = 1 - mode[i] if sign * guards[at] < 0 else mode[i]
+    return tuple(result)

@@ -145,11 +145,24 @@ class _Course:
         if exact is not None:
             begin, s, first = self.t, self.s, self.track.recorded
             self.t, self.s, ended = exact.run(stop, self._times, self.track)
+            self._touched = ended
+            self._back_to_sample(begin)
             self._integrate(pieces, begin, s, first)
         else:
-            leg = self._leg(pieces, self.mode)
+            begin, leg = self.t, self._leg(pieces, self.mode)
             self.t, self.s, ended = leg.run(self.t, self.s, stop, self._times, self.track)
-        self._touched = ended
+            self._touched = ended
+            self._back_to_sample(begin)
+
+    def _back_to_sample(self, begin: float) -> None:
+        """Where a switch changes over a rounding after a sample, that shows the instant just after, too."""
+        track, switching = self.track, self._model.switching
+        if not track.recorded or all(switching[i] is None for i in self._touched):
+            return
+        last = float(self._times[track.recorded - 1])
+        if last > begin and self.t - last <= TUNING.together * max(abs(self.t), self.t - begin):
+            self.t = last
+            track.unrecord()
 
     def _integrate(self, pieces: list[Piece], begin: float, s: Array, first: int) -> None:
         """An exact stretch is integrated from sample to sample, however it was stepped."""
@@ -214,12 +227,17 @@ def _at_rest(model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mo
 
 
 def _note(model: ClosedModel, events: list[Event], t: float, old: Mode, new: Mode) -> None:
+    """Events of ports whose mode is another: of switches, then what friction does about it."""
+    rubbing: list[Event] = []
     for port, before, after in zip(model.program.friction, old, new, strict=True):
-        if before != after and port.switch is not None:
+        if before == after:
+            continue
+        if port.switch is not None:
             events.append(Event(t, port.name, port.switch.word(after)))
-        elif before != after:
+        else:
             kind = "stick" if after == 0 else ("slip" if before == 0 else "cross")
-            events.append(Event(t, port.name, kind))
+            rubbing.append(Event(t, port.name, kind))
+    events += rubbing
 
 
 def _check_progress(rounds: deque[float], t: float, least: float, events: list[Event]) -> None:

@@ -71,6 +71,9 @@ class Accumulating(Protocol):
     def record(self) -> None:
         """The next sample."""
 
+    def unrecord(self, count: int) -> None:
+        """Forget samples beyond so many."""
+
 
 @dataclass
 class Track:
@@ -97,6 +100,13 @@ class Track:
         self.vectors[self.recorded] = vector
         self.modes.append(mode)
         self.recorded += 1
+
+    def unrecord(self) -> None:
+        """Forget the last sample."""
+        self.recorded -= 1
+        self.modes.pop()
+        if self.tally is not None:
+            self.tally.unrecord(self.recorded)
 
 
 @dataclass(frozen=True)
