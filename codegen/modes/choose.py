@@ -61,8 +61,8 @@ def decide(now: Occasion, s: Array) -> Decision:
     """The mode just after an instant, of the integrated vector s before it.
 
     Every loose port at rest sticks if it can, else slips the way it is pushed; other ports slip the way
-    their slip shows. Where several modes are consistent, ports not touched keep their state; switches that
-    are touched change over. A mode that cannot be evaluated is none: laws without a solution in it, ports
+    their slip shows. Where several modes are consistent, ports not touched keep their state, and so do
+    switches that conditions tell. A mode that cannot be evaluated is none: laws without a solution in it, ports
     without unique holding efforts.
 
     Raises `SimulationError`, with the numbers, if no mode is consistent.
@@ -71,8 +71,9 @@ def decide(now: Occasion, s: Array) -> Decision:
         return Decision((), s, None)
     switching = now.model.switching
     switches = [i for i, switch in enumerate(switching) if switch is not None]
+    one_sided = {i for i, switch in enumerate(switching) if switch is not None and switch.side}
     refused: dict[Mode, str] = {}
-    tries = ways(flipped(now.previous, now.touched & set(switches)), switches)
+    tries = ways(flipped(now.previous, now.touched & one_sided), switches)
     mode = next(tries)
     while True:
         found = _tried(now, s, mode)

@@ -45,6 +45,9 @@ class ClosedModel:
         check_gains(program, exact)
         self.friction_inputs = [port.input for port in program.friction]
         self.friction_readings = [port.reading for port in program.friction]
+        self.moving = np.array(
+            [-1 if port.moving is None else port.moving for port in program.friction], dtype=int
+        )
         #: Of each port that is a switch when it changes over, None of the others.
         self.switching = [port.switch for port in program.friction]
         binding = Binding(program, exact)

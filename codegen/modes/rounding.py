@@ -96,4 +96,5 @@ def holding(
 
 def slip_rates(model: ClosedModel, now: Snapshot) -> Array:
     """How fast each friction port's slip changes, inputs that cannot be differentiated held."""
-    return rates_of_slips(now.instant(0.0), np.array(model.friction_readings, dtype=int))
+    rows = np.array(model.friction_readings, dtype=int)
+    return rates_of_slips(now.instant(0.0), rows, model.moving)

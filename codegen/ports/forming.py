@@ -38,6 +38,9 @@ def rubbing(program: Program, binding: Binding, form: Form, slips: SlipRows) -> 
         names=[port.name for port in program.friction],
         inputs=np.array([port.input for port in program.friction], dtype=int),
         readings=np.array([port.reading for port in program.friction], dtype=int),
+        moving=np.array(
+            [-1 if p.moving is None else p.moving for p in program.friction], dtype=int
+        ),
         beside=[slips.coupled(port) for port in range(len(program.friction))],
         held=lambda stuck: held_set(slips, stuck),
         values=binding.function(program.friction_values),

@@ -1,14 +1,17 @@
 """What friction ports receive as exact rows, and the ranks of what holds sets of them, by residues."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import sympy as sp
 
 from bondgraph.algebra.residues import PRIME
 from bondgraph.equations import StateEquations
+from bondgraph.errors import StructureError
 from codegen.model.numbers import residue_rows
 from codegen.program.gains import written_out
+from codegen.program.moving import bends
 from codegen.program.records import Program
 from codegen.standalone.holding import HeldSet
 
@@ -28,6 +31,8 @@ class SlipRows:
     D: tuple[Residues, ...]
     own: tuple[int, ...]
     moved: tuple[tuple[int, ...], ...]
+    #: Ports whose slips have factors of inputs that move with the rates of states, and their names.
+    bent: Mapping[int, Hashable]
 
     def answering(self, ports: Iterable[int]) -> list[int]:
         """The inputs that answer at once when these ports hold: their own first, then those of laws."""
@@ -51,6 +56,11 @@ def slip_rows(
         tuple(residue_rows((row.D for row in rows), parameters)),
         tuple(port.input for port in program.friction),
         tuple(_moved(program, equations, port.input) for port in program.friction),
+        MappingProxyType({
+            at: port.name
+            for at, port in enumerate(program.friction)
+            if bends(equations, program.readings[port.reading])
+        }),
     )
 
 
@@ -85,6 +95,12 @@ def held_set(rows: SlipRows, ports: Sequence[int]) -> HeldSet:
         states = {(1, j): entry for j, entry in rows.F[i].items()}
         parts.append({**answers, **states, **{(2, j): entry for j, entry in rows.D[i].items()}})
     direct, direct_columns, null, left = _eliminated(parts, 0)
+    for k in null:
+        if ports[k] in rows.bent and any(part == 0 for part, _ in parts[k]):
+            raise StructureError(
+                f"{rows.bent[ports[k]]!r} and other ports that hold with it determine their efforts by a "
+                "factor that moves with the rates of states; put a storage between"
+            )
     kept, kept_columns, _, ruling = _eliminated(left, 1)
     moved, ruled = tuple(answering[len(direct) + len(null) :]), any(ruling)
     return HeldSet(moved, direct, direct_columns, null, kept, kept_columns, ruled)

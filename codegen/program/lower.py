@@ -12,6 +12,7 @@ from bondgraph.errors import ParameterError, StructureError
 from codegen.program.affine import is_affine
 from codegen.program.closing import Closing, close_ports
 from codegen.program.gains import check_gains
+from codegen.program.moving import with_moving_slips
 from codegen.program.records import Program, block
 from codegen.program.sections import coefficients, friction, group, known_rates, switches, uses
 from codegen.program.timed import Sources
@@ -42,6 +43,7 @@ def lower(
     conditions = (c for p in equations.ports if (s := p.element.switch) for c in (s.on, s.off))
     watched = frozenset[sp.Symbol]().union(*(condition.free_symbols for condition in conditions))
     closing = close_ports(equations, {} if laws is None else laws, given, watched)
+    closing, moving = with_moving_slips(closing)
     equations = closing.equations
     _check_varying(closing)
     taken = _all_names(equations, closing) | watched
@@ -53,7 +55,7 @@ def lower(
         guards = [sources.parted(guard) for guard in guards]
         closing = sources.told(closing)
         taken |= set(closing.external)
-    rubbing, values = friction(closing)
+    rubbing, values = friction(closing, moving)
     readings = tuple(equations.readings)
     external_rates = _rate_names(closing.external, taken)
     program = Program(
@@ -88,25 +90,11 @@ def lower(
 
 
 def _check_varying(closing: Closing) -> None:
-    """Refuse values that depend on what laws give, and friction whose slip is a varying sum of speeds."""
-    equations = closing.equations
-    for name in equations.varying:
+    """Refuse values that depend on what laws give."""
+    for name in closing.equations.varying:
         if name in closing.laws and name not in closing.known:
             raise StructureError(
                 f"a value depends on {name}, which a law gives; let it use what that law reads"
-            )
-    for name in closing.friction:
-        row = equations.readings[closing.received[name]]
-        used = {
-            s
-            for part in (row.F, row.D, row.H, row.K)
-            for e in part.values()
-            for s in e.free_symbols
-        }
-        if used & set(equations.varying):
-            raise StructureError(
-                f"the slip at {closing.port_names[name]!r} is a sum of speeds whose factors change in time; "
-                "dry friction needs constant ones there: put a stiff spring between, or use a smooth law"
             )
 
 

@@ -71,13 +71,15 @@ class Switching:
 class FrictionPort:
     """A port that is held or let go: its node, the input it gives and the reading it receives.
 
-    ``switch``: of an ideal switch, when it changes over; None where it is dry friction.
+    ``switch``: of an ideal switch, when it changes over; None where it is dry friction. ``moving``: the
+    reading that tells how fast the slip changes by its factors, None where these are constant.
     """
 
     name: Hashable
     input: int
     reading: int
     switch: Switching | None = None
+    moving: int | None = None
 
 
 @dataclass(frozen=True)
@@ -134,6 +136,17 @@ class Program:
         """Every block that a target evaluates."""
         laws = (group.values for group in (self.known, *self.groups, self.coupled))
         return (self.coefficients, *laws, self.known_rates, self.friction_values, self.guards)
+
+    @property
+    def moving(self) -> tuple[int, ...]:
+        """The ports whose slips have factors that move."""
+        return tuple(i for i, port in enumerate(self.friction) if port.moving is not None)
+
+    @property
+    def shown(self) -> tuple[int, ...]:
+        """The readings that results show."""
+        hidden = {port.moving for port in self.friction}
+        return tuple(at for at in range(len(self.readings)) if at not in hidden)
 
     @property
     def switches(self) -> tuple[FrictionPort, ...]:

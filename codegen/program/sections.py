@@ -78,10 +78,13 @@ def expression(law: Law) -> sp.Expr:
     return law.expression
 
 
-def friction(closing: Closing) -> tuple[tuple[FrictionPort, ...], list[sp.Expr]]:
+def friction(
+    closing: Closing, moving: Mapping[sp.Symbol, sp.Symbol]
+) -> tuple[tuple[FrictionPort, ...], list[sp.Expr]]:
     """Ports that are held or let go; level, breakaway level, curve and curve at rest of each in turn.
 
-    Those of switches, which have no limit and let go give nothing, are zero and one.
+    Those of switches, which have no limit and let go give nothing, are zero and one. ``moving``: of ports
+    whose slips' factors move the reading that tells how fast, by the input that each gives.
     """
     readings = list(closing.equations.readings)
     switching, _ = switches(closing)
@@ -99,6 +102,7 @@ def friction(closing: Closing) -> tuple[tuple[FrictionPort, ...], list[sp.Expr]]
                 closing.equations.inputs.index(name),
                 readings.index(received),
                 switching.get(name),
+                readings.index(moving[name]) if name in moving else None,
             )
         )
         curves = [law.curve.subs(SLIP, slip) for slip in (sp.Abs(received), 0)]

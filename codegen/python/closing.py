@@ -31,6 +31,7 @@ def friction(parameters):
         names=FRICTION,
         inputs=FRICTION_INPUTS,
         readings=FRICTION_READINGS,
+        moving=FRICTION_MOVING,
         beside=BESIDE,
         held=lambda stuck: HELD.get(stuck) or plain_set(len(stuck)),
         values=BlockFormula(friction_values, parameters, 4 * len(FRICTION)),

@@ -47,10 +47,13 @@ def friction_tables(program: Program, slips: SlipRows) -> list[str]:
     """The friction ports: their names, and where they stand."""
     return [
         "",
-        "# Friction ports, the inputs they give, the slips they receive; is a resistance beside?",
+        "# Friction ports, the inputs they give, the slips they receive, readings of how these move; is a resistance beside?",
         *names_tuple("FRICTION", [str(port.name) for port in program.friction]),
         *_places("FRICTION_INPUTS", [port.input for port in program.friction]),
         *_places("FRICTION_READINGS", [port.reading for port in program.friction]),
+        *_places(
+            "FRICTION_MOVING", [-1 if p.moving is None else p.moving for p in program.friction]
+        ),
         *names_tuple("BESIDE", [slips.coupled(port) for port in range(len(program.friction))]),
     ]
 

@@ -30,8 +30,11 @@ def named_columns(
         (program.readings, found.y),
     )
     columns: dict[str, Array] = {}
+    shown = set(program.shown)
     for names, table in groups:
         for at, name in enumerate(names):
+            if names is program.readings and at not in shown:
+                continue
             columns.setdefault(name.name, read_only(table[:, at].copy()))
     _check_finite(times, columns)
     dx = found.rate[:, : len(program.states)]

@@ -20,6 +20,7 @@ class DeadBand(FixedSteps):
         super().__init__(friction.form, names, friction)
         self.friction, ports = friction, friction.ports
         self.efforts, self.slips, self.beside = ports.inputs, ports.readings, np.array(ports.beside)
+        self.moving = ports.moving
 
     def decided(self, at: Point, previous: Chosen, dead_band: float, h: float = 0.0) -> Mode:
         """Which ports stick (0) and which way the others slip (+1, -1).
@@ -38,7 +39,7 @@ class DeadBand(FixedSteps):
         if previous is not None:
             # An input that steps may turn a slip round too; what a step of h can't reach slips on.
             near |= (slips * previous < 0) & (
-                np.abs(slips) <= 2 * h * np.abs(slip_rates(now, self.slips))
+                np.abs(slips) <= 2 * h * np.abs(slip_rates(now, self.slips, self.moving))
             )
         for i in np.flatnonzero(near):
             mode[i] = 0
@@ -127,9 +128,8 @@ class DeadBand(FixedSteps):
         """A port let go that would slip against its direction, and so sticks after all."""
         m, x, u = now.numbers, np.abs(now.x), np.abs(now.u)
         terms = np.abs(m.F[self.slips]) @ (np.abs(m.P) @ x + np.abs(m.Q) @ u)
-        moves = np.where(self.beside, now.y[self.slips], slip_rates(now, self.slips)) * np.array(
-            mode
-        )
+        rates = slip_rates(now, self.slips, self.moving)
+        moves = np.where(self.beside, now.y[self.slips], rates) * np.array(mode)
         wrong = near & (
             moves < -TUNING.step_rounding * np.where(self.beside, self.terms(now), terms)
         )

@@ -19,7 +19,8 @@ from codegen.tuning import TUNING
 class Ports:
     """Friction ports: names, inputs they give, slips they receive, and what holds sets of them.
 
-    ``beside``: whether a slip depends at once on friction, or on laws that friction moves.
+    ``moving``: for each port the reading that tells how fast the slip changes by its factors; -1 where
+    these are constant. ``beside``: whether a slip depends at once on friction, or on laws that friction moves.
     ``held``: from a set of sticking ports to its ranks. ``values``: level, breakaway effort, curve,
     and curve at rest of each. ``exact``: whether the ranks were decided for the numbers used.
     """
@@ -27,6 +28,7 @@ class Ports:
     names: Sequence[Hashable]
     inputs: Places
     readings: Places
+    moving: Places
     beside: Sequence[bool]
     held: Callable[[tuple[int, ...]], HeldSet]
     values: Formula
@@ -49,7 +51,11 @@ class Friction:
         """Complete an instant as the mode says; what rounding must be added to the rates of x."""
         held = self.hold(mode, now.numbers) if 0 in mode else None
         self.rub(now, mode, held, checked)
-        return None if held is None else held.correction
+        if held is None:
+            return None
+        # By their factors slips move on, which what holds them makes up for.
+        on = held.mix @ moved_on(now, self.ports.moving[held.ports])
+        return lambda rate, du: held.correction(rate, du) + held.take_away @ on
 
     def hold(self, mode: Mode, numbers: Numbers) -> Hold:
         """The holding equations of a mode's sticking ports, with the matrices of an instant."""
@@ -59,7 +65,7 @@ class Friction:
 
     def _hold(self, stuck: list[int], numbers: Numbers) -> Hold:
         ports, names = self.ports, ", ".join(repr(self.ports.names[i]) for i in stuck)
-        held, places = ports.held(tuple(stuck)), (ports.inputs, ports.readings)
+        held, places = ports.held(tuple(stuck)), (ports.inputs, ports.readings, ports.moving)
         try:
             found = hold(held, stuck, *places, numbers, self.form.varying, ports.exact)
         except HoldError:
@@ -104,11 +110,16 @@ class Friction:
         return efforts
 
 
-def slip_rates(now: Instant, rows: Places) -> Array:
-    """How fast slips change: F x' + D u'; inputs that cannot be differentiated are held."""
+def slip_rates(now: Instant, rows: Places, moving: Places) -> Array:
+    """How fast slips change: ``F x' + D u' + F' x + D' u``; inputs that have no rate are held."""
     m = now.numbers
     rates = m.F[rows] @ (m.P @ now.x + m.Q @ now.u + m.R @ now.du) + m.D[rows] @ now.du
-    return np.asarray(rates, dtype=float)
+    return np.asarray(rates + moved_on(now, moving), dtype=float)
+
+
+def moved_on(now: Instant, moving: Places) -> Array:
+    """How fast slips change by their factors alone."""
+    return np.where(moving >= 0, now.y[moving], 0.0) if len(moving) else np.zeros(0)
 
 
 def ways(mode: Mode) -> Iterator[Mode]:

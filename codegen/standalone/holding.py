@@ -106,19 +106,22 @@ def hold(
     ports: Sequence[int],
     inputs: Places,
     rows: Places,
+    moving: Places,
     numbers: Numbers,
     varying: bool,
     exact: bool,
 ) -> Hold:
     """The holding equations of ports of these, which give these inputs and receive these rows of y.
 
-    ``varying``: whether x itself is integrated. ``exact``: whether these are the numbers for which
+    ``moving``: the rows that tell how fast those change by their factors, -1 where not. ``varying``: whether x itself is integrated. ``exact``: whether these are the numbers for which
     the ranks were decided. Raises `HoldError` where they have others, `EvaluationError` where there
     are no unique efforts.
     """
     stuck = np.array(ports, dtype=np.intp)
     chosen = inputs[stuck]
     F, D, G = (matrix[rows[stuck]] for matrix in (numbers.F, numbers.D, numbers.G))
+    on = moving[stuck]
+    moved = [np.where(on[:, None] >= 0, m[on], 0.0) for m in (numbers.F, numbers.D, numbers.G)]
     answers, kept, direct = D[:, [*chosen, *held.moved]], list(held.kept), list(held.direct)
     free = [k for k in range(len(held.null)) if k not in held.kept]
     try:
@@ -130,13 +133,14 @@ def hold(
     if not exact:
         _check(((null, answers), (share, seen)), (answers[direct], seen[kept] * scales(numbers.A)))
     slip_x, slip_u, share = seen[kept], null[kept] @ D, share @ null
-    U = np.vstack([D[direct], slip_x @ numbers.Q])
+    by_x, by_u, by_rates = (null[kept] @ matrix for matrix in moved)
+    U = np.vstack([D[direct], slip_x @ numbers.Q + by_u])
     return Hold(
         stuck,
         chosen,
-        X=np.vstack([F[direct], slip_x @ numbers.P]),
+        X=np.vstack([F[direct], slip_x @ numbers.P + by_x]),
         U=U,
-        V=np.vstack([G[direct], slip_x @ numbers.R + slip_u]),
+        V=np.vstack([G[direct], slip_x @ numbers.R + slip_u + by_rates]),
         # Where laws answer as well, all are searched for together.
         inverse=np.zeros((0, 0)) if held.moved else _inverse(np.vstack([U[:, chosen], share])),
         share=share,

@@ -1,0 +1,83 @@
+"""Slips whose factors move: how fast they change beside their terms, as readings of their own.
+
+Of ``y = F x + D u`` with factors that change in time the rate is ``F x' + D u' + F' x + D' u``; the last two
+terms (``F' x`` behind a crank) are one more signal over states and inputs, their rates put in.
+"""
+
+from dataclasses import replace
+from types import MappingProxyType
+
+import sympy as sp
+
+from bondgraph.equations import StateEquations
+from bondgraph.errors import StructureError
+from bondgraph.reduce.motion import Motion
+from bondgraph.reduce.record import Reading, ReadingSum
+from codegen.program.closing import Closing
+
+PREFIX = "moving_"
+"""What such a reading is called, with the slip; no result shows it."""
+
+
+def with_moving_slips(closing: Closing) -> tuple[Closing, dict[sp.Symbol, sp.Symbol]]:
+    """The laws over equations that know these readings; and these, by the input that each port gives.
+
+    Raises `StructureError` where a factor moves with what a law gives.
+    """
+    equations, motion = closing.equations, closing.equations.reduction.motion
+    if motion is None:
+        return closing, {}
+    readings, found = dict(equations.readings), dict[sp.Symbol, sp.Symbol]()
+    for given in closing.friction:
+        received = closing.received[given]
+        reading = _rate_of_factors(closing, motion, equations.readings[received])
+        if not any(reading.parts):
+            continue
+        _check(closing, given, reading)
+        name = sp.Symbol(f"{PREFIX}{received}")
+        while name in readings or name in equations.signals:
+            name = sp.Symbol(f"{name}_")
+        readings[name], found[given] = reading, name
+    told = replace(equations, readings=MappingProxyType(readings))
+    return replace(closing, equations=told), found
+
+
+def _rate_of_factors(closing: Closing, motion: Motion, reading: Reading) -> Reading:
+    equations = closing.equations
+    answering = {*closing.friction, *closing.coupled}
+    result = ReadingSum()
+    for column, factor in sorted(reading.F.items()):
+        motion.add_rate(result, factor, equations.states[column])
+    for column, factor in sorted(reading.D.items()):
+        name, part = equations.inputs[column], ReadingSum()
+        motion.add_rate(part, factor, name)
+        # What a port gives at once would multiply rates that it changes itself; see `bends`.
+        if name not in answering or not (part.H or part.K):
+            result.add(part.whole(), sp.Integer(1))
+    return result.whole()
+
+
+def bends(equations: StateEquations, received: sp.Symbol) -> bool:
+    """Whether a slip has factors of inputs that move with the rates of states.
+
+    By itself such a port holds at once; a set of ports that does not would need what is not known.
+    """
+    motion = equations.reduction.motion
+    if motion is None:
+        return False
+    for column, factor in equations.readings[received].D.items():
+        part = ReadingSum()
+        motion.add_rate(part, factor, equations.inputs[column])
+        if part.H or part.K:
+            return True
+    return False
+
+
+def _check(closing: Closing, given: sp.Symbol, reading: Reading) -> None:
+    laws = set(closing.laws) - set(closing.known)
+    used = {s for part in reading.parts for entry in part.values() for s in entry.free_symbols}
+    for name in sorted(used & laws, key=str):
+        raise StructureError(
+            f"the slip at {closing.port_names[given]!r} is a sum of speeds whose factors change with {name}, "
+            "which a law gives: put a storage between, or use a smooth law"
+        )
