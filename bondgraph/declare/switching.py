@@ -58,7 +58,7 @@ def checked_modes(known: Sequence[Hashable], on: Any) -> frozenset[Hashable]:
 
 
 def one_sided(switch: Switch, given: sp.Symbol | None, other: sp.Symbol | None) -> int:
-    """The side of a switch that is on while ``side * other >= 0`` and off while ``side * given <= 0``; else 0.
+    """The side of a switch that is on while ``side other >= 0``, off while ``side given <= 0``; else 0.
 
     ``given``: the variable that is zero while it is on, ``other`` the one that is zero while it is off.
     So it is told where it turns on by a multiple of the one and off by the reversed one of the other.

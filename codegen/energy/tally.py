@@ -8,11 +8,10 @@ import numpy as np
 from codegen.energy.quadrature import NODES, exact_integrals, gauss_sum, rows_over
 from codegen.inputs.generators import generator
 from codegen.inputs.pieces import Piece
-from codegen.model.snapshot import Mode, Run, Snapshot
+from codegen.model.snapshot import Impact, Mode, Run, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.layout import RATE
-from codegen.runs.track import Struck
 
 Dense = Callable[[float | Array], Array]
 
@@ -102,7 +101,7 @@ class Tally:
         self.total = self.total + one * turned * self._double + pushed * other
 
     def impact(
-        self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, struck: Struck
+        self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, struck: Impact
     ) -> None:
         """Switches that come to hold: impulses, and what the impact took.
 

@@ -40,3 +40,17 @@ class Snapshot:
         """The same for formulas, external inputs at rest."""
         parts = (self.x, self.z, self.u, self.du, self.y, self.external)
         return Instant(t, *parts, np.zeros(len(self.external)), self.caps, self.numbers)
+
+
+@dataclass(frozen=True)
+class Impact:
+    """An instant at which states jump: the integrated vector after it, and the impulses.
+
+    ``given``: what each port gives, in its own order; ``received``: what every reading has.
+    ``taken`` [J]: the energy that the ports take.
+    """
+
+    s: Array
+    given: Array
+    received: Array
+    taken: float

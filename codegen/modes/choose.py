@@ -9,14 +9,13 @@ import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
-from codegen.model.snapshot import Mode, Snapshot
+from codegen.model.snapshot import Impact, Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.guards import guard_rounding
-from codegen.modes.impact import Impact, impact, pushed
-from codegen.modes.rounding import Peaks, holding, scales
+from codegen.modes.impact import impact, pushed
+from codegen.modes.rounding import Peaks, scales
 from codegen.modes.switchings import Broken, flipped, ways
 from codegen.modes.trials import evaluated
-from codegen.modes.verdicts import Look, ruled_out, ruled_out_later
+from codegen.modes.verdicts import Look, look_at, ruled_out, ruled_out_later
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
 from codegen.tuning import TUNING
@@ -43,7 +42,7 @@ class Occasion:
 
 
 class Decision(NamedTuple):
-    """A mode, the integrated vector with which it begins, and the impact that led to it, if there is one."""
+    """A mode, the integrated vector with which it begins, and the impact that led to it, if any."""
 
     mode: Mode
     s: Array
@@ -62,8 +61,8 @@ def decide(now: Occasion, s: Array) -> Decision:
 
     Every loose port at rest sticks if it can, else slips the way it is pushed; other ports slip the way
     their slip shows. Where several modes are consistent, ports not touched keep their state, and so do
-    switches that conditions tell. A mode that cannot be evaluated is none: laws without a solution in it, ports
-    without unique holding efforts.
+    switches that conditions tell. A mode that cannot be evaluated is none: laws without a solution in it,
+    ports without unique holding efforts.
 
     Raises `SimulationError`, with the numbers, if no mode is consistent.
     """
@@ -178,19 +177,6 @@ def _candidates(
         yield tuple(mode)
 
 
-def look_at(now: Occasion, s: Array, mode: Mode) -> Look:
-    """A mode at an instant, with what counts as zero there. Raises `SimulationError` if it is no mode."""
-    model = now.model
-    shot = model.at(now.t, s, now.pieces, mode)
-    size = scales(model, shot, now.t, now.peaks)
-    if model.program.switches:
-        size = holding(size, model, mode, shot, now.peaks)
-    if not model.program.guards.results:
-        return Look(model, mode, shot, size)
-    near = guard_rounding(model, now.t, s, now.pieces, mode, now.peaks)
-    return Look(model, mode, shot, size, model.guards(now.t, shot), near)
-
-
 def _complaint(
     now: Occasion, s: Array, mode: Mode, undecided: Sequence[int], jump: Impact | None
 ) -> tuple[str | None, Broken]:
@@ -199,7 +185,7 @@ def _complaint(
     Raises `SimulationError` if it is no mode.
     """
     model = now.model
-    look = look_at(now, s, mode)
+    look = look_at(model, now.t, s, now.pieces, mode, now.peaks)
     wrong = ruled_out(look)
     if wrong is not None:
         return wrong, NONE

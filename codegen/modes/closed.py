@@ -145,7 +145,7 @@ class ClosedModel:
         return values
 
     def guard_rows(self, mode: Mode, inputs: int) -> Array | None:
-        """The conditions of switches in an affine mode, as rows over [s, w, w', 1]; None where they are not."""
+        """The conditions of switches in a mode as rows over [s, w, w', 1]; None where they are not affine."""
         affine = self.affine_map(mode, inputs)
         if affine is None or not self.program.guards_affine:
             return None

@@ -6,33 +6,19 @@ and ``D_SS p = 0``. Friction takes no part: what it gives is finite.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from codegen.inputs.pieces import Piece
-from codegen.model.snapshot import Mode, Snapshot
+from codegen.model.snapshot import Impact, Mode, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.trials import evaluated
 from codegen.modes.verdicts import Look
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING
-
-
-@dataclass(frozen=True)
-class Impact:
-    """An instant at which states jump: the integrated vector after it, and the impulses.
-
-    ``given``: what each port gives, in its own order; ``received``: what every reading has.
-    ``taken`` [J]: the energy that the ports take.
-    """
-
-    s: Array
-    given: Array
-    received: Array
-    taken: float
 
 
 def impact(

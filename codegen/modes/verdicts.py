@@ -1,13 +1,15 @@
 """Whether a port goes with a mode, and whether what only sources rule lets a set of ports hold."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
+from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.rounding import Scales, slip_rates
+from codegen.modes.rounding import Peaks, Scales, guard_rounding, holding, scales, slip_rates
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING
 
@@ -99,6 +101,21 @@ class Look:
         size = np.abs(rows)
         slips = rows @ self.now.y[self.model.friction_readings]
         return slips, rows @ self.rates, size @ self.size.slip, size @ self.size.acceleration
+
+
+def look_at(
+    model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode,
+    peaks: Peaks | None = None,
+) -> Look:  # fmt: skip
+    """A mode at an instant, with what counts as zero there. Raises `SimulationError` if it is no mode."""
+    now = model.at(t, s, pieces, mode)
+    size = scales(model, now, t, peaks)
+    if model.program.switches:
+        size = holding(size, model, mode, now, peaks)
+    if not model.program.guards.results:
+        return Look(model, mode, now, size)
+    near = guard_rounding(model, t, s, pieces, mode, peaks)
+    return Look(model, mode, now, size, model.guards(t, now), near)
 
 
 SLIPS, EFFORTS, GUARDS = range(3)

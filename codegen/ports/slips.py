@@ -56,11 +56,13 @@ def slip_rows(
         tuple(residue_rows((row.D for row in rows), parameters)),
         tuple(port.input for port in program.friction),
         tuple(_moved(program, equations, port.input) for port in program.friction),
-        MappingProxyType({
-            at: port.name
-            for at, port in enumerate(program.friction)
-            if bends(equations, program.readings[port.reading])
-        }),
+        MappingProxyType(
+            {
+                at: port.name
+                for at, port in enumerate(program.friction)
+                if bends(equations, program.readings[port.reading])
+            }
+        ),
     )
 
 

@@ -47,7 +47,8 @@ def friction_tables(program: Program, slips: SlipRows) -> list[str]:
     """The friction ports: their names, and where they stand."""
     return [
         "",
-        "# Friction ports, the inputs they give, the slips they receive, readings of how these move; is a resistance beside?",
+        "# Friction ports, the inputs they give, the slips they receive, what tells how the factors of",
+        "# these move; is a resistance beside?",
         *names_tuple("FRICTION", [str(port.name) for port in program.friction]),
         *_places("FRICTION_INPUTS", [port.input for port in program.friction]),
         *_places("FRICTION_READINGS", [port.reading for port in program.friction]),

@@ -50,6 +50,10 @@ def _no_units() -> Mapping[str, str]:
     return MappingProxyType({})
 
 
+def _nothing() -> Mapping[str, float]:
+    return MappingProxyType({})
+
+
 @dataclass(frozen=True)
 class Result:
     """The record of a run: ``result["omega_1"]`` is any named signal of the graph over ``result.time``.
@@ -58,7 +62,7 @@ class Result:
     shows the instant just after. ``columns``: the signals that a table of the run holds: states, inputs,
     outputs and what laws read; they and ``time`` are read-only arrays. ``units``: of those signals of which
     elements tell it. ``backend``: what ran it; what the C of a simulator cannot go on with is run by "numpy"
-    from the start. ``completed``: the states that were not named and at the start followed what switches hold.
+    from the start. ``completed``: the states that were not named and followed what switches held at first.
     """
 
     time: Array = field(repr=False)
@@ -71,7 +75,7 @@ class Result:
     ledger: Accountant = field(repr=False, compare=False)
     units: Mapping[str, str] = field(repr=False, default_factory=_no_units)
     backend: str = "numpy"
-    completed: Mapping[str, float] = field(repr=False, default_factory=dict)
+    completed: Mapping[str, float] = field(repr=False, default_factory=_nothing)
 
     def __getitem__(self, name: str) -> Array:
         """The values of one signal; `KeyError` naming what there is."""

@@ -8,10 +8,9 @@ from scipy.optimize import minimize_scalar
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.choose import Occasion, look_at
 from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks
-from codegen.modes.verdicts import kept_by, limits_of, room
+from codegen.modes.verdicts import kept_by, limits_of, look_at, room
 from codegen.numbers.arrays import Array
 from codegen.program.layout import CAPS, INPUTS, READINGS
 from codegen.runs.track import Dense
@@ -24,8 +23,8 @@ class Watch:
 
     Each has a trigger that is positive while the mode holds: of friction the magnitude of its slip, or,
     where it sticks, the margin to its breakaway effort; of a switch what keeps it from changing over. A
-    trigger that starts at zero is armed once it has risen above rounding; until then only a fall well below zero
-    counts, and only after a moment too short to matter, so that a leg out of complete rest makes progress.
+    trigger that starts at zero is armed once it has risen above rounding; until then only a fall well below
+    zero counts, and only after a moment too short to matter, so that a leg out of rest makes progress.
     """
 
     def __init__(
@@ -47,7 +46,7 @@ class Watch:
             affine.rows(READINGS)[model.friction_readings],
             affine.rows(CAPS),
         )  # fmt: skip
-        self._look = look_at(Occasion(model, t, pieces, mode, 0.0, peaks), s, mode)
+        self._look = look_at(model, t, s, pieces, mode, peaks)
         self._switching = [i for i, switch in enumerate(model.switching) if switch is not None]
         self._limits = limits_of(self._look)
         self._armed = [False] * len(self._limits)

@@ -10,11 +10,10 @@ from codegen.inputs.generators import generator
 from codegen.inputs.pieces import Piece
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.model.snapshot import Mode
-from codegen.modes.choose import Occasion, look_at
 from codegen.modes.closed import ClosedModel
 from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks
-from codegen.modes.verdicts import limits_of
+from codegen.modes.verdicts import limits_of, look_at
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
 from codegen.runs.track import Ended, Track
@@ -45,7 +44,7 @@ class ExactLeg:
         made = generator(pieces, t)
         self._n, self._mode, self._t = len(s), mode, t
         self._model, self._pieces = model, pieces
-        look = look_at(Occasion(model, t, pieces, mode, 0.0, peaks), s, mode)
+        look = look_at(model, t, s, pieces, mode, peaks)
         ruled, limits = look.ruling.any(axis=0), limits_of(look)
         limits = np.where(ruled, look.size.slip, limits)
         rest = np.where(ruled, TUNING.left * look.size.slip, np.inf)

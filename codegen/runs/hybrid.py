@@ -128,13 +128,12 @@ class _Course:
     ) -> None:
         before, tally = self.s, self.track.tally
         self.s = _at_rest(self._model, self.t, struck, pieces, mode)
-        if tally is not None:
-            # What happens before the first sample is not of the run.
-            if self._before is not None:
-                tally.step(self.t, self._before, pieces, before, mode)
-                if impact is not None:
-                    tally.impact(self.t, pieces, mode, before, impact)
-                tally.rest(self.t, pieces, mode, struck, self.s)
+        # What happens before the first sample is not of the run.
+        if tally is not None and self._before is not None:
+            tally.step(self.t, self._before, pieces, before, mode)
+            if impact is not None:
+                tally.impact(self.t, pieces, mode, before, impact)
+            tally.rest(self.t, pieces, mode, struck, self.s)
         self._before = pieces
 
     def advance(self) -> None:

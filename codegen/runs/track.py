@@ -7,7 +7,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from codegen.inputs.pieces import Piece
-from codegen.model.snapshot import Mode, Run
+from codegen.model.snapshot import Impact, Mode, Run
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING
 
@@ -30,15 +30,6 @@ Ended = tuple[float, Array, frozenset[int]]
 """How a stretch ended: time, integrated vector, and the ports whose event it was."""
 
 
-class Struck(Protocol):
-    """An impact: the vector after it, impulses that ports give and readings have, and the energy taken."""
-
-    s: Array
-    given: Array
-    received: Array
-    taken: float
-
-
 class Accumulating(Protocol):
     """What is integrated with a run, such as work; see `codegen.energy.tally.Tally`."""
 
@@ -59,7 +50,7 @@ class Accumulating(Protocol):
         """Inputs that may step at t."""
 
     def impact(
-        self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, struck: Struck
+        self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, struck: Impact
     ) -> None:
         """Switches that came to hold at t, with impulses."""
 

@@ -19,10 +19,11 @@ from codegen.tuning import TUNING
 class Ports:
     """Friction ports: names, inputs they give, slips they receive, and what holds sets of them.
 
-    ``moving``: for each port the reading that tells how fast the slip changes by its factors; -1 where
-    these are constant. ``beside``: whether a slip depends at once on friction, or on laws that friction moves.
-    ``held``: from a set of sticking ports to its ranks. ``values``: level, breakaway effort, curve,
-    and curve at rest of each. ``exact``: whether the ranks were decided for the numbers used.
+    ``moving``: for each port the reading that tells how fast the slip changes by its factors, or -1
+    where these are constant. ``beside``: whether a slip depends at once on friction, or on laws
+    that friction moves. ``held``: from a set of sticking ports to its ranks. ``values``: level,
+    breakaway effort, curve, and curve at rest of each. ``exact``: whether the ranks were decided
+    for the numbers used.
     """
 
     names: Sequence[Hashable]

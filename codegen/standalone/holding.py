@@ -113,7 +113,8 @@ def hold(
 ) -> Hold:
     """The holding equations of ports of these, which give these inputs and receive these rows of y.
 
-    ``moving``: the rows that tell how fast those change by their factors, -1 where not. ``varying``: whether x itself is integrated. ``exact``: whether these are the numbers for which
+    ``moving``: the rows that tell how fast those change by their factors, -1 where not.
+    ``varying``: whether x itself is integrated. ``exact``: whether these are the numbers for which
     the ranks were decided. Raises `HoldError` where they have others, `EvaluationError` where there
     are no unique efforts.
     """

@@ -107,10 +107,59 @@ def test_friction_beside_a_moving_ratio_sticks_and_slips() -> None:
     assert (energy + lost)[before] == pytest.approx(energy[0], abs=1e-8)
 
 
-def test_friction_across_a_moving_ratio_is_refused_before_the_run() -> None:
-    graph = _crank(bg.R("brake", law=bg.DryFriction(3.0)), bonds="slider>brake")
-    with pytest.raises(bg.StructureError, match="'brake' is a sum of speeds whose factors change"):
-        simulator(bg.derive(graph, outputs=[]), NUMBERS)
+RUBBED = {"J": 0.5, "r": 0.3}
+
+
+def _rubbed_crank() -> nx.DiGraph:
+    nodes = [bg.Se("drive", "tau"), bg.One("rot"), bg.I("J", "J", flow="omega"),
+             bg.Df("angle", integrate="theta"), bg.TF("crank", "r*sin(theta)"), bg.One("slider"),
+             bg.R("brake", effort="F", flow="v", law=bg.DryFriction(3.0))]  # fmt: skip
+    return bond_graph(nodes, "drive>rot>J rot>angle rot>crank>slider>brake")
+
+
+def _stick_slip(level: float, end: float) -> tuple[list[tuple[float, str]], np.ndarray]:
+    """J w' = tau - N |q| sign(w), q = r sin(theta), at rest while |tau| <= N |q|; events, and w, theta."""
+    t, y, kinds, slipping = 0.0, np.array([0.0, 0.8]), list[tuple[float, str]](), False
+    tau = Sine(1.0, 0.5)
+
+    def margin(t: float, y: np.ndarray) -> float:
+        return level * abs(0.3 * np.sin(y[1])) - abs(tau(t))
+
+    while t < end:
+        way = np.sign(tau(t)) if slipping else 0.0
+
+        def rate(t: float, y: np.ndarray, way: float = way) -> list[float]:
+            q = 0.3 * np.sin(y[1])
+            return [(tau(t) - level * abs(q) * way) / 0.5, y[0]] if way else [0.0, 0.0]
+
+        def stop(t: float, y: np.ndarray, way: float = way, begin: float = t) -> float:
+            return (way * y[0] if t > begin + 1e-3 else 1.0) if way else margin(t, y)
+
+        stop.terminal, stop.direction = True, -1  # type: ignore[attr-defined]
+        found = solve_ivp(
+            rate, (t, end), y, "DOP853", events=stop, rtol=1e-12, atol=1e-13, max_step=0.02
+        )  # fmt: skip
+        t, y = float(found.t[-1]), found.y[:, -1].copy()
+        if t >= end:
+            break
+        if slipping:
+            y[0] = 0.0
+        slipping = margin(t, y) <= 1e-9 if slipping else True
+        kinds.append((t, "slip" if slipping else "stick"))
+    return kinds, y
+
+
+def test_friction_across_a_moving_ratio_rubs_and_holds() -> None:
+    ready = simulator(bg.derive(_rubbed_crank(), outputs=[]), RUBBED)
+    result = ready.run(np.linspace(0, 3, 61), {"theta": 0.8}, {"tau": Sine(1.0, 0.5)})
+    kinds, end = _stick_slip(3.0, 3.0)
+    assert [event.kind for event in result.events] == [kind for _, kind in kinds]
+    assert [e.time for e in result.events] == pytest.approx([t for t, _ in kinds], abs=1e-7)
+    assert [result["omega"][-1], result["theta"][-1]] == pytest.approx(end, abs=1e-8)
+    held = result["omega"] == 0.0
+    arm = 0.3 * np.sin(result["theta"][held])
+    assert result["F"][held] * arm == pytest.approx(result["tau"][held], abs=1e-9)
+    assert [name for name in result if name.startswith("moving")] == []
 
 
 def test_steps_that_would_be_impulses_are_refused() -> None:

@@ -6,6 +6,7 @@ from oracles.models import block
 
 import bondgraph as bg
 from codegen import Constant, Ramp, Sine, Step, simulator
+from codegen.modes.choose import Decision
 from codegen.runs import hybrid
 
 BLOCK = simulator(bg.derive(block()), {"m": 2.0, "F_c": 3.0})
@@ -14,7 +15,8 @@ BLOCK = simulator(bg.derive(block()), {"m": 2.0, "F_c": 3.0})
 @pytest.mark.parametrize("push", [-7.0, 7.0])
 def test_a_run_that_makes_no_progress_ends(monkeypatch: pytest.MonkeyPatch, push: float) -> None:
     """Told to slip against its push for ever, the port would fall back to zero again and again."""
-    monkeypatch.setattr(hybrid, "decide", lambda *_, **__: (-int(np.sign(push)),))
+    told = (-int(np.sign(push)),)
+    monkeypatch.setattr(hybrid, "decide", lambda _, s: Decision(told, s, None))
     with pytest.raises(bg.SimulationError, match=r"the run makes no progress"):
         BLOCK.run([0.0, 1.0], inputs={"P": push})
 

@@ -20,9 +20,19 @@ def test_a_switch_called_like_a_signal_is_refused(name: str) -> None:
         switched_simulator(_coil(name), {})
 
 
-def test_exact_steps_are_refused_by_name() -> None:
-    with pytest.raises(bg.SimulationError, match="the model has switches for exact steps"):
-        switched_simulator(_coil(), {}).run([0.0, 2.0], inputs={"U": 1.0}, method="exact")
+def test_exact_steps_are_those_of_integration() -> None:
+    """A coil that charges through 2 for a second, and is cut off."""
+    times = np.linspace(0, 2, 9)
+    for method in ("exact", "Radau"):
+        result = switched_simulator(_coil(), {}).run(times, inputs={"U": 1.0}, method=method)
+        assert [(event.time, event.kind) for event in result.events] == [(1.0, "off")]
+        charged = np.where(times < 1, (1 - np.exp(-2 * times)) / 2, 0.0)
+        assert result["i"] == pytest.approx(charged, abs=1e-8)
+
+
+def test_exact_steps_are_refused_where_a_condition_is_not_affine() -> None:
+    with pytest.raises(bg.SimulationError, match="a condition of a switch is not affine for exact"):
+        switched_simulator(_coil(on="1 - i**2"), {}).run([0, 2], inputs={"U": 1.0}, method="exact")
 
 
 @pytest.mark.parametrize("on", ["sqrt(t - 1) - 0.5", "log(t - 1) + 5"])
