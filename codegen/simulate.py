@@ -21,6 +21,7 @@ from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
 from codegen.model.doubts import warn_of_doubts
+from codegen.model.snapshot import Mode
 from codegen.model.sources import source_signals
 from codegen.modes.choose import Occasion, decide
 from codegen.modes.closed import ClosedModel
@@ -161,7 +162,7 @@ class Simulator:
             pieces = [signal.piece(begin) for signal in signals]
             begun = beginning(self.closed, begin, start, pieces, on, {str(n) for n in initial})
             start = begun.s
-            found = self._in_c(times, states, start, signals, settings)
+            found = self._in_c(times, states + begun.moved, start, signals, settings, begun.mode)
             if not isinstance(found, Recorded):
                 stopped = found
                 if stopped is not None and stopped.limit:
@@ -203,7 +204,7 @@ class Simulator:
 
     def _in_c(
         self, times: Array, states: Array, start: Array, signals: Sequence[Signal],
-        settings: Settings,
+        settings: Settings, first: Mode,
     ) -> Recorded | Stopped | None:  # fmt: skip
         """The run in C, or why it cannot go on there; None where it was not asked for."""
         if self.located is None:
@@ -219,7 +220,7 @@ class Simulator:
                 return stopped
         if settings.method not in LOCATED_METHODS:
             return stopped
-        return self.located.run(times, states, signals, settings)
+        return self.located.run(times, states, signals, settings, first)
 
     def _recorded(
         self, times: Array, signals: Sequence[Signal], track: Track, backend: str

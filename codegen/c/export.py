@@ -194,6 +194,7 @@ def _functions(program: Program) -> list[str]:
         ("bg_known_rates", "Rates of what known laws give", program.known_rates),
         ("bg_friction_values", "Level, breakaway level, curve and curve at rest of each friction port",
          program.friction_values),
+        ("bg_guards", "Conditions of switches, to turn on and to turn off in turn", program.guards),
     ]  # fmt: skip
     lines: list[str] = []
     for name, what, code in rows:

@@ -7,7 +7,10 @@ FOLDERS = ("model", "ports", "run", "located", "exact", "batch", "fmu")
 """Of `codegen/runtime`: evaluating a model; holding and choosing; the loop; steps with a tolerance; exact
 steps; many runs; units."""
 
-SHARED = ("port_choose.h", "port_choose.c", "port_events.h", "port_events.c", "port_rounding.h")
+SHARED = (
+    "port_switch.h", "port_switch.c", "port_choosing.h", "port_choose.h", "port_choose.c",
+    "port_events.h", "port_events.c", "port_rounding.h",
+)  # fmt: skip
 """Of ``ports`` what needs no model."""
 
 

@@ -7,7 +7,7 @@ import sympy as sp
 from bondgraph.equations import StateEquations
 from codegen.c.rhs import Straight
 from codegen.c.text import array, comment, doubles, integers, quoted, strings
-from codegen.program.records import Group, Program
+from codegen.program.records import FrictionPort, Group, Program
 from codegen.program.units import units
 from codegen.runs.steps import told_step
 from codegen.standalone.holding import HeldSet
@@ -75,6 +75,8 @@ def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:
         "LARGEST": largest,
         "LOOP": max([ports + coupled if program.joint else 0, *loops]),
         "FRICTION": ports,
+        "SWITCHES": len(program.switches),
+        "GUARDS": len(program.guards.results),
         "COUPLED": coupled,
         "HOLDS": 1 if program.varying or ports > MOST_HOLDS else 2**ports,
         "CONSTANTS": len(fast.constants) if fast else 0,
@@ -121,6 +123,7 @@ def program_tables(
         ("bg_law_rates", program.law_rates),
         ("bg_friction_inputs", [port.input for port in friction]),
         ("bg_friction_readings", [port.reading for port in friction]),
+        ("bg_moving", [-1 if port.moving is None else port.moving for port in friction]),
         ("bg_beside", [int(one) for one in beside]),
         ("bg_outside_inputs", program.given),
         ("bg_differentiable", differentiable),
@@ -129,7 +132,17 @@ def program_tables(
     lines = doubles("bg_defaults", defaults)
     for name, numbers in tables:
         lines += integers(name, numbers)
+    rows = [_switch(port) for port in friction]
+    lines += array("const bg_switch bg_switches[]", rows, "{0, 0, 0, 0}")
     return [*lines, "", *_layout(program)]
+
+
+def _switch(port: FrictionPort) -> str:
+    """What makes a port change over: its kind, whether it is on held, its side, its first condition."""
+    if port.switch is None:
+        return "{BG_RUBS, 0, 0, 0}"
+    kind = "BG_ONE_SIDED" if port.switch.side else "BG_TOLD"
+    return f"{{{kind}, {int(port.switch.on)}, {port.switch.side}, {max(port.switch.guard, 0)}}}"
 
 
 def _layout(program: Program) -> list[str]:

@@ -13,6 +13,7 @@ from codegen.c.runtime import runtime_file
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
 from codegen.engine.fallback import Stopped
 from codegen.engine.runs import KINDS, not_affine
+from codegen.ports.holds import MOST_PORTS
 from codegen.engine.sizes import aligned, declarations
 from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
@@ -80,7 +81,8 @@ class LocatedLibrary:
         ffi, library = self.opened
         sizes = ffi.new("unsigned long[3]")
         library.bg_rows_sizes(sizes)
-        if sizes[2] != 8 * sum(recorded(self._model.program)):
+        program = self._model.program
+        if sizes[2] != 8 * (sum(recorded(program)) + len(program.friction)):
             raise SimulationError(
                 "the library of this model was compiled for other sizes; empty the cache"
             )
@@ -100,22 +102,27 @@ class LocatedRuns:
         )
 
     def run(
-        self, times: Array, states: Array, signals: Sequence[Signal], settings: Settings
-    ) -> Recorded | Stopped:
-        """Run and record, or why it could not go on."""
+        self, times: Array, states: Array, signals: Sequence[Signal], settings: Settings,
+        first: Mode,
+    ) -> Recorded | Stopped:  # fmt: skip
+        """Run and record, or why it could not go on; ``first``: the mode before the run."""
         ffi, _ = self.library.opened
-        rows = np.empty((len(times), sum(recorded(self.model.program))))
+        rows = np.empty((len(times), self.width))
+        modes = np.array([*first, *[1] * MOST_PORTS], dtype=np.intc)
         start = np.append(states, 0.0)
         asked = ffi.new("bg_request *")
         asked.times, asked.states = _pointer(ffi, times), _pointer(ffi, start)
         asked.samples, asked.method = len(times), METHODS.index(settings.method)
         asked.rtol, asked.atol = settings.rtol, settings.atol
+        asked.first = _pointer(ffi, modes, "int *")
         events = self._called(asked, rows, signal_table(signals, float(times[0]), float(times[-1])))
         if isinstance(events, Stopped):
             return events
         if not np.isfinite(rows).all():
             return Stopped("a number of the run is not finite")
-        return Recorded(events, self._shots(rows), "c")
+        *parts, modes = np.split(rows, np.cumsum(recorded(self.model.program)), axis=1)
+        told = tuple(tuple(mode) for mode in modes.astype(int).tolist())
+        return Recorded(events, Snapshots(*parts), "c", told)
 
     def _called(self, asked: Any, rows: Array, table: SignalTable) -> tuple[Event, ...] | Stopped:
         """Call C, with more room for events if it asks for it; its events if the run is whole."""
@@ -145,9 +152,11 @@ class LocatedRuns:
         instance, run = self.library.sizes
         return aligned(instance), aligned(run)
 
-    def _shots(self, rows: Array) -> Snapshots:
-        ends = np.cumsum(recorded(self.model.program))[:-1]
-        return Snapshots(*np.split(rows, ends, axis=1))
+    @property
+    def width(self) -> int:
+        """How many numbers are kept of a sample: its parts, and the modes of the ports."""
+        program = self.model.program
+        return sum(recorded(program)) + len(program.friction)
 
 
 def packed_signals(ffi: Any, table: SignalTable) -> tuple[Any, tuple[Any, ...]]:
@@ -182,7 +191,7 @@ def _declared() -> str:
     """What is called; records that only C looks into have names alone."""
     own = "".join(f"typedef struct {n} {n};\n" for n in ("bg_model", "bg_located", "bg_snapshot"))
     headers = (
-        "port_events.h", "model_signals.h", "located_request.h", "located_rows.h", "batch_measure.h",
+        "port_switch.h", "port_events.h", "model_signals.h", "located_request.h", "located_rows.h", "batch_measure.h",
         "batch_located.h",
     )  # fmt: skip
     own += "const char *bg_model_message(int status);\n"

@@ -22,7 +22,7 @@ from codegen.program.records import Program
 from codegen.runs.track import Event, Track
 from codegen.tuning import TUNING
 
-KINDS = ("stick", "slip", "cross")
+KINDS = ("stick", "slip", "cross", "on", "off")
 
 CAPACITY = 256
 """Events there is room for at first."""
@@ -177,8 +177,8 @@ class CRuns:
 
 def not_affine(program: Program) -> str | None:
     """Why a model is not affine in each friction mode; None if it is."""
-    if program.guards.results:
-        return "this one has guards"
+    if program.switches:
+        return "this one has switches"
     if len(program.friction) > MOST_PORTS:
         return f"{len(program.friction)} friction ports are more than {MOST_PORTS}"
     if program.affine:

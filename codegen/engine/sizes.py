@@ -126,7 +126,8 @@ def view(engine: Engine, field: Any, *shape: int) -> Array:
 
 def engine_declarations(numbers: Mapping[str, int]) -> str:
     """What the engine is asked with, as cffi reads it."""
-    return declarations("port_events.h", {}) + declarations("exact.h", numbers)
+    shared = declarations("port_switch.h", {}) + declarations("port_events.h", {})
+    return shared + declarations("exact.h", numbers)
 
 
 def declarations(header: str, numbers: Mapping[str, int], prefix: str = "EX") -> str:

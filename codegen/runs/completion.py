@@ -24,6 +24,8 @@ class Beginning:
     s: Array
     mode: Mode
     completed: Mapping[str, float]
+    #: What states were moved by, law states last.
+    moved: Array
 
 
 def beginning(
@@ -34,33 +36,35 @@ def beginning(
 
     ``on``: the switches that are on; friction completes nothing.
     """
+    still = np.zeros(len(model.program.states) + len(model.program.law_states))
     mode = tuple(
         1 if port.switch is None else port.switch.sign(port.name in on)
         for port in model.program.friction
     )
     if not model.program.switches:
-        return Beginning(s, mode, NOTHING)
+        return Beginning(s, mode, NOTHING, still)
     _, now = evaluated(model, t, s, pieces, tuple(1 for _ in mode))
     mode = _as_told(model, model.guards(t, now), mode)
     if 0 not in mode:
-        return Beginning(s, mode, NOTHING)
+        return Beginning(s, mode, NOTHING, still)
     states = [name.name for name in model.program.states]
     free = [j for j, name in enumerate(states) if name not in named]
     hold = model.hold(mode, now.numbers)
     slips = hold.slip_x @ now.x + hold.slip_u @ now.u
     if not len(free) or not slips.any():
-        return Beginning(s, mode, NOTHING)
+        return Beginning(s, mode, NOTHING, still)
     # Weighted by the storages: what is heavy moves least.
     A = now.numbers.A[np.ix_(free, free)]
     rows = hold.slip_x[:, free]
     way = np.linalg.solve(A, rows.T)
     moved = -way @ np.linalg.lstsq(rows @ way, slips, rcond=TUNING.nothing)[0]
-    made = s.copy()
+    made, by = s.copy(), still.copy()
     made[free] += moved
+    by[free] = moved
     found = {
         states[j]: float(now.x[j] + change) for j, change in zip(free, moved, strict=True) if change
     }
-    return Beginning(made, mode, MappingProxyType(found))
+    return Beginning(made, mode, MappingProxyType(found), by)
 
 
 def _as_told(model: ClosedModel, guards: Array, mode: Mode) -> Mode:

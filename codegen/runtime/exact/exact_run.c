@@ -108,7 +108,8 @@ static int advance(void *context, double stop)
 int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task,
               ex_advancing *how, void *caller)
 {
-    const bg_sight sight = {c, EX_N, EX_K, model->coupled, c->shot + EX_AT_RATE, c->point, look, tell};
+    const bg_sight sight = {c, EX_N, EX_K, NULL, model->coupled, c->shot + EX_AT_RATE, c->point,
+                            NULL, look, tell, NULL};
     const bg_engine engine = {sight, c, see, fastest, rest, advance};
     c->model = model;
     c->inputs = inputs;
@@ -123,7 +124,7 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
     task->where = -1;
     memcpy(c->s, task->start, sizeof c->s);
     memset(&c->peaks, 0, sizeof c->peaks);
-    bg_set_out(&c->run, task->times[0], task->times[task->samples - 1], c->s);
+    bg_set_out(&c->run, task->times[0], task->times[task->samples - 1], c->s, NULL);
     int status = bg_run(&engine, &c->run);
     task->count = c->run.count;
     if (status != BG_NEGATIVE)

@@ -21,7 +21,7 @@ static void note_touched(fmu_instance *f, int *touched)
 static void note_sizes(fmu_instance *f)
 {
     bg_port ports[BG_ROOM(K)];
-    bg_view_ports(&f->view, FMU_SHORTEST, ports);
+    bg_view_ports(&f->view, f->at.mode, FMU_SHORTEST, ports);
     for (int i = 0; i < K; i++) {
         f->at.rest[i] = BG_HYSTERESIS * ports[i].near_slip;
         f->at.margin[i] = BG_HYSTERESIS * ports[i].near_effort;

@@ -25,6 +25,7 @@ typedef struct {
     int capacity, count;
     double time;
     int (*smooth)(void *to, void *run, double begin, double end);
+    const int *first; /* BG_MOST_PORTS modes before the run; NULL: all let go */
 } bg_request;
 
 #endif

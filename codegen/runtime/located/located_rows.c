@@ -3,12 +3,13 @@
 static void put_row(void *to, int sample, const double *w, const int *mode, const bg_snapshot *shot)
 {
     double *row = (double *)to + (size_t)sample * BG_ROW_WIDTH;
-    (void)mode;
 #define SHOWN(part, count) row = bg_put(row, count, shot->part);
 #define GIVEN(part, count) row = bg_put(row, count, part);
     BG_RECORDED(SHOWN, GIVEN)
 #undef SHOWN
 #undef GIVEN
+    for (int i = 0; i < BG_FRICTION; i++)
+        row[i] = mode[i];
 }
 
 void bg_rows_sizes(unsigned long *sizes)

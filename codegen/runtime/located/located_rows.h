@@ -4,9 +4,9 @@
 
 #include "model_located.h"
 
-/* A row: what is kept of a sample, part by part. */
+/* A row: what is kept of a sample, part by part, and the modes of the ports. */
 #define BG_WIDTH(part, count) +(count)
-enum { BG_ROW_WIDTH = BG_RECORDED(BG_WIDTH, BG_WIDTH) };
+enum { BG_ROW_WIDTH = BG_RECORDED(BG_WIDTH, BG_WIDTH) + BG_FRICTION };
 
 /* The sizes of an instance, a run and a row, in bytes. */
 void bg_rows_sizes(unsigned long *sizes);

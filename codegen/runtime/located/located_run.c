@@ -160,7 +160,7 @@ static int set_up(bg_located *c, bg_model *m, const bg_signals *signals, bg_requ
     c->run.breaks = signals->breaks;
     c->run.events = asked->events;
     c->run.capacity = asked->capacity;
-    bg_set_out(&c->run, asked->times[0], asked->times[asked->samples - 1], c->s);
+    bg_set_out(&c->run, asked->times[0], asked->times[asked->samples - 1], c->s, asked->first);
     memset(&c->peaks, 0, sizeof c->peaks);
     c->view.model = m;
     c->view.peaks = &c->peaks;

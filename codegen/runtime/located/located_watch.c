@@ -17,18 +17,23 @@ typedef struct {
 static void triggers_now(const bg_located *c, double *values)
 {
     int sticking = 0;
+    double guards[BG_ROOM(BG_GUARDS)] = {0};
     bg_hold *held = NULL;
+    if (BG_GUARDS)
+        bg_guards(&c->model->now, guards);
     for (int i = 0; i < K; i++) {
         const double effort = c->view.shot.u[bg_friction_inputs[i]];
         const double slip = c->view.shot.y[bg_friction_readings[i]];
         values[i] = c->run.mode[i] ? c->run.mode[i] * slip : c->view.shot.caps[i] - fabs(effort);
+        if (bg_switches[i].kind != BG_RUBS)
+            values[i] = bg_stay(bg_switches + i, c->run.mode[i], slip, effort, guards);
         sticking |= c->run.mode[i] == 0;
     }
     if (!sticking || bg_hold_of(c->model, c->run.mode, &held) != BG_OK || held->ruled == 0)
         return;
     for (int i = 0; i < K; i++) {
         const double rest = c->view.shot.caps[i] + 4 * c->watch.limit[i];
-        if (c->run.mode[i] == 0)
+        if (c->run.mode[i] == 0 && bg_switches[i].kind == BG_RUBS)
             values[i] = fmin(values[i], rest * bg_room(held, i, &c->view.shot, c->watch.near));
     }
 }
@@ -147,10 +152,12 @@ int bg_watch_begin(bg_located *c)
     const int status = K > 0 ? bg_view_look(&c->view, c->run.at.t, c->s, c->run.mode) : BG_OK;
     if (status != BG_OK || K == 0)
         return status;
-    bg_view_ports(&c->view, c->run.at.time, ports);
+    bg_view_ports(&c->view, c->run.mode, c->run.at.time, ports);
     c->watch.blind = c->run.at.t + bg_moment(c->run.at.time);
     for (int i = 0; i < K; i++) {
         c->watch.limit[i] = c->run.mode[i] ? ports[i].near_slip : ports[i].near_effort;
+        if (bg_switches[i].kind != BG_RUBS)
+            c->watch.limit[i] = ports[i].near_stay;
         c->watch.near[i] = BG_LEFT * ports[i].near_slip;
         c->watch.armed[i] = 0;
     }

@@ -197,7 +197,7 @@ static int finish(bg_model *m, const bg_hold *held, bg_snapshot *shot)
     for (int i = 0; i < OWN; i++)
         shot->rate[N + i] = now->y[bg_law_rates[i]];
     if (held)
-        bg_correct(held, shot->rate, m->du);
+        bg_correct(held, shot->rate, m->du, now->y);
     memcpy(shot->x, now->x, sizeof shot->x);
     memcpy(shot->z, now->z, sizeof shot->z);
     memcpy(shot->u, now->u, sizeof shot->u);

@@ -82,7 +82,7 @@ static void correct_map(const bg_hold *held, bg_work *work, double *matrix)
             work->point[i] = matrix[(BG_AT_rate + i) * BG_MAP_COLUMNS + j];
         for (int i = 0; i < M; i++)
             work->u[i] = matrix[(BG_AT_du + i) * BG_MAP_COLUMNS + j];
-        bg_correct(held, work->point, work->u);
+        bg_correct(held, work->point, work->u, work->y);
         for (int i = 0; i < BG_SIZE; i++)
             matrix[(BG_AT_rate + i) * BG_MAP_COLUMNS + j] = work->point[i];
     }

@@ -3,6 +3,7 @@
 #define BG_MODEL_INTERNAL_H
 
 #include "model_runtime.h"
+#include "port_switch.h"
 #include "tuning.h"
 
 /* The sizes of a model, as its files write them: friction ports, states, law states, both, inputs,
@@ -63,10 +64,13 @@ extern const bg_group bg_known, bg_groups[], bg_coupled;
 extern const bg_structure bg_structures[];
 extern const int bg_law_rates[], bg_friction_inputs[], bg_friction_readings[];
 extern const int bg_outside_inputs[], bg_differentiable[], bg_output_readings[], bg_beside[];
+extern const int bg_moving[]; /* readings of how fast slips change by their factors; -1: none */
+extern const bg_switch bg_switches[];
 extern const double bg_defaults[];
 void bg_coefficients(const bg_values *v, double *out);
 void bg_known_rates(const bg_values *v, double *out);
 void bg_friction_values(const bg_values *v, double *out);
+void bg_guards(const bg_values *v, double *out);
 void bg_prepare_rhs(bg_model *m);
 
 /* model_linear.c: by rows; n small or large. The largest magnitude; a copy, and what is behind. */
@@ -92,10 +96,16 @@ double bg_room(const bg_hold *held, int port, const bg_snapshot *shot, const dou
 /* port_hold.c */
 int bg_hold_of(bg_model *m, const int *mode, bg_hold **found);
 int bg_holding_efforts(bg_model *m, const bg_hold *held, double *efforts);
-void bg_correct(const bg_hold *held, double *rate, const double *du);
+void bg_correct(const bg_hold *held, double *rate, const double *du, const double *y);
 
 /* Takes what slips are left at sticking ports from s, along A^-1 F^T; `shot` is of that mode. */
 int bg_remove_slips(bg_model *m, const int *mode, const bg_snapshot *shot, double *s);
+
+/* port_impact.c: where switches of a mode hold what has a slip: what s is after that, the impulses
+ * that ports give and readings have; `shot` is of the mode in which all are let go, and below
+ * `near` a slip is none. 0 where nothing has to jump. */
+int bg_strike(bg_model *m, const int *mode, const bg_snapshot *shot, const double *near, double *s,
+              double *given, double *received, int *struck);
 
 /* port_slips.c: a port's slip at an instant, and how fast it changes; in `terms` the magnitude of
  * what makes that up. */
@@ -148,6 +158,11 @@ void bg_note_stages(bg_model *m);
 /* model_level.c: of level, cap, curve and curve at rest of every port at `m->now` those become zero
  * that are below by no more than the rounding of their terms. */
 void bg_without_rounding(bg_model *m, double *values);
+
+/* Of conditions at `m->now`: the magnitude of the terms that make each up, and how fast it changes;
+ * `shot`: the same instant, where the shortest time constant is `time`. */
+void bg_guard_terms(bg_model *m, const bg_snapshot *shot, double time, double *terms,
+                    double *slopes);
 
 /* Takes a vector that a run has come to into account: where it comes down to zero, it rounds. */
 void bg_have_seen(bg_model *m, const double *s);

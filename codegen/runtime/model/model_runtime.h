@@ -65,6 +65,7 @@ typedef struct {
     double slip_x[BG_TABLE(BG_FRICTION, BG_STATES)], slip_u[BG_TABLE(BG_FRICTION, BG_INPUTS)];
     double fixed[BG_TABLE(BG_FRICTION, BG_INPUTS)];
     double take_away[BG_TABLE(BG_STATES, BG_FRICTION)];
+    double mix[BG_TABLE(BG_FRICTION, BG_FRICTION)]; /* what those slips are of the ports' own */
 } bg_hold;
 
 /* Room to work in, so that nothing large lies on the stack. */

@@ -1,25 +1,21 @@
-/* Modes in turn, those that stick most first, until one contradicts nothing. */
-#include "port_choose.h"
+/* Modes in turn, those that stick most first, until one contradicts nothing; switches as they are. */
+#include "port_choosing.h"
 
 #include <math.h>
 #include <stddef.h>
 
 #include "run_pace.h"
 
-/* What a choice rests on: the slips, and which ports are undecided. `why` there is no mode: as none
- * could be looked at so far, or as those are not consistent. */
-typedef struct {
-    const bg_sight *sight;
-    const bg_instant *at;
-    const int *before;
-    int forward[BG_MOST_PORTS], undecided[BG_MOST_PORTS], count, why;
-} bg_choice;
-
 /* Whether a status says nothing about the mode: it is a refusal, or asks for something. */
 static int ends_search(int status)
 {
     return status == BG_NEEDS_SLOPE || status == BG_STRUCTURE || status == BG_NOT_AFFINE
         || status >= BG_MISSING;
+}
+
+static int rubs(const bg_sight *c, int port)
+{
+    return !c->switches || c->switches[port].kind == BG_RUBS;
 }
 
 static int sign_of(double value, double least)
@@ -71,48 +67,62 @@ static int ruled_out(int ports, const bg_ruling *ruling, const bg_port *now, con
 }
 
 /* Looks a moment later, by one midpoint step from the instant that was looked at in the mode. */
-static int look_later(const bg_sight *sight, const bg_instant *at, const int *mode)
+static int look_later(const bg_sight *sight, const bg_instant *at, const double *s, const int *mode)
 {
     const double ahead = bg_look_ahead(at->time, at->t, at->following);
     for (int i = 0; i < sight->size; i++)
-        sight->point[i] = at->s[i] + 0.5 * ahead * sight->rate[i];
+        sight->point[i] = s[i] + 0.5 * ahead * sight->rate[i];
     const int status = sight->look(sight->self, at->t + 0.5 * ahead, sight->point, mode);
     if (status)
         return status;
     for (int i = 0; i < sight->size; i++)
-        sight->point[i] = at->s[i] + ahead * sight->rate[i];
+        sight->point[i] = s[i] + ahead * sight->rate[i];
     return sight->look(sight->self, at->t + ahead, sight->point, mode);
+}
+
+/* Takes port i to contradict the mode, if it does: friction, or of switches which. */
+static void contradict(const bg_sight *c, int i, bg_finding *found)
+{
+    found->rubbing |= rubs(c, i);
+    found->broken |= rubs(c, i) ? 0u : 1u << i;
+    found->holds = 0;
 }
 
 /* A moment later, where the instant itself is a tie. */
 static int late(const bg_choice *choice, const int *mode, const bg_port *now, const int *tied,
-                int *holds)
+                bg_finding *found)
 {
     const bg_sight *const c = choice->sight;
     bg_port later[BG_MOST_PORTS];
     bg_ruling ruling = {0};
-    const int status = look_later(c, choice->at, mode);
-    *holds = status == BG_OK;
+    const int status = look_later(c, choice->at, choice->s, mode);
+    found->holds = status == BG_OK;
     if (status)
         return ends_search(status) ? status : BG_OK;
     c->tell(c->self, mode, NULL, later, &ruling);
-    *holds = !ruled_out(c->ports, &ruling, now, later);
-    for (int k = 0; k < choice->count; k++) {
-        const int i = choice->undecided[k];
-        *holds &= !tied[k] || late_verdict(later + i, now + i, c->coupled[i], mode[i]);
+    if (ruled_out(c->ports, &ruling, now, later)) {
+        found->holds = 0;
+        found->rubbing = 1;
+    }
+    for (int i = 0; i < c->ports; i++) {
+        const int goes = rubs(c, i)
+            ? late_verdict(later + i, now + i, c->coupled[i], mode[i])
+            : later[i].stay - now[i].stay >= -BG_SEEN * now[i].near_stay;
+        if (tied[i] && !goes)
+            contradict(c, i, found);
     }
     return BG_OK;
 }
 
 /* Whether a mode contradicts nothing. */
-static int consistent(bg_choice *choice, const int *mode, int *holds)
+static int consistent(bg_choice *choice, const int *mode, bg_finding *found)
 {
     const bg_sight *const c = choice->sight;
     bg_port now[BG_MOST_PORTS];
     bg_ruling ruling = {0};
     int tied[BG_MOST_PORTS] = {0}, ties = 0;
-    const int status = c->look(c->self, choice->at->t, choice->at->s, mode);
-    *holds = 0;
+    const int status = c->look(c->self, choice->at->t, choice->s, mode);
+    *found = (bg_finding){0};
     if (status) {
         choice->why = choice->why ? choice->why : status;
         return ends_search(status) ? status : BG_OK;
@@ -123,14 +133,18 @@ static int consistent(bg_choice *choice, const int *mode, int *holds)
         return BG_OK;
     if (ruling.unknown)
         return ruling.unknown;
-    for (int k = 0; k < choice->count; k++) {
-        const int i = choice->undecided[k], sure = verdict(now + i, c->coupled[i], mode[i]);
+    found->holds = 1;
+    for (int i = 0; i < c->ports; i++) {
+        int sure = 1;
+        if (!rubs(c, i))
+            sure = choice->shocks[i] ? choice->shocks[i] : sign_of(now[i].stay, now[i].near_stay);
+        else if (choice->open >> i & 1u)
+            sure = verdict(now + i, c->coupled[i], mode[i]);
+        ties += tied[i] = sure == 0;
         if (sure < 0)
-            return BG_OK;
-        ties += tied[k] = sure == 0;
+            contradict(c, i, found);
     }
-    *holds = 1;
-    return ties || ruling.count ? late(choice, mode, now, tied, holds) : BG_OK;
+    return found->holds && (ties || ruling.count) ? late(choice, mode, now, tied, found) : BG_OK;
 }
 
 /* Choice `number` among three to the power of the undecided ports, the last changing fastest; how
@@ -151,24 +165,29 @@ static void candidate(const bg_choice *choice, int number, int *mode, int *stick
 }
 
 /* The first consistent mode: by the number of ports that stick, most first; then those that change
- * least. */
-static int first_consistent(bg_choice *choice, int *found)
+ * least. *broken: switches that alone contradict the first that could be one. */
+static int first_consistent(bg_choice *choice, int *mode, int *holds, unsigned *broken)
 {
     int total = 1;
+    *broken = 0;
     for (int k = 0; k < choice->count; k++)
         total *= 3;
     for (int stick = choice->count; stick >= 0; stick--)
         for (int change = 0; change <= choice->count; change++)
             for (int number = 0; number < total; number++) {
-                int sticking, changed, holds;
-                candidate(choice, number, found, &sticking, &changed);
+                int sticking, changed;
+                bg_finding found;
+                candidate(choice, number, mode, &sticking, &changed);
                 if (sticking != stick || changed != change)
                     continue;
-                const int status = consistent(choice, found, &holds);
-                if (status || holds)
+                const int status = consistent(choice, mode, &found);
+                *holds = found.holds;
+                if (status || *holds)
                     return status;
+                if (*broken == 0 && !found.rubbing)
+                    *broken = found.broken;
             }
-    return choice->why;
+    return BG_OK;
 }
 
 int bg_try(int ports, int number, const int *mode, int *tried)
@@ -203,26 +222,40 @@ int bg_evaluated(const bg_sight *c, const bg_instant *at, int slipping, int *mod
     return first;
 }
 
-int bg_choose(const bg_sight *c, const bg_instant *at, int *mode)
+int bg_choose_rubbing(bg_choice *choice, int *mode, int *holds, unsigned *broken)
 {
-    bg_choice choice = {.sight = c, .at = at, .before = mode};
-    int looked[BG_MOST_PORTS], found[BG_MOST_PORTS];
+    const bg_sight *const c = choice->sight;
+    const bg_instant here = {.t = choice->at->t, .time = choice->at->time, .s = choice->s};
+    int looked[BG_MOST_PORTS];
     bg_port now[BG_MOST_PORTS];
+    *holds = 0;
+    *broken = 0;
     for (int i = 0; i < c->ports; i++)
         looked[i] = mode[i];
-    int status = bg_evaluated(c, at, 1, looked);
-    if (status)
-        return status;
-    c->tell(c->self, looked, at, now, NULL);
+    const int status = bg_evaluated(c, &here, 1, looked);
+    if (status) {
+        choice->why = choice->why ? choice->why : status;
+        return ends_search(status) ? status : BG_OK;
+    }
+    c->tell(c->self, looked, choice->at, now, NULL);
+    choice->count = 0;
+    choice->open = 0;
     for (int i = 0; i < c->ports; i++) {
         const double slip = fabs(now[i].slip), near = now[i].near_slip;
-        const int loose = at->touched[i] || mode[i] == 0, passed = at->touched[i] == BG_PASSED;
-        choice.forward[i] = now[i].slip > 0 ? 1 : -1;
-        if (c->coupled[i] || slip <= near || passed || (loose && slip <= BG_WIDE * near))
-            choice.undecided[choice.count++] = i;
+        const int touched = choice->at->touched[i];
+        const int loose = touched || mode[i] == 0, passed = touched == BG_PASSED;
+        choice->forward[i] = !rubs(c, i) ? mode[i] : now[i].slip > 0 ? 1 : -1;
+        if (rubs(c, i)
+            && (c->coupled[i] || slip <= near || (passed && !choice->struck)
+                || (loose && slip <= BG_WIDE * near))) {
+            choice->undecided[choice->count++] = i;
+            choice->open |= 1u << i;
+        }
     }
-    status = first_consistent(&choice, found);
-    for (int i = 0; i < c->ports && !status; i++)
+    choice->before = mode;
+    int found[BG_MOST_PORTS];
+    const int ended = first_consistent(choice, found, holds, broken);
+    for (int i = 0; i < c->ports && *holds; i++)
         mode[i] = found[i];
-    return status;
+    return ended;
 }

@@ -1,9 +1,10 @@
-/* Which friction ports stick and which way the others slip: one consistent mode at one instant, of
- * whatever can be looked at in a given mode. */
+/* Which ports hold and which are let go, and which way these slip: one consistent mode at one
+ * instant, of whatever can be looked at in a given mode. */
 #ifndef BG_PORT_CHOOSE_H
 #define BG_PORT_CHOOSE_H
 
 #include "config.h"
+#include "port_switch.h"
 #include "run_status.h"
 #include "tuning.h"
 
@@ -13,10 +14,10 @@ enum { BG_MOST_PORTS = 8 };
  * whoever steps the model finds it no better. */
 enum { BG_UNTOUCHED, BG_TOUCHED, BG_PASSED };
 
-/* One port at one instant in one mode. `push`: how fast the slip changes; `near_..`: below these
- * slip, margin and push count as zero. */
+/* One port at one instant in one mode. `push`: how fast the slip changes; `stay`: what keeps a
+ * switch from changing over; `near_..`: below these slip, margin, push and stay count as zero. */
 typedef struct {
-    double slip, effort, cap, push, near_slip, near_effort, near_push;
+    double slip, effort, cap, push, stay, near_slip, near_effort, near_push, near_stay;
 } bg_port;
 
 /* Combinations of slips, by rows over all ports, that only inputs rule and not what the ports of a
@@ -38,21 +39,28 @@ typedef struct {
  * evaluates everything at t, s in a mode and leaves the rate of s in `rate`; its status tells why
  * the mode is none, or ends the search. `tell` tells of the latest look: of every port what there
  * is and, unless `at` is NULL, what counts as zero there; and unless that is NULL of the ruling,
- * which comes with no rows. */
+ * which comes with no rows. `strike` puts s, which is that of `at` before, to what it is once the
+ * switches of a mode hold: 1 in `shocks` where the impulse goes with the switch's mode, -1 where
+ * against it, else 0; *struck: whether there is one. */
 typedef struct {
     void *self;
     int size, ports;
+    const bg_switch *switches; /* NULL where no port is one */
     const int *coupled;
     const double *rate;
-    double *point; /* room for s */
+    double *point, *struck; /* room for s, twice */
     int (*look)(void *self, double t, const double *s, const int *mode);
     void (*tell)(void *self, const int *mode, const bg_instant *at, bg_port *ports,
                  bg_ruling *ruling);
+    int (*strike)(void *self, const bg_instant *at, const int *mode, double *s, int *shocks,
+                  int *struck);
 } bg_sight;
 
-/* From the mode so far to the one just after the instant: 0 sticks, 1 slips forwards, -1 backwards.
- * Ports at rest, or so close that it is an event's own rounding, stick if they can. A status: where
- * no mode is consistent BG_UNDECIDED or, if none could be looked at, that of the first. */
+/* From the mode so far to the one just after the instant: 0 sticks or is held, 1 slips forwards or
+ * is let go, -1 backwards; s of the instant becomes what it is after an impact. Ports at rest, or so
+ * close that it is an event's own rounding, stick if they can; switches stay as long as nothing
+ * contradicts it. A status: where no mode is consistent BG_UNDECIDED or, if none could be looked at,
+ * that of the first. */
 int bg_choose(const bg_sight *sight, const bg_instant *at, int *mode);
 
 /* What to try where a mode cannot be evaluated, by number: slipping as it does, the same backwards

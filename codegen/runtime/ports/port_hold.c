@@ -21,6 +21,16 @@ static void add_row(int columns, double factor, const double *a, int at, double 
         row[j] += factor * a[at * columns + j];
 }
 
+/* What a row gains where the factors of a slip move. */
+static void add_moving(const bg_numbers *a, double factor, int port, bg_hold *held, int row)
+{
+    if (bg_moving[port] < 0)
+        return;
+    add_row(N, factor, a->F, bg_moving[port], held->X + row * N);
+    add_row(M, factor, a->D, bg_moving[port], held->U + row * M);
+    add_row(M, factor, a->G, bg_moving[port], held->V + row * M);
+}
+
 /* The rows that rule the states: N^T y_s' = 0. */
 static void rule_states(const bg_model *m, const bg_structure *s, const double *null, bg_hold *held)
 {
@@ -34,8 +44,11 @@ static void rule_states(const bg_model *m, const bg_structure *s, const double *
             add_row(N, combined[c], a->F, bg_friction_readings[held->ports[c]], slip_x);
             add_row(M, combined[c], a->D, bg_friction_readings[held->ports[c]], slip_u);
         }
+        memcpy(held->mix + k * held->count, combined, sizeof(double) * (size_t)held->count);
         memcpy(fixed, slip_u, sizeof(double) * M);
         memcpy(held->V + row * M, slip_u, sizeof(double) * M);
+        for (int c = 0; c < held->count; c++)
+            add_moving(a, combined[c], held->ports[c], held, row);
         for (int l = 0; l < N; l++) {
             add_row(N, slip_x[l], a->P, l, held->X + row * N);
             add_row(M, slip_x[l], a->Q, l, held->U + row * M);
@@ -153,11 +166,15 @@ int bg_holding_efforts(bg_model *m, const bg_hold *held, double *efforts)
 
 /* What rounding in the holding efforts adds to rates is taken away, or slips that stick would
  * drift. */
-void bg_correct(const bg_hold *held, double *rate, const double *du)
+void bg_correct(const bg_hold *held, double *rate, const double *du, const double *y)
 {
     double drift[PORTS] = {0};
     bg_multiply_add(held->kept, N, held->slip_x, rate, drift);
     bg_multiply_add(held->kept, M, held->fixed, du, drift);
+    for (int k = 0; k < held->kept; k++)
+        for (int c = 0; c < held->count; c++)
+            if (bg_moving[held->ports[c]] >= 0)
+                drift[k] += held->mix[k * held->count + c] * y[bg_moving[held->ports[c]]];
     bg_multiply_add(N, held->kept, held->take_away, drift, rate);
 }
 

@@ -1,4 +1,5 @@
 /* A generated model as a choice of mode sees it: its ports, and what counts as zero of them. */
+#include <stddef.h>
 #include <string.h>
 
 #include "port_sight.h"
@@ -54,7 +55,7 @@ static void show_ports(const bg_view *v, bg_port *ports)
         };
 }
 
-void bg_view_ports(bg_view *v, double time, bg_port *ports)
+void bg_view_ports(bg_view *v, const int *mode, double time, bg_port *ports)
 {
     const bg_magnitudes sizes = {v->F, v->D, v->FP, v->FQ, v->P, v->Q, v->inertia};
     double x[BG_ROOM(N)], u[BG_ROOM(M)], rate[BG_ROOM(N)];
@@ -67,6 +68,8 @@ void bg_view_ports(bg_view *v, double time, bg_port *ports)
         u[j] = fmax(fabs(v->shot.u[j]), v->peaks->u[j]);
     show_ports(v, ports);
     bg_round_ports(N, M, K, &sizes, v->t, time, x, u, rate, ports);
+    if (BG_SWITCHES)
+        bg_view_stay(v, mode, time, x, u, ports);
 }
 
 /* What only other inputs rule of slips that stick, of a mode that has been evaluated. */
@@ -89,16 +92,20 @@ static void tell_ports(void *view, const int *mode, const bg_instant *at, bg_por
 {
     bg_view *const v = view;
     if (at)
-        bg_view_ports(v, at->time, ports);
-    else
+        bg_view_ports(v, mode, at->time, ports);
+    else {
         show_ports(v, ports);
+        if (BG_SWITCHES)
+            bg_view_keep(v, mode, ports);
+    }
     if (ruling)
         rule(v->model, mode, ruling);
 }
 
 bg_sight bg_view_sight(bg_view *v)
 {
-    return (bg_sight){v, BG_SIZE, K, bg_beside, v->shot.rate, v->point, bg_view_look, tell_ports};
+    return (bg_sight){v, BG_SIZE, K, BG_SWITCHES ? bg_switches : NULL, bg_beside, v->shot.rate,
+                      v->point, v->struck, bg_view_look, tell_ports, bg_view_strike};
 }
 
 /* A term is the effect of a small relative change of a state. */

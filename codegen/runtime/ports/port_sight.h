@@ -19,7 +19,7 @@ typedef struct {
     bg_peaks *peaks;
     const void *self;
     int (*given)(const void *self, double t, double *w, double *dw);
-    double t, point[BG_SIZE];
+    double t, point[BG_SIZE], struck[BG_SIZE];
     bg_snapshot shot;
     int measured;
     double F[BG_TABLE(BG_STATES, BG_FRICTION)], D[BG_TABLE(BG_INPUTS, BG_FRICTION)];
@@ -34,7 +34,15 @@ bg_sight bg_view_sight(bg_view *v);
 /* Everything at t and s in a mode, in v->shot; its ports with what counts as zero, where `time` is
  * the shortest time constant. */
 int bg_view_look(void *view, double t, const double *s, const int *mode);
-void bg_view_ports(bg_view *v, double time, bg_port *ports);
+void bg_view_ports(bg_view *v, const int *mode, double time, bg_port *ports);
+
+/* port_keep.c: what keeps switches of the latest look; below what that is none, where the largest
+ * magnitudes of states and inputs are x and u; and their impulses, as a choice wants them. */
+void bg_view_keep(const bg_view *v, const int *mode, bg_port *ports);
+void bg_view_stay(bg_view *v, const int *mode, double time, const double *x, const double *u,
+                  bg_port *ports);
+int bg_view_strike(void *view, const bg_instant *at, const int *mode, double *s, int *shocks,
+                   int *struck);
 
 /* Takes the latest look, at s, into the peaks, friction slipping so; it stays the latest. */
 void bg_view_see(bg_view *v, const double *s, const int *slipping);

@@ -36,5 +36,5 @@ double bg_slip_rate(const bg_model *m, const bg_snapshot *now, int port, double 
     }
     for (int j = 0; j < M; j++)
         sum += a->D[row * M + j] * now->du[j];
-    return sum;
+    return bg_moving[port] < 0 ? sum : sum + now->y[bg_moving[port]];
 }

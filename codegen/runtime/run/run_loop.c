@@ -19,7 +19,9 @@ static int come_to_end(const bg_engine *e, bg_course *c, int *undecided)
         return status;
     sight->tell(sight->self, c->mode, &c->at, now, NULL);
     for (int i = 0; i < sight->ports; i++) {
-        if (c->mode[i] == 0)
+        if (sight->switches && sight->switches[i].kind != BG_RUBS)
+            c->at.touched[i] |= now[i].stay <= BG_WIDE * now[i].near_stay;
+        else if (c->mode[i] == 0)
             c->at.touched[i] |= now[i].cap - fabs(now[i].effort) <= BG_WIDE * now[i].near_effort;
         else if (!sight->coupled[i])
             c->at.touched[i] |= fabs(now[i].slip) <= BG_WIDE * now[i].near_slip;
@@ -50,7 +52,8 @@ static int settle(const bg_engine *e, bg_course *c, int started)
     for (int i = 0; i < sight->ports; i++)
         touched |= c->at.touched[i];
     if (status == BG_OK && started) {
-        if (bg_note(c->events, &c->count, c->capacity, c->at.t, sight->ports, before, c->mode))
+        if (bg_note(c->events, &c->count, c->capacity, c->at.t, sight->ports, sight->switches,
+                    before, c->mode))
             status = BG_EVENTS;
         else if (touched && bg_stalls(&c->rounds, c->at.t, c->at.time))
             status = BG_STALLS;
@@ -58,7 +61,7 @@ static int settle(const bg_engine *e, bg_course *c, int started)
     return status ? status : e->rest(e->self);
 }
 
-void bg_set_out(bg_course *c, double t, double end, double *s)
+void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
 {
     c->at = (bg_instant){.t = t, .s = s};
     c->began = t;
@@ -66,7 +69,7 @@ void bg_set_out(bg_course *c, double t, double end, double *s)
     c->segment = bg_segment(c->segments, c->breaks, t);
     c->count = c->rounds.next = c->rounds.full = 0;
     for (int i = 0; i < BG_MOST_PORTS; i++)
-        c->mode[i] = 1;
+        c->mode[i] = first ? first[i] : 1;
 }
 
 int bg_run(const bg_engine *e, bg_course *c)

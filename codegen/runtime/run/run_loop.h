@@ -32,8 +32,9 @@ typedef struct {
     int (*advance)(void *self, double stop);
 } bg_engine;
 
-/* Sets out at t, and runs to the end. */
-void bg_set_out(bg_course *c, double t, double end, double *s);
+/* Sets out at t, with BG_MOST_PORTS modes as they are before, all let go unless told; and runs to
+ * the end. */
+void bg_set_out(bg_course *c, double t, double end, double *s, const int *first);
 int bg_run(const bg_engine *engine, bg_course *c);
 
 #endif

@@ -1,0 +1,17 @@
+/* Ideal switches: ports that are held or let go, as a side or conditions of theirs tell. */
+#ifndef BG_PORT_SWITCH_H
+#define BG_PORT_SWITCH_H
+
+/* What makes a port change over: friction, a side, or conditions. */
+enum bg_way { BG_RUBS, BG_ONE_SIDED, BG_TOLD };
+
+/* `on`: whether it is on while it is held. `side`: let go while side * y >= 0, held while side * u
+ * <= 0. `guard`: the place of its condition to turn on, before that to turn off. */
+typedef struct {
+    int kind, on, side, guard;
+} bg_switch;
+
+/* What keeps a switch from changing over in its mode: positive as long as it stays. */
+double bg_stay(const bg_switch *s, int sign, double slip, double effort, const double *guards);
+
+#endif
