@@ -211,7 +211,7 @@ class Simulator:
             return None
         stopped = Stopped(f"C has no method {settings.method!r}", limit=settings.method != EXACT)
         if self.engine is not None and settings.method in ("auto", EXACT):
-            found = self.engine.run(times, start, signals)
+            found = self.engine.run(times, start, signals, first)
             if found.track is not None:
                 return self._recorded(times, signals, found.track, "c")
             stopped = found.stopped

@@ -13,7 +13,6 @@ from codegen.c.runtime import runtime_file
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
 from codegen.engine.fallback import Stopped
 from codegen.engine.runs import KINDS, not_affine
-from codegen.ports.holds import MOST_PORTS
 from codegen.engine.sizes import aligned, declarations
 from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
@@ -21,6 +20,7 @@ from codegen.inputs.tables import SignalTable, signal_table
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
+from codegen.ports.holds import MOST_PORTS
 from codegen.program.layout import recorded
 from codegen.record.snapshots import Snapshots
 from codegen.runs.track import Event, Settings
@@ -191,8 +191,8 @@ def _declared() -> str:
     """What is called; records that only C looks into have names alone."""
     own = "".join(f"typedef struct {n} {n};\n" for n in ("bg_model", "bg_located", "bg_snapshot"))
     headers = (
-        "port_switch.h", "port_events.h", "model_signals.h", "located_request.h", "located_rows.h", "batch_measure.h",
-        "batch_located.h",
+        "port_switch.h", "port_events.h", "model_signals.h", "located_request.h", "located_rows.h",
+        "batch_measure.h", "batch_located.h",
     )  # fmt: skip
     own += "const char *bg_model_message(int status);\n"
     return own + "".join(declarations(header, {}) for header in headers)

@@ -9,6 +9,7 @@ from bondgraph.errors import SimulationError
 from codegen.engine.sizes import Engine, view
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
+from codegen.modes.impact import keeping, struck
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
 from codegen.program.affine import AffineMap
@@ -32,6 +33,12 @@ class Tables:
         self.record = engine.new("ex_model")
         self._modes: dict[int, Any] = {}
         self._magnitudes()
+        self.record.switched = bool(model.program.switches)
+        for at, port in enumerate(model.program.friction):
+            told = port.switch
+            kind = 0 if told is None else 1 if told.side else 2
+            parts = (0, 0, 0) if told is None else (int(told.on), told.side, max(told.guard, 0))
+            self.record.switches[at] = (kind, *parts)
 
     def supply(self, number: int) -> None:
         """Work out a mode."""
@@ -115,6 +122,8 @@ class Tables:
         own = affine.rows(RATE)[:, : model.size]
         scale = scipy.linalg.matrix_balance(own, permute=False, separate=True)[1][0]
         view(self.engine, made.weight)[:] = 1 / scale
+        if model.program.switches:
+            self._fill_switches(made, mode, affine)
         if 0 in mode:
             held = model.hold(mode, model.constant)
             rest = held.slip_x @ affine.rows(STATES) + held.slip_u @ affine.rows(INPUTS)
@@ -122,6 +131,21 @@ class Tables:
             view(self.engine, made.left, size["L"], -1)[:, : len(rest)] = self._wide(rest).T
             away = view(self.engine, made.take_away, -1, size["N"])
             away[: len(rest), : len(held.take_away)] = held.take_away.T
+
+    def _fill_switches(self, made: Any, mode: Mode, affine: AffineMap) -> None:
+        """What keeps switches; where friction slips forwards also what they do as they come to hold."""
+        model, size = self.model, self.engine.sizes.numbers
+        stay = view(self.engine, made.stay, size["L"], -1)
+        rows = keeping(model, mode, affine)
+        stay[:, : len(rows)] = self._wide(rows).T
+        if any(sign != 1 and s is None for sign, s in zip(mode, model.switching, strict=True)):
+            return
+        found = struck(model, mode)
+        if found is None:
+            return
+        for name, part in (("mix", found.mix), ("jump", found.jump), ("shock", found.shock)):
+            table = view(self.engine, getattr(made, name), size["PORTS"], -1)
+            table[: part.shape[0], : part.shape[1]] = part
 
     def _wide(self, rows: Array) -> Array:
         """Rows over (s, w, w', 1), with columns for an input where there is none."""

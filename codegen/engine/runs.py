@@ -14,8 +14,10 @@ from codegen.engine.modes import Tables, mode_of
 from codegen.engine.sizes import MOST_PORTS, Engine, aligned, engine, sizes
 from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
+from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
+from codegen.ports.holds import MOST_PORTS as LARGEST
 from codegen.program.affine import is_affine
 from codegen.program.gains import written_out
 from codegen.program.records import Program
@@ -76,6 +78,7 @@ class Prepared:
     start: Array
     rows: Array
     modes: Array
+    first: Array
     grid: float
     capacity: int = CAPACITY
     events: Any = field(init=False)
@@ -90,6 +93,7 @@ class Prepared:
         self.task.rows = ffi.cast(f"double(*)[{width}]", self.rows.ctypes.data)
         self.task.modes = ffi.cast("int *", self.modes.ctypes.data)
         self.task.samples, self.task.grid = len(self.times), self.grid
+        self.task.first = ffi.cast("int *", self.first.ctypes.data)
         self._room()
 
     def call(self) -> Status:
@@ -144,14 +148,21 @@ class CRuns:
         self.model, self._flags = model, tuple(flags)
         self._ready: dict[int, tuple[Tables, tuple[Array, Any]]] = {}
 
-    def run(self, times: Array, start: Array, signals: Sequence[Signal]) -> Outcome:
-        """Run and record; the status tells why there is no track, if there is none."""
-        prepared = self.prepare(times, start, signals)
+    def run(
+        self, times: Array, start: Array, signals: Sequence[Signal], first: Mode = ()
+    ) -> Outcome:
+        """Run and record; the status tells why there is no track, if there is none.
+
+        ``first``: the mode before the run, all let go unless told.
+        """
+        prepared = self.prepare(times, start, signals, first)
         status = prepared.call()
         track = prepared.track(self.model) if status == Status.OK else None
         return Outcome(status, prepared.task.time, track)
 
-    def prepare(self, times: Array, start: Array, signals: Sequence[Signal]) -> Prepared:
+    def prepare(
+        self, times: Array, start: Array, signals: Sequence[Signal], first: Mode = ()
+    ) -> Prepared:
         """Everything that a run needs."""
         made = segments(signals, float(times[0]), float(times[-1]))
         tables, context = self._tables(made)
@@ -164,6 +175,7 @@ class CRuns:
             np.ascontiguousarray(start, dtype=np.float64),
             aligned(len(times), tables.engine.sizes.numbers["ROW"]),
             np.empty(len(times), dtype=np.intc),
+            np.array([*first, *[1] * LARGEST], dtype=np.intc),
             grid_of(times),
         )
 
@@ -177,8 +189,8 @@ class CRuns:
 
 def not_affine(program: Program) -> str | None:
     """Why a model is not affine in each friction mode; None if it is."""
-    if program.switches:
-        return "this one has switches"
+    if not program.guards_affine:
+        return "a condition of a switch is not affine"
     if len(program.friction) > MOST_PORTS:
         return f"{len(program.friction)} friction ports are more than {MOST_PORTS}"
     if program.affine:

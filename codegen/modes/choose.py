@@ -13,7 +13,7 @@ from codegen.model.snapshot import Impact, Mode, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.modes.impact import impact, pushed
 from codegen.modes.rounding import Peaks, scales
-from codegen.modes.switchings import Broken, flipped, ways
+from codegen.modes.switchings import Broken, ways
 from codegen.modes.trials import evaluated
 from codegen.modes.verdicts import Look, look_at, ruled_out, ruled_out_later
 from codegen.numbers.arrays import Array
@@ -60,8 +60,8 @@ def decide(now: Occasion, s: Array) -> Decision:
     """The mode just after an instant, of the integrated vector s before it.
 
     Every loose port at rest sticks if it can, else slips the way it is pushed; other ports slip the way
-    their slip shows. Where several modes are consistent, ports not touched keep their state, and so do
-    switches that conditions tell. A mode that cannot be evaluated is none: laws without a solution in it,
+    their slip shows. Where several modes are consistent, ports not touched keep their state, and so do all
+    switches. A mode that cannot be evaluated is none: laws without a solution in it,
     ports without unique holding efforts.
 
     Raises `SimulationError`, with the numbers, if no mode is consistent.
@@ -70,9 +70,8 @@ def decide(now: Occasion, s: Array) -> Decision:
         return Decision((), s, None)
     switching = now.model.switching
     switches = [i for i, switch in enumerate(switching) if switch is not None]
-    one_sided = {i for i, switch in enumerate(switching) if switch is not None and switch.side}
     refused: dict[Mode, str] = {}
-    tries = ways(flipped(now.previous, now.touched & one_sided), switches)
+    tries = ways(now.previous, switches)
     mode = next(tries)
     while True:
         found = _tried(now, s, mode)

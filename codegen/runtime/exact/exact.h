@@ -50,6 +50,10 @@ typedef struct {
                                       the slips change; the rates of s */
     double left[EX_L][EX_PORTS];   /* the slips that are to be removed .. */
     double take_away[EX_PORTS][EX_N]; /* .. and what to add to s per unit of each */
+    double stay[EX_L][EX_PORTS];   /* what keeps switches */
+    /* where friction slips forwards: what those slips are of the ports' own; as switches come to hold
+     * what s gains per unit of each, and how far the impulse goes with each switch's way */
+    double mix[EX_PORTS][EX_PORTS], jump[EX_PORTS][EX_N], shock[EX_PORTS][EX_PORTS];
     int rates;                     /* how many of `spectrum` are known */
     double spectrum[EX_N][2];      /* rates of s by itself: magnitudes, and how fast they decay */
     int sharp;                     /* whether `rate` and `rest` are known .. */
@@ -62,6 +66,8 @@ typedef struct {
     double F[EX_X][EX_PORTS], D[EX_U][EX_PORTS], FP[EX_X][EX_PORTS], FQ[EX_U][EX_PORTS];
     double P[EX_X][EX_X], Q[EX_U][EX_X], inertia[EX_PORTS];
     int coupled[EX_PORTS];          /* whether the slip depends at once on friction */
+    int switched;                   /* whether any port is a switch */
+    bg_switch switches[EX_PORTS];
 } ex_model;
 
 /* The generator of inputs: chains y0' = r y0 + y1, y1' = r y1 + y2, .. with w = constant + Re y0.
@@ -90,6 +96,7 @@ typedef struct {
     const double *start;              /* s at the first */
     double (*rows)[EX_ROW];           /* out: s in the first EX_N columns */
     int *modes;                       /* out: each sample's mode */
+    const int *first;                 /* BG_MOST_PORTS modes before the run; NULL: all let go */
     bg_event *events;                 /* out */
     int count, where;                 /* events; the mode that an error is about */
     double time;                      /* where the run ended */

@@ -25,7 +25,8 @@ int ex_check_levels(ex_context *c, double t, double *row)
     int below = 0;
     for (int i = 0; i < EX_K; i++) {
         const double *pair = row + EX_Z + 2 * i;
-        below |= (c->run.mode[i] ? 2.0 * pair[1] : pair[0] + pair[1]) < 0.0
+        const int single = ex_single(c, c->stretch.entry->mode, i);
+        below |= (single ? 2.0 * pair[1] : pair[0] + pair[1]) < 0.0
             || ex_rests(c->stretch.entry->mode, i);
     }
     if (!below)
@@ -176,11 +177,27 @@ void ex_set_out(const ex_context *c, ex_place *p, double stop)
     ex_slots(c->inputs, c->run.segment, c->run.at.t, p->z + EX_N);
 }
 
-void ex_arrive(ex_context *c, const ex_place *p)
+/* Where a switch changes over a rounding after a sample, that shows the instant just after, too. */
+static double back_to_sample(const ex_context *c, ex_place *p)
 {
+    int switched = 0;
+    for (int i = 0; i < EX_K; i++)
+        switched |= (p->ports >> i & 1u) && ex_switches(c, i);
+    if (!switched || p->at <= c->next)
+        return p->stop;
+    const double last = c->task->times[p->at - 1], begin = c->run.at.t;
+    if (!(last > begin) || p->stop - last > BG_TOGETHER * bg_greater(fabs(p->stop), p->stop - begin))
+        return p->stop;
+    p->at--;
+    return last;
+}
+
+void ex_arrive(ex_context *c, ex_place *p)
+{
+    const double t = back_to_sample(c, p);
     c->next = p->at;
     memcpy(c->s, p->z, sizeof c->s);
-    c->run.at.t = p->stop;
+    c->run.at.t = t;
     for (int i = 0; i < EX_K; i++)
         c->run.at.touched[i] = p->ports >> i & 1u;
 }

@@ -90,8 +90,9 @@ struct ex_context {
     ex_entry entries[EX_ENTRIES];
     ex_ladder ladder;
     bg_course run;
-    double point[EX_N];                 /* room of the loop */
-    ex_shot shot;                       /* of its latest look */
+    double point[EX_N], struck[EX_N];   /* room of the loop */
+    double seen[EX_L];                  /* what its latest look was at .. */
+    ex_shot shot;                       /* .. and what there was */
 };
 
 /* exact_inputs.c: the slots at t in a segment; and w and its rate from them. */
@@ -110,7 +111,18 @@ int ex_look(ex_context *c, double t, const double *s, const ex_mode *mode, doubl
 void ex_ports(const double *shot, bg_port *ports);
 void ex_round(const ex_context *c, const double *shot, double t, bg_port *ports);
 
-/* exact_system.c: an entry of the cache, without and with exponentials, and stretches. */
+/* exact_switch.c: whether a port is a switch; what keeps those of a mode, at v, and below what that is
+ * none; their impulses, as a choice wants them. */
+int ex_switches(const ex_context *c, int port);
+void ex_keep(const ex_context *c, const ex_mode *mode, const double *v, bg_port *ports);
+void ex_round_stay(const ex_context *c, const ex_mode *mode, const double *v, const double *shot,
+                   double t, bg_port *ports);
+int ex_strike(void *context, const bg_instant *at, const int *mode, double *s, int *shocks,
+              int *struck);
+
+/* exact_system.c: an entry of the cache, without and with exponentials, and stretches; whether a port
+ * has one trigger, and a cap that is only looked at. */
+int ex_single(const ex_context *c, const ex_mode *record, int port);
 int ex_begin(ex_context *c, double stop);
 void ex_leaps(ex_context *c, ex_stretch *stretch, double h, const double *row);
 
@@ -161,7 +173,7 @@ typedef struct {
 int ex_advance(ex_context *c, double stop);
 int ex_advance_by(ex_context *c, double stop, const ex_recorder *to);
 void ex_set_out(const ex_context *c, ex_place *p, double stop);
-void ex_arrive(ex_context *c, const ex_place *p);
+void ex_arrive(ex_context *c, ex_place *p);
 int ex_check_levels(ex_context *c, double t, double *row);
 
 /* exact_run.c: a run but for its last sample; a status. */

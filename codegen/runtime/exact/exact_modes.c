@@ -66,7 +66,7 @@ static int is_rounding(const ex_context *c, double t, const double *v, const ex_
 
 int ex_look(ex_context *c, double t, const double *s, const ex_mode *mode, double *shot)
 {
-    double v[EX_L];
+    double *const v = c->seen;
     ex_vector(c, t, s, v);
 #pragma GCC unroll 1
     for (int i = 0; i < EX_SHOT; i++) {

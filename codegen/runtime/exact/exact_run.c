@@ -42,6 +42,10 @@ static void tell(void *context, const int *mode, const bg_instant *at, bg_port *
         ex_round(c, c->shot, at->t, ports);
     else
         ex_ports(c->shot, ports);
+    if (at)
+        ex_round_stay(c, found, c->seen, c->shot, at->t, ports);
+    else
+        ex_keep(c, found, c->seen, ports);
     if (!ruling)
         return;
     ruling->unknown = found->supported ? BG_OK : BG_NOT_AFFINE;
@@ -108,8 +112,8 @@ static int advance(void *context, double stop)
 int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task,
               ex_advancing *how, void *caller)
 {
-    const bg_sight sight = {c, EX_N, EX_K, NULL, model->coupled, c->shot + EX_AT_RATE, c->point,
-                            NULL, look, tell, NULL};
+    const bg_sight sight = {c, EX_N, EX_K, model->switched ? model->switches : NULL, model->coupled,
+                            c->shot + EX_AT_RATE, c->point, c->struck, look, tell, ex_strike};
     const bg_engine engine = {sight, c, see, fastest, rest, advance};
     c->model = model;
     c->inputs = inputs;
@@ -124,7 +128,7 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
     task->where = -1;
     memcpy(c->s, task->start, sizeof c->s);
     memset(&c->peaks, 0, sizeof c->peaks);
-    bg_set_out(&c->run, task->times[0], task->times[task->samples - 1], c->s, NULL);
+    bg_set_out(&c->run, task->times[0], task->times[task->samples - 1], c->s, task->first);
     int status = bg_run(&engine, &c->run);
     task->count = c->run.count;
     if (status != BG_NEGATIVE)

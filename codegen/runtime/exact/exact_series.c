@@ -115,7 +115,7 @@ static int event(ex_context *c, double t, double step, double *tau, unsigned *po
     *tau = 2.0;
     *ports = 0;
     for (int i = 0; i < EX_K; i++) {
-        const int triggers = c->run.mode[i] ? 1 : 2;
+        const int triggers = ex_single(c, c->stretch.entry->mode, i) ? 1 : 2;
         roots[i] = 2.0;
         for (int k = 0; k < triggers; k++) {
             double root = 2.0;

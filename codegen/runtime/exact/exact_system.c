@@ -4,21 +4,22 @@
 #include <math.h>
 #include <string.h>
 
-/* A row of affine maps over the slots: an input and its rate are sums of them. */
-static void over_slots(const ex_chains *chains, const ex_mode *mode, double (*slots)[EX_SHOT])
+/* Columns of affine maps, `rows` long, over the slots: an input and its rate are sums of them. */
+static void over_slots(const ex_chains *chains, int rows, const double *map, double *slots)
 {
     for (int i = 0; i < chains->count; i++) {
-        const int first = chains->first[i], width = chains->width[i], j = chains->input[i];
-        const double *by_w = mode->shot[EX_N + j], *by_dw = mode->shot[EX_N + EX_W + j];
+        const int width = chains->width[i], j = chains->input[i];
+        const double *by_w = map + (EX_N + j) * rows, *by_dw = map + (EX_N + EX_W + j) * rows;
         const double re = chains->rate[i][0], im = chains->rate[i][1];
-        for (int r = 0; r < EX_SHOT; r++)
-            slots[first][r] = by_w[r] + re * by_dw[r];
+        double *const to = slots + chains->first[i] * rows;
+        for (int r = 0; r < rows; r++)
+            to[r] = by_w[r] + re * by_dw[r];
         if (width == 2)
-            for (int r = 0; r < EX_SHOT; r++)
-                slots[first + 1][r] = -im * by_dw[r];
+            for (int r = 0; r < rows; r++)
+                to[rows + r] = -im * by_dw[r];
         if (chains->depth[i] > 1)
-            for (int r = 0; r < EX_SHOT; r++)
-                slots[first + width][r] = by_dw[r];
+            for (int r = 0; r < rows; r++)
+                to[width * rows + r] = by_dw[r];
     }
 }
 
@@ -42,16 +43,29 @@ static void generate(const ex_chains *chains, double (*M)[EX_Z])
 
 /* Triggers from the rows of slips, efforts and caps: a port that slips has its slip, and its cap,
  * which is only watched; one that sticks the distances of its effort to both breakaway efforts, or,
- * where only inputs rule its slip, of that to what is no longer zero: it gives nothing then. */
-static void triggers(const ex_mode *record, const int *mode, const double *shot, double *to)
+ * where only inputs rule its slip, of that to what is no longer zero: it gives nothing then. A switch
+ * has what keeps it, and a cap of zero. */
+static void triggers(const ex_context *c, const ex_mode *record, const double *shot,
+                     const double *stay, double *to)
 {
+    const int *const mode = c->run.mode;
     for (int i = 0; i < EX_K; i++) {
         const int rests = ex_rests(record, i);
+        if (ex_switches(c, i) && !rests) {
+            to[2 * i] = stay[i];
+            to[2 * i + 1] = 0.0;
+            continue;
+        }
         const double moved = shot[(rests ? EX_AT_SLIP : EX_AT_EFFORT) + i];
         const double cap = shot[EX_AT_CAP + i], below = rests ? 0.0 : cap;
         to[2 * i] = mode[i] ? mode[i] * shot[EX_AT_SLIP + i] : below - moved;
         to[2 * i + 1] = mode[i] ? cap : below + moved;
     }
+}
+
+int ex_single(const ex_context *c, const ex_mode *record, int port)
+{
+    return c->run.mode[port] != 0 || (ex_switches(c, port) && !ex_rests(record, port));
 }
 
 /* Weights of the slots that keep what they feed from counting, and the norm of M in all. */
@@ -75,20 +89,23 @@ static void balance(ex_entry *e)
 
 static void assemble(ex_context *c, ex_entry *e)
 {
-    double slots[EX_G][EX_SHOT];
+    double slots[EX_G][EX_SHOT], keeping[EX_G][EX_PORTS];
     memset(e->M, 0, sizeof e->M);
     memset(slots, 0, sizeof slots);
-    over_slots(&e->chains, e->mode, slots);
+    memset(keeping, 0, sizeof keeping);
+    over_slots(&e->chains, EX_SHOT, e->mode->shot[0], slots[0]);
+    if (c->model->switched)
+        over_slots(&e->chains, EX_PORTS, e->mode->stay[0], keeping[0]);
     generate(&e->chains, e->M);
     for (int j = 0; j < EX_Z; j++) {
         const double *shot = j < EX_N ? e->mode->shot[j] : slots[j - EX_N];
         for (int i = 0; i < EX_N; i++)
             e->M[j][i] = shot[EX_AT_RATE + i];
-        triggers(e->mode, c->run.mode, shot, e->trigger[j]);
+        triggers(c, e->mode, shot, j < EX_N ? e->mode->stay[j] : keeping[j - EX_N], e->trigger[j]);
     }
     e->caps = 0;
     for (int i = 0; i < EX_K; i++)
-        e->caps |= c->run.mode[i] ? 2u << 2 * i : 0u;
+        e->caps |= ex_single(c, e->mode, i) ? 2u << 2 * i : 0u;
     balance(e);
     e->h = e->step = 0.0;
 }
@@ -133,18 +150,23 @@ static void constants(const ex_context *c, ex_stretch *stretch)
 {
     const ex_mode *mode = stretch->entry->mode;
     ex_shot sum;
+    double stay[EX_PORTS];
     memcpy(sum, mode->shot[EX_L - 1], sizeof sum);
+    memcpy(stay, mode->stay[EX_L - 1], sizeof stay);
     for (int j = 0; j < EX_W; j++) {
         const double w = c->inputs->constant[c->run.segment][j];
-        if (w != 0.0)
+        if (w != 0.0) {
             for (int i = 0; i < EX_SHOT; i++)
                 sum[i] += mode->shot[EX_N + j][i] * w;
+            for (int i = 0; i < EX_K; i++)
+                stay[i] += mode->stay[EX_N + j][i] * w;
+        }
     }
     for (int i = 0; i < EX_N; i++)
         stretch->b[i] = sum[EX_AT_RATE + i];
     for (int i = EX_N; i < EX_Z; i++)
         stretch->b[i] = 0.0;
-    triggers(mode, c->run.mode, sum, stretch->level);
+    triggers(c, mode, sum, stay, stretch->level);
 }
 
 /* How long a motion has to be followed: until its end, or until it has decayed. */
@@ -195,12 +217,16 @@ int ex_begin(ex_context *c, double stop)
     if (status)
         return status;
     ex_round(c, now, c->run.at.t, ports);
+    ex_round_stay(c, stretch->entry->mode, c->seen, now, c->run.at.t, ports);
     for (int i = 0; i < EX_T; i++) {
         const int port = i / 2, rests = ex_rests(stretch->entry->mode, port);
         stretch->limit[i] = c->run.mode[port] || rests ? ports[port].near_slip
                                                     : ports[port].near_effort;
+        if (ex_switches(c, port) && !rests)
+            stretch->limit[i] = ports[port].near_stay;
         stretch->level[i] += rests ? BG_LEFT * ports[port].near_slip : 0.0;
-        stretch->armed[i] = c->run.mode[i / 2] && i % 2; /* caps need not be */
+        /* caps need not be */
+        stretch->armed[i] = i % 2 && ex_single(c, stretch->entry->mode, port);
     }
     return BG_OK;
 }

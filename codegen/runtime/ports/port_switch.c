@@ -115,9 +115,8 @@ static int choose_switched(bg_search *search, int *mode, int *holds)
     for (int i = 0; i < c->ports; i++) {
         if (c->switches[i].kind == BG_RUBS)
             continue;
-        const int turned = choice->at->touched[i] && c->switches[i].kind == BG_ONE_SIDED;
         search->switches |= 1u << i;
-        first |= (unsigned)((mode[i] == 0) != turned) << i;
+        first |= (unsigned)(mode[i] == 0) << i;
     }
     const int status = follow(search, first, mode, holds);
     return status || *holds ? status : try_all(search, first, mode, holds);

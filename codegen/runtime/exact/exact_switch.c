@@ -1,0 +1,124 @@
+/* Ideal switches of affine modes: what keeps them, and the impulses with which they come to hold. */
+#include "exact_internal.h"
+
+#include <float.h>
+#include <math.h>
+
+int ex_switches(const ex_context *c, int port)
+{
+    return c->model->switched && c->model->switches[port].kind != BG_RUBS;
+}
+
+void ex_keep(const ex_context *c, const ex_mode *mode, const double *v, bg_port *ports)
+{
+    for (int i = 0; i < EX_K; i++) {
+        if (!ex_switches(c, i))
+            continue;
+        ports[i].stay = 0.0;
+        for (int j = 0; j < EX_L; j++)
+            ports[i].stay += mode->stay[j][i] * v[j];
+    }
+}
+
+/* How large what maps act on has been; at rest a state is rounding itself, of what moves it within a
+ * time constant. */
+static void sizes_of(const ex_context *c, const ex_mode *mode, const double *v, double t,
+                     double *size)
+{
+    ex_input_sizes(c->inputs, c->run.segment, t, size + EX_N);
+    for (int j = EX_N + EX_W; j < EX_L; j++)
+        size[j] = fabs(v[j]);
+    for (int i = 0; i < EX_N; i++) {
+        double moved = 0.0;
+        for (int j = 0; j < EX_L; j++)
+            moved += fabs(mode->shot[j][EX_AT_RATE + i] * v[j]);
+        size[i] = bg_greater(fabs(v[i]), c->run.at.time * moved);
+        if (i < EX_X)
+            size[i] = bg_greater(size[i], c->peaks.x[i]);
+    }
+}
+
+void ex_round_stay(const ex_context *c, const ex_mode *mode, const double *v, const double *shot,
+                   double t, bg_port *ports)
+{
+    double size[EX_L];
+    const double spacing = nextafter(fabs(t), INFINITY) - fabs(t);
+    if (!c->model->switched)
+        return;
+    sizes_of(c, mode, v, t, size);
+    ex_keep(c, mode, v, ports);
+    for (int i = 0; i < EX_K; i++) {
+        double terms = 0.0, slope = 0.0;
+        for (int j = 0; j < EX_L; j++)
+            terms += fabs(mode->stay[j][i]) * size[j];
+        for (int j = 0; j < EX_N; j++)
+            slope += mode->stay[j][i] * shot[EX_AT_RATE + j];
+        for (int j = 0; j < EX_W; j++)
+            slope += mode->stay[EX_N + j][i] * v[EX_N + EX_W + j];
+        ports[i].near_stay = BG_ROUNDING * terms + BG_LATE * spacing * fabs(slope) + DBL_MIN;
+    }
+}
+
+/* The mode whose friction slips forwards, with switches as they are or all let go. */
+static int find(ex_context *c, const int *mode, int loose, const ex_mode **found)
+{
+    int other[BG_MOST_PORTS];
+    for (int i = 0; i < EX_K; i++)
+        other[i] = loose || !ex_switches(c, i) ? 1 : mode[i];
+    const int status = ex_find(c, ex_number(other), found);
+    return status == BG_NOT_AFFINE && (*found)->none ? BG_NO_HOLD : status;
+}
+
+/* Whether the slips that a mode would stop are more than rounding; *status of a look where all is let
+ * go. */
+static int jumps(ex_context *c, const bg_instant *at, const int *mode, const ex_mode *holding,
+                 const double *slips, int *status)
+{
+    const ex_mode *loose;
+    bg_port ports[EX_PORTS];
+    int any = 0;
+    *status = find(c, mode, 1, &loose);
+    if (*status == BG_OK)
+        *status = ex_look(c, at->t, at->s, loose, c->shot);
+    if (*status)
+        return 0;
+    ex_round(c, c->shot, at->t, ports);
+    for (int k = 0; k < holding->held; k++) {
+        double near = 0.0;
+        for (int i = 0; i < EX_K; i++)
+            near += fabs(holding->mix[k][i]) * ports[i].near_slip;
+        any |= fabs(slips[k]) > BG_WIDE * near;
+    }
+    return any;
+}
+
+int ex_strike(void *context, const bg_instant *at, const int *mode, double *s, int *shocks,
+              int *struck)
+{
+    ex_context *const c = context;
+    const ex_mode *holding;
+    double v[EX_L], slips[EX_PORTS] = {0};
+    *struck = 0;
+    int status = find(c, mode, 0, &holding);
+    if (status)
+        return status;
+    ex_vector(c, at->t, at->s, v);
+    for (int k = 0; k < holding->held; k++)
+        for (int j = 0; j < EX_L; j++)
+            slips[k] += holding->left[j][k] * v[j];
+    if (!jumps(c, at, mode, holding, slips, &status))
+        return status;
+    *struck = 1;
+    for (int i = 0; i < EX_K; i++) {
+        double way = 0.0, terms = 0.0;
+        for (int k = 0; k < holding->held; k++) {
+            way += holding->shock[k][i] * slips[k];
+            terms += fabs(holding->shock[k][i] * slips[k]);
+        }
+        shocks[i] = fabs(way) <= BG_ROUNDING * terms ? 0 : way > 0.0 ? 1 : -1;
+    }
+    for (int k = 0; k < holding->held; k++)
+        for (int i = 0; i < EX_N; i++)
+            s[i] += holding->jump[k][i] * slips[k];
+    return BG_OK;
+}
