@@ -1,7 +1,7 @@
 """A sweep's runs in one call of C for many, where the backend is C and the measures are ready ones."""
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from threading import Lock
 from typing import Any, Protocol
@@ -46,6 +46,7 @@ class Asked:
     initial: Given
     inputs: Given
     settings: Settings
+    initially_on: tuple[Hashable, ...] = ()
 
 
 class Loop(Protocol):
@@ -197,9 +198,26 @@ def batch(asked: Asked) -> Batch | None:
         if any(READY[m.function] in ENERGETIC for m in measures):
             told, made = telling(family, measures)
         kept = plan(measures, told, made, asked.time, asked.names)
-        return None if kept is None else _looped(replace(asked, family=told), kept)
+        begun = None if kept is None else _begun(asked, kept)
+        return None if begun is None else _looped(replace(asked, family=told), begun)
     except BondGraphError:
         return None
+
+
+def _begun(asked: Asked, kept: Plan) -> Plan | None:
+    """With how runs begin; None where a function tells which states are given, and switches ask for it."""
+    program = asked.family.program
+    if program.switches and callable(asked.initial):
+        return None
+    given = () if callable(asked.initial) else (*map(str, asked.initial or ()), *asked.names)
+    return replace(
+        kept,
+        first=tuple(
+            1 if port.switch is None else port.switch.sign(port.name in asked.initially_on)
+            for port in program.friction
+        ),
+        named=tuple(int(state.name in given) for state in program.states),
+    )
 
 
 def _looped(asked: Asked, kept: Plan) -> Batch | None:

@@ -38,10 +38,12 @@ def job_record(ffi: Any, kept: Plan, time: Array, grid: float) -> tuple[Any, lis
     job = ffi.new("batch_job *")
     job.times, job.grid = ffi.cast("double *", time.ctypes.data), grid
     job.samples, job.width = kept.samples, kept.width
+    first, named = ffi.new("int[]", [*kept.first, 0]), ffi.new("int[]", [*kept.named, 0])
+    job.first, job.named = first, named
     job.signals, job.factors = len(kept.rows), len(kept.factors)
     job.products, job.measures = len(kept.products), len(kept.entries)
     job.signal, job.product, job.measure = rows, products, entries
-    return job, [entries, rows, products]
+    return job, [entries, rows, products, first, named]
 
 
 def outcome_of(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from codegen.batch.engine import batch_engine
-from codegen.c.export import exported, stepped
+from codegen.c.export import stepped, texts
 from codegen.engine.sizes import Engine, sizes
 from codegen.family import Family
 from codegen.model.numbers import check_values, exact_parameters
@@ -36,13 +36,12 @@ class BatchModel:
         self.defaults = np.array([float(exact[p.name]) for p in self.program.parameters])
         check = _checked_run_by_run if self.program.varying else _checked_values
         self.usable = check(family.equations, self.program)
-        self._exported = family.equations, family.parameters, family.laws
         self._engines: dict[int, Engine] = {}
         self._lock = Lock()
 
     @cached_property
     def _sources(self) -> dict[str, str]:
-        return stepped(exported(*self._exported)[1])
+        return stepped(texts(self.closed, "model", [0.0] * len(self.defaults)))
 
     def engine(self, slots: int) -> Engine:
         """The library of an affine model for inputs whose generators have so many slots."""

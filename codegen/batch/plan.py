@@ -56,6 +56,9 @@ class Plan:
     samples: int
     width: int
     columns: tuple[Column, ...]
+    #: The mode before a run, and for each state whether it is given.
+    first: tuple[int, ...] = ()
+    named: tuple[int, ...] = ()
 
     def told(self, found: Array, numbers: Numbers) -> tuple[Array, ...]:
         """The measures, from a row of results for each run."""

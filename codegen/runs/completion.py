@@ -53,10 +53,9 @@ def beginning(
     slips = hold.slip_x @ now.x + hold.slip_u @ now.u
     if not len(free) or not slips.any():
         return Beginning(s, mode, NOTHING, still)
-    # Weighted by the storages: what is heavy moves least.
-    A = now.numbers.A[np.ix_(free, free)]
+    # What is heavy by itself moves least.
     rows = hold.slip_x[:, free]
-    way = np.linalg.solve(A, rows.T)
+    way = rows.T / np.abs(np.diag(now.numbers.A))[free, None]
     moved = -way @ np.linalg.lstsq(rows @ way, slips, rcond=TUNING.nothing)[0]
     made, by = s.copy(), still.copy()
     made[free] += moved

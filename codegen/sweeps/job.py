@@ -3,7 +3,7 @@
 import hashlib
 import pickle
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from threading import Lock
@@ -93,6 +93,7 @@ class Job:
     initial: Given = None
     inputs: Given = None
     settings: Mapping[str, Any] = field(default_factory=dict)
+    initially_on: tuple[Hashable, ...] = ()
 
     def run(self, row: Sequence[float], fallen: list[str] | None = None) -> tuple[Array, ...] | str:
         """The measures of one run, or why there are none; in ``fallen`` why numpy did it for C."""
@@ -119,12 +120,17 @@ class Job:
         inputs |= {name: v for name, v in values.items() if name in model.inputs}
         runner = model.simulator(**changes)
         if not isinstance(runner, Simulator):
-            return runner.run(self.time, initial, inputs, **self.settings)
+            return runner.run(self.time, initial, inputs, **self.settings, **self._on)
         # Times differ from run to run; the reason is what is counted.
         return runner.run_telling(
             lambda stopped: fallen.append(stopped.reason),
-            self.time, initial, inputs, **self.settings,
+            self.time, initial, inputs, **self.settings, **self._on,
         )  # fmt: skip
+
+    @property
+    def _on(self) -> dict[str, tuple[Hashable, ...]]:
+        """The switches that are on at first, where any is."""
+        return {"initially_on": self.initially_on} if self.initially_on else {}
 
     def about(self) -> dict[str, object]:
         """What identifies the job, part by part: everything that the results depend on but the rows."""
@@ -135,6 +141,7 @@ class Job:
             "inputs": _described(self.inputs),
             "settings": {name: _described(value) for name, value in self.settings.items()},
             "names": list(self.names),
+            **({"initially_on": [repr(name) for name in self.initially_on]} if self._on else {}),
             "measures": [[name, _described(measure)] for name, measure in self.measures.items()],
         }
 
@@ -166,7 +173,15 @@ def batch_of(job: Job) -> Batch | None:
     with _making:
         if job not in _batches:
             model, settings = job.model, Settings(**job.settings)
-            asked = (job.names, job.time, job.measures, job.initial, job.inputs, settings)
+            asked = (
+                job.names,
+                job.time,
+                job.measures,
+                job.initial,
+                job.inputs,
+                settings,
+                job.initially_on,
+            )
             _batches[job] = batch(Asked(model, *asked)) if isinstance(model, Family) else None
         return _batches[job]
 

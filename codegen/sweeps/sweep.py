@@ -1,7 +1,7 @@
 """`sweep`: many runs of one model over its parameters, initial values and sizes of its inputs."""
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from os import PathLike
 from types import MappingProxyType
@@ -48,6 +48,7 @@ def sweep(
     store: str | PathLike[str] | None = None,
     progress: bool = True,
     chunk: int | None = None,
+    initially_on: Iterable[Hashable] = (),
 ) -> Sweep:
     """Run a model once for each set of numbers and keep the measures of each run.
 
@@ -55,7 +56,7 @@ def sweep(
     list of rows) or `Samples`. A name is a parameter, a state (its value at the start), an input (held
     constant) or the size of an input, which is given as `Swept`. ``measures``: name to a function of the
     `Result` that gives a number or an array. ``time``, ``initial``, ``inputs``, ``method``, ``rtol``,
-    ``atol``: as of `Simulator.run`; ``initial`` and ``inputs`` may be functions of a run's numbers by name,
+    ``atol``, ``initially_on``: as of `Simulator.run`; ``initial`` and ``inputs`` may be functions of a run's numbers by name,
     which then may have names of their own.
 
     ``workers``: processes to run in, by default one for each core; 0: in this process. A family with
@@ -93,7 +94,8 @@ def sweep(
     runs = design(parameters)
     settings = MappingProxyType({"method": method, "rtol": rtol, "atol": atol})
     asked = MappingProxyType(dict(measures))
-    job = Job(model, runs.names, checked_times(time), asked, initial, inputs, settings)
+    on = tuple(initially_on)
+    job = Job(model, runs.names, checked_times(time), asked, initial, inputs, settings, on)
     _check(job)
     _check_count(workers, "workers", 0)
     _check_count(chunk, "chunk", 1)

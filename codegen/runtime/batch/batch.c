@@ -13,9 +13,9 @@ void batch_sizes(unsigned long *sizes)
     sizes[4] = EX_ENTRIES;
 }
 
-/* The integrated vector at the start; a status. */
+/* The integrated vector at the start, and the mode before it; a status. */
 static int start_of(const batch_room *room, const ex_inputs *inputs, const double *states,
-                    double *s)
+                    int *mode, double *s)
 {
     const double t = room->job->times[0];
     const int segment = bg_segment(inputs->segments, inputs->breaks, t);
@@ -23,7 +23,11 @@ static int start_of(const batch_room *room, const ex_inputs *inputs, const doubl
     ex_slots(inputs, segment, t, g);
     ex_given(inputs, segment, g, w, w + EX_W);
     batch_instance *const own = room->model;
-    return bg_model_vector(&own->m, t, states, w, s) ? BG_REFUSED : BG_OK;
+    for (int i = 0; i < EX_K; i++)
+        mode[i] = room->job->first[i];
+    if (bg_model_vector(&own->m, t, states, w, s))
+        return BG_REFUSED;
+    return bg_complete(&own->m, t, w, room->job->named, mode, s) ? BG_REFUSED : BG_OK;
 }
 
 /* Binds parameters. The modes that the run before needed are worked out at once; a status. */
@@ -42,6 +46,8 @@ static int bind(batch_room *room, const double *parameters)
                                                  record->FQ[0], record->P[0], record->Q[0],
                                                  record->inertia});
     memcpy(record->coupled, bg_beside, sizeof(int) * EX_K);
+    record->switched = BG_SWITCHES > 0;
+    memcpy(record->switches, bg_switches, sizeof *bg_switches * EX_K);
     ex_forget(room->context);
     for (int k = 0; k < expected; k++)
         batch_supply(room, likely[k]);
@@ -52,11 +58,12 @@ static int bind(batch_room *room, const double *parameters)
 static int run(batch_room *room, const ex_inputs *inputs, const double *states, double *results)
 {
     double start[EX_N];
+    int first[BG_MOST_PORTS] = {0};
     ex_task task = {
         .times = room->job->times, .samples = room->job->samples, .grid = room->job->grid,
-        .start = start, .events = room->events, .capacity = room->capacity,
+        .start = start, .events = room->events, .capacity = room->capacity, .first = first,
     };
-    int status = start_of(room, inputs, states, start);
+    int status = start_of(room, inputs, states, first, start);
     if (status)
         return status;
     status = BG_MISSING;

@@ -63,6 +63,7 @@ static int run_located_once(located_room *room, const double *parameters, const 
         .times = job->times, .states = states, .samples = job->samples, .method = room->method,
         .rtol = room->rtol, .atol = room->atol, .to = room, .record = keep_signals,
         .events = room->events, .capacity = room->capacity, .smooth = job->products ? smooth : 0,
+        .first = job->first, .named = job->named,
     };
     for (int k = 0; k < job->products; k++)
         room->totals[k] = 0.0;

@@ -24,6 +24,7 @@ typedef struct {
  * all are alike, else 0. A run's results have `width` places. */
 typedef struct {
     const double *times;
+    const int *first, *named; /* a mode for each port before a run; whether each state is named */
     double grid;
     int samples, width, signals, factors, products, measures;
     const int *signal;

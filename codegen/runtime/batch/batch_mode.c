@@ -193,6 +193,70 @@ static void fill(ex_mode *made, const double *map, const bg_numbers *a, const bg
     }
 }
 
+/* Conditions of switches in a column of the map, less their constants but in the last. */
+static void guards_in(const double *map, bg_model *m, int column, const double *constant,
+                      double *guards)
+{
+    bg_values *const now = &m->now;
+    for (int i = 0; i < N; i++)
+        now->x[i] = map[i * BG_MAP_COLUMNS + column];
+    for (int i = 0; i < OWN; i++)
+        now->z[i] = map[(BG_AT_z + i) * BG_MAP_COLUMNS + column];
+    for (int i = 0; i < M; i++)
+        now->u[i] = map[(BG_AT_u + i) * BG_MAP_COLUMNS + column];
+    for (int i = 0; i < ROWS; i++)
+        now->y[i] = map[(BG_AT_y + i) * BG_MAP_COLUMNS + column];
+    for (int i = 0; i < BG_EXTERNAL; i++)
+        now->w[i] = column == BG_SIZE + i;
+    now->t = 0.0;
+    bg_guards(now, guards);
+    for (int g = 0; g < BG_GUARDS && column < BG_MAP_COLUMNS - 1; g++)
+        guards[g] -= constant[g];
+}
+
+static void clear(bg_model *m)
+{
+    bg_values *const now = &m->now;
+    memset(now->x, 0, sizeof now->x);
+    memset(now->z, 0, sizeof now->z);
+    memset(now->u, 0, sizeof now->u);
+    memset(now->y, 0, sizeof now->y);
+    memset(now->w, 0, sizeof now->w);
+    now->t = 0.0;
+}
+
+/* What keeps switches, and where friction slips forwards what they do as they come to hold. */
+static void fill_switches(ex_mode *made, const double *map, bg_model *m, const int *mode)
+{
+    double constant[BG_ROOM(BG_GUARDS)] = {0}, guards[BG_ROOM(BG_GUARDS)] = {0};
+    double impulses[PORTS * PORTS], received[BG_ROOM(ROWS)];
+    bg_hold *held = NULL;
+    int forwards = 1;
+    clear(m);
+    bg_guards(&m->now, constant);
+    for (int j = 0; j < EX_L; j++) {
+        const int column = column_of(j);
+        if (column < 0)
+            continue;
+        guards_in(map, m, column, constant, guards);
+        for (int k = 0; k < EX_K; k++)
+            if (bg_switches[k].kind != BG_RUBS)
+                made->stay[j][k] = bg_stay(bg_switches + k, mode[k], made->shot[j][EX_AT_SLIP + k],
+                                           made->shot[j][EX_AT_EFFORT + k], guards);
+    }
+    for (int k = 0; k < EX_K; k++)
+        forwards &= bg_switches[k].kind != BG_RUBS || mode[k] == 1;
+    clear(m);
+    if (!forwards || bg_impulses(m, mode, &held, impulses) != BG_OK || !held)
+        return;
+    for (int k = 0; k < held->kept; k++) {
+        bg_pass_on(m, impulses + k * K, made->jump[k], received);
+        bg_shocks(m, mode, impulses + k * K, received, made->shock[k]);
+        for (int c = 0; c < held->count; c++)
+            made->mix[k][held->ports[c]] = held->mix[k * held->count + c];
+    }
+}
+
 static void fill_readers(const batch_job *job, const double *map, double (*readers)[EX_L])
 {
     for (int s = 0; s < job->signals + job->factors; s++)
@@ -223,6 +287,8 @@ int batch_supply(batch_room *room, int number)
     memset(room->mode + at, 0, sizeof room->mode[at]);
     if (found != BATCH_MODE_NONE)
         fill(room->mode + at, map, &own->m.numbers, held);
+    if (found == BATCH_MODE_WHOLE && BG_SWITCHES)
+        fill_switches(room->mode + at, map, &own->m, mode);
     room->mode[at].none = found == BATCH_MODE_NONE;
     room->mode[at].supported = found == BATCH_MODE_WHOLE;
     find_fastest(room, at);

@@ -25,7 +25,8 @@ typedef struct {
     int capacity, count;
     double time;
     int (*smooth)(void *to, void *run, double begin, double end);
-    const int *first; /* BG_MOST_PORTS modes before the run; NULL: all let go */
+    const int *first; /* a mode for each port before the run; NULL: all switches are off */
+    const int *named; /* whether each state is kept as it is; NULL: all are */
 } bg_request;
 
 #endif

@@ -160,7 +160,11 @@ static int set_up(bg_located *c, bg_model *m, const bg_signals *signals, bg_requ
     c->run.breaks = signals->breaks;
     c->run.events = asked->events;
     c->run.capacity = asked->capacity;
-    bg_set_out(&c->run, asked->times[0], asked->times[asked->samples - 1], c->s, asked->first);
+    int first[BG_MOST_PORTS] = {0};
+    bg_all_off(first);
+    for (int i = 0; i < K && asked->first; i++)
+        first[i] = asked->first[i];
+    bg_set_out(&c->run, asked->times[0], asked->times[asked->samples - 1], c->s, first);
     memset(&c->peaks, 0, sizeof c->peaks);
     c->view.model = m;
     c->view.peaks = &c->peaks;
@@ -169,7 +173,9 @@ static int set_up(bg_located *c, bg_model *m, const bg_signals *signals, bg_requ
     c->view.measured = 0;
     memset(m->seen, 0, sizeof m->seen);
     inputs_now(c, c->run.at.t, w, dw);
-    const int status = bg_model_vector(m, c->run.at.t, asked->states, w, c->s);
+    int status = bg_model_vector(m, c->run.at.t, asked->states, w, c->s);
+    if (status == BG_OK && asked->named)
+        status = bg_complete(m, c->run.at.t, w, asked->named, c->run.mode, c->s);
     bg_have_seen(m, c->s);
     return status;
 }

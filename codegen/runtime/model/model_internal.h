@@ -101,11 +101,18 @@ void bg_correct(const bg_hold *held, double *rate, const double *du, const doubl
 /* Takes what slips are left at sticking ports from s, along A^-1 F^T; `shot` is of that mode. */
 int bg_remove_slips(bg_model *m, const int *mode, const bg_snapshot *shot, double *s);
 
-/* port_impact.c: where switches of a mode hold what has a slip: what s is after that, the impulses
- * that ports give and readings have; `shot` is of the mode in which all are let go, and below
- * `near` a slip is none. 0 where nothing has to jump. */
-int bg_strike(bg_model *m, const int *mode, const bg_snapshot *shot, const double *near, double *s,
-              double *given, double *received, int *struck);
+/* port_impact.c: per unit of each slip that the switches of a mode stop the impulse that each port
+ * gives, slips by rows; what holds them, NULL if nothing does. What impulses add to s, and what
+ * readings have of them. How far they go with the way of each switch, less what is rounding. */
+int bg_impulses(bg_model *m, const int *mode, bg_hold **held, double *impulses);
+void bg_pass_on(const bg_model *m, const double *given, double *s, double *received);
+void bg_shocks(bg_model *m, const int *mode, const double *given, const double *received,
+               double *ways);
+
+/* port_start.c: all switches off. From how switches are told to be before a run, to how conditions
+ * let them; states that are not `named` follow what they hold. */
+void bg_all_off(int *mode);
+int bg_complete(bg_model *m, double t, const double *w, const int *named, int *mode, double *s);
 
 /* port_slips.c: a port's slip at an instant, and how fast it changes; in `terms` the magnitude of
  * what makes that up. */

@@ -87,10 +87,40 @@ static void reach(const bg_model *m, const bg_hold *held, const double *free, in
         }
 }
 
-/* What s, readings and ports have of the impulses `given`. */
-static void pass_on(const bg_model *m, const double *given, double *s, double *received)
+int bg_impulses(bg_model *m, const int *mode, bg_hold **held, double *impulses)
+{
+    double free[PORTS * PORTS], moved[PORTS * PORTS], amounts[PORTS], unit[PORTS];
+    int holding[PORTS] = {0}, any = 0;
+    *held = NULL;
+    for (int i = 0; i < K; i++) {
+        holding[i] = bg_switches[i].kind == BG_RUBS ? 1 : mode[i];
+        any |= holding[i] == 0;
+    }
+    if (!any)
+        return BG_OK;
+    const int status = bg_hold_of(m, holding, held);
+    if (status != BG_OK)
+        return status;
+    const bg_hold *const h = *held;
+    const int count = free_directions(m, &bg_structures[h->stuck], h, free);
+    reach(m, h, free, count, moved);
+    memset(impulses, 0, sizeof(double) * (size_t)(h->kept * K));
+    for (int k = 0; k < h->kept; k++) {
+        for (int l = 0; l < h->kept; l++)
+            unit[l] = l == k;
+        if (!least_amounts(h->kept, count, moved, unit, amounts))
+            return BG_NO_HOLD;
+        for (int d = 0; d < count; d++)
+            for (int c = 0; c < h->count; c++)
+                impulses[k * K + h->ports[c]] += free[d * h->count + c] * amounts[d];
+    }
+    return BG_OK;
+}
+
+void bg_pass_on(const bg_model *m, const double *given, double *s, double *received)
 {
     const bg_numbers *const a = &m->numbers;
+    memset(received, 0, sizeof(double) * ROWS);
     for (int k = 0; k < K; k++) {
         const int column = bg_friction_inputs[k];
         for (int i = 0; i < N && given[k] != 0.0; i++)
@@ -102,42 +132,47 @@ static void pass_on(const bg_model *m, const double *given, double *s, double *r
         s[N + i] += received[bg_law_rates[i]];
 }
 
-int bg_strike(bg_model *m, const int *mode, const bg_snapshot *shot, const double *near, double *s,
-              double *given, double *received, int *struck)
+/* What conditions gain by impulses, per unit of the largest: as values so much larger than others. */
+static void push_guards(bg_model *m, const double *given, const double *received, double size,
+                        double *pushed)
 {
-    double slips[PORTS] = {0}, free[PORTS * PORTS], moved[PORTS * PORTS], amounts[PORTS];
-    int holding[PORTS] = {0}, any = 0, jumps = 0;
-    bg_hold *held = NULL;
-    *struck = 0;
+    bg_values *const now = &m->now;
+    double before[BG_ROOM(BG_GUARDS)] = {0}, after[BG_ROOM(BG_GUARDS)] = {0};
+    double u[BG_ROOM(M)], y[BG_ROOM(ROWS)];
+    memcpy(u, now->u, sizeof u);
+    memcpy(y, now->y, sizeof y);
+    const double most = ldexp(1.0 + bg_largest(ROWS, y), 40), far = most / size;
+    bg_guards(now, before);
+    for (int k = 0; k < K; k++)
+        now->u[bg_friction_inputs[k]] += far * given[k];
+    for (int i = 0; i < ROWS; i++)
+        now->y[i] += far * received[i];
+    bg_guards(now, after);
+    memcpy(now->u, u, sizeof u);
+    memcpy(now->y, y, sizeof y);
+    for (int g = 0; g < BG_GUARDS; g++)
+        pushed[g] = (after[g] - before[g]) / most * size;
+}
+
+void bg_shocks(bg_model *m, const int *mode, const double *given, const double *received,
+               double *ways)
+{
+    double pushed[BG_ROOM(BG_GUARDS)] = {0};
+    const double largest = bg_largest(K, given);
+    const double size = fmax(largest, bg_largest(ROWS, received));
+    if (BG_GUARDS && size > 0.0)
+        push_guards(m, given, received, size, pushed);
     for (int i = 0; i < K; i++) {
-        holding[i] = bg_switches[i].kind == BG_RUBS ? 1 : mode[i];
-        any |= holding[i] == 0;
+        const bg_switch *const w = bg_switches + i;
+        const double *const D = m->numbers.D + bg_friction_readings[i] * M;
+        double terms = 0.0;
+        for (int k = 0; k < K; k++)
+            terms += fabs(D[bg_friction_inputs[k]] * given[k]);
+        ways[i] = w->kind == BG_TOLD ? -pushed[w->guard + (w->on == (mode[i] == 0))]
+            : mode[i]                ? w->side * received[bg_friction_readings[i]]
+                                     : -w->side * given[i];
+        const double least = w->kind == BG_TOLD ? size : mode[i] ? terms : largest;
+        if (w->kind == BG_RUBS || fabs(ways[i]) <= BG_ROUNDING * least)
+            ways[i] = 0.0;
     }
-    if (!any)
-        return BG_OK;
-    const int status = bg_hold_of(m, holding, &held);
-    if (status != BG_OK)
-        return status;
-    bg_multiply_add(held->kept, N, held->slip_x, shot->x, slips);
-    bg_multiply_add(held->kept, M, held->slip_u, shot->u, slips);
-    for (int k = 0; k < held->kept; k++) {
-        double least = 0.0;
-        for (int c = 0; c < held->count; c++)
-            least += fabs(held->mix[k * held->count + c]) * near[held->ports[c]];
-        jumps |= fabs(slips[k]) > BG_WIDE * least;
-    }
-    if (!jumps)
-        return BG_OK;
-    const int count = free_directions(m, &bg_structures[held->stuck], held, free);
-    reach(m, held, free, count, moved);
-    if (!least_amounts(held->kept, count, moved, slips, amounts))
-        return BG_NO_HOLD;
-    memset(given, 0, sizeof(double) * K);
-    memset(received, 0, sizeof(double) * ROWS);
-    for (int d = 0; d < count; d++)
-        for (int c = 0; c < held->count; c++)
-            given[held->ports[c]] += free[d * held->count + c] * amounts[d];
-    pass_on(m, given, s, received);
-    *struck = 1;
-    return BG_OK;
 }

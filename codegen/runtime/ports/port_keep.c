@@ -65,69 +65,48 @@ void bg_view_stay(bg_view *v, const int *mode, double time, const double *x, con
     }
 }
 
-/* What conditions gain by impulses, per unit of the largest: as values so much larger than others. */
-static void push_guards(bg_model *m, const double *given, const double *received, double *pushed)
+/* The slips that a mode would stop, and whether they are more than rounding, where all is let go. */
+static int jumps(const bg_hold *held, const bg_snapshot *shot, const bg_port *ports, double *slips)
 {
-    bg_values *const now = &m->now;
-    double before[GUARDS] = {0}, after[GUARDS] = {0}, size = 0.0, most = 0.0;
-    double u[BG_ROOM(M)], y[BG_ROOM(ROWS)];
-    memcpy(u, now->u, sizeof u);
-    memcpy(y, now->y, sizeof y);
-    size = fmax(bg_largest(K, given), bg_largest(ROWS, received));
-    most = 1.0 + bg_largest(ROWS, y);
-    const double far = ldexp(most, 40) / size;
-    bg_guards(now, before);
-    for (int k = 0; k < K; k++)
-        now->u[bg_friction_inputs[k]] += far * given[k];
-    for (int i = 0; i < ROWS; i++)
-        now->y[i] += far * received[i];
-    bg_guards(now, after);
-    memcpy(now->u, u, sizeof u);
-    memcpy(now->y, y, sizeof y);
-    for (int g = 0; g < BG_GUARDS; g++)
-        pushed[g] = (after[g] - before[g]) / ldexp(most, 40);
-}
-
-static int sign_of(double way, double least)
-{
-    return fabs(way) <= least ? 0 : way > 0 ? 1 : -1;
+    int any = 0;
+    bg_multiply_add(held->kept, N, held->slip_x, shot->x, slips);
+    bg_multiply_add(held->kept, M, held->slip_u, shot->u, slips);
+    for (int k = 0; k < held->kept; k++) {
+        double near = 0.0;
+        for (int c = 0; c < held->count; c++)
+            near += fabs(held->mix[k * held->count + c]) * ports[held->ports[c]].near_slip;
+        any |= fabs(slips[k]) > BG_WIDE * near;
+    }
+    return any;
 }
 
 int bg_view_strike(void *view, const bg_instant *at, const int *mode, double *s, int *shocks,
                    int *struck)
 {
     bg_view *const v = view;
-    double given[PORTS] = {0}, received[BG_ROOM(ROWS)] = {0}, near[PORTS] = {0};
-    double pushed[GUARDS] = {0};
+    double impulses[PORTS * PORTS], slips[PORTS] = {0}, given[PORTS] = {0}, ways[PORTS] = {0};
+    double received[BG_ROOM(ROWS)];
     bg_port ports[PORTS];
+    bg_hold *held = NULL;
     int loose[BG_MOST_PORTS];
     *struck = 0;
     for (int i = 0; i < K; i++)
         loose[i] = 1;
     const bg_sight sight = bg_view_sight(v);
     int status = bg_evaluated(&sight, at, 1, loose);
-    if (status)
-        return status;
-    bg_view_ports(v, loose, at->time, ports);
-    for (int i = 0; i < K; i++)
-        near[i] = ports[i].near_slip;
-    status = bg_strike(v->model, mode, &v->shot, near, s, given, received, struck);
-    if (status || !*struck)
-        return status;
-    if (BG_GUARDS)
-        push_guards(v->model, given, received, pushed);
-    for (int i = 0; i < K; i++) {
-        const bg_switch *const w = bg_switches + i;
-        double least = BG_ROUNDING * bg_largest(K, given), terms = 0.0;
-        for (int k = 0; k < K; k++)
-            terms += fabs(v->model->numbers.D[bg_friction_readings[i] * M + bg_friction_inputs[k]]
-                          * given[k]);
-        if (w->kind == BG_TOLD)
-            shocks[i] = sign_of(-pushed[w->guard + (w->on == (mode[i] == 0))], BG_ROUNDING);
-        else if (w->kind == BG_ONE_SIDED && mode[i])
-            shocks[i] = sign_of(w->side * received[bg_friction_readings[i]], BG_ROUNDING * terms);
-        else if (w->kind == BG_ONE_SIDED)
-            shocks[i] = sign_of(-w->side * given[i], least);
+    if (status == BG_OK) {
+        bg_view_ports(v, loose, at->time, ports);
+        status = bg_impulses(v->model, mode, &held, impulses);
     }
+    if (status || !held || !jumps(held, &v->shot, ports, slips))
+        return status;
+    *struck = 1;
+    for (int k = 0; k < held->kept; k++)
+        for (int i = 0; i < K; i++)
+            given[i] += impulses[k * K + i] * slips[k];
+    bg_pass_on(v->model, given, s, received);
+    bg_shocks(v->model, mode, given, received, ways);
+    for (int i = 0; i < K; i++)
+        shocks[i] = ways[i] == 0.0 ? 0 : ways[i] > 0.0 ? 1 : -1;
     return BG_OK;
 }
