@@ -12,6 +12,7 @@ from bondgraph.declare.composition import assemble, prefixed
 from bondgraph.declare.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
 from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
+from bondgraph.declare.one_way import CheckValve, Diode, Freewheel
 from bondgraph.declare.switching import in_mode, switches
 from bondgraph.declare.validate import validate
 from bondgraph.derive import derive, state_equations
@@ -53,9 +54,11 @@ __all__ = [
     "C",
     "CausalGraph",
     "CausalityError",
+    "CheckValve",
     "De",
     "DependentSourceError",
     "Df",
+    "Diode",
     "Drawing",
     "DryFriction",
     "Equation",
@@ -65,6 +68,7 @@ __all__ = [
     "Factor",
     "FileFormatError",
     "Formula",
+    "Freewheel",
     "I",
     "JunctionStructure",
     "Kind",

@@ -1,4 +1,4 @@
-"""`SwitchPort`: a port that a switch holds or lets go, which of its ways is which, and what changes it over."""
+"""`SwitchPort`: a port that a switch holds or lets go, which of its ways is which, what changes it over."""
 
 from collections.abc import Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
@@ -58,7 +58,7 @@ class SwitchPort:
 
     @property
     def held(self) -> Literal["on", "off"]:
-        """The way in which it is held: a closed switch that gives its flow, an open one that gives its effort."""
+        """The way in which it is held: "off" if it gives, in all modes, what it gives as zero while on."""
         return "off" if self.port.gives == self.switch.gives else "on"
 
 
@@ -137,7 +137,7 @@ def check_switches(
     switches: Sequence[SwitchPort], inputs: Sequence[sp.Symbol], E: Sequence[FixedRow],
     readings: Mapping[sp.Symbol, Reading],
 ) -> None:  # fmt: skip
-    """Refuse a switch that drives a dependent storage, whose one set of equations is not that of its modes."""
+    """Refuse a switch that drives a dependent storage: its rate would be needed where it is held."""
     for one in switches:
         column, received = inputs.index(one.port.given), readings[one.port.received]
         driven: list[Collection[int]] = [*E, *(row.K for row in readings.values())]
