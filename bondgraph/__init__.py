@@ -3,7 +3,8 @@
 from bondgraph.algebra.expressions import expression
 from bondgraph.analyse.explicit import explicit
 from bondgraph.analyse.holding import holding_efforts
-from bondgraph.analyse.linearize import LinearModel, linearize
+from bondgraph.analyse.linear_model import LinearModel
+from bondgraph.analyse.linearize import linearize
 from bondgraph.analyse.loops import Loop, loops
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.assignments import Assignment, assignments

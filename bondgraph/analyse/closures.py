@@ -22,6 +22,10 @@ def merged_laws(
         name = port.element.name
         declared = equations.laws.get(name)
         state = declared.state if isinstance(declared, ExpressionLaw) else None
+        if port.element.kind.switches:
+            raise StructureError(
+                f"law at {key!r}: {name!r} is a switch, which gives zero or is held; a law closes an open R"
+            )
         closed = law(value, f"law at {name!r}", state)
         if isinstance(closed, DryFriction) and (
             port.gives != "effort" or not port.element.kind.resists

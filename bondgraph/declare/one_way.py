@@ -28,7 +28,7 @@ def CheckValve(name: Hashable, effort: object = None, flow: object = None) -> No
 
 
 def Freewheel(name: Hashable, effort: object = None, flow: object = None) -> Node:
-    """An ideal freewheel (overrunning clutch), a `Sw`: it holds flow in its bond's direction, none against it.
+    """An ideal freewheel (overrunning clutch), a `Sw`: it holds in its bond's direction, free against it.
 
     Off, it is locked: its flow is zero and its effort not negative. On, it runs free: its effort is zero
     and its flow not positive. Between two shafts it lets the first drive the second, not be driven by it:

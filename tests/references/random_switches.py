@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 
 import networkx as nx
+
 from references.random_graphs import random_graph
 
 

@@ -97,6 +97,12 @@ FAMILIES = (
         2_000,
     ),
     Family(
+        "linear-modes",
+        "bondgraph/analyse/test_modes.py::test_a_linear_model_in_a_mode_is_that_of_the_mode_alone",
+        25,
+        1_000,
+    ),
+    Family(
         "lossless",
         "bondgraph/test_random.py::test_structure_without_resistances_is_skew_symmetric",
         30,
