@@ -62,15 +62,18 @@ def laws_step(equations: StateEquations, signals: Sequence[Assignment]) -> Step:
                 f"at most {law.level} times its curve {law.curve}"
             )
     sentences += map(_switch, equations.switches)
-    what = [
-        word
-        for word, there in (("laws", equations.laws), ("switches", equations.switches))
-        if there
-    ]
-    if what:
-        title = f"Resistances, {', '.join(['detectors', *what[:-1]])} and {what[-1]}"
-        title += f"; what {' and '.join(what)} give stays an input of the equations"
-    return Step("laws", title, tuple(sentences), tuple(lines))
+    return Step("laws", _title_of_laws(equations), tuple(sentences), tuple(lines))
+
+
+def _title_of_laws(equations: StateEquations) -> str:
+    kinds = (("laws", equations.laws), ("switches", equations.switches))
+    what = [word for word, there in kinds if there]
+    if not what:
+        return "Resistances and detectors"
+    listed = ", ".join(["Resistances", "detectors", *what[:-1]])
+    return (
+        f"{listed} and {what[-1]}; what {' and '.join(what)} give stays an input of the equations"
+    )
 
 
 def _switch(one: SwitchPort) -> str:
