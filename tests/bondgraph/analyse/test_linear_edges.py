@@ -28,12 +28,15 @@ def _mixed() -> bg.StateEquations:
     return bg.derive(bond_graph(nodes, "u>j>m j>z>b z>k>n k>y>a y>r"))
 
 
-def test_one_port_beside_a_resistance_and_one_between_masses_hold_together() -> None:
+@pytest.mark.parametrize("order", [["a", "b"], ["b", "a"]])
+def test_one_port_beside_a_resistance_and_one_between_masses_hold_together(
+    order: list[str],
+) -> None:
     """All of w goes through r; (m + n) w' = u - e_a and m v' = u - e_b."""
     held = bg.holding_efforts(_mixed(), ["a", "b"])
     assert sp.cancel(held[e_a] - r * w) == 0
     assert sp.cancel(held[sp.Symbol("e_b")] - (m * r * w + n * u) / (m + n)) == 0
-    model = bg.linearize(_mixed(), stuck=["a", "b"], outputs=["w", "e_a", "e_b"])
+    model = bg.linearize(_mixed(), stuck=order, outputs=["w", "e_a", "e_b"])
     # (m + n) w' = u - r w
     expected = [1, r, n * sp.Symbol("s") + r]
     whole = 1 / ((m + n) * sp.Symbol("s") + r)

@@ -117,6 +117,18 @@ def test_a_switch_against_an_imposed_flow_shows_its_rate() -> None:
     assert (differences(model.D, [[1], [b]]), differences(model.G, [[0], [I_1]])) == ({}, {})
 
 
+def test_what_holds_a_switch_beside_a_driven_capacitor_shows_the_sources_rate() -> None:
+    """u = v_1 + v_2 with v_1 shorted: the short takes C_2 u', open it leaves (C_1 + C_2) v_1' = C_2 u'."""
+    nodes = [bg.Se("s", "u"), bg.One("loop"), bg.Zero("n"), bg.C("c_1", "C_1", effort="v_1"),
+             bg.Sw("short", on="gate"), bg.C("c_2", "C_2", priority=-1)]  # fmt: skip
+    equations = bg.derive(bond_graph(nodes, "s>loop>n>c_1 n>short loop>c_2"))
+    C_1, C_2 = sp.symbols("C_1 C_2")
+    shorted = bg.linearize(equations, mode={"short": "on"}, outputs=["f_short", "e_c_2"])
+    assert (differences(shorted.D, [[0], [1]]), differences(shorted.G, [[C_2], [0]])) == ({}, {})
+    opened = bg.linearize(equations, mode={"short": "off"}, outputs=["v_1", "f_short"])
+    assert differences(opened.transfer_function(), [[C_2 / (C_1 + C_2)], [0]]) == {}
+
+
 def test_what_a_law_reads_of_a_held_switch_is_known() -> None:
     """A resistance told by the switch's own flow, which is zero while it is open, and by nothing else."""
     nodes = [

@@ -75,6 +75,7 @@ def test_ports_that_switch_come_in_declaration_order() -> None:
         ("e_k", "f_k", 0), ("-e_k", "-f_k", 0), ("f_k", "-e_k", 0), ("e_k", "-e_k", 0), ("e_L", "-f_k", 0),
         ("e_k - 1/10", "-f_k", 0), ("e_k", "-f_k - i_0", 0), ("w*e_k", "-w*f_k", 0), ("e_k*f_k", "-f_k", 0),
         ("e_k**3", "-f_k", 0), ("abs(e_k)", "-f_k", 0), ("e_k - e_k + t*f_k", "-f_k", 0),
+        ("e_k + u", "-f_k", 0), ("e_k + e_r", "-f_k", 0), ("-e_L", "-f_k", 0), ("e_k", "u - f_k", 0),
     ],
 )  # fmt: skip
 def test_one_sided_switches_are_recognised_exactly(on: Any, off: Any, side: int) -> None:
