@@ -22,9 +22,9 @@ class Assignment:
     """``symbol = right``: one effort or flow of a bond.
 
     ``kind``: "given" is a state, an input (what an open port, a source, a law or a switch gives), or the
-    nothing that a detector gives; "balance" the sum at a junction; "transfer" what a junction hands on and what
-    a transformer or gyrator makes of it; "law" a linear resistance. Of a "rate", what a storage in
-    derivative causality gives, ``right`` is the momentum or displacement: the signal is its rate.
+    nothing that a detector gives; "balance" the sum at a junction; "transfer" what a junction hands on
+    and what a transformer or gyrator makes of it; "law" a linear resistance. Of a "rate", what a storage
+    in derivative causality gives, ``right`` is the momentum or displacement: the signal is its rate.
 
     ``bond`` is as declared, with power as `StateEquations.bond` counts it; ``node`` is the one whose
     equation it is. ``group`` counts up; signals that form a loop share one number and are solved together.
