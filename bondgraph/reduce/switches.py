@@ -1,6 +1,6 @@
 """`SwitchPort`: a port that a switch holds or lets go, which of its ways is which, what changes it over."""
 
-from collections.abc import Collection, Hashable, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -25,7 +25,7 @@ class SwitchPort:
 
     ``guard``: "one-sided" if ``on`` is a positive multiple of the port's own effort and ``off`` of its own
     flow reversed, or both with the other sign (a flow and an effort for a controlled 0-junction);
-    "commanded" if both hold time, parameters and inputs from outside alone; else "general".
+    "commanded" if both hold time, parameters and open sources' inputs alone; else "general".
 
     ``side``, of a one-sided port 1 or -1, else 0: let go, it receives ``side * received >= 0``; held, it
     gives ``side * given <= 0``.
@@ -138,10 +138,10 @@ def check_switches(
     readings: Mapping[sp.Symbol, Reading],
 ) -> None:  # fmt: skip
     """Refuse a switch that drives a dependent storage: its rate would be needed where it is held."""
+    driven = {j for row in (*E, *(reading.K for reading in readings.values())) for j in row}
     for one in switches:
-        column, received = inputs.index(one.port.given), readings[one.port.received]
-        driven: list[Collection[int]] = [*E, *(row.K for row in readings.values())]
-        if received.H or received.K or any(column in row for row in driven):
+        received = readings[one.port.received]
+        if received.H or received.K or inputs.index(one.port.given) in driven:
             raise DependentSourceError(
                 f"the switch {one.name!r} drives a dependent storage, though a switch takes its causality "
                 "after the storages; please report this graph"
