@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from bondgraph.algebra.exact import FixedRow, Row, add_scaled, fixed
+from bondgraph.algebra.exact import FixedRow, Row, SingularError, add_scaled, fixed
 from bondgraph.algebra.residues import is_zero
 from bondgraph.errors import DependentSourceError, SignalError
 from bondgraph.reduce.record import Reading, ReadingSum
@@ -22,42 +22,48 @@ class Rows:
 
 
 def locked(
-    model: Rows, slips: Sequence[Reading], held: Sequence[int], order: Sequence[int]
+    model: Rows, slips: Sequence[Reading], held: Sequence[int], order: Sequence[int], ports: str
 ) -> Rows:
     """The model with slips at zero: ``x = T x_r + S v``, and the balances along what is left free.
 
     ``slips``: ``F x + D v``; ``held``: the columns of what holds them; ``order``: of the states
-    those go first that it has first.
+    those go first that it has first; ``ports``: what holds them, for people.
 
     Raises `DependentSourceError` for a slip that only sources rule and for one that rates rule,
     `SignalError` for an output that shows what several ports hold together.
     """
-    _check_held(model, slips, held)
-    T, S, kept = _without(slips, order)
+    _check_held(model, slips, held, ports)
+    T, S, kept = _without(slips, order, ports)
     efforts = [{held.index(j): e for j, e in row.D.items() if j in held} for row in model.balances]
     N = left_annihilator(transposed(efforts, len(held)), len(T))
     if len(N) != len(kept):
         raise DependentSourceError(
-            "what ports give in this mode does not hold what they receive; leave one of them free"
+            f"what is given at {ports} does not hold what is received there; leave one of them free"
         )
     symmetric = transposed(T, len(kept))
     if not any(multiplied(row, efforts) for row in symmetric):
         N = symmetric
     A, balances = _along(model, N, T, S)
-    outputs = tuple(_shown(model, y, efforts, held, T, S) for y in model.outputs)
+    try:
+        outputs = tuple(_shown(model, y, efforts, held, T, S) for y in model.outputs)
+    except SingularError:
+        raise SignalError(
+            f"an output shows what one of {ports} gives, which hold together and share it as their limits "
+            "tell; name fewer of them"
+        ) from None
     return Rows(tuple(model.states[j] for j in kept), A, balances, outputs)
 
 
-def _check_held(model: Rows, slips: Sequence[Reading], held: Sequence[int]) -> None:
+def _check_held(model: Rows, slips: Sequence[Reading], held: Sequence[int], ports: str) -> None:
     """Refuse rows with rates in them, and ports whose rates would be needed to hold them."""
     if any(slip.H or slip.K for slip in slips):
         raise DependentSourceError(
-            "what is to be held depends on rates; a mode holds what states and inputs rule"
+            f"what is to be held at {ports} depends on rates; a mode holds what states and inputs rule"
         )
     if any(j in held for row in (*model.balances, *model.outputs) for j in row.K):
         raise DependentSourceError(
-            "a port that is to be held drives a dependent storage; put a storage that can be independent "
-            "beside it"
+            f"of {ports} one drives a dependent storage and is to be held; put a storage that can be "
+            "independent beside it"
         )
 
 
@@ -107,15 +113,12 @@ def _weights(efforts: Sequence[FixedRow], wanted: FixedRow, count: int) -> Row:
         matrix[j, len(efforts)] = entry
     reduced, pivots = echelon(matrix)
     if len(efforts) in pivots:
-        raise SignalError(
-            "an output shows what one of several ports gives that hold together, which share it as their "
-            "limits tell; name fewer of them"
-        )
+        raise SingularError
     return {i: reduced[at, len(efforts)] for at, i in enumerate(pivots)}
 
 
 def _without(
-    slips: Sequence[Reading], order: Sequence[int]
+    slips: Sequence[Reading], order: Sequence[int], ports: str
 ) -> tuple[tuple[FixedRow, ...], tuple[FixedRow, ...], tuple[int, ...]]:
     """``F x + D v = 0`` as ``x = T x_r + S v`` by rows, and the states that are left, in their own order."""
     inputs = sorted({j for slip in slips for j in slip.D})
@@ -128,8 +131,8 @@ def _without(
     reduced, pivots = echelon(matrix)
     if any(pivot >= len(order) for pivot in pivots):
         raise DependentSourceError(
-            "inputs alone rule what is to be held, so that no port can hold it; leave such a port free, or "
-            "put a storage between"
+            f"inputs alone rule what is to be held at {ports}, so that no port can hold it; leave one of "
+            "them free, or put a storage between"
         )
     gone = {order[pivot]: i for i, pivot in enumerate(pivots)}
     kept = tuple(j for j in range(len(order)) if j not in gone)

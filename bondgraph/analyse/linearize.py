@@ -74,7 +74,8 @@ def linearize(
     ys = [system.put_in(system.signal(name)) for name in shown]
     model = Rows(system.states, tuple(map(fixed, A)), tuple(balances), tuple(ys))
     if bound:
-        model = locked(model, bound, tied, _least_first(equations, len(system.states)))
+        order = _least_first(equations, len(system.states))
+        model = locked(model, bound, tied, order, told.holding)
     left = [j for j in system.left if j not in columns]
     return _model(model, left, system.columns, tuple(shown))
 

@@ -37,6 +37,11 @@ class ToldModes:
         return frozenset(port.element.name for port in self.ports)
 
     @property
+    def holding(self) -> str:
+        """The held ports, for people."""
+        return ", ".join(repr(port.element.name) for port in self.held)
+
+    @property
     def zeros(self) -> dict[sp.Symbol, Law]:
         """What is zero at any operating point of this mode."""
         names = [port.received for port in self.held if port.element.kind.switches]

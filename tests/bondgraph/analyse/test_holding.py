@@ -185,7 +185,9 @@ def test_only_open_ports_stick(act: object, stuck: object, message: str) -> None
 def test_ports_that_hold_one_another_are_refused() -> None:
     with pytest.raises(bg.StructureError, match=r"'a', 'o' hold one another.*not unique"):
         bg.holding_efforts(_two_inertias("a", "o"), ["a", "o"])
-    with pytest.raises(bg.SignalError, match="one of several ports gives that hold together"):
+    with pytest.raises(
+        bg.SignalError, match="shows what one of 'a', 'o' gives, which hold together"
+    ):
         bg.linearize(_two_inertias("a", "o"), stuck=["a", "o"], outputs=["e_a"])
 
 
@@ -226,8 +228,18 @@ def test_port_that_holds_against_an_imposed_speed_makes_it_that_of_the_inertia()
     assert differences(model.G, [[0], [n], [0]]) == {}
 
 
+def test_a_port_whose_effort_is_undone_does_not_hold() -> None:
+    """m v' = -e_s - e_p with a law that gives -e_p."""
+    nodes = [bg.R("s", law="-e_p"), bg.One("j"), bg.I("m", "m", flow="v"), bg.R("p")]
+    equations = bg.derive(bond_graph(nodes, "j>s j>m j>p"))
+    with pytest.raises(bg.DependentSourceError, match="what is given at 'p' does not hold"):
+        bg.linearize(equations, stuck=["p"])
+
+
 def test_two_imposed_speeds_are_not_held_together() -> None:
     nodes = [bg.Sf("one", "w_1"), bg.Zero("z"), bg.R("p"), bg.One("k"), bg.Sf("two", "w_2")]
     equations = bg.derive(bond_graph(nodes, "one>z z>p z>k two>k"))
-    with pytest.raises(bg.DependentSourceError, match="inputs alone rule what is to be held"):
+    with pytest.raises(
+        bg.DependentSourceError, match="inputs alone rule what is to be held at 'p'"
+    ):
         bg.linearize(equations, stuck=["p"])
