@@ -20,12 +20,12 @@ def merged_laws(
     for key, value in overrides.items():
         port = port_called(equations.ports, key)
         name = port.element.name
-        declared = equations.laws.get(name)
-        state = declared.state if isinstance(declared, ExpressionLaw) else None
         if port.element.kind.switches:
             raise StructureError(
-                f"law at {key!r}: {name!r} is a switch, which gives zero or is held; a law closes an open R"
+                f"law at {name!r}: a switch is told by its on and off, not by a law"
             )
+        declared = equations.laws.get(name)
+        state = declared.state if isinstance(declared, ExpressionLaw) else None
         closed = law(value, f"law at {name!r}", state)
         if isinstance(closed, DryFriction) and (
             port.gives != "effort" or not port.element.kind.resists

@@ -163,8 +163,8 @@ def test_what_a_law_reads_of_a_held_switch_is_known() -> None:
         ({"mode": {"dog": "on", "open": "slip"}}, "'open' has no dry friction that could slip"),
         ({"mode": {"dog": "on", "brake": "slip"}, "stuck": ["brake"]}, "leave one of them out"),
         ({"stuck": ["dog"]}, "'dog' is a switch: tell whether it is on or off in mode"),
-        ({"mode": {"dog": "on"}, "laws": {"dog": "3"}}, "'dog' is a switch, which gives zero or is held"),
-        ({"mode": {"dog": "on"}, "laws": {"e_dog": "3"}}, "'dog' is a switch"),
+        ({"mode": {"dog": "on"}, "laws": {"dog": "3"}}, "law at 'dog': a switch is told by its on and off"),
+        ({"mode": {"dog": "on"}, "laws": {"e_dog": "3"}}, "law at 'dog': a switch is told"),
     ],
 )  # fmt: skip
 def test_wrong_modes_are_refused(more: dict[str, Any], message: str) -> None:
