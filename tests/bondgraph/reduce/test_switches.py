@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 import sympy as sp
 from references.build import Graph, bond_graph
+from references.random_switches import random_switched
 
 import bondgraph as bg
 from bondgraph.declare.elements import Node
@@ -201,3 +202,43 @@ def test_equations_with_switches_are_shown_as_they_stand() -> None:
         if line.kind == "given"
     ]
     assert lines == [("given", "u"), ("given", "v_c"), ("given", "f_k")]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_files_and_prefixes_leave_random_switches_as_they_are(seed: int) -> None:
+    graph = random_switched(seed)
+    try:
+        equations = bg.derive(graph)
+    except (bg.CausalityError, bg.AlgebraicLoopError):
+        return
+    for write, read in ((bg.to_json, bg.from_json), (bg.to_graphml, bg.from_graphml)):
+        back = bg.derive(read(write(graph)))
+        assert back.switches == equations.switches
+        assert (back.A, back.J, back.B, back.F) == (
+            equations.A, equations.J, equations.B, equations.F,
+        )  # fmt: skip
+    copy = bg.derive(bg.prefixed(graph, "p_"))
+    assert [one.name for one in copy.switches] == [f"p_{one.name}" for one in equations.switches]
+    assert [(one.gives, one.held, one.guard) for one in copy.switches] == [
+        (one.gives, one.held, one.guard) for one in equations.switches
+    ]
+    assert (copy.A, copy.J, copy.B) == (equations.A, equations.J, equations.B)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_random_graphs_with_switches_are_drawn_with_every_stroke(seed: int) -> None:
+    """A stroke at the end that receives the effort: at the switch where that gives its flow."""
+    graph = random_switched(seed)
+    try:
+        equations = bg.derive(graph)
+    except (bg.CausalityError, bg.AlgebraicLoopError):
+        return
+    drawn = bg.drawing(graph)
+    assert drawn.subject.remark == ""
+    assert all(bond.stroke is not None for bond in drawn.scene.bonds)
+    places = {item.name: at for at, item in enumerate(drawn.subject.items)}
+    for one in equations.switches:
+        at = places[one.port.element.name]
+        assert drawn.subject.items[at].symbol == "Sw"
+        (link,) = (link for link in drawn.subject.links if at in (link.tail, link.head))
+        assert (link.receiver == at) == (one.gives == "flow")
