@@ -21,8 +21,8 @@ OTHER = {"effort": "flow", "flow": "effort"}
 class Switch:
     """When a switch or a controlled junction of this name changes over.
 
-    Off, it turns on as ``on`` rises above zero; on, it turns off as ``off`` does. While on, its port
-    gives zero effort, or zero flow, as ``gives`` says; while off it gives zero of the other.
+    Off, it turns on as ``on`` rises above zero; on, it turns off as ``off`` does. While on, its port has
+    zero effort, or zero flow, as ``gives`` says; while off it has zero of the other.
     """
 
     name: Hashable
