@@ -3,7 +3,8 @@
 from bondgraph.algebra.expressions import expression
 from bondgraph.analyse.explicit import explicit
 from bondgraph.analyse.holding import holding_efforts
-from bondgraph.analyse.linearize import LinearModel, linearize
+from bondgraph.analyse.linear_model import LinearModel
+from bondgraph.analyse.linearize import linearize
 from bondgraph.analyse.loops import Loop, loops
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.assignments import Assignment, assignments
@@ -12,6 +13,7 @@ from bondgraph.declare.composition import assemble, prefixed
 from bondgraph.declare.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
 from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
+from bondgraph.declare.one_way import CheckValve, Diode, Freewheel
 from bondgraph.declare.switching import in_mode, switches
 from bondgraph.declare.validate import validate
 from bondgraph.derive import derive, state_equations
@@ -41,6 +43,7 @@ from bondgraph.files.graphml import from_graphml, to_graphml
 from bondgraph.files.nodelink import from_json, to_json
 from bondgraph.reduce.junction import junction_structure
 from bondgraph.reduce.structure import JunctionStructure
+from bondgraph.reduce.switches import SwitchPort
 from bondgraph.show.latex import latex
 
 __all__ = [
@@ -52,9 +55,11 @@ __all__ = [
     "C",
     "CausalGraph",
     "CausalityError",
+    "CheckValve",
     "De",
     "DependentSourceError",
     "Df",
+    "Diode",
     "Drawing",
     "DryFriction",
     "Equation",
@@ -64,6 +69,7 @@ __all__ = [
     "Factor",
     "FileFormatError",
     "Formula",
+    "Freewheel",
     "I",
     "JunctionStructure",
     "Kind",
@@ -85,6 +91,7 @@ __all__ = [
     "StructureError",
     "Sw",
     "Switch",
+    "SwitchPort",
     "WriteError",
     "Zero",
     "assemble",

@@ -22,6 +22,7 @@ from bondgraph.reduce.ports import reduce_ports
 from bondgraph.reduce.rates import resolved
 from bondgraph.reduce.readings import check_laws
 from bondgraph.reduce.structure import JunctionStructure
+from bondgraph.reduce.switches import check_switches, switch_ports
 
 
 def derive(graph: Any, outputs: Iterable[Hashable] | None = None) -> StateEquations:
@@ -57,6 +58,8 @@ def state_equations(
     With the ports' laws ``w_x = M_x x'``, ``z_d = (M_d w_d)'``, ``z_r = L w_r`` this gives
     ``A = M_x + S_xd M_d S_xd^T``.
 
+    A switch is a port like an open one: what it gives is an input, what it receives a reading.
+
     Raises `SingularStorageError` if A is singular, `DependentSourceError` if a law would have to be
     differentiated, `StructureError` for an output that does not exist.
     """
@@ -74,6 +77,8 @@ def state_equations(
     E = [row.K for row in balances]
     laws = {port.element.name: port.element.law for port in imposed if port.element.law is not None}
     check_laws(laws, signals, imposed, E, readings)
+    switches = switch_ports(reduction, signals)
+    check_switches(switches, reduction.inputs, E, readings)
     n, m = len(states), len(reduction.inputs)
     parts: list[tuple[Sequence[FixedRow], int]] = [
         (A, n), ([row.F for row in balances], n), ([row.D for row in balances], m), (E, m),
@@ -88,5 +93,5 @@ def state_equations(
         states, reduction.inputs, shown_names, **named,
         integrals=MappingProxyType({port.element.integral: port.received for port in detectors}),
         laws=MappingProxyType(laws), ports=imposed, readings=MappingProxyType(readings),
-        signals=MappingProxyType(signals), reduction=reduction,
+        signals=MappingProxyType(signals), switches=switches, reduction=reduction,
     )  # fmt: skip

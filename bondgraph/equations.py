@@ -13,6 +13,7 @@ from bondgraph.errors import StructureError
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.structure import Port, PortRow
+from bondgraph.reduce.switches import SwitchPort
 from bondgraph.show.display import equations_text
 from bondgraph.show.latex import notebook_latex
 
@@ -52,6 +53,8 @@ class StateEquations:
     readings: Mapping[sp.Symbol, Reading] = field(repr=False)
     #: Every named signal of the graph as a row over its ports; see `with_readings`.
     signals: Mapping[sp.Symbol, PortRow] = field(repr=False)
+    #: Those of the ports that a switch or a controlled junction holds or lets go.
+    switches: tuple[SwitchPort, ...] = field(repr=False)
     #: The ports' reduction, which turns such a row into a reading.
     reduction: Reduction = field(repr=False)
 

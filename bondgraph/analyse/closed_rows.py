@@ -1,6 +1,6 @@
 """Equations as rows over states and inputs, every closed law replaced by its slopes."""
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import sympy as sp
@@ -10,7 +10,7 @@ from bondgraph.algebra.exact import Row, SingularError, add_scaled, solve
 from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.residues import residues
 from bondgraph.analyse.holding import balances_of, solve_for
-from bondgraph.analyse.slopes import Point, slopes
+from bondgraph.analyse.slopes import Point, slopes, turns_with_slip
 from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, SignalError, SingularStorageError
@@ -21,11 +21,14 @@ from bondgraph.reduce.structure import Port
 
 
 class ClosedRows:
-    """The equations as rows over states, those of laws included, and inputs, laws replaced by slopes."""
+    """The equations as rows over states, those of laws included, and inputs, laws replaced by slopes.
+
+    ``silent``: ports that give zero.
+    """
 
     def __init__(
         self, equations: StateEquations, closed: Mapping[Hashable, Law],
-        outer: tuple[sp.Symbol, ...], point: Point,
+        outer: tuple[sp.Symbol, ...], point: Point, silent: Iterable[Port] = (),
     ) -> None:  # fmt: skip
         self._equations = equations
         ports = {port.element.name: port for port in equations.ports}
@@ -43,16 +46,21 @@ class ClosedRows:
         for name, law in closed.items():
             if depends_on_signals(law, signals):
                 port = ports[name]
-                slope = slopes(law, name, port.received, signals, self._completed(point, law))
+                read = set(law.free_symbols)
+                read |= {port.received} if turns_with_slip(law, signals) else set()
+                slope = slopes(law, name, port.received, signals, self._completed(point, read))
                 column = equations.inputs.index(port.given)
                 moved[column], owner[column] = self._combined(slope), name
+        for port in silent:
+            column = equations.inputs.index(port.given)
+            moved[column], owner[column] = Reading({}, {}, {}, {}), port.element.name
         self._given = _settled(moved, owner)
         self.left = [j for j in range(len(self.columns)) if j not in moved]
 
-    def _completed(self, point: Point, law: Law) -> Point:
+    def _completed(self, point: Point, read: set[sp.Symbol]) -> Point:
         """The point with the signals that a law reads worked out, where states and inputs are known."""
         found = dict(point)
-        for name in law.free_symbols - found.keys():
+        for name in read - found.keys():
             row = self._equations.readings.get(name)
             if row is None or row.H or row.K:
                 continue

@@ -27,9 +27,9 @@ def explicit(
 ) -> Mapping[sp.Symbol, sp.Expr]:
     """``x' = f(x, u, t)``: each state, those of laws and detectors included, to its rate.
 
-    ``laws``: as for a simulator. Ports with dry friction stay inputs, by what they give. The rate of an
-    input u is the symbol ``d_u``. ``energy``: in momenta ``p_<node>`` and displacements ``q_<node>``
-    instead of the flows and efforts of linear storages, whose values must then be constant.
+    ``laws``: as for a simulator. Ports with dry friction and switches stay inputs, by what they give. The
+    rate of an input u is the symbol ``d_u``. ``energy``: in momenta ``p_<node>`` and displacements
+    ``q_<node>`` instead of the flows and efforts of linear storages, whose values must then be constant.
 
     Raises `StructureError` above 40 states, `AlgebraicLoopError` where laws determine one another at once.
 

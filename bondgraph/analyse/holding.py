@@ -20,7 +20,7 @@ def holding_efforts(
 ) -> Mapping[sp.Symbol, sp.Expr]:
     """What ports must give to keep what they receive at zero, over states and the other inputs.
 
-    From ``F_s A^-1 (J x + B u) = 0``, jointly for all ports of ``stuck`` (nodes), or, where a
+    From ``F_s A^-1 (J x + B u) = 0``, jointly for all ports of ``stuck`` (nodes, switches too), or, where a
     resistance lies beside them, from ``F_s x + D_s u = 0`` (Deur, Hancock, Assadian 2008, eq. (8)
     and the stiction torques of Fig. 9).
 
@@ -34,7 +34,7 @@ def holding_efforts(
     >>> dict(holding_efforts(bg.derive(g), ["ground"]))
     {F: P}
     """
-    ports = stuck_ports(equations, stuck)
+    ports = stuck_ports(equations, stuck, {one.name: one.port for one in equations.switches})
     if equations.varying:
         raise StructureError(
             "values of this graph change in time, and with them what a port must give: hold it in a run"
@@ -51,16 +51,23 @@ def holding_efforts(
     })  # fmt: skip
 
 
-def stuck_ports(equations: StateEquations, stuck: Iterable[Hashable]) -> list[Port]:
-    """The open ports of these nodes; `StructureError` for any that is none."""
+def stuck_ports(
+    equations: StateEquations, stuck: Iterable[Hashable],
+    switches: Mapping[Hashable, Port] = MappingProxyType({}),
+) -> list[Port]:  # fmt: skip
+    """The open ports of these nodes, or the switches allowed; `StructureError` for any that is neither."""
     if isinstance(stuck, str) or not isinstance(stuck, Iterable):
         raise StructureError(f"stuck must be a list of nodes, not {stuck!r}")
-    by_name = {port.element.name: port for port in equations.ports}
+    resisting = {p.element.name: p for p in equations.ports if p.element.kind.resists}
+    by_name = {**resisting, **switches}
+    switched = {one.name for one in equations.switches} - switches.keys()
     ports: list[Port] = []
     for name in stuck:
+        if name in switched:
+            raise StructureError(f"{name!r} is a switch: tell whether it is on or off in mode")
         port = by_name.get(name)
-        if port is None or not port.element.kind.resists:
-            known = [str(n) for n, p in by_name.items() if p.element.kind.resists]
+        if port is None:
+            known = list(map(str, by_name))
             raise StructureError(
                 f"no open port is called {name!r} that could stick; there are {', '.join(known) or 'none'}"
             )

@@ -79,14 +79,20 @@ def slopes(
     return {name: slope for name, slope in found.items() if slope != 0}
 
 
+def turns_with_slip(law: Law, signals: set[sp.Symbol]) -> bool:
+    """Whether the slope of dry friction depends on the side to which it slips."""
+    if not isinstance(law, DryFriction):
+        return False
+    return SLIP in law.curve.free_symbols or bool(law.level.free_symbols & signals)
+
+
 def _as_expression(
     law: Law, port: Hashable, received: sp.Symbol, signals: set[sp.Symbol], point: Point
 ) -> sp.Expr:
     """A law as an expression; slipping friction on the side on which the operating point lies."""
     if not isinstance(law, DryFriction):
         return law.expression
-    constant = SLIP not in law.curve.free_symbols and not law.level.free_symbols & signals
-    if constant and received not in point:
+    if not turns_with_slip(law, signals) and received not in point:
         return law.level
     side = sp.sign(point.get(received, sp.Integer(0)))
     if side not in (1, -1):

@@ -21,10 +21,10 @@ from bondgraph.declare.names import named_by
 class Assignment:
     """``symbol = right``: one effort or flow of a bond.
 
-    ``kind``: "given" is a state, an input (what an open port, a source or a law gives), or the nothing
-    that a detector gives; "balance" the sum at a junction; "transfer" what a junction hands on and what
-    a transformer or gyrator makes of it; "law" a linear resistance. Of a "rate", what a storage in
-    derivative causality gives, ``right`` is the momentum or displacement: the signal is its rate.
+    ``kind``: "given" is a state, an input (what an open port, a source, a law or a switch gives), or the
+    nothing that a detector gives; "balance" the sum at a junction; "transfer" what a junction hands on
+    and what a transformer or gyrator makes of it; "law" a linear resistance. Of a "rate", what a storage
+    in derivative causality gives, ``right`` is the momentum or displacement: the signal is its rate.
 
     ``bond`` is as declared, with power as `StateEquations.bond` counts it; ``node`` is the one whose
     equation it is. ``group`` counts up; signals that form a loop share one number and are solved together.
@@ -151,7 +151,9 @@ def _reserved(strokes: Strokes) -> Iterator[sp.Symbol]:
     yield TIME
     for element in strokes.elements:
         yield from named_by(element)
-        for part in (element.value, element.law, *(value for _, value in element.row)):
+        conditions = (element.switch.on, element.switch.off) if element.switch else ()
+        parts = (element.value, element.law, *(value for _, value in element.row), *conditions)
+        for part in parts:
             if part is not None:
                 yield from part.free_symbols
 

@@ -111,8 +111,8 @@ def _element(name: Hashable, attributes: Mapping[str, Any]) -> Element:
     if kind.detects:
         return _detector(name, kind, attributes, unit)
     if kind.switches:
-        switch = switch_of(name, attributes, "effort")
         effort, flow = (variable(attributes, key, name) for key in ("effort", "flow"))
+        switch = switch_of(name, attributes, "effort")
         return Element(name, kind, None, effort, flow, switch=switch)
     return _passive(name, kind, attributes, unit)
 
@@ -179,7 +179,7 @@ def _passive(
 def _control(junction: Element, attributes: Mapping[str, Any]) -> Element:
     """The switch that makes a junction a controlled one: a port of its own, ``<name>_switch``."""
     gives = OTHER[junction.kind.common]
-    switch = switch_of(junction.name, attributes, gives)
     name = f"{junction.name}_switch"
     effort, flow = (variable({}, key, name) for key in ("effort", "flow"))
+    switch = switch_of(junction.name, attributes, gives)
     return Element(name, Kind.SW, None, effort, flow, switch=switch)

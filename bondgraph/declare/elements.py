@@ -21,8 +21,8 @@ OTHER = {"effort": "flow", "flow": "effort"}
 class Switch:
     """When a switch or a controlled junction of this name changes over.
 
-    Off, it turns on as ``on`` rises above zero; on, it turns off as ``off`` does. While on, its port
-    gives zero effort, or zero flow, as ``gives`` says; while off it gives zero of the other.
+    Off, it turns on as ``on`` rises above zero; on, it turns off as ``off`` does. While on, its port has
+    zero effort, or zero flow, as ``gives`` says; while off it has zero of the other.
     """
 
     name: Hashable
@@ -197,10 +197,11 @@ def Sw(name: Hashable, on: object, off: object = None, **more: object) -> Node:
     """An ideal switch: zero effort while it is on (closed), zero flow while it is off (open).
 
     Off, it turns on as the expression ``on`` rises above zero; on, it turns off as ``off`` does, which
-    is ``-on`` unless given. They may use any signal, its own effort and flow among them; so a diode is
+    is ``-on`` unless given. They may use any signal, its own effort and flow among them: `Diode`, which
+    is also a `CheckValve`, and `Freewheel` write such a switch. One that inputs from outside command:
 
-    >>> Sw("d", on="e_d", off="-f_d")
-    ('d', {'kind': 'Sw', 'on': 'e_d', 'off': '-f_d'})
+    >>> Sw("key", on="gate - 1/2")
+    ('key', {'kind': 'Sw', 'on': 'gate - 1/2'})
     """
     return _node(name, Kind.SW, on=on, off=off, **more)
 

@@ -1,4 +1,4 @@
-"""Switches and controlled junctions: a graph without them for every mode that they can be in."""
+"""Switches and controlled junctions: which there are, and a graph without them for each of its modes."""
 
 from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import replace
@@ -23,7 +23,8 @@ def in_mode(graph: Any, on: Iterable[Hashable] = ()) -> "nx.DiGraph[Hashable]":
     """The graph in one mode: the switches and controlled junctions in ``on`` are on, the others off.
 
     A switch that is on gives zero effort, one that is off zero flow; so each mode has a causality and
-    equations of its own. The names of efforts and flows are the same in all modes.
+    equations of its own, with fewer states where a switch binds some. The names of efforts and flows are
+    the same in all modes. The equations that hold for all modes are those of the graph as it stands.
 
     Raises `StructureError` for a name that is neither a switch nor a controlled junction.
 
@@ -55,28 +56,6 @@ def checked_modes(known: Sequence[Hashable], on: Any) -> frozenset[Hashable]:
             listed = ", ".join(map(repr, known)) or "none"
             raise StructureError(f"{name!r} is no switch of this graph; there are {listed}")
     return frozenset(chosen)
-
-
-def one_sided(switch: Switch, given: sp.Symbol | None, other: sp.Symbol | None) -> int:
-    """The side of a switch that is on while ``side other >= 0``, off while ``side given <= 0``; else 0.
-
-    ``given``: the variable that is zero while it is on, ``other`` the one that is zero while it is off.
-    So it is told where it turns on by a multiple of the one and off by the reversed one of the other.
-    """
-    ratios = switch.on / given, -switch.off / other
-    signs = [1 if ratio.is_positive else -1 if ratio.is_negative else 0 for ratio in ratios]
-    return signs[0] if signs[0] == signs[1] else 0
-
-
-def refuse_switches(graph: "nx.DiGraph[Hashable]") -> None:
-    """Refuse a validated graph whose switches are in no mode."""
-    names = [switch.name for switch in switches(graph)]
-    if names:
-        listed = ", ".join(map(repr, names))
-        raise StructureError(
-            f"the graph has the switches {listed} and other equations in each of their modes: tell one "
-            "with in_mode(graph, on=[...]), or simulate them all with switched_simulator"
-        )
 
 
 def _elements(graph: "nx.DiGraph[Hashable]") -> list[Element]:

@@ -64,11 +64,11 @@ def drawing(
     Half arrows point with positive power, the causal stroke lies at the end that receives the effort;
     storages in derivative causality stand in a dashed frame. ``powers`` writes efforts over and flows
     under the bonds, where the one-port or a junction at the bond has a name for them. ``values=False``
-    writes names of elements instead of their values.
+    writes names of elements instead of their values and conditions.
 
     The first source is on top. Elements left of their bond read ``J :I``, so that the symbol is at the
-    bond. A switch in a mode is a Sw that is on or off. A graph that has no causality (one with switches in
-    no mode, or one that `assign_causality` refuses) is drawn without strokes, with the reason under it.
+    bond. A switch is a Sw with what turns it on above zero, in a mode it is on or off. A graph that
+    `assign_causality` refuses is drawn without strokes, with the reason under it.
 
     Raises `StructureError` for what is not a bond graph.
 

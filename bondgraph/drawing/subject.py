@@ -11,9 +11,8 @@ from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.declare.elements import Bond, Element
 from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import ExpressionLaw
-from bondgraph.declare.switching import switches
 from bondgraph.declare.validate import validate
-from bondgraph.drawing.rich import MOST, Rich, Run, formula, length, named
+from bondgraph.drawing.rich import MOST, Rich, Run, formula, joined, length, named
 from bondgraph.errors import AlgebraicLoopError, CausalityError
 
 
@@ -65,7 +64,7 @@ class Subject:
 def subject(graph: Any, values: bool) -> Subject:
     """What to draw of a causal graph, or of a declared one: its causality is assigned.
 
-    A graph without a causality (in no mode, or refused) has no strokes but a remark.
+    A graph whose causality is refused has no strokes but a remark.
 
     Raises `StructureError` for what is not a bond graph.
     """
@@ -95,11 +94,6 @@ def _causal(graph: Any) -> tuple[CausalGraph | None, str]:
     if isinstance(graph, CausalGraph):
         return graph, ""
     checked = validate(graph)
-    undecided = [str(switch.name) for switch in switches(checked)]
-    if undecided:
-        return None, (
-            f"No causal strokes: {', '.join(undecided)} may be on or off; draw in_mode(graph, on=[...])."
-        )
     try:
         return assign_causality(checked), ""
     except (CausalityError, AlgebraicLoopError) as error:
@@ -135,7 +129,10 @@ def _switched(element: Element) -> str:
 
 
 def _value(element: Element) -> Rich | None:
-    """What the element is by its value, or by its law if that is a short one."""
+    """What the element is by its value, by its law or by what turns it on, if that is short."""
+    if element.switch is not None:
+        text = (*formula(element.switch.on), Run(" > 0"))
+        return joined([*text]) if length(text) <= MOST else None
     given = element.value
     if given is None and element.kind.supplies and element.owner is None:
         law = element.law

@@ -57,9 +57,9 @@ class Explanation:
 def explain(graph: Any, outputs: Iterable[Hashable] | None = None) -> Explanation:
     """The derivation of a declared or causal graph, as the engine decided it.
 
-    Who imposes what; storages, laws and junctions as equations; what every port receives, loops and
-    resistances solved; dependent storages differentiated and put in; A, and the result. ``outputs``
-    as for `derive`, whose errors it raises.
+    Who imposes what; storages, laws and junctions as equations, switches in both of their ways; what
+    every port receives, loops and resistances solved; dependent storages differentiated and put in; A,
+    and the result. ``outputs`` as for `derive`, whose errors it raises.
 
     >>> import bondgraph as bg, networkx as nx
     >>> g = nx.DiGraph()
@@ -77,6 +77,8 @@ def explain(graph: Any, outputs: Iterable[Hashable] | None = None) -> Explanatio
 def _steps(causal: CausalGraph, result: StateEquations) -> Iterator[Step]:
     reduction, strokes, signals = result.reduction, causal.assignment, assignments(causal)
     taken = {*(line.symbol for line in signals), *result.signals, *result.parameters}
+    for part in (*result.laws.values(), *(c for one in result.switches for c in (one.on, one.off))):
+        taken |= part.free_symbols
     held = momenta(reduction, taken)
     shown = [(name, result.signals[name]) for name in result.outputs]
     yield causality_step(causal, signals, reduction)

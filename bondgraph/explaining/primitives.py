@@ -13,7 +13,8 @@ from bondgraph.equations import StateEquations
 from bondgraph.explaining.momenta import Momenta
 from bondgraph.explaining.records import Equation, Step, equation
 from bondgraph.reduce.sorting import Reduction, detects
-from bondgraph.show.sums import rate, split
+from bondgraph.reduce.switches import SwitchPort
+from bondgraph.show.sums import plain, rate, split
 
 
 def storages_step(reduction: Reduction, momenta: Momenta) -> Step:
@@ -40,7 +41,7 @@ def storages_step(reduction: Reduction, momenta: Momenta) -> Step:
 
 
 def laws_step(equations: StateEquations, signals: Sequence[Assignment]) -> Step:
-    """Linear resistances, detectors, and the laws that close ports."""
+    """Linear resistances, detectors, and the laws and switches that close ports."""
     known = {line.symbol for line in signals}
     lines = [
         equation(line.symbol, split(line.right, known), node=line.node)
@@ -60,10 +61,35 @@ def laws_step(equations: StateEquations, signals: Sequence[Assignment]) -> Step:
                 f"{port.element.name}: dry friction, {port.given} opposes the slip {port.received} with "
                 f"at most {law.level} times its curve {law.curve}"
             )
-    title = "Resistances and detectors"
-    if equations.laws:
-        title = "Resistances, detectors and laws; what laws give stays an input of the equations"
-    return Step("laws", title, tuple(sentences), tuple(lines))
+    sentences += map(_switch, equations.switches)
+    return Step("laws", _title_of_laws(equations), tuple(sentences), tuple(lines))
+
+
+def _title_of_laws(equations: StateEquations) -> str:
+    kinds = (("laws", equations.laws), ("switches", equations.switches))
+    what = [word for word, there in kinds if there]
+    if not what:
+        return "Resistances and detectors"
+    listed = ", ".join(["Resistances", "detectors", *what[:-1]])
+    return (
+        f"{listed} and {what[-1]}; what {' and '.join(what)} give stays an input of the equations"
+    )
+
+
+def _switch(one: SwitchPort) -> str:
+    """Both ways of a switch: what it gives, what it keeps at zero, and what changes it over."""
+    given, received = one.port.given, one.port.received
+    free = f"it gives {given} = 0"
+    holds = f"it keeps {received} = 0 by what {given} that takes"
+    on, off = (holds, free) if one.held == "on" else (free, holds)
+    text = (
+        f"{one.name}: an ideal switch; on, {on}, and turns off as {plain(one.off)} rises above zero; "
+        f"off, {off}, and turns on as {plain(one.on)} rises above zero"
+    )
+    if not one.side:
+        return text
+    least, most = ("negative", "positive") if one.side > 0 else ("positive", "negative")
+    return f"{text}; so {received} is never {least} and {given} never {most}"
 
 
 def junctions_step(

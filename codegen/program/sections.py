@@ -6,9 +6,7 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.elements import OTHER
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
-from bondgraph.declare.switching import one_sided
 from bondgraph.equations import StateEquations
 from codegen.program.closing import Closing
 from codegen.program.records import FrictionPort, Group, Pattern, Switching, block
@@ -114,20 +112,11 @@ def switches(closing: Closing) -> tuple[dict[sp.Symbol, Switching], list[sp.Expr
     """When each switch changes over, by the input that it gives; and the conditions of those that say."""
     found: dict[sp.Symbol, Switching] = {}
     conditions: list[sp.Expr] = []
-    for port in closing.equations.ports:
-        switch = port.element.switch
-        if switch is None:
-            continue
-        # Let go, a port that gives zero effort is a closed switch, one that gives zero flow an open one.
-        on = switch.gives != port.gives
-        given, other = (
-            port.element.variable(switch.gives),
-            port.element.variable(OTHER[switch.gives]),
-        )
-        side = one_sided(switch, given, other)
-        if side:
-            found[port.given] = Switching(on, -side if on else side)
+    for one in closing.equations.switches:
+        on = one.held == "on"
+        if one.side:
+            found[one.port.given] = Switching(on, one.side)
         else:
-            found[port.given] = Switching(on, 0, len(conditions))
-            conditions += [switch.on, switch.off]
+            found[one.port.given] = Switching(on, 0, len(conditions))
+            conditions += [one.on, one.off]
     return found, conditions

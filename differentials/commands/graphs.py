@@ -1,7 +1,6 @@
 """``draw`` and ``convert``: the graph itself, as a picture or a file."""
 
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -30,17 +29,11 @@ from differentials.commands.subject import ENDINGS, Subject
     help="A picture to write: .svg, .png or .pdf; by default it is drawn as text.",
 )
 def draw(
-    subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...], powers: bool,
-    no_values: bool, target: Path | None,
+    subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...], off: tuple[str, ...],
+    powers: bool, no_values: bool, target: Path | None,
 ) -> None:  # fmt: skip
-    """The bond graph of MODEL with its causal strokes, in the terminal or as a picture.
-
-    A graph with switches has strokes only in a mode: see --on.
-    """
-    shown: Any = subject.file
-    # With switches, strokes differ from mode to mode.
-    if on or not subject.switches():
-        shown = bg.assign_causality(subject.graph(halfshafts, unlumped, on))
+    """The bond graph of MODEL with its causal strokes, in the terminal or as a picture."""
+    shown = bg.assign_causality(subject.graph(halfshafts, unlumped, on, off))
     drawn = bg.drawing(shown, powers=powers, values=not no_values)
     if target is None:
         click.echo(drawn.text())

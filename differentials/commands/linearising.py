@@ -1,6 +1,6 @@
 """``modes`` and ``linear``: a model for small deviations, in numbers."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import click
@@ -11,7 +11,7 @@ import bondgraph as bg
 import differentials.commands.options as options
 from bondgraph.analyse.state_space import StateSpace
 from differentials.commands.names import check_names
-from differentials.commands.options import START, Command
+from differentials.commands.options import MODE, START, Command
 from differentials.commands.printing import print_json
 from differentials.commands.subject import Subject, nodes_called
 from differentials.identification import numbers
@@ -34,6 +34,7 @@ def _options(command: Command) -> Command:
         click.option("--stuck", multiple=True, metavar="PORT",
                      help="A friction port that sticks. May be repeated."),
         options.on,
+        options.assigned("--mode", "mode", MODE, "on or off of a switch, stick or slip of friction."),
         options.as_json,
     )  # fmt: skip
     for option in reversed(given):
@@ -44,21 +45,39 @@ def _options(command: Command) -> Command:
 def _linear(
     subject: Subject, parameters: Mapping[str, float], laws: Mapping[str, Any],
     at: Mapping[str, float], speed: float | None, stuck: tuple[str, ...], on: tuple[str, ...],
+    mode: Mapping[str, str],
 ) -> StateSpace:  # fmt: skip
     if subject.differential is None:
         if speed is not None:
             raise bg.SignalError(
                 "--speed is for the catalog's differentials; use --at SIGNAL=NUMBER"
             )
-        equations = bg.derive(subject.graph(on=on))
-        held = nodes_called(stuck, (port.element.name for port in equations.ports), "port")
-        return bg.linearize(equations, at, laws, stuck=held).numeric(parameters)
+        equations = bg.derive(subject.graph())
+        ports = [port.element.name for port in equations.ports]
+        held, told = nodes_called(stuck, ports, "port"), _told(subject, ports, on, mode)
+        return bg.linearize(equations, at, laws, stuck=held, mode=told).numeric(parameters)
     full = model(subject.name, laws)
     subject.graph(on=on)
     check_names(parameters, (*full.parameters, *full.starts), "parameter")
     held = nodes_called(stuck, full.differential.clutches, "clutch")
     values = numbers(full, parameters, SPEED if speed is None else speed)
-    return bg.linearize(full.equations, at, full.laws, stuck=held).numeric(values)
+    nodes = nodes_called(mode, full.differential.clutches, "clutch")
+    told = dict(zip(nodes, mode.values(), strict=True))
+    return bg.linearize(full.equations, at, full.laws, stuck=held, mode=told).numeric(values)
+
+
+def _told(
+    subject: Subject, ports: Iterable[Any], on: Iterable[str], mode: Mapping[str, str]
+) -> dict[Any, str]:
+    """Every node's mode; switches that neither --on nor --mode names are off."""
+    switches = subject.switches()
+    lit = dict.fromkeys(nodes_called(on, switches, "switch"), "on")
+    nodes = nodes_called(mode, [*switches, *ports], "switch or port")
+    told = dict(zip(nodes, mode.values(), strict=True))
+    both = [name for name in lit if name in told]
+    if both:
+        raise bg.StructureError(f"{both[0]!r} is in --on and in --mode; keep one")
+    return dict.fromkeys(switches, "off") | lit | told
 
 
 @options.command(

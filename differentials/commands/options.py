@@ -20,6 +20,7 @@ NUMBER = Assigned("NAME=NUMBER", "k=4300", float)
 START = Assigned("STATE=NUMBER", "omega_1=80", float)
 SIGNAL = Assigned("INPUT=SIGNAL", "tau_e=step(0.1, 350)", signal)
 LAW = Assigned("NODE=LAW", "clutch=friction(1000)", law)
+MODE = Assigned("NODE=MODE", "dog=off", str)
 
 
 def examples(*lines: str) -> str:
@@ -63,6 +64,12 @@ on = click.option(
     metavar="SWITCH",
     help="A switch that is on: at first in a run, else in the mode that is meant. May be repeated.",
 )
+off = click.option(
+    "--off",
+    multiple=True,
+    metavar="SWITCH",
+    help="A switch that is off, as all are that --on does not name. May be repeated.",
+)
 scenario = click.option(
     "--scenario", type=OneOf(tuple(scenarios), "scenario"), metavar="NAME",
     help="A scenario that `bondgraph list` shows; by default the differential's own.",
@@ -86,7 +93,7 @@ def models(run: Command) -> Command:
 
 def variants(run: Command) -> Command:
     """Which of a differential's models, or which mode of a file's switches, is meant."""
-    return models(on(run))
+    return models(on(off(run)))
 
 
 @dataclass(frozen=True)

@@ -60,18 +60,19 @@ def _case(name: str) -> dict[str, object]:
 @options.variants
 @options.as_json
 def show(
-    subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...], as_json: bool
-) -> None:
+    subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...], off: tuple[str, ...],
+    as_json: bool,
+) -> None:  # fmt: skip
     """Equations, causality, parameters and modes of MODEL.
 
     MODEL is a name that `bondgraph list` shows, or a graph in a .json or .graphml file.
     """
-    declared = subject.graph(halfshafts, unlumped, on)
+    declared = subject.graph(halfshafts, unlumped, on, off)
     derived = bg.derive(declared, outputs=list(subject.ports))
     if as_json:
         print_json(_shown(subject, declared, derived))
         return
-    click.echo(headed(f"{subject.name}: {subject.title}") + "\n" + mode_text(subject, on))
+    click.echo(headed(f"{subject.name}: {subject.title}") + "\n" + mode_text(subject, on, derived))
     click.echo(f"{derived}\n\n" + headed("Causality"))
     click.echo(causality_of(declared) + "\n")
     if subject.differential is None:
@@ -106,7 +107,7 @@ def _open_text(subject: Subject, derived: bg.StateEquations) -> str:
     """What a file's graph still needs to be run, and how it is given."""
     needed = ", ".join(map(str, derived.parameters)) or "none"
     given = [f"{port.given} from {port.element.name}" for port in derived.ports
-             if port.element.name not in derived.laws]  # fmt: skip
+             if port.element.name not in derived.laws and port.element.switch is None]  # fmt: skip
     return "\n".join(
         [
             headed("To run it"),
@@ -143,18 +144,20 @@ def _ratios_text(derived: bg.StateEquations, values: dict[str, float]) -> str:
 @click.option("--latex", "as_latex", is_flag=True, help="The equations as LaTeX.")
 @options.as_json
 def derive(
-    subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...],
+    subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...], off: tuple[str, ...],
     outputs: tuple[str, ...], as_latex: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """The state equations of MODEL: A x' = J x + B u + E u', y = F x + D u + G u'."""
     if as_latex and as_json:
         raise click.UsageError("--latex and --json exclude each other; keep one")
-    declared = subject.graph(halfshafts, unlumped, on)
+    declared = subject.graph(halfshafts, unlumped, on, off)
     derived = bg.derive(declared, outputs=list(outputs or subject.ports))
     if as_json:
         print_json(equations_data(derived))
     else:
-        click.echo(bg.latex(derived) if as_latex else mode_text(subject, on) + str(derived))
+        click.echo(
+            bg.latex(derived) if as_latex else mode_text(subject, on, derived) + str(derived)
+        )
 
 
 @options.command(
@@ -167,8 +170,9 @@ def derive(
 @options.variants
 @click.option("--latex", "as_latex", is_flag=True, help="The derivation as LaTeX.")
 def explain(
-    subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...], as_latex: bool
-) -> None:
+    subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...], off: tuple[str, ...],
+    as_latex: bool,
+) -> None:  # fmt: skip
     """How the equations of MODEL come about, step by step."""
-    explained = bg.explain(subject.graph(halfshafts, unlumped, on))
+    explained = bg.explain(subject.graph(halfshafts, unlumped, on, off))
     click.echo(explained.latex() if as_latex else explained.text())

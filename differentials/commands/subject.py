@@ -1,7 +1,7 @@
 """What a command is about: a differential of the catalog, or the graph in a file."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -47,19 +47,24 @@ class Subject:
         return () if self.file is None else tuple(one.name for one in bg.switches(self.file))
 
     def graph(
-        self, halfshafts: bool = False, unlumped: bool = False, on: Iterable[str] = ()
-    ) -> "nx.DiGraph[Any]":
-        """The graph, with halfshafts or all inertias apart; with switches in one of its modes."""
+        self, halfshafts: bool = False, unlumped: bool = False, on: Collection[str] = (),
+        off: Collection[str] = (),
+    ) -> "nx.DiGraph[Any]":  # fmt: skip
+        """The graph, with halfshafts or all inertias apart; in the mode of its switches that is named."""
         if self.file is None:
-            if on:
-                raise bg.StructureError(f"{self.name} has no switches; leave --on out")
+            if on or off:
+                raise bg.StructureError(f"{self.name} has no switches; leave --on and --off out")
             return graph(self.name, halfshafts, not unlumped)
         if halfshafts or unlumped:
             raise bg.StructureError(
                 "--halfshafts and --unlumped choose among the catalog's models; a file has only one"
             )
-        if not self.switches() and not on:
+        if not on and not off:
             return self.file
+        both = [name for name in on if name in off]
+        if both:
+            raise bg.StructureError(f"{both[0]!r} is on by --on and off by --off; keep one")
+        nodes_called(off, self.switches(), "switch")
         return bg.in_mode(self.file, on=nodes_called(on, self.switches(), "switch"))
 
 
@@ -107,8 +112,13 @@ class SubjectType(click.ParamType):  # type: ignore[type-arg]
         return names or [CompletionItem(incomplete, type="file")]
 
 
-def mode_text(subject: Subject, on: Iterable[str]) -> str:
-    """Which mode of the switches is shown; empty without switches."""
+def mode_text(subject: Subject, on: Iterable[str], derived: bg.StateEquations) -> str:
+    """Which mode of the switches is shown, or what they do in equations of all; empty without switches."""
+    if derived.switches:
+        each = ", ".join(
+            f"{one.name} (held while {one.held}, {one.guard})" for one in derived.switches
+        )
+        return f"switches, each let go or held: {each}\n"
     if not subject.switches():
         return ""
     told = ", ".join(on) or "none"

@@ -85,6 +85,24 @@ FAMILIES = (
         3_000,
     ),
     Family(
+        "switched-columns",
+        "bondgraph/test_switched_modes.py::test_no_switch_drives_a_dependent_storage",
+        60,
+        4_000,
+    ),
+    Family(
+        "switched-modes",
+        "bondgraph/test_switched_modes.py::test_every_mode_is_a_choice_of_rows",
+        40,
+        2_000,
+    ),
+    Family(
+        "linear-modes",
+        "bondgraph/analyse/test_modes.py::test_a_linear_model_in_a_mode_is_that_of_the_mode_alone",
+        25,
+        1_000,
+    ),
+    Family(
         "lossless",
         "bondgraph/test_random.py::test_structure_without_resistances_is_skew_symmetric",
         30,

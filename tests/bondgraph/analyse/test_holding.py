@@ -185,8 +185,22 @@ def test_only_open_ports_stick(act: object, stuck: object, message: str) -> None
 def test_ports_that_hold_one_another_are_refused() -> None:
     with pytest.raises(bg.StructureError, match=r"'a', 'o' hold one another.*not unique"):
         bg.holding_efforts(_two_inertias("a", "o"), ["a", "o"])
-    with pytest.raises(bg.SignalError, match="what holds a sticking port; see holding_efforts"):
-        bg.linearize(_two_inertias(), stuck=["clutch"], outputs=["T_c"])
+    with pytest.raises(
+        bg.SignalError, match="shows what one of 'a', 'o' gives, which hold together"
+    ):
+        bg.linearize(_two_inertias("a", "o"), stuck=["a", "o"], outputs=["e_a"])
+
+
+def test_what_holds_a_port_is_an_output_of_a_linear_model() -> None:
+    """As above: (I_1 + I_2) w' = T_1 - T_2 and I_2 w' = T_c - T_2; a brake takes T_1 - T_c."""
+    model = bg.linearize(_two_inertias(), stuck=["clutch"], outputs=["T_c", "w_2"])
+    expected = [
+        [I_2 / (I_1 + I_2), I_1 / (I_1 + I_2)],
+        [1 / (s * (I_1 + I_2)), -1 / (s * (I_1 + I_2))],
+    ]
+    assert differences(model.transfer_function(), expected) == {}
+    both = bg.linearize(_two_inertias("a"), stuck=["a", "clutch"], outputs=["T_c", "e_a"])
+    assert differences(both.transfer_function(), [[0, 1], [1, -1]]) == {}
 
 
 def test_port_that_needs_the_rate_of_an_input_is_refused() -> None:
@@ -195,5 +209,37 @@ def test_port_that_needs_the_rate_of_an_input_is_refused() -> None:
     equations = bg.derive(bond_graph(nodes, "w>z z>p z>k>n"))
     with pytest.raises(bg.DependentSourceError, match="what holds 'p' depends on the rate of an"):
         bg.holding_efforts(equations, ["p"])
-    with pytest.raises(bg.DependentSourceError, match="linearize holds slips between storages"):
+
+
+def test_port_that_holds_against_an_imposed_speed_makes_it_that_of_the_inertia() -> None:
+    """v = w, so the port carries n w' and no state is left."""
+    nodes = [
+        bg.Sf("w", "w"),
+        bg.Zero("z"),
+        bg.R("p"),
+        bg.One("k"),
+        bg.I("n", "n", flow="v"),
+        bg.R("b", "b"),
+    ]
+    equations = bg.derive(bond_graph(nodes, "w>z z>p z>k>n k>b"))
+    model = bg.linearize(equations, stuck=["p"], outputs=["v", "e_p", "f_p"])
+    assert model.states == ()
+    assert differences(model.D, [[1], [b], [0]]) == {}
+    assert differences(model.G, [[0], [n], [0]]) == {}
+
+
+def test_a_port_whose_effort_is_undone_does_not_hold() -> None:
+    """m v' = -e_s - e_p with a law that gives -e_p."""
+    nodes = [bg.R("s", law="-e_p"), bg.One("j"), bg.I("m", "m", flow="v"), bg.R("p")]
+    equations = bg.derive(bond_graph(nodes, "j>s j>m j>p"))
+    with pytest.raises(bg.DependentSourceError, match="what is given at 'p' does not hold"):
+        bg.linearize(equations, stuck=["p"])
+
+
+def test_two_imposed_speeds_are_not_held_together() -> None:
+    nodes = [bg.Sf("one", "w_1"), bg.Zero("z"), bg.R("p"), bg.One("k"), bg.Sf("two", "w_2")]
+    equations = bg.derive(bond_graph(nodes, "one>z z>p z>k two>k"))
+    with pytest.raises(
+        bg.DependentSourceError, match="inputs alone rule what is to be held at 'p'"
+    ):
         bg.linearize(equations, stuck=["p"])

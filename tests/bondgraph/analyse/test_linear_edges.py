@@ -28,13 +28,20 @@ def _mixed() -> bg.StateEquations:
     return bg.derive(bond_graph(nodes, "u>j>m j>z>b z>k>n k>y>a y>r"))
 
 
-def test_one_port_beside_a_resistance_and_one_between_masses_hold_together() -> None:
+@pytest.mark.parametrize("order", [["a", "b"], ["b", "a"]])
+def test_one_port_beside_a_resistance_and_one_between_masses_hold_together(
+    order: list[str],
+) -> None:
     """All of w goes through r; (m + n) w' = u - e_a and m v' = u - e_b."""
     held = bg.holding_efforts(_mixed(), ["a", "b"])
     assert sp.cancel(held[e_a] - r * w) == 0
     assert sp.cancel(held[sp.Symbol("e_b")] - (m * r * w + n * u) / (m + n)) == 0
-    with pytest.raises(bg.StructureError, match="one kind at a time"):
-        bg.linearize(_mixed(), stuck=["a", "b"])
+    model = bg.linearize(_mixed(), stuck=order, outputs=["w", "e_a", "e_b"])
+    # (m + n) w' = u - r w
+    expected = [1, r, n * sp.Symbol("s") + r]
+    whole = 1 / ((m + n) * sp.Symbol("s") + r)
+    found = model.transfer_function()
+    assert [sp.cancel(found[at] - value * whole) for at, value in enumerate(expected)] == [0, 0, 0]
 
 
 def test_a_clutch_to_an_inertia_with_a_law_can_be_held() -> None:

@@ -11,6 +11,7 @@ import sympy as sp
 from references.alsd import alsd_graph
 from references.build import Graph, bond_graph
 from references.random_graphs import chain, random_graph
+from references.random_switches import random_switched
 from soak.families import seeds
 
 import bondgraph as bg
@@ -210,7 +211,10 @@ def _expression(reading: Reading, columns: tuple[list[sp.Symbol], ...]) -> sp.Ex
 def _check(graph: Graph) -> None:
     equations = bg.derive(graph)
     lines = bg.assignments(graph)
-    assert len(lines) == 2 * graph.number_of_edges()
+    controlled = sum(
+        "on" in data for _, data in graph.nodes(data=True) if data["kind"] in ("Zero", "One")
+    )
+    assert len(lines) == 2 * (graph.number_of_edges() + controlled)
     assert len({line.symbol for line in lines}) == len(lines)
     _check_order(lines, {*equations.states, *equations.inputs})
     dots = {name: sp.Symbol(f"rate of {name}") for name in (*equations.states, *equations.inputs)}
@@ -280,6 +284,12 @@ def test_fields_are_the_readings() -> None:
 @pytest.mark.parametrize("seed", seeds("assignments"))
 def test_put_in_one_after_the_other_they_are_the_readings(seed: int) -> None:
     if _accepted(graph := _numeric(seed)):
+        _check(graph)
+
+
+@pytest.mark.parametrize("seed", range(15))
+def test_the_same_with_switches(seed: int) -> None:
+    if _accepted(graph := random_switched(seed)):
         _check(graph)
 
 

@@ -1,6 +1,5 @@
 """Switches and controlled junctions as declared: both modes against equations by hand, files, prefixes."""
 
-from collections.abc import Callable
 from typing import Any
 
 import networkx as nx
@@ -134,12 +133,13 @@ def test_the_port_of_a_controlled_junction_is_no_name_of_its_own() -> None:
         bg.in_mode(_controlled(), ["loop_switch"])
 
 
-@pytest.mark.parametrize("stage", [bg.derive, bg.assign_causality, bg.assignments])
-def test_graphs_in_no_mode_are_refused_with_the_way_out(stage: Callable[[Part], Any]) -> None:
-    with pytest.raises(
-        bg.StructureError, match=r"the switches 'key' .* in_mode\(graph, .*switched_simulator"
-    ):
-        stage(_charger())
+def test_a_graph_in_no_mode_has_one_set_of_equations_for_both() -> None:
+    """L i' = E - R i - u - e_key, whatever keeps i at zero while the key is open."""
+    whole = bg.derive(_charger())
+    assert (_texts(whole.states), _texts(whole.inputs)) == (["i", "u"], ["E", "e_key"])
+    assert (sp.diag(L, C), sp.Matrix([[-R, -1], [1, 0]])) == (whole.A, whole.J)
+    assert sp.Matrix([[1, -1], [0, 0]]) == whole.B
+    assert whole.laws == {}
 
 
 @pytest.mark.parametrize(

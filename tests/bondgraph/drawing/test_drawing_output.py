@@ -113,21 +113,34 @@ def test_values_or_names() -> None:
     assert "I: mass" in bg.drawing(oscillator(), values=False).text()
 
 
-def test_switches_in_no_mode_are_drawn_without_strokes() -> None:
+def test_switches_are_drawn_with_strokes_and_what_turns_them_on() -> None:
     made = graph(
         [bg.Se("battery", "E"), bg.One("wire"), bg.Sw("key", on="gate"), bg.C("cap", "C")],
         [("battery", "wire"), ("wire", "key"), ("wire", "cap")],
     )
-    drawing = bg.drawing(made)
-    assert all(bond.stroke is None for bond in drawing.scene.bonds)
-    assert "key may be on or off" in drawing.text().splitlines()[-1]
-    assert "key may be on or off" in " ".join(texts(drawing))
+    assert bg.drawing(made).text().splitlines() == [
+        "Se: E    ──⇀|  1 wire",
+        "1 wire  |──⇀   C: C",
+        "1 wire   ──⇀|  Sw: gate > 0",
+    ]
+    assert "Sw: key" in texts(bg.drawing(made, values=False))
     on, off = (bg.drawing(bg.in_mode(made, on=mode)) for mode in (["key"], []))
     assert "Sw: key (on)" in texts(on)
     assert "Sw: key (off)" in texts(off)
     assert all(bond.stroke for drawing in (on, off) for bond in drawing.scene.bonds)
     assert [node.name for node in on.scene.nodes if node.frame] == ["cap"]
     assert [node.name for node in off.scene.nodes if node.frame] == []
+
+
+def test_long_conditions_are_left_to_the_name() -> None:
+    made = graph(
+        [bg.Se("s", "E"), bg.One("loop", on="i_measured - i_highest - sin(w*t)"), bg.R("r", "R"),
+         bg.Sw("k", on="sin(100*pi*t) - depth*cos(carrier*t)")],
+        [("s", "loop"), ("loop", "r"), ("loop", "k")],
+    )  # fmt: skip
+    listed = bg.drawing(made).text()
+    assert "Sw: k\n" in listed
+    assert "Sw: loop_switch\n" in listed
 
 
 def test_refused_causality_is_told_under_the_picture() -> None:

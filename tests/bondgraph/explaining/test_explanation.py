@@ -103,7 +103,16 @@ def _two_inputs_of_one_name() -> nx.DiGraph:
     return bond_graph(nodes, "left>a>m a>between>b between>k b>M right>b")
 
 
+def _boost() -> nx.DiGraph:
+    """A coil charged by a transistor, which a diode hands to a capacitor; a second diode across that."""
+    nodes = [bg.Se("s", "E"), bg.One("l"), bg.I("L", "L", flow="i"), bg.R("r", "R_L"), bg.Zero("n"),
+             bg.Sw("q", on="gate"), bg.One("w"), bg.Diode("d"), bg.Zero("o"), bg.C("c", "C", effort="v"),
+             bg.R("load", "R"), bg.Diode("clamp")]  # fmt: skip
+    return bond_graph(nodes, "s>l>L l>r l>n>q n>w>d w>o>c o>load o>clamp")
+
+
 GRAPHS = {
+    "boost": _boost,
     "ladder": _ladder, "tanks": _tanks, "crank": _crank, "ring": _ring, "motor": _motor, "tail": _tail,
     "driven": _driven, "divider": _divider, "coupled": _coupled, "moving inertia": _moving_inertia,
     "relativistic": _relativistic, "one input twice": _two_inputs_of_one_name,
@@ -296,6 +305,40 @@ def test_laws_are_stated_and_stay_inputs() -> None:
     assert (sp.Symbol("q_spring'"), sp.Symbol("f_spring")) in {
         (one.left, one.right) for one in steps["storages"].equations
     }
+
+
+def test_both_ways_of_a_switch_are_told() -> None:
+    (step,) = (step for step in bg.explain(_boost()).steps if step.topic == "laws")
+    assert step.title == (
+        "Resistances, detectors and switches; what switches give stays an input of the equations"
+    )
+    told = dict(sentence.split(": ", 1) for sentence in step.sentences)
+    assert told["clamp"] == (
+        "an ideal switch; on, it keeps e_clamp = 0 by what f_clamp that takes, and turns off as -f_clamp "
+        "rises above zero; off, it gives f_clamp = 0, and turns on as e_clamp rises above zero; so e_clamp "
+        "is never positive and f_clamp never negative"
+    )
+    forms = {one.name: one.gives for one in bg.derive(_boost()).switches}
+    assert forms["q"] != forms["d"]
+    q, free, kept = told["q"], *(("e_q", "f_q") if forms["q"] == "effort" else ("f_q", "e_q"))
+    assert f"it gives {free} = 0" in q
+    assert f"it keeps {kept} = 0 by what {free} that takes" in q
+    assert q.index(f"{'it gives e_q' if free == 'e_q' else 'it keeps e_q'}") < q.index("off, ")
+    assert q.endswith("and turns on as gate rises above zero")
+
+
+def test_laws_and_switches_share_a_title() -> None:
+    nodes = [
+        bg.Se("s", "E"),
+        bg.One("j"),
+        bg.I("L", "L"),
+        bg.R("r", law="f_r**3"),
+        bg.Sw("k", on="g"),
+    ]
+    (step,) = (s for s in bg.explain(bond_graph(nodes, "s>j>L j>r j>k")).steps if s.topic == "laws")
+    assert step.title.startswith(
+        "Resistances, detectors, laws and switches; what laws and switches"
+    )
 
 
 def test_what_derive_refuses_is_refused_alike() -> None:

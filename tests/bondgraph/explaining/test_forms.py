@@ -7,6 +7,7 @@ import pytest
 from references.build import bond_graph
 from references.latex_checks import check_latex
 from references.random_graphs import chain
+from references.random_switches import random_switched
 
 import bondgraph as bg
 import differentials
@@ -72,6 +73,7 @@ def _awkward() -> nx.DiGraph:
 FORMS = {
     **{name: lambda name=name: differentials.graph(name) for name in differentials.catalog},
     "awkward": _awkward,
+    "switched": lambda: random_switched(3, most=3),
     "large": lambda: chain(60),
 }
 

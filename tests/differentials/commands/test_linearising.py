@@ -32,6 +32,28 @@ def test_a_clutch_that_sticks_takes_a_state(data: Data) -> None:
     assert len(data("linear", "alsd", "--stuck", "clutch")["states"]) == 5
 
 
+def test_a_mode_is_told_in_the_words_of_events(data: Data, call: Call) -> None:
+    """The rectifier conducts through R_s = 1 beside R_l = 100, or its capacitor of 1 mF discharges by R_l."""
+    told = (
+        "linear",
+        "examples/rectifier.json",
+        "--set",
+        "R_s=1",
+        "--set",
+        "C=1e-3",
+        "--set",
+        "R_l=100",
+    )
+    conducting, blocking = ([[-1010.0]], [[-10.0]])
+    for way in (("--on", "d"), ("--mode", "d=on")):
+        assert np.array(data(*told, *way)["P"]) == pytest.approx(np.array(conducting))
+    for way in ((), ("--mode", "d=off")):
+        assert np.array(data(*told, *way)["P"]) == pytest.approx(np.array(blocking))
+    assert data("linear", "alsd", "--mode", "clutch=stick") == data(
+        "linear", "alsd", "--stuck", "clutch"
+    )
+
+
 def test_an_oscillators_mode_is_the_textbooks(data: Data) -> None:
     (mode,) = data("modes", "examples/oscillator.json", *NUMBERS)
     omega, damping = math.sqrt(800 / 2), 4 / (2 * math.sqrt(800 * 2))

@@ -74,10 +74,25 @@ def test_show_of_a_file_says_what_a_run_needs(call: Call) -> None:
 
 def test_modes_of_switches_have_equations_of_their_own(data: Data, call: Call) -> None:
     file = "examples/rectifier.json"
-    conducting, blocking = data("derive", file, "--on", "d"), data("derive", file)
+    conducting, blocking = data("derive", file, "--on", "d"), data("derive", file, "--off", "d")
     assert sp.sympify(conducting["J"][0][0]) == sp.sympify("-1/R_l - 1/R_s")
     assert sp.sympify(blocking["J"][0][0]) == sp.sympify("-1/R_l")
     assert "switches that are on: d (of d)" in call("show", file, "--on", "d").stdout
+    assert "switches that are on: none (of d)" in call("derive", file, "--off", "d").stdout
+
+
+def test_a_graph_with_switches_is_shown_as_it_stands(data: Data, call: Call) -> None:
+    """C v' = (u - e_d - v)/R_s - v/R_l, whatever e_d the diode takes."""
+    file = "examples/rectifier.json"
+    whole = data("derive", file)
+    assert (whole["states"], whole["inputs"]) == (["v"], ["u", "e_d"])
+    assert sp.sympify(whole["B"][0][1]) == sp.sympify("-1/R_s")
+    text = call("show", file).stdout
+    assert "switches, each let go or held: d (held while off, one-sided)\n" in text
+    assert re.search(r"\(--input, --law\): +u from mains\n", text)
+    assert "an ideal switch; on, it gives e_d = 0" in " ".join(call("explain", file).stdout.split())
+    assert "Sw: e_d > 0\n" in call("draw", file).stdout
+    assert "|" in next(line for line in call("draw", file).stdout.splitlines() if "Sw" in line)
 
 
 def test_derive_gives_the_papers_matrices(data: Data) -> None:

@@ -1,0 +1,131 @@
+"""The mode that a linear model is taken in: which ports are held, which give zero, and what holding takes."""
+
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from bondgraph.analyse.closed_rows import ClosedRows
+from bondgraph.analyse.constrained import echelon
+from bondgraph.analyse.holding import split, stuck_ports
+from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
+from bondgraph.equations import StateEquations
+from bondgraph.errors import StructureError
+from bondgraph.reduce.record import Reading
+from bondgraph.reduce.structure import Port
+
+WORDS = {True: ("on", "off"), False: ("stick", "slip")}
+"""The modes of switches, and of other ports."""
+
+
+@dataclass(frozen=True)
+class ToldModes:
+    """``held``: the ports that receive zero; ``free``: the switches that give zero."""
+
+    held: tuple[Port, ...]
+    free: tuple[Port, ...]
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """Those whose inputs are none of the linear model's."""
+        return self.held + self.free
+
+    @property
+    def names(self) -> frozenset[Hashable]:
+        """Their nodes."""
+        return frozenset(port.element.name for port in self.ports)
+
+    @property
+    def holding(self) -> str:
+        """The held ports, for people."""
+        return ", ".join(repr(port.element.name) for port in self.held)
+
+    @property
+    def zeros(self) -> dict[sp.Symbol, Law]:
+        """What is zero at any operating point of this mode."""
+        names = [port.received for port in self.held if port.element.kind.switches]
+        return dict.fromkeys(
+            [*names, *(port.given for port in self.free)], ExpressionLaw(sp.Integer(0))
+        )
+
+
+def told_modes(
+    equations: StateEquations, laws: Mapping[Hashable, Law], stuck: Iterable[Hashable], mode: Any
+) -> ToldModes:
+    """Which ports are held and which let go, in the words of events.
+
+    ``laws``: every closed port's. Raises `StructureError` for a switch that is told no mode, for a word or
+    a node that there is not, and for a port that is told two modes.
+    """
+    told = _checked(equations, mode)
+    held = stuck_ports(equations, stuck)
+    names = {port.element.name for port in held}
+    for name, word in told.items():
+        if word == "slip" and not isinstance(laws.get(name), DryFriction):
+            raise StructureError(f"mode: {name!r} has no dry friction that could slip")
+        if word == "slip" and name in names:
+            raise StructureError(f"{name!r} is in stuck and slips in mode; leave one of them out")
+    sticking = [name for name, word in told.items() if word == "stick" and name not in names]
+    held += stuck_ports(equations, sticking)
+    missing = [one.name for one in equations.switches if one.name not in told]
+    if missing:
+        listed = ", ".join(map(repr, missing))
+        raise StructureError(
+            f"a linear model is of one mode: tell whether {listed} {'is' if len(missing) == 1 else 'are'} on "
+            f"or off, such as mode={{{missing[0]!r}: 'off'}}"
+        )
+    closed = [one.port for one in equations.switches if told[one.name] == one.held]
+    free = [one.port for one in equations.switches if told[one.name] != one.held]
+    return ToldModes((*held, *closed), tuple(free))
+
+
+def _checked(equations: StateEquations, mode: Any) -> dict[Hashable, str]:
+    """Every node that is told a mode, and the mode, which is one that it has."""
+    if mode is None:
+        return {}
+    if not isinstance(mode, Mapping):
+        raise StructureError(
+            f"mode must map nodes to 'on', 'off', 'stick' or 'slip', not be {mode!r}"
+        )
+    switches = {one.name for one in equations.switches}
+    resisting = {p.element.name for p in equations.ports if p.element.kind.resists}
+    for name, word in mode.items():
+        if name not in switches | resisting:
+            listed = ", ".join(map(repr, [one.name for one in equations.switches]))
+            raise StructureError(
+                f"mode: {name!r} is no switch and no port that could stick; there are the switches "
+                f"{listed or 'none'} and the ports {', '.join(map(repr, _listed(equations))) or 'none'}"
+            )
+        words = WORDS[name in switches]
+        if word not in words:
+            raise StructureError(
+                f"mode: {name!r} can be {words[0]!r} or {words[1]!r}, not {word!r}"
+            )
+    return dict(mode)
+
+
+def _listed(equations: StateEquations) -> list[Hashable]:
+    return [port.element.name for port in equations.ports if port.element.kind.resists]
+
+
+def held_rows(
+    system: ClosedRows, rows: Sequence[Reading], columns: Sequence[int], ports: Sequence[Port]
+) -> tuple[list[Reading], list[int]]:
+    """What is held, and the columns that hold it, less what resistances rule at once.
+
+    ``rows``: what held ports receive; ``columns``: what they give. Where these see one another beside a
+    resistance, they are put into the system; what is left are rows over states and other inputs, and
+    the columns of what then holds them.
+    """
+    direct, bound = split(rows, columns)
+    D = sp.Matrix(len(direct), len(columns), lambda i, j: direct[i].D.get(columns[j], 0))
+    _, pivots = echelon(D)
+    if direct:
+        system.give([columns[j] for j in pivots], direct, [ports[j] for j in pivots])
+    without = [
+        Reading(row.F, {j: e for j, e in row.D.items() if j not in columns}, row.H, row.K)
+        for row in bound
+    ]
+    tied = [j for at, j in enumerate(columns) if at not in pivots]
+    return without, tied
