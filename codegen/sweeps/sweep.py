@@ -56,8 +56,8 @@ def sweep(
     list of rows) or `Samples`. A name is a parameter, a state (its value at the start), an input (held
     constant) or the size of an input, which is given as `Swept`. ``measures``: name to a function of the
     `Result` that gives a number or an array. ``time``, ``initial``, ``inputs``, ``method``, ``rtol``,
-    ``atol``, ``initially_on``: as of `Simulator.run`; ``initial`` and ``inputs`` may be functions of a run's numbers by name,
-    which then may have names of their own.
+    ``atol``, ``initially_on``: as of `Simulator.run`; ``initial`` and ``inputs`` may be functions of a
+    run's numbers by name, which then may have names of their own.
 
     ``workers``: processes to run in, by default one for each core; 0: in this process. A family with
     backend "c" and ready measures (all of this package) is run by threads instead, many runs in
