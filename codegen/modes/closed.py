@@ -7,6 +7,7 @@ drives a dependent storage steps; z are the states that laws own.
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from functools import cached_property
+from operator import is_
 from types import MappingProxyType
 
 import numpy as np
@@ -32,6 +33,9 @@ from codegen.standalone.holding import Hold
 from codegen.standalone.instant import Instant
 from codegen.standalone.levels import without_rounding
 from codegen.standalone.matrices import Numbers
+
+
+NONE: Array = np.zeros(0)
 
 
 class ClosedModel:
@@ -63,6 +67,8 @@ class ClosedModel:
         self._maps: dict[Mode, AffineMap | None] = {}
         self._guard_maps: dict[Mode, Array] = {}
         self._run: Run | None = None
+        #: The latest time, pieces, external inputs and rates: an instant is looked at many times.
+        self._latest: tuple[float, tuple[Piece, ...], Array, Array] = (np.nan, (), NONE, NONE)
 
     def within(self, run: Run) -> "ClosedModel":
         """The same model in a run: a level that a state rules rounds by what that state has been there."""
@@ -162,10 +168,15 @@ class ClosedModel:
 
     def given(self, t: float, pieces: Sequence[Piece]) -> tuple[Array, Array]:
         """The external inputs, and their rates where anything asks for them."""
+        latest = self._latest
+        if latest[0] == t and len(latest[1]) == len(pieces) and all(map(is_, latest[1], pieces)):
+            return latest[2].copy(), latest[3].copy()
         w = np.array([piece(t) for piece in pieces])
-        if not self.program.rated:
-            return w, np.zeros(len(w))
-        return w, np.array([piece.derivative(t) for piece in pieces])
+        dw = np.zeros(len(w))
+        if self.program.rated:
+            dw = np.array([piece.derivative(t) for piece in pieces])
+        self._latest = t, tuple(pieces), w, dw
+        return w.copy(), dw.copy()
 
     def rates(self, pieces: Sequence[Piece], mode: Mode) -> Callable[[float, Array], Array]:
         """The rate of s in a mode as a function of t and s; quicker than `at`, which gives all else too."""

@@ -109,10 +109,19 @@ def guard_rounding(
     At rest a state is rounding itself: of what moves it within a time constant.
     """
     peaks = peaks or Peaks.none(model)
-    now, w, n = model.at(t, s, pieces, mode), np.array([piece(t) for piece in pieces]), len(peaks.x)
+    now, n = model.at(t, s, pieces, mode), len(peaks.x)
+    w, dw = model.given(t, pieces)
     moving = np.abs(now.numbers.P) @ np.abs(now.x) + np.abs(now.numbers.Q) @ np.abs(now.u)
     sizes = np.abs(s)
     sizes[:n] = np.maximum(sizes[:n], np.maximum(peaks.x, peaks.time * moving))
+
+    rows = model.guard_rows(mode, len(w))
+    if rows is not None:
+        ones = np.concatenate((sizes, np.abs(w), np.abs(dw), (1.0,)))
+        moved = np.concatenate((now.rate, _rates_of(pieces, t), np.zeros(len(w)), (0.0,)))
+        late = 16 * np.spacing(abs(t)) * np.abs(rows @ moved)
+        found = TUNING.rounding * (np.abs(rows) @ ones) + late + np.finfo(float).tiny
+        return np.asarray(found, dtype=float)
 
     def by_state(at: Array) -> Array:
         return model.guards(t, model.at(t, at, pieces, mode))
@@ -132,3 +141,7 @@ def _slopes(model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mod
     moment = TUNING.guard_moment * max(abs(t), TUNING.guard_floor)
     later = model.guards(t + moment, model.at(t + moment, s + moment * now.rate, pieces, mode))
     return np.asarray(np.nan_to_num(np.abs(later - model.guards(t, now)) / moment), dtype=float)
+
+
+def _rates_of(pieces: Sequence[Piece], t: float) -> Array:
+    return np.array([piece.derivative(t) for piece in pieces])
