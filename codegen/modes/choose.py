@@ -1,8 +1,8 @@
 """Which ports hold and which are let go, and which way these slip: one consistent mode at one instant."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Impact, Mode, Snapshot
+from codegen.modes.blocks import blocks_of, slipping_as, ways_to_rub
 from codegen.modes.closed import ClosedModel
 from codegen.modes.impact import impact, pushed
 from codegen.modes.rounding import Peaks, scales
@@ -54,6 +55,22 @@ class _Refusal(NamedTuple):
 
     reason: str
     broken: Broken
+
+
+class _Finding(NamedTuple):
+    """Why a mode is not consistent, None if it is; the switches that alone contradict it.
+
+    ``none``: it cannot be evaluated. ``turned``: where friction ports that contradict it would go.
+    """
+
+    reason: str | None
+    broken: Broken = NONE
+    none: bool = False
+    turned: Mapping[int, int] = MappingProxyType({})
+
+
+MOST_TOLD = 30
+"""So many modes that were tried are told."""
 
 
 def decide(now: Occasion, s: Array) -> Decision:
@@ -107,29 +124,68 @@ def _tried(now: Occasion, before: Array, switched: Mode) -> Decision | _Refusal:
     try:
         jump = impact(model, now.t, before, now.pieces, switched, now.peaks)
         s = before if jump is None else jump.s
-        slips, undecided = _undecided(now, s, switched)
+        _, shot = evaluated(model, now.t, s, now.pieces, switched)
     except SlopeNeededError:
         raise
     except SimulationError as error:
         return _Refusal(str(error), NONE)
-    tried: dict[Mode, str] = {}
-    errors: set[str] = set()
-    broken = NONE
-    for mode in _candidates(switched, model, slips, undecided, now.touched):
+    undecided = _undecided(now, shot)
+    switches = [i for i, switch in enumerate(model.switching) if switch is not None]
+    mode = slipping_as(model, shot, switched)
+    blocks = blocks_of(model, shot.numbers, undecided)
+    if len(blocks) > 1:
+        # At an instant ports of one block do not touch those of another.
+        for block in blocks:
+            found = _in_block(now, s, mode, block, block, None)
+            if isinstance(found, _Refusal):
+                return found
+            mode = found
+        blocks = [[]]
+    found = _in_block(now, s, mode, *blocks, [*undecided, *switches], jump)
+    return found if isinstance(found, _Refusal) else Decision(found, s, jump)
+
+
+def _undecided(now: Occasion, shot: Snapshot) -> list[int]:
+    """The friction ports that may stick: at rest, or moved by efforts at once."""
+    model = now.model
+    slips = np.abs(shot.y[model.friction_readings])
+    near = scales(model, shot, now.t, now.peaks).slip
+    near[list(now.loose)] *= TUNING.wide
+    return [
+        i
+        for i, slip in enumerate(slips)
+        if model.switching[i] is None and (model.coupled_directly(i) or slip <= near[i])
+    ]
+
+
+def _in_block(
+    now: Occasion, s: Array, mode: Mode, block: list[int], asked: list[int], jump: Impact | None
+) -> Mode | _Refusal:
+    """The first way of sticking and slipping in a block that contradicts none of the ports asked."""
+    told: dict[Mode, _Finding] = {}
+    tries = ways_to_rub(mode, now.previous, block, now.touched)
+    candidate = next(tries)
+    while True:
+        found = _looked_at(now, s, candidate, asked, jump)
+        if found.reason is None:
+            return candidate
+        told[candidate] = found
         try:
-            complaint, wrong = _complaint(now, s, mode, undecided, jump)
-        except SlopeNeededError:
-            raise
-        except SimulationError as error:
-            complaint, wrong = str(error), NONE
-            errors.add(complaint)
-        if complaint is None:
-            return Decision(mode, s, jump)
-        tried[mode], broken = complaint, broken or wrong
-    if len(tried) == 1 or (errors == set(tried.values()) and len(errors) == 1):
-        return _Refusal(next(iter(tried.values())), broken)
-    names = ", ".join(repr(port.name) for port in model.program.friction if port.switch is None)
-    listed = "; ".join(f"{mode}: {complaint}" for mode, complaint in tried.items())
+            candidate = tries.send(found.turned)
+        except StopIteration:
+            return _refused(now, s, told)
+
+
+def _refused(now: Occasion, s: Array, told: dict[Mode, _Finding]) -> _Refusal:
+    """Why no way is consistent; with it the switches that contradict the first that friction lets be."""
+    broken = next((found.broken for found in told.values() if found.broken), NONE)
+    reasons = {str(found.reason) for found in told.values()}
+    if len(told) == 1 or (len(reasons) == 1 and all(found.none for found in told.values())):
+        return _Refusal(reasons.pop(), broken)
+    names = ", ".join(repr(p.name) for p in now.model.program.friction if p.switch is None)
+    listed = "; ".join(f"{mode}: {found.reason}" for mode, found in list(told.items())[:MOST_TOLD])
+    first = next(iter(told))
+    slips = evaluated(now.model, now.t, s, now.pieces, first)[1].y[now.model.friction_readings]
     return _Refusal(
         f"at t = {now.t:.9g} no way of sticking and slipping at {names} is consistent "
         f"(slips {slips.tolist()}); tried {listed}",
@@ -137,74 +193,48 @@ def _tried(now: Occasion, before: Array, switched: Mode) -> Decision | _Refusal:
     )
 
 
-def _undecided(now: Occasion, s: Array, switched: Mode) -> tuple[Array, list[int]]:
-    """The slips, and the friction ports that may stick: at rest, or moved by efforts at once."""
+def _looked_at(
+    now: Occasion, s: Array, mode: Mode, asked: Sequence[int], jump: Impact | None
+) -> _Finding:
+    """What contradicts a mode, of the ports asked."""
     model = now.model
-    _, shot = evaluated(model, now.t, s, now.pieces, switched)
-    slips = shot.y[model.friction_readings]
-    near = scales(model, shot, now.t, now.peaks).slip
-    wide = np.where([i in now.loose for i in range(len(slips))], TUNING.wide, 1.0)
-    return slips, [
-        i for i, slip in enumerate(slips)
-        if model.switching[i] is None
-        and (model.coupled_directly(i) or abs(slip) <= wide[i] * near[i])
-    ]  # fmt: skip
-
-
-def _candidates(
-    previous: Mode, model: ClosedModel, slips: Array, undecided: list[int],
-    touched: frozenset[int],
-) -> Iterator[Mode]:  # fmt: skip
-    """Modes by the number of ports that stick, most first; then those that change least."""
-
-    def rank(choice: tuple[int, ...]) -> tuple[int, int]:
-        kept = [i for i in undecided if i not in touched]
-        changed = sum(choice[undecided.index(i)] != previous[i] for i in kept)
-        return -choice.count(0), changed
-
-    choices = sorted(
-        product(*((0, previous[i] or 1, -(previous[i] or 1)) for i in undecided)),
-        key=rank,
-    )
-    for choice in choices:
-        mode = [
-            sign if switch is not None else 1 if slip > 0 else -1
-            for sign, switch, slip in zip(previous, model.switching, slips, strict=True)
-        ]
-        for i, sign in zip(undecided, choice, strict=True):
-            mode[i] = sign
-        yield tuple(mode)
-
-
-def _complaint(
-    now: Occasion, s: Array, mode: Mode, undecided: Sequence[int], jump: Impact | None
-) -> tuple[str | None, Broken]:
-    """What contradicts a mode, None if it is consistent; and the switches that do.
-
-    Raises `SimulationError` if it is no mode.
-    """
-    model = now.model
-    look = look_at(model, now.t, s, now.pieces, mode, now.peaks)
-    wrong = ruled_out(look)
-    if wrong is not None:
-        return wrong, NONE
-    verdicts = {i: look.verdict(i) for i in undecided}
-    switches = [i for i, switch in enumerate(model.switching) if switch is not None]
-    shocks = np.zeros(len(mode), dtype=int) if jump is None else pushed(look, now.t, jump)
-    verdicts |= {i: int(shocks[i]) or look.verdict(i) for i in switches}
-    contrary = [i for i, sure in verdicts.items() if sure < 0]
-    tied = [i for i, sure in verdicts.items() if sure == 0]
-    if not contrary and (tied or len(look.ruled[0])):
-        later = a_moment_later(model, now.t, s, now.pieces, mode, now.ahead)
-        guards = model.guards(now.t + now.ahead, later) if len(look.guards) else look.guards
-        then = Look(model, mode, later, look.size, guards, look.near)
-        wrong = ruled_out_later(look, then)
-        contrary = [i for i in tied if look.later_verdict(i, then) < 0]
+    try:
+        look = look_at(model, now.t, s, now.pieces, mode, now.peaks)
+        wrong = ruled_out(look)
+        if wrong is not None:
+            return _Finding(wrong)
+        shocks = np.zeros(len(mode), dtype=int) if jump is None else pushed(look, now.t, jump)
+        verdicts = {i: int(shocks[i]) or look.verdict(i) for i in asked}
+        contrary = [i for i, sure in verdicts.items() if sure < 0]
+        tied = [i for i, sure in verdicts.items() if sure == 0]
+        if not contrary and (tied or len(look.ruled[0])):
+            then = _moment_later(now, s, look)
+            wrong = ruled_out_later(look, then)
+            contrary = [i for i in tied if look.later_verdict(i, then) < 0]
+    except SlopeNeededError:
+        raise
+    except SimulationError as error:
+        return _Finding(str(error), none=True)
     if wrong is not None or not contrary:
-        return wrong, NONE
+        return _Finding(wrong)
     rubbing = [i for i in contrary if model.switching[i] is None]
     broken = NONE if rubbing else frozenset(contrary)
-    return _contradiction(look, (rubbing or contrary)[0]), broken
+    reason = _contradiction(look, (rubbing or contrary)[0])
+    return _Finding(reason, broken, turned=_turned(look, rubbing))
+
+
+def _turned(look: Look, ports: Sequence[int]) -> dict[int, int]:
+    """Where ports that contradict a mode would go: one that slips sticks, one that sticks slips as pushed."""
+    efforts = look.now.u[look.model.friction_inputs]
+    return {i: 0 if look.mode[i] else 1 if efforts[i] > 0 else -1 for i in ports}
+
+
+def _moment_later(now: Occasion, s: Array, look: Look) -> Look:
+    """The same mode a little later, with what counts as zero now."""
+    model = now.model
+    later = a_moment_later(model, now.t, s, now.pieces, look.mode, now.ahead)
+    guards = model.guards(now.t + now.ahead, later) if len(look.guards) else look.guards
+    return Look(model, look.mode, later, look.size, guards, look.near)
 
 
 def _contradiction(look: Look, port: int) -> str:

@@ -34,7 +34,6 @@ from codegen.standalone.instant import Instant
 from codegen.standalone.levels import without_rounding
 from codegen.standalone.matrices import Numbers
 
-
 NONE: Array = np.zeros(0)
 
 

@@ -1,0 +1,78 @@
+"""Friction ports in blocks that do not touch one another at an instant, and ways to stick and slip."""
+
+from collections.abc import Generator, Mapping, Sequence
+from itertools import product
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+
+from codegen.model.snapshot import Mode, Snapshot
+from codegen.modes.closed import ClosedModel
+from codegen.standalone.matrices import Numbers
+
+ENUMERATED = 8
+"""Of a block of so many ports all ways are tried; in a larger one ports turn one after the other."""
+
+TURNS = 20
+"""So often for each port of a large block one turns, before it is given up."""
+
+
+def slipping_as(model: ClosedModel, shot: Snapshot, mode: Mode) -> Mode:
+    """The mode with friction slipping the way it moves; switches as they are."""
+    slips = shot.y[model.friction_readings]
+    return tuple(
+        sign if switch is not None else 1 if slip > 0 else -1
+        for sign, switch, slip in zip(mode, model.switching, slips, strict=True)
+    )
+
+
+def blocks_of(model: ClosedModel, numbers: Numbers, ports: list[int]) -> list[list[int]]:
+    """The ports by what each one's effort moves at once or accelerates; one block where laws join them."""
+    if len(ports) < 2 or model.program.joint:
+        return [ports]
+    rows = np.array(model.friction_readings)[ports]
+    columns = np.array(model.friction_inputs)[ports]
+    moved = numbers.F[rows] @ numbers.Q[:, columns]
+    touch = (moved != 0) | (numbers.D[np.ix_(rows, columns)] != 0)
+    count, label = connected_components(csr_array(touch), directed=False)
+    return [[ports[k] for k in np.flatnonzero(label == block)] for block in range(count)]
+
+
+def ways_to_rub(
+    mode: Mode, previous: Mode, block: Sequence[int], touched: frozenset[int]
+) -> Generator[Mode, Mapping[int, int], None]:
+    """The modes to try, those that stick most first, then those that change least.
+
+    After each is sent where ports that contradict it would go: a large block follows that.
+    """
+    if len(block) <= ENUMERATED:
+        for choice in _choices(previous, block, touched):
+            yield _with(mode, dict(zip(block, choice, strict=True)))
+        return
+    seen: set[Mode] = set()
+    mode = _with(mode, dict.fromkeys(block, 0))
+    for _ in range(TURNS * len(block)):
+        seen.add(mode)
+        turned = {i: sign for i, sign in (yield mode).items() if i in block}
+        if not turned:
+            return
+        all_at_once = _with(mode, turned)
+        mode = all_at_once if all_at_once not in seen else _with(mode, dict([min(turned.items())]))
+        if mode in seen:
+            return
+
+
+def _choices(
+    previous: Mode, block: Sequence[int], touched: frozenset[int]
+) -> list[tuple[int, ...]]:
+    kept = [k for k, i in enumerate(block) if i not in touched]
+
+    def rank(choice: tuple[int, ...]) -> tuple[int, int]:
+        return -choice.count(0), sum(choice[k] != previous[block[k]] for k in kept)
+
+    return sorted(product(*((0, previous[i] or 1, -(previous[i] or 1)) for i in block)), key=rank)
+
+
+def _with(mode: Mode, changes: Mapping[int, int]) -> Mode:
+    return tuple(changes.get(i, sign) for i, sign in enumerate(mode))
