@@ -76,3 +76,8 @@ def _choices(
 
 def _with(mode: Mode, changes: Mapping[int, int]) -> Mode:
     return tuple(changes.get(i, sign) for i, sign in enumerate(mode))
+
+
+def turned_to(mode: Mode, other: Mode, block: Sequence[int]) -> Mode:
+    """The mode with the ports of a block as in another one."""
+    return _with(mode, {i: other[i] for i in block})

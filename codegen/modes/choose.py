@@ -10,7 +10,7 @@ import numpy as np
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Impact, Mode, Snapshot
-from codegen.modes.blocks import blocks_of, slipping_as, ways_to_rub
+from codegen.modes.blocks import blocks_of, slipping_as, turned_to, ways_to_rub
 from codegen.modes.closed import ClosedModel
 from codegen.modes.impact import impact, pushed
 from codegen.modes.rounding import Peaks, scales
@@ -134,13 +134,10 @@ def _tried(now: Occasion, before: Array, switched: Mode) -> Decision | _Refusal:
     mode = slipping_as(model, shot, switched)
     blocks = blocks_of(model, shot.numbers, undecided)
     if len(blocks) > 1:
-        # At an instant ports of one block do not touch those of another.
-        for block in blocks:
-            found = _in_block(now, s, mode, block, block, None)
-            if isinstance(found, _Refusal):
-                return found
-            mode = found
-        blocks = [[]]
+        found = _in_blocks(now, s, mode, blocks)
+        if isinstance(found, _Refusal):
+            return found
+        mode, blocks = found, [[]]
     found = _in_block(now, s, mode, *blocks, [*undecided, *switches], jump)
     return found if isinstance(found, _Refusal) else Decision(found, s, jump)
 
@@ -156,6 +153,33 @@ def _undecided(now: Occasion, shot: Snapshot) -> list[int]:
         for i, slip in enumerate(slips)
         if model.switching[i] is None and (model.coupled_directly(i) or slip <= near[i])
     ]
+
+
+def _in_blocks(now: Occasion, s: Array, mode: Mode, blocks: list[list[int]]) -> Mode | _Refusal:
+    """The first way of each block, all looked at together: at an instant none touches another."""
+    tries = [ways_to_rub(mode, now.previous, block, now.touched) for block in blocks]
+    for block, tried in zip(blocks, tries, strict=True):
+        mode = turned_to(mode, next(tried), block)
+    every = [i for block in blocks for i in block]
+    while True:
+        found = _looked_at(now, s, mode, every, None)
+        if found.reason is None:
+            return mode
+        if not found.turned:
+            break
+        for block, tried in zip(blocks, tries, strict=True):
+            turned = {i: sign for i, sign in found.turned.items() if i in block}
+            try:
+                mode = turned_to(mode, tried.send(turned), block) if turned else mode
+            except StopIteration:
+                return _refused(now, s, {mode: found})
+    # One by one, where a whole way cannot be looked at.
+    for block in blocks:
+        told = _in_block(now, s, mode, block, block, None)
+        if isinstance(told, _Refusal):
+            return told
+        mode = told
+    return mode
 
 
 def _in_block(

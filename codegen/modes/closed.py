@@ -26,7 +26,14 @@ from codegen.ports.refusals import refusals
 from codegen.ports.slips import slip_rows
 from codegen.program.affine import AffineMap, check_finite, probed
 from codegen.program.gains import check_gains
-from codegen.program.layout import CAPS, INPUTS, RATE, RATES_OF_INPUTS
+from codegen.program.layout import (
+    CAPS,
+    INPUTS,
+    RATE,
+    RATES_OF_INPUTS,
+    READINGS,
+    STATES,
+)
 from codegen.program.records import Program
 from codegen.standalone.evaluation import Point, evaluated, vector
 from codegen.standalone.holding import Hold
@@ -65,6 +72,7 @@ class ClosedModel:
         self._friction = rubbing(program, binding, self._form, self.slips)
         self._maps: dict[Mode, AffineMap | None] = {}
         self._guard_maps: dict[Mode, Array] = {}
+        self._base: AffineMap | None = None
         self._run: Run | None = None
         #: The latest time, pieces, external inputs and rates: an instant is looked at many times.
         self._latest: tuple[float, tuple[Piece, ...], Array, Array] = (np.nan, (), NONE, NONE)
@@ -221,15 +229,37 @@ class ClosedModel:
             return pair(affine.rows(RATE))
 
     def _affine_map(self, mode: Mode, inputs: int) -> AffineMap:
+        if self._base is None:
+            self._base = self._probed(inputs)
+        base, numbers, ports = self._base, self.constant, self.friction_inputs
+        matrix = base.matrix.copy()
+        parts = AffineMap(base.sizes, matrix, RATE)
+        x, u, du = (parts.rows(part) for part in (STATES, INPUTS, RATES_OF_INPUTS))
+        u[ports] *= np.array(mode, dtype=float)[:, None]
+        hold = self.hold(mode, numbers) if 0 in mode else None
+        if hold is not None:
+            right = hold.X @ x + hold.U @ u + hold.V @ du
+            u[hold.inputs] = -hold.inverse[:, : len(right)] @ right
+        rates, n = parts.rows(RATE), len(x)
+        parts.rows(READINGS)[:] = numbers.F @ x + numbers.D @ u + numbers.G @ du
+        rates[:n] = numbers.P @ x + numbers.Q @ u
+        rates[n : n + len(self.program.law_rates)] = parts.rows(READINGS)[
+            list(self.program.law_rates)
+        ]
+        if hold is not None:
+            rates[:n] += hold.correction(rates[:n], du)
+        return parts
+
+    def _probed(self, inputs: int) -> AffineMap:
+        """The map where all ports slip forwards; what laws give does not depend on friction."""
+
         def point(v: Array) -> list[Array]:
             s, w, dw = np.split(v, [self.size, self.size + inputs])
-            now = self.evaluate(0.0, s, w, dw, mode, checked=False)
+            now = self.evaluate(
+                0.0, s, w, dw, tuple(1 for _ in self.friction_inputs), checked=False
+            )
             return [now.x, now.z, now.u, now.du, now.y, now.rate, now.caps]
 
         affine = probed(point, self.size + 2 * inputs, RATE)
         check_finite(affine.rows(INPUTS), affine.matrix, self.program.inputs)
-        rate, du = affine.rows(RATE), affine.rows(RATES_OF_INPUTS)
-        if 0 in mode:
-            n = len(self.program.states)
-            rate[:n] += self.hold(mode, self.constant).correction(rate[:n], du)
         return affine

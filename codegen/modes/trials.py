@@ -1,6 +1,7 @@
 """Friction modes on trial: a mode in which the laws have no solution is none, and another is looked at."""
 
 from collections.abc import Sequence
+from itertools import chain
 
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
@@ -26,7 +27,7 @@ def evaluated(
     Raises the `SimulationError` of the first try if no mode can be evaluated.
     """
     refused: SimulationError | None = None
-    for tried in ways(mode) if slipping else (mode, *ways(mode)):
+    for tried in ways(mode) if slipping else chain((mode,), ways(mode)):
         try:
             return tried, model.at(t, s, pieces, tried)
         except SlopeNeededError:

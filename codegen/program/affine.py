@@ -52,7 +52,7 @@ class AffineMap:
     """``v = T [s, w, dw, 1]``, cut into the parts of ``v``, of which ``rate`` is the rate of s."""
 
     def __init__(self, sizes: Sequence[int], matrix: Array, rate: int) -> None:
-        self.matrix, self._rate = matrix, rate
+        self.sizes, self.matrix, self._rate = tuple(sizes), matrix, rate
         ends = np.cumsum(sizes).tolist()
         self.parts = [slice(end - size, end) for end, size in zip(ends, sizes, strict=True)]
 

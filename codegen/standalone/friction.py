@@ -36,6 +36,10 @@ class Ports:
     exact: bool
 
 
+ALL_WAYS = 10
+"""Up to so many ports all ways of slipping are tried where laws have no solution one way."""
+
+
 class Friction:
     """What friction ports give in a mode: ``level * curve(|slip|) * sign(slip)``, or what holds.
 
@@ -128,5 +132,6 @@ def ways(mode: Mode) -> Iterator[Mode]:
     yield tuple(sign or 1 for sign in mode)
     yield tuple(sign or -1 for sign in mode)
     yield mode
-    yield from product((1, -1), repeat=len(mode))
+    if len(mode) <= ALL_WAYS:
+        yield from product((1, -1), repeat=len(mode))
     yield (0,) * len(mode)
