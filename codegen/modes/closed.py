@@ -73,6 +73,7 @@ class ClosedModel:
         self._maps: dict[Mode, AffineMap | None] = {}
         self._guard_maps: dict[Mode, Array] = {}
         self._base: AffineMap | None = None
+        self._pushing: tuple[Array, Array, Array] | None = None
         self._run: Run | None = None
         #: The latest time, pieces, external inputs and rates: an instant is looked at many times.
         self._latest: tuple[float, tuple[Piece, ...], Array, Array] = (np.nan, (), NONE, NONE)
@@ -156,6 +157,16 @@ class ClosedModel:
                 f"at t = {t:.9g} the condition of switch {port.name!r} has no finite value"
             )
         return values
+
+    def pushing(self, numbers: Numbers) -> tuple[Array, Array, Array]:
+        """Magnitudes of how states and inputs change slips, and of how each port's own effort does."""
+        if self._pushing is None or numbers is not self._constant:
+            F, D = numbers.F[self.friction_readings], numbers.D[self.friction_readings]
+            by_inputs = np.abs(F @ numbers.Q)
+            own = np.arange(len(F)), self.friction_inputs
+            inertia = by_inputs[own] + np.abs(D[own])
+            self._pushing = np.abs(F @ numbers.P), by_inputs, inertia
+        return self._pushing
 
     def guard_rows(self, mode: Mode, inputs: int) -> Array | None:
         """The conditions of switches in a mode as rows over [s, w, w', 1]; None where they are not affine."""

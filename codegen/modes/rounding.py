@@ -59,14 +59,9 @@ def scales(model: ClosedModel, now: Snapshot, t: float = 0.0, peaks: Peaks | Non
     slip = np.abs(numbers.F[readings]) @ x + np.abs(numbers.D[readings]) @ u
     # At rest states are rounding themselves: of what moves them within a time constant.
     x = np.maximum(x, peaks.time * (np.abs(numbers.P) @ x + np.abs(numbers.Q) @ u))
-    moved = (
-        np.abs(numbers.F[readings] @ numbers.P) @ x + np.abs(numbers.F[readings] @ numbers.Q) @ u
-    )
+    by_states, by_inputs, inertia = model.pushing(numbers)
+    moved = by_states @ x + by_inputs @ u
     efforts = np.abs(now.u[model.friction_inputs]) + now.caps
-    inertia = np.array([
-        abs(numbers.F[r] @ numbers.Q[:, c]) + abs(numbers.D[r, c])
-        for r, c in zip(readings, model.friction_inputs, strict=True)
-    ])  # fmt: skip
     driven = np.divide(moved, inertia, out=np.zeros_like(moved), where=inertia > 0)
     tiny = np.finfo(float).tiny
     return Scales(

@@ -17,7 +17,7 @@ from codegen.modes.verdicts import limits_of, look_at
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
 from codegen.runs.track import Ended, Track
-from codegen.runs.watched import Steps, exponential, lasting, series, watched
+from codegen.runs.watched import FewSteps, Steps, lasting, series, taylor, watched
 from codegen.standalone.levels import without_rounding
 from codegen.tuning import TUNING
 
@@ -26,6 +26,9 @@ MOST_LENGTHS = 8
 
 BLOCK = 256
 """So many steps are taken before events are looked for."""
+
+FEW, FEW_BLOCK = 0.5, 8
+"""So many steps for each component are few: they are taken one by one, so many at once."""
 
 
 class ExactLeg:
@@ -101,13 +104,12 @@ class ExactLeg:
         t, system = self._t, self._system
         count = max(1, int(np.ceil(system.norm * (stop - t))))
         step = (stop - t) / count
-        powers = series(system.M, system.triggers, step)
         inside = series(system.M, np.eye(len(self._z)), step)
-        steps, until = Steps(system.M, step, self._z), t
+        steps, until = Steps(system.M, step, self._z, system.triggers), t
         for begin in range(0, count, BLOCK):
             states = steps.take(min(BLOCK, count - begin))
             start = t + begin * step
-            found = self._first_event(states[:-1], powers, start, step)
+            found = self._first_event(steps.powers(states[:-1]), start, step)
             track.see(states[:, : self._n])
             until = start + step * (len(states) - 1 if found is None else found[0] + found[1])
             now = times[(times >= start) & (times < until)]
@@ -122,8 +124,7 @@ class ExactLeg:
 
     def _inside(self, z: Array, length: float) -> Array:
         """s a part of a step later."""
-        _, gather = exponential(self._system.M, length)
-        later: Array = z + gather @ (self._system.M @ z)
+        later: Array = taylor(self._system.M, z, length)[::-1].sum(axis=0)
         return later[: self._n]
 
     def _record(self, track: Track, rows: Array, times: Array) -> None:
@@ -147,13 +148,14 @@ class ExactLeg:
         """``count`` steps of h from t, at whose ends samples are up to ``last``: what ended them, and z."""
         parts = max(1, int(np.ceil(self._system.norm * h)))
         step = h / parts
-        powers = series(self._system.M, self._system.triggers, step)
-        steps = Steps(self._system.M, step, z)
-        for begin in range(0, count * parts, BLOCK):
-            states = steps.take(min(BLOCK, count * parts - begin))
+        few = count * parts < FEW * len(z)
+        make, block = (FewSteps, FEW_BLOCK) if few else (Steps, BLOCK)
+        steps = make(self._system.M, step, z, self._system.triggers)
+        for begin in range(0, count * parts, block):
+            states = steps.take(min(block, count * parts - begin))
             found = None
             if h > 0:
-                found = self._first_event(states[:-1], powers, t + begin * step, step)
+                found = self._first_event(steps.powers(states[:-1]), t + begin * step, step)
             done = len(states) - 1 if found is None else found[0]
             rows = states[parts - begin % parts : done + 1 : parts]
             track.see(rows[:, : self._n])
@@ -169,16 +171,15 @@ class ExactLeg:
         return None, states[-1]
 
     def _first_event(
-        self, states: Array, series: Array, t: float, step: float
+        self, powers: Array, t: float, step: float
     ) -> tuple[int, float, frozenset[int]] | None:
-        """Step, place in it and ports of the first event among steps that begin at ``states``."""
+        """Step, place in it and ports of the first event among steps, by their triggers' series."""
         if not len(self._limits):
             return None
-        powers = np.einsum("krz,sz->srk", series, states)
         least = (powers @ to_bernstein(TUNING.degree).T).min(axis=2)
         suspects = (least <= 0) | ~self._armed
         at = 0
-        while at < len(states):
+        while at < len(powers):
             ahead = np.flatnonzero(suspects[at:].any(axis=1))
             if not len(ahead):
                 return None

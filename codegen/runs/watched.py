@@ -106,13 +106,14 @@ def exponential(M: Array, step: float) -> tuple[Array, Array]:
 
 
 class Steps:
-    """States at the ends of steps of one length.
+    """States at the ends of steps of one length, and the power series of rows over each step.
 
     They are told from the first, so that nothing large is rounded again in every step.
     """
 
-    def __init__(self, M: Array, step: float, z: Array) -> None:
+    def __init__(self, M: Array, step: float, z: Array, rows: Array) -> None:
         self._leap, gather = exponential(M, step)
+        self._series = series(M, rows, step)
         self._start, self._beyond = z, np.zeros_like(z)
         self._change = gather @ (M @ z)
 
@@ -122,6 +123,43 @@ class Steps:
         beyond = np.cumsum(np.vstack([self._beyond, changes[:-1]]), axis=0)
         self._beyond, self._change = beyond[-1], changes[-1]
         return np.asarray(self._start + beyond, dtype=float)
+
+    def powers(self, states: Array) -> Array:
+        """Of the steps from these states, those latest taken, the series of each row."""
+        return np.asarray(np.einsum("krz,sz->srk", self._series, states), dtype=float)
+
+
+class FewSteps:
+    """The same for few steps of a large system: by the Taylor series of each state, without a matrix."""
+
+    def __init__(self, M: Array, step: float, z: Array, rows: Array) -> None:
+        self._M, self._step, self._rows = M, step, rows
+        self._start, self._beyond = z, np.zeros_like(z)
+        self._terms: list[Array] = []
+
+    def take(self, count: int) -> Array:
+        """The state that was come to, and those after 1, 2, .. ``count`` more steps."""
+        states, self._terms = [self._start + self._beyond], []
+        for _ in range(count):
+            terms = taylor(self._M, states[-1], self._step)
+            self._terms.append(terms)
+            self._beyond = self._beyond + terms[1:].sum(axis=0)
+            states.append(self._start + self._beyond)
+        return np.array(states)
+
+    def powers(self, states: Array) -> Array:
+        """Of the steps from these states, those latest taken, the series of each row."""
+        found = [self._rows @ terms.T for terms in self._terms[: len(states)]]
+        return np.array(found)
+
+
+def taylor(M: Array, z: Array, step: float) -> Array:
+    """``(M step)^k z / k!`` for each k, by rows: the terms of the state after a step."""
+    terms = np.empty((TUNING.degree + 1, len(z)))
+    terms[0] = z
+    for k in range(1, TUNING.degree + 1):
+        terms[k] = M @ terms[k - 1] * (step / k)
+    return terms
 
 
 def powers_of(leap: Array, z: Array, count: int) -> Array:
