@@ -214,7 +214,7 @@ static void guards_in(const double *map, bg_model *m, int column, const double *
         guards[g] -= constant[g];
 }
 
-static void clear(bg_model *m)
+static void forget_instant(bg_model *m)
 {
     bg_values *const now = &m->now;
     memset(now->x, 0, sizeof now->x);
@@ -232,7 +232,7 @@ static void fill_switches(ex_mode *made, const double *map, bg_model *m, const i
     double impulses[PORTS * PORTS], received[BG_ROOM(ROWS)];
     bg_hold *held = NULL;
     int forwards = 1;
-    clear(m);
+    forget_instant(m);
     bg_guards(&m->now, constant);
     for (int j = 0; j < EX_L; j++) {
         const int column = column_of(j);
@@ -246,7 +246,7 @@ static void fill_switches(ex_mode *made, const double *map, bg_model *m, const i
     }
     for (int k = 0; k < EX_K; k++)
         forwards &= bg_switches[k].kind != BG_RUBS || mode[k] == 1;
-    clear(m);
+    forget_instant(m);
     if (!forwards || bg_impulses(m, mode, &held, impulses) != BG_OK || !held)
         return;
     for (int k = 0; k < held->kept; k++) {

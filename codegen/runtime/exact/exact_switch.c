@@ -60,7 +60,7 @@ void ex_round_stay(const ex_context *c, const ex_mode *mode, const double *v, co
 }
 
 /* The mode whose friction slips forwards, with switches as they are or all let go. */
-static int find(ex_context *c, const int *mode, int loose, const ex_mode **found)
+static int find_way(ex_context *c, const int *mode, int loose, const ex_mode **found)
 {
     int other[BG_MOST_PORTS];
     for (int i = 0; i < EX_K; i++)
@@ -71,13 +71,13 @@ static int find(ex_context *c, const int *mode, int loose, const ex_mode **found
 
 /* Whether the slips that a mode would stop are more than rounding; *status of a look where all is let
  * go. */
-static int jumps(ex_context *c, const bg_instant *at, const int *mode, const ex_mode *holding,
+static int would_jump(ex_context *c, const bg_instant *at, const int *mode, const ex_mode *holding,
                  const double *slips, int *status)
 {
     const ex_mode *loose;
     bg_port ports[EX_PORTS];
     int any = 0;
-    *status = find(c, mode, 1, &loose);
+    *status = find_way(c, mode, 1, &loose);
     if (*status == BG_OK)
         *status = ex_look(c, at->t, at->s, loose, c->shot);
     if (*status)
@@ -99,14 +99,14 @@ int ex_strike(void *context, const bg_instant *at, const int *mode, double *s, i
     const ex_mode *holding;
     double v[EX_L], slips[EX_PORTS] = {0};
     *struck = 0;
-    int status = find(c, mode, 0, &holding);
+    int status = find_way(c, mode, 0, &holding);
     if (status)
         return status;
     ex_vector(c, at->t, at->s, v);
     for (int k = 0; k < holding->held; k++)
         for (int j = 0; j < EX_L; j++)
             slips[k] += holding->left[j][k] * v[j];
-    if (!jumps(c, at, mode, holding, slips, &status))
+    if (!would_jump(c, at, mode, holding, slips, &status))
         return status;
     *struck = 1;
     for (int i = 0; i < EX_K; i++) {

@@ -1,4 +1,4 @@
-/* Modes in turn, those that stick most first, until one contradicts nothing; switches as they are. */
+/* Modes in turn, those that stick most first, until one contradicts nothing. */
 #include "port_choosing.h"
 
 #include <math.h>

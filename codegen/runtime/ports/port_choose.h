@@ -57,10 +57,10 @@ typedef struct {
 } bg_sight;
 
 /* From the mode so far to the one just after the instant: 0 sticks or is held, 1 slips forwards or
- * is let go, -1 backwards; s of the instant becomes what it is after an impact. Ports at rest, or so
- * close that it is an event's own rounding, stick if they can; switches stay as long as nothing
- * contradicts it. A status: where no mode is consistent BG_UNDECIDED or, if none could be looked at,
- * that of the first. */
+ * is let go, -1 backwards; s of the instant becomes what it is after an impact. Ports at rest, or
+ * so close that it is an event's own rounding, stick if they can; switches stay as long as nothing
+ * contradicts it. A status: where no mode is consistent BG_UNDECIDED or, if none could be looked
+ * at, that of the first. */
 int bg_choose(const bg_sight *sight, const bg_instant *at, int *mode);
 
 /* What to try where a mode cannot be evaluated, by number: slipping as it does, the same backwards

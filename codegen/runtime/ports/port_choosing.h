@@ -4,8 +4,8 @@
 
 #include "port_choose.h"
 
-/* `s`: that of the instant, or what it is after an impact, if it is `struck`; `shocks`: the signs of
- * its impulses. `undecided`: the `count` friction ports that may stick, by bits in `open`. `why`
+/* `s`: that of the instant, or what it is after an impact, if it is `struck`; `shocks`: the signs
+ * of its impulses. `undecided`: the `count` friction ports that may stick, by bits in `open`. `why`
  * there is no mode: as none could be looked at so far, or as those are not consistent. */
 typedef struct {
     const bg_sight *sight;

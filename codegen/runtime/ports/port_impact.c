@@ -71,7 +71,7 @@ static int least_amounts(int kept, int count, const double *moved, const double 
 }
 
 /* slip_x A^-1 B of each direction. */
-static void reach(const bg_model *m, const bg_hold *held, const double *free, int count,
+static void slips_by(const bg_model *m, const bg_hold *held, const double *free, int count,
                   double *moved)
 {
     const double *const Q = m->numbers.Q;
@@ -81,7 +81,8 @@ static void reach(const bg_model *m, const bg_hold *held, const double *free, in
             for (int c = 0; c < held->count; c++) {
                 const double way = free[d * held->count + c];
                 for (int i = 0; i < N && way != 0.0; i++)
-                    sum += held->slip_x[k * N + i] * way * Q[i * M + bg_friction_inputs[held->ports[c]]];
+                    sum += held->slip_x[k * N + i] * way
+                        * Q[i * M + bg_friction_inputs[held->ports[c]]];
             }
             moved[k * count + d] = sum;
         }
@@ -103,7 +104,7 @@ int bg_impulses(bg_model *m, const int *mode, bg_hold **held, double *impulses)
         return status;
     const bg_hold *const h = *held;
     const int count = free_directions(m, &bg_structures[h->stuck], h, free);
-    reach(m, h, free, count, moved);
+    slips_by(m, h, free, count, moved);
     memset(impulses, 0, sizeof(double) * (size_t)(h->kept * K));
     for (int k = 0; k < h->kept; k++) {
         for (int l = 0; l < h->kept; l++)
@@ -132,7 +133,7 @@ void bg_pass_on(const bg_model *m, const double *given, double *s, double *recei
         s[N + i] += received[bg_law_rates[i]];
 }
 
-/* What conditions gain by impulses, per unit of the largest: as values so much larger than others. */
+/* What conditions gain by impulses: as values so much larger than all others. */
 static void push_guards(bg_model *m, const double *given, const double *received, double size,
                         double *pushed)
 {

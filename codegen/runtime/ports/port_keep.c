@@ -65,8 +65,9 @@ void bg_view_stay(bg_view *v, const int *mode, double time, const double *x, con
     }
 }
 
-/* The slips that a mode would stop, and whether they are more than rounding, where all is let go. */
-static int jumps(const bg_hold *held, const bg_snapshot *shot, const bg_port *ports, double *slips)
+/* The slips that a mode would stop, and whether they are more than rounding; all is let go. */
+static int have_to_jump(const bg_hold *held, const bg_snapshot *shot, const bg_port *ports,
+                        double *slips)
 {
     int any = 0;
     bg_multiply_add(held->kept, N, held->slip_x, shot->x, slips);
@@ -98,7 +99,7 @@ int bg_view_strike(void *view, const bg_instant *at, const int *mode, double *s,
         bg_view_ports(v, loose, at->time, ports);
         status = bg_impulses(v->model, mode, &held, impulses);
     }
-    if (status || !held || !jumps(held, &v->shot, ports, slips))
+    if (status || !held || !have_to_jump(held, &v->shot, ports, slips))
         return status;
     *struck = 1;
     for (int k = 0; k < held->kept; k++)

@@ -1,4 +1,4 @@
-/* Which switches hold: the ways to try, from the one at hand to those with more and more changes. */
+/* Which switches hold: the ways to try, from the one at hand to those with more changes. */
 #include <string.h>
 
 #include "port_choosing.h"

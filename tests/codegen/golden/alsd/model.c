@@ -52,10 +52,12 @@ const double bg_defaults[] = {
 const int bg_law_rates[] = {0};
 const int bg_friction_inputs[] = {1};
 const int bg_friction_readings[] = {1};
+const int bg_moving[] = {-1};
 const int bg_beside[] = {0};
 const int bg_outside_inputs[] = {0};
 const int bg_differentiable[] = {1, 1, 0, 0};
 const int bg_output_readings[] = {1, 4, 5, 6, 7};
+const bg_switch bg_switches[] = {{BG_RUBS, 0, 0, 0}};
 
 static const int rows_A[] = {0, 0, 1, 1, 2, 3, 4, 5};
 static const int columns_A[] = {0, 1, 0, 1, 2, 3, 4, 5};
@@ -160,6 +162,13 @@ void bg_friction_values(const bg_values *v, double *out)
     out[1] = tau_h;
     out[2] = 1.0;
     out[3] = 1.0;
+}
+
+/* Conditions of switches, to turn on and to turn off in turn: 0 operations. */
+void bg_guards(const bg_values *v, double *out)
+{
+    (void)v;
+    (void)out;
 }
 
 /* What known laws give: 0 operations. */
