@@ -117,6 +117,7 @@ class Tuning:
     band: float = _told(1e-6, "dead band of a port, unless it is told otherwise")
     still: float = _told(1e-12, "dead band where only an instant is asked for")
     step_rounding: float = _told(1e-9, "of what makes a slip or its rate up: zero to a step")
+    step_drift: float = _told(1e-2, "of what moves a held slip in a step: the step's own error")
     difference: float = _told(1e-7, "of the states' magnitudes: a difference for the fastest rates")
     farther: float = _told(8.0, "a second one, so many times as large, must find a like slope")
     unexplained: float = _told(0.2, "part of a fit of the fastest rates that may be left over")

@@ -1,9 +1,10 @@
 """`to_c`: a model as C99 that allocates nothing, ready for a real-time target."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
 from importlib.metadata import version
 from typing import Any
 
+from bondgraph.declare.switching import checked_modes
 from bondgraph.equations import StateEquations
 from codegen.c.blocks import function, places
 from codegen.c.prefix import external_symbols, renamed
@@ -81,6 +82,7 @@ def to_c(
     initial: Mapping[str, float] | None = None,
     inputs: Mapping[str, object] | None = None,
     prefix: str = "",
+    initially_on: Iterable[Hashable] = (),
 ) -> dict[str, str]:
     """The equations, closed by laws, as files of C99: name to text.
 
@@ -88,8 +90,10 @@ def to_c(
     ``name``: what the model calls itself. ``main``: with a main program that prints a run as CSV, from
     ``initial`` (states by name, others start at 0) under ``inputs`` (signals or numbers, others are 0)
     unless it is told otherwise; `BG_LONGEST_STEP` of config.h is found there, too. ``prefix``: what every
-    external symbol begins with, such as "front_"; models with different ones link into one program. The
-    same arguments give the same text; `model.c` tells how it is used.
+    external symbol begins with, such as "front_"; models with different ones link into one program.
+    ``initially_on``: the switches that are on before a run, as far as their conditions let them; in the main
+    program states that are not in ``initial`` then follow what these hold. The same arguments give the same
+    text; `model.c` tells how it is used.
 
     Which sticking ports are redundant is decided exactly, at these parameters; others at which that
     changes are refused when the model is run.
@@ -97,7 +101,8 @@ def to_c(
     Raises what `simulator` raises; `StructureError` for more than eight friction ports; `ExpressionError` for
     functions C lacks; `ParameterError` for a prefix that no name in C can begin with.
     """
-    closed, files = exported(equations, parameters, laws, name, main, initial, inputs, prefix)
+    given = (main, initial, inputs, prefix, initially_on)
+    closed, files = exported(equations, parameters, laws, name, *given)
     warn_of_doubts(closed.program, equations, closed.parameters)
     return files
 
@@ -111,14 +116,18 @@ def exported(
     initial: Mapping[str, float] | None = None,
     inputs: Mapping[str, object] | None = None,
     prefix: str = "",
+    initially_on: Iterable[Hashable] = (),
 ) -> tuple[ClosedModel, dict[str, str]]:
     """As `to_c`, with the model in numbers; who asks for it tells what there is to be told of that."""
     start = start_of(equations, parameters, laws, initial, inputs)
     closed = start.closed
     defaults = [float(closed.parameters[symbol.name]) for symbol in closed.program.parameters]
-    files = texts(closed, name, defaults, prefix, start.longest)
+    on = checked_modes([port.name for port in closed.program.switches], initially_on)
+    files = texts(closed, name, defaults, prefix, start.longest, on)
     if main:
-        scenario = scenario_text(start.signals, start.states.tolist())
+        states = [*closed.program.states, *closed.program.law_states]
+        named = [state.name in {str(one) for one in initial or ()} for state in states]
+        scenario = scenario_text(start.signals, start.states.tolist(), named)
         files |= {"main.c": runtime_file("main.c"), "scenario.h": scenario}
     return closed, files
 
@@ -129,8 +138,10 @@ def texts(
     defaults: Sequence[float],
     prefix: str = "",
     longest: float | None = None,
+    on: Collection[Hashable] = (),
 ) -> dict[str, str]:
-    """The files of a model without a main program; ``longest``: its longest stable step, if that is told.
+    """The files of a model without a main program; ``longest``: its longest stable step, if that is told;
+    ``on``: the switches that are on before a run.
 
     Its parameters are in ``defaults`` and ``longest`` alone, and in which sticking ports are redundant.
     """
@@ -144,7 +155,7 @@ def texts(
         *_head(program, name, prefix),
         *name_tables(program, equations, name),
         "",
-        *program_tables(program, defaults, [closed.coupled_directly(i) for i in ports]),
+        *program_tables(program, defaults, [closed.coupled_directly(i) for i in ports], on),
         "",
         *structure_table(held_sets(program, closed.slips).values(), program.coupled.inputs),
         *_functions(program),

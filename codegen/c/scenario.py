@@ -24,10 +24,13 @@ def signal_lines(table: SignalTable, name: str) -> list[str]:
     ]
 
 
-def scenario_text(signals: Sequence[Signal], initial: Sequence[float]) -> str:
+def scenario_text(
+    signals: Sequence[Signal], initial: Sequence[float], named: Sequence[bool]
+) -> str:
     """scenario.h: tables of the signals, each with a constant of its own in front that is zero.
 
     The constant of input i has coefficient i; a program that gives an input a value sets it.
+    ``named``: whether each state keeps its initial value where switches are on at first.
     """
     ends = [b for signal in signals for b in signal.breakpoints]
     begin = min([0.0, *ends])
@@ -51,6 +54,7 @@ def scenario_text(signals: Sequence[Signal], initial: Sequence[float]) -> str:
         *(f"#define SCENARIO_{key} {value}" for key, value in sizes.items()),
         "",
         *doubles("scenario_states", initial, local=True),
+        *integers("scenario_named", [int(one) for one in named], local=True),
         *signal_lines(full, "scenario"),
     ]
     return "\n".join(lines) + "\n"

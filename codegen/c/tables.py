@@ -1,6 +1,6 @@
 """The sizes and tables of a program as C."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Hashable, Iterable, Sequence
 
 import sympy as sp
 
@@ -110,9 +110,9 @@ def _names(symbols: Iterable[sp.Symbol]) -> list[str]:
 
 
 def program_tables(
-    program: Program, defaults: Sequence[float], beside: Sequence[bool]
+    program: Program, defaults: Sequence[float], beside: Sequence[bool], on: Collection[Hashable]
 ) -> list[str]:
-    """Places of laws, friction ports, readings and outputs in the arrays."""
+    """Places of laws, friction ports, readings and outputs in the arrays; ``on``: switches at first."""
     readings = list(program.readings)
     friction, known = program.friction, set(program.known.inputs)
     rubbed = {port.input for port in friction}
@@ -124,6 +124,10 @@ def program_tables(
         ("bg_friction_inputs", [port.input for port in friction]),
         ("bg_friction_readings", [port.reading for port in friction]),
         ("bg_moving", [-1 if port.moving is None else port.moving for port in friction]),
+        (
+            "bg_first_modes",
+            [1 if p.switch is None else p.switch.sign(p.name in on) for p in friction],
+        ),
         ("bg_beside", [int(one) for one in beside]),
         ("bg_outside_inputs", program.given),
         ("bg_differentiable", differentiable),

@@ -14,11 +14,11 @@ from codegen.modes.blocks import blocks_of, slipping_as, turned_to, ways_to_rub
 from codegen.modes.closed import ClosedModel
 from codegen.modes.impact import impact, pushed
 from codegen.modes.rounding import Peaks, scales
-from codegen.modes.switchings import Broken, ways
 from codegen.modes.trials import evaluated
 from codegen.modes.verdicts import Look, look_at, ruled_out, ruled_out_later
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
+from codegen.standalone.switchings import Broken, switchings
 from codegen.tuning import TUNING
 
 NONE: Broken = frozenset()
@@ -88,7 +88,7 @@ def decide(now: Occasion, s: Array) -> Decision:
     switching = now.model.switching
     switches = [i for i, switch in enumerate(switching) if switch is not None]
     refused: dict[Mode, str] = {}
-    tries = ways(now.previous, switches)
+    tries = switchings(now.previous, switches)
     mode = next(tries)
     while True:
         found = _tried(now, s, mode)

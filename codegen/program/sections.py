@@ -9,7 +9,8 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from codegen.program.closing import Closing
-from codegen.program.records import FrictionPort, Group, Pattern, Switching, block
+from codegen.program.records import FrictionPort, Group, Pattern, block
+from codegen.standalone.switching import Switching
 
 
 def coefficients(

@@ -38,6 +38,13 @@ def friction(parameters):
         exact=parameters == PARAMETERS,
     )'''
 
+_SWITCHES = '''
+
+def switches(parameters):
+    """When the ports change over that are ideal switches."""
+    guards = BlockFormula(switch_conditions, parameters, {count})
+    return Switches(SWITCHING, FRICTION, guards, {count})'''
+
 _MODEL = '''
 
 class Model({base}):
@@ -51,23 +58,38 @@ class Model({base}):
         super().__init__({arguments})
 
 
-def simulate(time, initial, inputs, parameters=None, step=STEP, dead_band=1e-6):
+def simulate(time, initial, inputs, parameters=None, step=STEP, dead_band=1e-6{also}):
     """Integrate with steps of at most ``step`` [s] and sample at the times given.
 
     ``initial``: states by name, the rest start at 0. ``inputs``: a number or a function of time for
-    each of INPUTS. ``dead_band``: slips below it may stick. The work of a step is bounded: nothing
-    is located inside it. Returns arrays by name: t, states, inputs, outputs, friction efforts.
+    each of INPUTS. ``dead_band``: slips below it may stick. {told}The work of a step is bounded: nothing
+    is located inside it. Returns arrays by name: t, states, inputs, outputs, {what}.
 
     Raises `UnstableStep` for a step beyond the stability of its method, with the longest that is
     stable; LONGEST_STEP is that of the start.
     """
-    return run(Model(parameters), time, initial, inputs, step, dead_band)'''
+    return run(Model(parameters), time, initial, inputs, step, dead_band{given})'''
+
+
+_PLAIN = {"also": "", "given": "", "told": "", "what": "friction efforts"}
+
+_SWITCHED = {
+    "also": ", initially_on=()",
+    "given": ", initially_on",
+    "what": "friction\n    efforts, and for each of SWITCHES 1 while it is on, 0 while it is off",
+    "told": (
+        "Switches\n    change over at starts of steps. ``initially_on``: those of SWITCHES that are on "
+        "before the\n    first, as far as conditions let them; states that are not in ``initial`` then "
+        "follow what these\n    hold, and a warning tells. "
+    ),
+}
 
 
 def needed(program: Program) -> list[str]:
     """The modules that a program's model works with, beside those that these import."""
     also = {
-        "deadband": bool(program.friction),
+        "deadband": bool(program.friction) and not program.switches,
+        "switched": bool(program.switches),
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
     }
@@ -80,16 +102,35 @@ def closing(program: Program, held: Mapping[tuple[int, ...], HeldSet]) -> list[s
 
     ``held``: ranks of the sets of sticking ports that are not plain.
     """
-    lines = [RULE, "# How this model is put together.", "", "NAMES = Names(STATES, INPUTS, SHOWN)"]
+    names = "STATES, INPUTS, SHOWN, SWITCHES" if program.switches else "STATES, INPUTS, SHOWN"
+    lines = [RULE, "# How this model is put together.", "", f"NAMES = Names({names})"]
     base, arguments = "FixedSteps", "form(self.parameters), NAMES"
     if program.friction:
         base, arguments = "DeadBand", "NAMES, friction(self.parameters)"
         note = "Sets of sticking ports of which not each slip binds the states by itself: what holds them."
         rows = [f"    {ports}: HeldSet{astuple(one)}," for ports, one in held.items()]
         lines += [f"# {note}", *(["HELD = {", *rows, "}"] if rows else ["HELD = {}"])]
+    if program.switches:
+        base, arguments = "SwitchedSteps", f"{arguments}, switches(self.parameters)"
+        lines += _switching(program)
     lines += ["", "", *_form(program)]
     lines += _friction(program) if program.friction else []
-    return [*lines, *_MODEL.format(base=base, arguments=arguments).splitlines()]
+    if program.switches:
+        lines += _SWITCHES.format(count=len(program.guards.results)).splitlines()
+    words = _SWITCHED if program.switches else _PLAIN
+    return [*lines, *_MODEL.format(base=base, arguments=arguments, **words).splitlines()]
+
+
+def _switching(program: Program) -> list[str]:
+    """When each port changes over."""
+    note = (
+        "When ports change over that are ideal switches: on while held?; side; place of conditions."
+    )
+    rows = [
+        f"    {None if s is None else f'Switching({s.on}, {s.side}, {s.guard})'},"
+        for s in (port.switch for port in program.friction)
+    ]
+    return ["", f"# {note}", "SWITCHING = (", *rows, ")"]
 
 
 def _form(program: Program) -> list[str]:

@@ -129,6 +129,11 @@ def _functions(program: Program, names: Names) -> list[str]:
         rows = [f"{plain(str(port.name))}: {part}" for port in program.friction for part in what]
         doc = "For each friction port u = level * curve(|slip|) * sign(slip)."
         lines += values_function("friction_values", doc, program.friction_values, rows, names)
+    if program.switches:
+        rows = [f"{plain(str(p.name))}: {way}" for p in program.switches
+                if p.switch is not None and not p.switch.side for way in ("on", "off")]  # fmt: skip
+        doc = "Conditions of switches: to turn on and to turn off in turn, each above zero."
+        lines += values_function("switch_conditions", doc, program.guards, rows, names)
     if program.joint:
         lines += group_function("coupled_laws", program.coupled, program, names)
     return lines

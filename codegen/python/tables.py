@@ -45,7 +45,9 @@ def _places(name: str, numbers: Sequence[int]) -> list[str]:
 
 def friction_tables(program: Program, slips: SlipRows) -> list[str]:
     """The friction ports: their names, and where they stand."""
+    switches = names_tuple("SWITCHES", [str(port.name) for port in program.switches])
     return [
+        *(["", "# Ports that are ideal switches.", *switches] if program.switches else ()),
         "",
         "# Friction ports, the inputs they give, the slips they receive, what tells how the factors of",
         "# these move; is a resistance beside?",

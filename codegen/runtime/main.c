@@ -20,6 +20,7 @@ typedef struct {
     double end, sample, step, band;
     int located;
     double parameters[BG_ROOM(BG_PARAMETERS)], states[BG_ROOM(STATES)];
+    int named[BG_ROOM(STATES)];
     bg_term terms[SCENARIO_TERMS];
     double coefficients[SCENARIO_COEFFICIENTS][2];
 } command;
@@ -56,7 +57,7 @@ static int assign(command *asked, const char *text)
     if ((at = find(BG_PARAMETERS, bg_parameter_names, text, length)) >= 0)
         asked->parameters[at] = value;
     else if ((at = find(STATES, bg_state_names, text, length)) >= 0)
-        asked->states[at] = value;
+        asked->named[at] = 1, asked->states[at] = value;
     else if ((at = find(BG_EXTERNAL, bg_input_names, text, length)) >= 0)
         hold_input(asked, at, value);
     else if (length == 4 && strncmp(text, "band", 4) == 0)
@@ -144,13 +145,14 @@ static void print_sample(void *to, int sample, const double *w, const int *mode,
 /* Rows by adaptive steps. The samples are the only memory that is asked for. */
 static int run_located(bg_model *m, const command *asked, const bg_signals *signals)
 {
-    static const char *const kinds[] = {"stick", "slip", "cross"};
+    static const char *const kinds[] = {"stick", "slip", "cross", "on", "off"};
     static bg_located run;
     static bg_event events[EVENTS];
     const int count = (int)floor(asked->end / asked->sample * (1 + BG_TOGETHER)) + 1;
     double *const times = calloc((size_t)count, sizeof *times);
     bg_request request = {times, asked->states, count, BG_AUTO, BG_RTOL, BG_ATOL,
-                          times, print_sample, events, EVENTS, 0, 0.0, NULL};
+                          times, print_sample, events, EVENTS, 0, 0.0, NULL,
+                          m->mode, asked->named};
     if (!times)
         return 1;
     for (int k = 0; k < count; k++)
@@ -171,6 +173,7 @@ static int read_command(int count, char **words, command *asked)
     asked->band = BG_BAND;
     bg_model_parameters(asked->parameters);
     memcpy(asked->states, scenario_states, sizeof asked->states);
+    memcpy(asked->named, scenario_named, sizeof asked->named);
     memcpy(asked->terms, scenario_terms, sizeof asked->terms);
     memcpy(asked->coefficients, scenario_coefficients, sizeof asked->coefficients);
     for (int i = 3; i < count; i++)
@@ -202,6 +205,8 @@ int main(int count, char **words)
         model.band[i] = asked.band;
     inputs_at(&signals, 0.0, w, dw);
     if (failed(bg_model_vector(&model, 0.0, asked.states, w, s)))
+        return 1;
+    if (!asked.located && failed(bg_model_complete(&model, 0.0, w, asked.named, s)))
         return 1;
     print_head();
     return asked.located ? run_located(&model, &asked, &signals)

@@ -21,26 +21,32 @@ class DeadBand(FixedSteps):
         self.friction, ports = friction, friction.ports
         self.efforts, self.slips, self.beside = ports.inputs, ports.readings, np.array(ports.beside)
         self.moving = ports.moving
+        self.rubs = np.ones(len(self.slips), dtype=bool)
 
     def decided(self, at: Point, previous: Chosen, dead_band: float, h: float = 0.0) -> Mode:
-        """Which ports stick (0) and which way the others slip (+1, -1).
+        """Which ports stick (0) and which way the others slip (+1, -1)."""
+        return self.rubbing(at, (0,) * len(self.slips), previous, dead_band, h)
+
+    def rubbing(
+        self, at: Point, switched: Mode, previous: Chosen, dead_band: float, h: float
+    ) -> Mode:
+        """What friction does, with switches as in a mode.
 
         A port may stick if its slip is inside the band, has changed its sign since the mode before,
         a step of h ago, or depends on its effort at once. It does if what holds it is within its
         breakaway effort; else it slips the way that effort points. One port changes at a time, in a
         bounded number of turns; where that comes to what is no mode, all modes are tried.
         """
-        now = self.any_of(at, previous or (0,) * len(self.slips))
+        now = self.any_of(at, previous or tuple(np.where(self.rubs, 0, switched).tolist()))
         slips = now.y[self.slips]
-        mode = [1 if slip > 0 else -1 for slip in slips]
-        near = (
-            np.abs(slips) <= np.maximum(dead_band, TUNING.step_rounding * self.terms(now))
-        ) | self.beside
+        mode = np.where(self.rubs, np.where(slips > 0, 1, -1), switched).tolist()
+        near = (np.abs(slips) <= self.least(now, dead_band)) | self.beside
         if previous is not None:
             # An input that steps may turn a slip round too; what a step of h can't reach slips on.
             near |= (slips * previous < 0) & (
                 np.abs(slips) <= 2 * h * np.abs(slip_rates(now, self.slips, self.moving))
             )
+        near &= self.rubs
         for i in np.flatnonzero(near):
             mode[i] = 0
         for _ in range(4 * int(near.sum())):
@@ -69,12 +75,17 @@ class DeadBand(FixedSteps):
         now = self.at(at, tuple(mode))
         if 0 in mode and len(rows := self.friction.hold(tuple(mode), now.numbers).ruled):
             stuck = np.flatnonzero(np.equal(mode, 0))
-            least = np.maximum(dead_band, TUNING.step_rounding * self.terms(now))[stuck]
+            least = self.least(now, dead_band)[stuck]
             if (np.abs(rows @ now.y[self.slips[stuck]]) > np.abs(rows) @ least).any():
                 raise EvaluationError(
                     f"at t = {at.t:g} no way of sticking and slipping is consistent"
                 )
         return now
+
+    def least(self, now: Instant, dead_band: float) -> Array:
+        """Slips below these count as zero: of friction the dead band, or their rounding."""
+        rounding = TUNING.step_rounding * self.terms(now)
+        return np.asarray(np.maximum(np.where(self.rubs, dead_band, 0.0), rounding), dtype=float)
 
     def searched(
         self, at: Point, rest: Sequence[int], near: Array, dead_band: float, reason: Exception
@@ -99,21 +110,26 @@ class DeadBand(FixedSteps):
         """The mode, and s without the slips of the ports that stick: moved along A^-1 F^T."""
         self.seen = np.maximum(self.seen, np.abs(at.s))
         mode = self.decided(at, previous, dead_band, h)
+        return mode, self.at_rest(at, mode)
+
+    def at_rest(self, at: Point, mode: Mode) -> Array:
+        """The vector s without the slips of the ports that hold in a mode."""
         if 0 not in mode:
-            return mode, at.s
+            return at.s
         now = self.at(at, mode)
         hold, moved = self.friction.hold(mode, now.numbers), at.s.copy()
         moved[: self.form.states] += hold.take_away @ hold.slips(now)
-        return mode, moved
+        return moved
 
     def turned(self, now: Instant, mode: Mode) -> bool:
         """Whether a port slips against its mode, in the moment of a change."""
-        return bool((now.y[self.slips] * mode < 0).any())
+        return bool(((now.y[self.slips] * mode < 0) & self.rubs).any())
 
     def let_go(self, now: Instant, mode: Sequence[int]) -> tuple[int, int] | None:
         """The sticking port held farthest beyond its breakaway effort, and which way it goes."""
         efforts = now.u[self.efforts]
-        over = np.where(np.equal(mode, 0), np.abs(efforts) - now.caps * (1 + TUNING.breakaway), 0.0)
+        held = np.equal(mode, 0) & self.rubs
+        over = np.where(held, np.abs(efforts) - now.caps * (1 + TUNING.breakaway), 0.0)
         if not (over > 0).any():
             return None
         i = int(np.argmax(over / (now.caps + TUNING.breakaway * np.abs(efforts).max())))
@@ -124,13 +140,18 @@ class DeadBand(FixedSteps):
         F, D = np.abs(now.numbers.F[self.slips]), np.abs(now.numbers.D[self.slips])
         return np.asarray(F @ np.abs(now.x) + D @ np.abs(now.u), dtype=float)
 
+    def rate_terms(self, now: Instant) -> Array:
+        """The same of how fast the slips change."""
+        m = now.numbers
+        moving = np.abs(m.P) @ np.abs(now.x) + np.abs(m.Q) @ np.abs(now.u)
+        return np.asarray(np.abs(m.F[self.slips]) @ moving, dtype=float)
+
     def caught(self, now: Instant, mode: Sequence[int], near: Array) -> tuple[int, int] | None:
         """A port let go that would slip against its direction, and so sticks after all."""
-        m, x, u = now.numbers, np.abs(now.x), np.abs(now.u)
-        terms = np.abs(m.F[self.slips]) @ (np.abs(m.P) @ x + np.abs(m.Q) @ u)
         rates = slip_rates(now, self.slips, self.moving)
         moves = np.where(self.beside, now.y[self.slips], rates) * np.array(mode)
         wrong = near & (
-            moves < -TUNING.step_rounding * np.where(self.beside, self.terms(now), terms)
+            moves
+            < -TUNING.step_rounding * np.where(self.beside, self.terms(now), self.rate_terms(now))
         )
         return (int(np.argmax(wrong)), 0) if wrong.any() else None

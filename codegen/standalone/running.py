@@ -1,6 +1,6 @@
 """Runs in fixed steps, sampled at given times."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -65,6 +65,7 @@ def run(
     inputs: Mapping[str, object],
     step: float,
     dead_band: float,
+    initially_on: Collection[str] = (),
 ) -> dict[str, Array]:
     """Integrate with steps of at most ``step`` [s] and sample at the times given."""
     signals, names = functions(inputs, model.names.external), model.names
@@ -76,6 +77,7 @@ def run(
     start = named(initial, dict.fromkeys(names.states, 0.0), "state")
     given = sampled(signals, time[0], step)
     s = vector(model.form, time[0], np.array([*start.values()], dtype=float), *given[0])
+    s = model.begin(Point(time[0], s, *given[0]), initially_on, initial)
     mode, rows = None, []
     for t, end in zip(time, [*time[1:], time[-1]], strict=True):
         parts = max(1, int(np.ceil((end - t) / step * (1 - TUNING.whole_steps))))
@@ -84,7 +86,8 @@ def run(
         mode, s = model.settled(Point(t, s, *given[0]), mode, dead_band, h)
         now = model.at(Point(t, s, *given[0]), mode)
         shown = model.named(now)
-        rows.append([*now.x, *now.z, *now.w, *(shown[name] for name in names.shown)])
+        row = [*now.x, *now.z, *now.w, *(shown[name] for name in names.shown)]
+        rows.append([*row, *model.shown(mode)])
         if not np.isfinite(rows[-1]).all():
             raise ArithmeticError(f"at t = {t:g} a value is not finite; give a shorter step")
         for count in range(parts if end > t else 0):
@@ -93,5 +96,5 @@ def run(
                 at = Point(t + count * h, s, *given[0])
                 mode, s = model.settled(at, mode, dead_band, h)
             s = model.step(t + count * h, h, s, given, mode)
-    columns = (*names.states, *names.external, *names.shown)
+    columns = (*names.states, *names.external, *names.shown, *names.switches)
     return {"t": time, **dict(zip(columns, np.array(rows).T, strict=True))}

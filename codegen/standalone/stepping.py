@@ -1,7 +1,7 @@
 """A model in fixed steps: rates, outputs, and one classical Runge-Kutta step in a bounded
 time."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,11 +24,12 @@ Given = tuple[Array, Array]
 
 @dataclass(frozen=True)
 class Names:
-    """Of states and external inputs; ``shown``: what a run shows beside them."""
+    """Of states and external inputs; ``shown``: what a run shows beside them; the switches."""
 
     states: Sequence[str]
     external: Sequence[str]
     shown: Sequence[str]
+    switches: Sequence[str] = ()
 
 
 class FixedSteps:
@@ -70,6 +71,14 @@ class FixedSteps:
         """Every variable at one time: laws in turn, then friction as the mode says."""
         with np.errstate(all="ignore"):
             return evaluated(self.form, self.contact, at._replace(seen=self.seen), mode)
+
+    def begin(self, at: Point, on: Collection[str], named: Collection[str]) -> Array:
+        """The vector s with which a run begins; no port is a switch, or could be ``on``."""
+        return at.s
+
+    def shown(self, mode: Mode) -> list[float]:
+        """For each switch 1 while it is on, 0 while it is off: there are none."""
+        return []
 
     def decided(self, at: Point, previous: Chosen, dead_band: float, h: float = 0.0) -> Mode:
         """The friction mode at the start of a step of h: no port can stick."""

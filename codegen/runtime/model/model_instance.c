@@ -19,7 +19,7 @@ int bg_model_init(bg_model *m, const double *parameters)
         return BG_PARAMETER;
     for (int i = 0; i < K; i++) {
         m->band[i] = BG_BAND;
-        m->mode[i] = 1;
+        m->mode[i] = bg_first_modes[i];
     }
     if (BG_VARYING)
         return BG_OK;
@@ -46,6 +46,11 @@ int bg_model_vector(bg_model *m, double t, const double *states, const double *w
     for (int i = 0; i < N; i++)
         s[i] -= driven[i];
     return BG_OK;
+}
+
+int bg_model_complete(bg_model *m, double t, const double *w, const int *named, double *s)
+{
+    return bg_complete(m, t, w, named, m->mode, s);
 }
 
 void bg_model_outputs(const bg_snapshot *shot, double *outputs)

@@ -66,6 +66,7 @@ extern const int bg_law_rates[], bg_friction_inputs[], bg_friction_readings[];
 extern const int bg_outside_inputs[], bg_differentiable[], bg_output_readings[], bg_beside[];
 extern const int bg_moving[]; /* readings of how fast slips change by their factors; -1: none */
 extern const bg_switch bg_switches[];
+extern const int bg_first_modes[]; /* before the first step, of friction anything */
 extern const double bg_defaults[];
 void bg_coefficients(const bg_values *v, double *out);
 void bg_known_rates(const bg_values *v, double *out);
@@ -96,6 +97,10 @@ double bg_room(const bg_hold *held, int port, const bg_snapshot *shot, const dou
 /* port_hold.c */
 int bg_hold_of(bg_model *m, const int *mode, bg_hold **found);
 int bg_holding_efforts(bg_model *m, const bg_hold *held, double *efforts);
+
+/* The magnitudes of the terms that make those up. */
+void bg_effort_terms(const bg_hold *held, const double *x, const double *u, const double *du,
+                     double *sums);
 void bg_correct(const bg_hold *held, double *rate, const double *du, const double *y);
 
 /* Takes what slips are left at sticking ports from s, along A^-1 F^T; `shot` is of that mode. */
@@ -119,8 +124,25 @@ int bg_complete(bg_model *m, double t, const double *w, const int *named, int *m
 double bg_slip(const bg_model *m, const bg_snapshot *now, int port, double *terms);
 double bg_slip_rate(const bg_model *m, const bg_snapshot *now, int port, double *terms);
 
-/* port_stick.c: m->mode for a step of h; rates of inputs are in m->work. */
-int bg_stick(bg_model *m, double t, double h, const double *s, const double *w);
+/* An instant at the start of a step of h, and the mode before it, if any step was. */
+typedef struct {
+    double t, h;
+    const double *s, *w, *dw;
+    const int *before;
+    int started;
+} bg_start;
+
+/* port_stick.c: everything in a mode, in m->shot; in the first that can be of those that slip as
+ * this one. Friction in m->mode for a step, switches as they are there; then in m->shot as well,
+ * unless what others rule of slips that are held is not zero: BG_UNDECIDED. */
+int bg_look(bg_model *m, const bg_start *at, const int *mode);
+int bg_look_slipping(bg_model *m, const bg_start *at, const int *mode);
+int bg_stick(bg_model *m, const bg_start *at);
+int bg_held(bg_model *m, const bg_start *at);
+
+/* port_step.c: m->mode for a step of h, and s after the impulses of switches that come to hold;
+ * rates of inputs are in m->work. */
+int bg_decide_step(bg_model *m, double t, double h, double *s, const double *w);
 
 /* port_share.c */
 void bg_fair_share(const bg_hold *held, const double *caps, double *efforts);
@@ -170,6 +192,9 @@ void bg_without_rounding(bg_model *m, double *values);
  * `shot`: the same instant, where the shortest time constant is `time`. */
 void bg_guard_terms(bg_model *m, const bg_snapshot *shot, double time, double *terms,
                     double *slopes);
+
+/* The first of these alone. */
+void bg_told_terms(bg_model *m, double *terms);
 
 /* Takes a vector that a run has come to into account: where it comes down to zero, it rounds. */
 void bg_have_seen(bg_model *m, const double *s);

@@ -139,6 +139,13 @@ void bg_guard_terms(bg_model *m, const bg_snapshot *shot, double time, double *t
     find_slopes(m, shot, slopes);
 }
 
+void bg_told_terms(bg_model *m, double *terms)
+{
+    measure(m);
+    show(m, &m->work.sizes);
+    terms_of(m, bg_guards, BG_GUARDS, (const double *)&m->work.sizes, terms);
+}
+
 void bg_have_seen(bg_model *m, const double *s)
 {
     for (int i = 0; i < N + BG_LAW_STATES; i++)

@@ -91,8 +91,8 @@ typedef struct {
 } bg_fastest;
 
 /* One instance. `band` [unit of each slip]: the dead band inside which a step lets a port stick;
- * `mode`: 0 sticking, 1 or -1 the sign of the slip, as the last step left it (`started`: there
- * was one). `where`: the friction port or group of laws that a failure is about, -1 for none. The
+ * `mode`: 0 sticking, 1 or -1 the sign of the slip; of a switch 0 where it is held, 1 where it is
+ * let go; as the last step left it (`started`: there was one), or as switches are before the first. `where`: the friction port or group of laws that a failure is about, -1 for none. The
  * rest is its own. */
 typedef struct {
     double band[BG_ROOM(BG_FRICTION)];
@@ -125,6 +125,10 @@ int bg_model_init(bg_model *m, const double *parameters);
  * dependent storages. */
 int bg_model_vector(bg_model *m, double t, const double *states, const double *w, double *s);
 
+/* Before a run: switches of `mode` change over where their conditions say so, and states that are
+ * not `named` follow what the switches then hold. */
+int bg_model_complete(bg_model *m, double t, const double *w, const int *named, double *s);
+
 /* Everything at t, s, external inputs w and their rates dw (NULL: zero), in a friction mode. */
 int bg_model_evaluate(bg_model *m, double t, const double *s, const double *w, const double *dw,
                       const int *mode, bg_snapshot *shot);
@@ -141,8 +145,10 @@ int bg_model_rhs(bg_model *m, double t, const double *s, const double *w, const 
                  double *rate);
 
 /* One step of h from t, s in place; w: the external inputs at t, t + h/2 and t + h, one after the
- * other. Time is bounded: which ports stick is decided once, at the start, by Karnopp's dead band
- * (`bg_model_settle`: sets `mode` and takes the slips of sticking ports away); then the step is one
+ * other. Time is bounded: which ports stick is decided once, at the start, by Karnopp's dead band,
+ * and which switches are held by what they receive and give, in at most two to their number ways
+ * (`bg_model_settle`: sets `mode`, gives the impulses of switches that come to hold to s and takes
+ * the slips of sticking ports away); then the step is one
  * of Runge's and Kutta's fourth order (`bg_model_advance`).
  *
  * A step beyond the method's stability gives BG_UNSTABLE before anything is changed, so a shorter

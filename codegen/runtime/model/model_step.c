@@ -26,7 +26,7 @@ int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w)
     bg_have_seen(m, s);
     if (BG_RATED)
         external_rates(h, w, m->work.rates);
-    status = bg_stick(m, t, h, s, w);
+    status = bg_decide_step(m, t, h, s, w);
     for (int i = 0; i < K; i++)
         sticking |= m->mode[i] == 0;
     if (status != BG_OK || !sticking)

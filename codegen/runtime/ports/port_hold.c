@@ -164,6 +164,25 @@ int bg_holding_efforts(bg_model *m, const bg_hold *held, double *efforts)
     return BG_OK;
 }
 
+void bg_effort_terms(const bg_hold *held, const double *x, const double *u, const double *du,
+                     double *sums)
+{
+    const int ruled = held->count - held->share_count;
+    double terms[PORTS] = {0};
+    for (int r = 0; r < ruled; r++) {
+        for (int j = 0; j < N; j++)
+            terms[r] += fabs(held->X[r * N + j]) * fabs(x[j]);
+        for (int j = 0; j < M; j++)
+            terms[r] += fabs(held->U[r * M + j]) * fabs(u[j])
+                + fabs(held->V[r * M + j]) * fabs(du[j]);
+    }
+    for (int c = 0; c < held->count; c++) {
+        sums[c] = 0.0;
+        for (int r = 0; r < ruled; r++)
+            sums[c] += fabs(held->inverse[c * held->count + r]) * terms[r];
+    }
+}
+
 /* What rounding in the holding efforts adds to rates is taken away, or slips that stick would
  * drift. */
 void bg_correct(const bg_hold *held, double *rate, const double *du, const double *y)

@@ -22,26 +22,16 @@ static void round_held(const bg_view *v, const int *mode, const double *x, const
                        bg_port *ports)
 {
     bg_hold *held = NULL;
+    double terms[PORTS];
     int any = 0;
     for (int i = 0; i < K; i++)
         any |= mode[i] == 0;
     if (!any || bg_hold_of(v->model, mode, &held) != BG_OK)
         return;
-    const int ruled = held->count - held->share_count;
-    double terms[PORTS] = {0};
-    for (int r = 0; r < ruled; r++) {
-        for (int j = 0; j < N; j++)
-            terms[r] += fabs(held->X[r * N + j]) * x[j];
-        for (int j = 0; j < M; j++)
-            terms[r] += fabs(held->U[r * M + j]) * u[j]
-                + fabs(held->V[r * M + j]) * fabs(v->shot.du[j]);
-    }
+    bg_effort_terms(held, x, u, v->shot.du, terms);
     for (int c = 0; c < held->count; c++) {
-        double sum = 0.0;
-        for (int r = 0; r < ruled; r++)
-            sum += fabs(held->inverse[c * held->count + r]) * terms[r];
         bg_port *const port = ports + held->ports[c];
-        port->near_effort = fmax(port->near_effort, BG_ROUNDING * sum);
+        port->near_effort = fmax(port->near_effort, BG_ROUNDING * terms[c]);
     }
 }
 

@@ -1,4 +1,4 @@
-/* Which ports stick in a step: Karnopp's dead band, in at most 4 evaluations for each port near
+/* Which friction ports stick in a step: Karnopp's dead band, in at most 4 evaluations for each port near
  * rest; where that comes to what is no mode, all modes of these ports. */
 #include <math.h>
 #include <string.h>
@@ -14,19 +14,35 @@ static int sticks(const int *mode)
     return any;
 }
 
+static int rubs(int port)
+{
+    return bg_switches[port].kind == BG_RUBS;
+}
+
+/* Slips below that count as zero: of friction the dead band, or their rounding. */
+static double least_slip(const bg_model *m, int port, double terms)
+{
+    const double rounding = BG_STEP_ROUNDING * terms;
+    return rubs(port) ? fmax(m->band[port], rounding) : rounding;
+}
+
 /* A port may stick if its slip is inside the band, has changed its sign since the step before, by
  * no more than a step of h can, or depends on its effort at once. First guess: all these stick;
  * their number. */
-static int first_guess(bg_model *m, double h, int *near)
+static int first_guess(bg_model *m, const bg_start *at, int *near)
 {
     int count = 0;
     for (int i = 0; i < K; i++) {
         double around, terms;
+        near[i] = 0;
+        if (!rubs(i))
+            continue;
         const double slip = bg_slip(m, &m->shot, i, &around);
         const double rate = bg_slip_rate(m, &m->shot, i, &terms);
-        near[i] = fabs(slip) <= fmax(m->band[i], BG_STEP_ROUNDING * around) || bg_beside[i];
+        near[i] = fabs(slip) <= least_slip(m, i, around) || bg_beside[i];
         /* An input that steps may turn a slip round too; what a step can't reach slips on. */
-        near[i] |= m->started && slip * m->mode[i] < 0 && fabs(slip) <= 2 * h * fabs(rate);
+        near[i] |= at->started && slip * at->before[i] < 0
+            && fabs(slip) <= 2 * at->h * fabs(rate);
         m->mode[i] = near[i] ? 0 : slip > 0 ? 1 : -1;
         count += near[i];
     }
@@ -42,7 +58,7 @@ static int let_go(bg_model *m)
         most = fmax(most, fabs(m->shot.u[bg_friction_inputs[i]]));
     for (int i = 0; i < K; i++) {
         const double effort = fabs(m->shot.u[bg_friction_inputs[i]]), cap = m->shot.caps[i];
-        const double over = m->mode[i] == 0 ? effort - cap * (1 + BG_BREAKAWAY) : 0.0;
+        const double over = rubs(i) && m->mode[i] == 0 ? effort - cap * (1 + BG_BREAKAWAY) : 0.0;
         if (over > 0 && (found < 0 || over / (cap + BG_BREAKAWAY * most) > worst)) {
             found = i;
             worst = over / (cap + BG_BREAKAWAY * most);
@@ -70,7 +86,7 @@ static int caught(bg_model *m, const int *near)
     return 0;
 }
 
-/* Whether slips that only inputs rule are not zero though ports are to hold them there. */
+/* Whether slips that only inputs rule are not zero though ports are to be held there. */
 static int rules_out(bg_model *m)
 {
     bg_hold *held = NULL;
@@ -82,7 +98,7 @@ static int rules_out(bg_model *m)
             const double weight = held->share[r * held->count + c];
             double terms;
             slip += weight * bg_slip(m, &m->shot, held->ports[c], &terms);
-            least += fabs(weight) * fmax(m->band[held->ports[c]], BG_STEP_ROUNDING * terms);
+            least += fabs(weight) * least_slip(m, held->ports[c], terms);
         }
         if (fabs(slip) > least)
             return 1;
@@ -90,26 +106,24 @@ static int rules_out(bg_model *m)
     return 0;
 }
 
-/* An instant at the start of a step. */
-typedef struct {
-    double t;
-    const double *s, *w, *dw;
-} start;
-
-static int evaluate(bg_model *m, const start *at, const int *mode)
+int bg_look(bg_model *m, const bg_start *at, const int *mode)
 {
     return bg_evaluate(m, at->t, at->s, at->w, at->dw, mode, 1, &m->shot);
 }
 
-/* The slips, by a mode in which there are any: laws may have no solution one way. */
-static int look_at_slips(bg_model *m, const start *at)
+int bg_held(bg_model *m, const bg_start *at)
 {
-    int before[BG_MOST_PORTS] = {0}, tried[BG_MOST_PORTS] = {0};
+    const int status = bg_look(m, at, m->mode);
+    return status != BG_OK ? status : rules_out(m) ? BG_UNDECIDED : BG_OK;
+}
+
+/* By a mode in which there are values: laws may have no solution one way. */
+int bg_look_slipping(bg_model *m, const bg_start *at, const int *mode)
+{
+    int tried[BG_MOST_PORTS] = {0};
     int status = BG_NO_SOLUTION, first = BG_OK;
-    for (int i = 0; i < K && m->started; i++)
-        before[i] = m->mode[i];
-    for (int k = 0; status != BG_OK && bg_try(K, k, before, tried); k++) {
-        status = evaluate(m, at, tried);
+    for (int k = 0; status != BG_OK && bg_try(K, k, mode, tried); k++) {
+        status = bg_look(m, at, tried);
         first = k ? first : status;
     }
     return status == BG_OK ? BG_OK : first;
@@ -129,7 +143,7 @@ static int numbered(bg_model *m, const int *near, const int *rest, int number)
 
 /* The first mode that contradicts nothing, those in which most ports stick first: where one change
  * at a time has come to what is no mode, for a reason that is told if there is none. */
-static int search_all(bg_model *m, const start *at, const int *near, int reason)
+static int search_all(bg_model *m, const bg_start *at, const int *near, int reason)
 {
     int rest[PORTS] = {0}, kept[PORTS] = {0}, count = 0, total = 1;
     memcpy(rest, m->mode, sizeof m->mode);
@@ -139,8 +153,7 @@ static int search_all(bg_model *m, const start *at, const int *near, int reason)
     }
     for (int stick = count; stick >= 0; stick--)
         for (int number = 0; number < total; number++) {
-            if (numbered(m, near, rest, number) != stick || evaluate(m, at, m->mode) != BG_OK
-                || rules_out(m))
+            if (numbered(m, near, rest, number) != stick || bg_held(m, at) != BG_OK)
                 continue;
             memcpy(kept, m->mode, sizeof m->mode);
             if (!let_go(m) && !caught(m, near))
@@ -150,19 +163,20 @@ static int search_all(bg_model *m, const start *at, const int *near, int reason)
     return reason;
 }
 
-/* The mode of a step from t, s and w; one port changes at a time. */
-int bg_stick(bg_model *m, double t, double h, const double *s, const double *w)
+/* One port changes at a time. */
+int bg_stick(bg_model *m, const bg_start *at)
 {
-    const start begun = {t, s, w, m->work.rates[0]}, *const at = &begun;
-    int near[PORTS], status = look_at_slips(m, at);
-    const int tries = status == BG_OK ? 4 * first_guess(m, h, near) : 0;
-    m->started = status == BG_OK;
+    int near[PORTS], now[BG_MOST_PORTS] = {0};
+    for (int i = 0; i < K; i++)
+        now[i] = at->started ? at->before[i] : rubs(i) ? 0 : m->mode[i];
+    int status = bg_look_slipping(m, at, now);
+    const int tries = status == BG_OK ? 4 * first_guess(m, at, near) : 0;
     for (int k = 0; k < tries; k++) {
-        status = evaluate(m, at, m->mode);
+        status = bg_held(m, at);
         if (status == BG_NEEDS_SLOPE || status == BG_STRUCTURE)
             return status;
-        if (status != BG_OK || rules_out(m))
-            return search_all(m, at, near, status != BG_OK ? status : BG_UNDECIDED);
+        if (status != BG_OK)
+            return search_all(m, at, near, status);
         if (!let_go(m) && !caught(m, near))
             return BG_OK;
     }

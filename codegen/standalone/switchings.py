@@ -1,9 +1,9 @@
-"""Which switches hold: the ways to try, from the one at hand to those with more and more changes."""
+"""Which switches hold: the ways to try, from the one at hand to those with more changes."""
 
 from collections.abc import Generator, Iterable
 from itertools import combinations
 
-from codegen.model.snapshot import Mode
+from codegen.standalone.arrays import Mode
 
 Broken = frozenset[int]
 """Ports that contradict a mode."""
@@ -15,7 +15,7 @@ FEW = 2
 """So many changes at once, of more switches."""
 
 TURNS = 50
-"""So often for each switch the first that contradicts is changed over, before ways are tried in turn."""
+"""So often for each switch the first that contradicts is changed over, before all ways are tried."""
 
 
 def flipped(mode: Mode, ports: Iterable[int]) -> Mode:
@@ -28,12 +28,13 @@ def flipped(mode: Mode, ports: Iterable[int]) -> Mode:
     return tuple(1 - sign if i in changed else sign for i, sign in enumerate(mode))
 
 
-def ways(first: Mode, switches: list[int]) -> Generator[Mode, Broken, None]:
+def switchings(first: Mode, switches: list[int]) -> Generator[Mode, Broken, None]:
     """Modes to try, each once; after each the switches that contradict it are sent.
 
-    First all that contradict change over, until that has been tried; then the first of them (Murty's
-    rule, which ends where the modes' conditions are a linear complementarity problem with positive
-    minors: Cottle, Pang, Stone 1992, section 4.2); then all, by how many changes they are away.
+    First all that contradict change over, until that has been tried; then the first of them
+    (Murty's rule, which ends where the modes' conditions are a linear complementarity problem with
+    positive minors: Cottle, Pang, Stone 1992, section 4.2); then all, by how many changes they are
+    away.
     """
     seen: set[Mode] = set()
     mode, broken = first, frozenset[int]()

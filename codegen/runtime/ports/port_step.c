@@ -1,0 +1,209 @@
+/* The mode of a step: switches by what they receive and give, by their conditions and impulses, in
+ * a bounded number of ways; in each of these friction by its dead band. */
+#include <math.h>
+#include <string.h>
+
+#include "model_internal.h"
+#include "port_choose.h"
+#include "port_ways.h"
+
+/* A search: the start of the step, with s after the impulses of the way that is tried; s before
+ * them; why there is no mode. */
+typedef struct {
+    bg_model *m;
+    bg_start at;
+    double *s, begun[BG_SIZE];
+    int why;
+} search;
+
+/* Whether impulses are more than rounding and what a step leaves of slips that were held before. */
+static int is_struck(const search *c, const bg_hold *held, const double *slips)
+{
+    double near[PORTS] = {0};
+    for (int i = 0; i < held->count; i++) {
+        double terms, moves;
+        const int port = held->ports[i];
+        bg_slip(c->m, &c->m->shot, port, &terms);
+        bg_slip_rate(c->m, &c->m->shot, port, &moves);
+        near[i] = BG_STEP_ROUNDING * terms;
+        if (c->at.started && c->at.before[port] == 0)
+            near[i] += BG_STEP_DRIFT * c->at.h * moves;
+    }
+    for (int k = 0; k < held->kept; k++) {
+        double least = 0.0;
+        for (int i = 0; i < held->count; i++)
+            least += fabs(held->mix[k * held->count + i]) * near[i];
+        if (fabs(slips[k]) > least)
+            return 1;
+    }
+    return 0;
+}
+
+/* s after the impulses of what the switches of a mode hold; how far these go with the mode. */
+static int strike(search *c, const int *mode, double *ways)
+{
+    double impulses[PORTS * PORTS], slips[PORTS] = {0}, given[PORTS] = {0};
+    double received[BG_ROOM(ROWS)];
+    bg_model *const m = c->m;
+    bg_hold *held = NULL;
+    int loose[BG_MOST_PORTS];
+    for (int i = 0; i < BG_MOST_PORTS; i++)
+        loose[i] = 1;
+    int status = bg_look_slipping(m, &c->at, loose);
+    if (status == BG_OK)
+        status = bg_impulses(m, mode, &held, impulses);
+    if (status || !held)
+        return status;
+    bg_multiply_add(held->kept, N, held->slip_x, m->shot.x, slips);
+    bg_multiply_add(held->kept, M, held->slip_u, m->shot.u, slips);
+    if (!is_struck(c, held, slips))
+        return BG_OK;
+    for (int k = 0; k < held->kept; k++)
+        for (int i = 0; i < K; i++)
+            given[i] += impulses[k * K + i] * slips[k];
+    bg_pass_on(m, given, c->s, received);
+    bg_shocks(m, mode, given, received, ways);
+    return BG_OK;
+}
+
+/* Whether a one-sided switch changes over at once, by value or rate. */
+static int turns_over(const search *c, int port, double slack)
+{
+    const bg_model *const m = c->m;
+    const bg_switch *const one = bg_switches + port;
+    double near, slow;
+    const double slip = one->side * bg_slip(m, &m->shot, port, &near);
+    const double rate = one->side * bg_slip_rate(m, &m->shot, port, &slow);
+    if (m->mode[port] == 0)
+        return one->side * m->shot.u[bg_friction_inputs[port]] > BG_STEP_ROUNDING * slack;
+    if (slip < -BG_STEP_ROUNDING * near)
+        return 1;
+    return slip <= BG_STEP_ROUNDING * near && !bg_beside[port] && rate < -BG_STEP_ROUNDING * slow;
+}
+
+/* The magnitudes of what makes up what holds the ports. */
+static void find_slack(search *c, double *slack)
+{
+    bg_model *const m = c->m;
+    double terms[PORTS];
+    bg_hold *held = NULL;
+    int any = 0;
+    for (int i = 0; i < K; i++) {
+        slack[i] = bg_largest(M, m->shot.u);
+        any |= m->mode[i] == 0;
+    }
+    if (!any || bg_hold_of(m, m->mode, &held) != BG_OK || bg_structures[held->stuck].moved)
+        return;
+    bg_effort_terms(held, m->shot.x, m->shot.u, m->shot.du, terms);
+    for (int i = 0; i < held->count; i++)
+        slack[held->ports[i]] = terms[i];
+}
+
+/* The condition that changes a switch over in its mode, by its place. */
+static int condition(const bg_model *m, int port)
+{
+    return bg_switches[port].guard + (bg_switches[port].on == (m->mode[port] == 0));
+}
+
+/* Switches whose conditions change them over: above zero, or at zero and about to be in the step. */
+static unsigned sent(search *c, const double *ways)
+{
+    bg_model *const m = c->m;
+    double told[BG_ROOM(BG_GUARDS)] = {0}, near[BG_ROOM(BG_GUARDS)] = {0};
+    unsigned found = 0, tied = 0;
+    bg_guards(&m->now, told);
+    bg_told_terms(m, near);
+    for (int i = 0; i < K; i++) {
+        const int at = condition(m, i);
+        if (bg_switches[i].kind != BG_TOLD || ways[i] != 0.0)
+            continue;
+        found |= (unsigned)(told[at] > BG_STEP_ROUNDING * near[at]) << i;
+        tied |= (unsigned)(fabs(told[at]) <= BG_STEP_ROUNDING * near[at]) << i;
+    }
+    if (!tied)
+        return found;
+    for (int i = 0; i < BG_SIZE; i++)
+        m->work.point[i] = c->s[i] + c->at.h * m->shot.rate[i];
+    const bg_start later = {.t = c->at.t + c->at.h, .s = m->work.point, .w = c->at.w,
+                            .dw = c->at.dw};
+    if (bg_look(m, &later, m->mode) != BG_OK)
+        return found;
+    bg_guards(&m->now, told);
+    for (int i = 0; i < K; i++) {
+        const int at = condition(m, i);
+        if (tied >> i & 1u)
+            found |= (unsigned)(told[at] > BG_STEP_ROUNDING * near[at]) << i;
+    }
+    return found;
+}
+
+/* The switches that change over at once: by impulse, value or rate, whichever decides. */
+static unsigned contrary(search *c, const double *ways)
+{
+    double slack[PORTS];
+    unsigned found = 0;
+    find_slack(c, slack);
+    for (int i = 0; i < K; i++) {
+        const int sided = bg_switches[i].kind == BG_ONE_SIDED && ways[i] == 0.0;
+        found |= (unsigned)(ways[i] < 0.0 || (sided && turns_over(c, i, slack[i]))) << i;
+    }
+    return BG_GUARDS ? found | sent(c, ways) : found;
+}
+
+static int try_way(void *self, unsigned held, int *holds, unsigned *broken)
+{
+    search *const c = self;
+    bg_model *const m = c->m;
+    double ways[PORTS] = {0};
+    int rubbing = 0, status = BG_OK;
+    memcpy(c->s, c->begun, sizeof c->begun);
+    for (int i = 0; i < K; i++) {
+        const int is_switch = bg_switches[i].kind != BG_RUBS;
+        m->mode[i] = is_switch ? !(held >> i & 1u) : c->at.before[i];
+        rubbing |= !is_switch;
+    }
+    if (held)
+        status = strike(c, m->mode, ways);
+    if (status == BG_OK && rubbing)
+        status = bg_stick(m, &c->at);
+    if (status == BG_OK)
+        status = bg_held(m, &c->at);
+    if (status != BG_OK) {
+        c->why = c->why ? c->why : status;
+        return status == BG_NEEDS_SLOPE || status == BG_STRUCTURE ? status : BG_OK;
+    }
+    *broken = contrary(c, ways);
+    *holds = *broken == 0;
+    return BG_OK;
+}
+
+/* Where some ports are switches; a step that has no mode leaves all as it was. */
+static int search_ways(search *c, const int *before)
+{
+    unsigned switches = 0, first = 0;
+    int holds;
+    for (int i = 0; i < K; i++)
+        if (bg_switches[i].kind != BG_RUBS) {
+            switches |= 1u << i;
+            first |= (unsigned)(before[i] == 0) << i;
+        }
+    const int status = bg_try_ways(K, switches, first, try_way, c, &holds);
+    if (status == BG_OK && holds)
+        return BG_OK;
+    memcpy(c->s, c->begun, sizeof c->begun);
+    return status ? status : c->why ? c->why : BG_UNDECIDED;
+}
+
+int bg_decide_step(bg_model *m, double t, double h, double *s, const double *w)
+{
+    int before[BG_ROOM(K)];
+    search c = {.m = m, .s = s, .at = {t, h, s, w, m->work.rates[0], before, m->started}};
+    memcpy(before, m->mode, sizeof before);
+    memcpy(c.begun, s, sizeof c.begun);
+    const int status = BG_SWITCHES ? search_ways(&c, before) : bg_stick(m, &c.at);
+    if (status == BG_OK)
+        m->started = 1;
+    else
+        memcpy(m->mode, before, sizeof before);
+    return status;
+}

@@ -1,0 +1,84 @@
+"""Impulses as switches come to hold: what stops what they must not let through.
+
+Held, the ports S have ``y_S = F x + D u = 0``. Of the combinations that no effort of theirs rules at
+once the states jump by ``A^-1 B_S p``, where ``D_SS p = 0``. Friction takes no part: what it gives
+is finite.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from codegen.standalone.arrays import Array, Places
+from codegen.standalone.holding import Hold
+from codegen.standalone.instant import Instant
+from codegen.standalone.switching import Switching
+from codegen.tuning import TUNING
+
+FAR = 2.0**40
+"""An impulse is looked at as a value so much larger than all others."""
+
+
+@dataclass(frozen=True)
+class Strike:
+    """What the inputs give and the readings receive of impulses, and what x gains."""
+
+    given: Array
+    received: Array
+    jump: Array
+
+
+def struck(held: Hold, now: Instant) -> Strike:
+    """The least impulses of ports that stop the slips at an instant where all are let go."""
+    m = now.numbers
+    moved = m.Q[:, held.inputs] @ held.free
+    amounts = -np.linalg.lstsq(held.slip_x @ moved, held.slips(now), rcond=TUNING.nothing)[0]
+    given = np.zeros(len(now.u))
+    given[held.inputs] = held.free @ amounts
+    return Strike(given, m.D @ given, moved @ amounts)
+
+
+def shocks(
+    strike: Strike,
+    now: Instant,
+    mode: Sequence[int],
+    switching: Sequence[Switching | None],
+    places: tuple[Places, Places],
+    guards: Callable[[Instant], Array],
+) -> list[int]:
+    """For each port 1 where its impulse goes with the mode, -1 where against it, 0 for none.
+
+    ``places``: of what the ports give in u, of what they receive in y.
+    """
+    inputs, readings = places
+    given, received = strike.given[inputs], strike.received[readings]
+    terms = np.abs(now.numbers.D[readings]) @ np.abs(strike.given)
+    largest = float(np.abs(given).max(initial=0.0))
+    size = max(largest, float(np.abs(strike.received).max(initial=0.0)))
+    pushed = _pushed(strike, now, size, guards)
+    found = [0] * len(mode)
+    for i, one in enumerate(switching):
+        if one is None:
+            continue
+        if not one.side:
+            way, least = -pushed[one.guard + (one.on == (mode[i] == 0))], size
+        elif mode[i]:
+            way, least = one.side * received[i], terms[i]
+        else:
+            way, least = -one.side * given[i], largest
+        if abs(way) > TUNING.rounding * least:
+            found[i] = 1 if way > 0 else -1
+    return found
+
+
+def _pushed(strike: Strike, now: Instant, size: float, guards: Callable[[Instant], Array]) -> Array:
+    """How conditions change with the impulses, which are so large."""
+    before, u, y = guards(now), now.u, now.y
+    if not len(before) or not size > 0:
+        return np.zeros(len(before))
+    most = FAR * (1 + float(np.abs(y).max(initial=0.0)))
+    now.u, now.y = u + most / size * strike.given, y + most / size * strike.received
+    after = guards(now)
+    now.u, now.y = u, y
+    return np.asarray((after - before) / most * size, dtype=float)

@@ -1,0 +1,217 @@
+"""Which ports of a fixed step are held where some are ideal switches, and what that does to states."""
+
+import warnings
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from codegen.standalone.arrays import Array, EvaluationError, Mode
+from codegen.standalone.deadband import DeadBand
+from codegen.standalone.evaluation import Point
+from codegen.standalone.friction import Friction, slip_rates
+from codegen.standalone.instant import Formula, Instant
+from codegen.standalone.levels import level_terms
+from codegen.standalone.stepping import Chosen, Names
+from codegen.standalone.striking import shocks, struck
+from codegen.standalone.switching import Switching
+from codegen.standalone.switchings import Broken, flipped, switchings
+from codegen.tuning import TUNING
+
+
+@dataclass(frozen=True)
+class Switches:
+    """When ports change over, None for friction; what they are called; the conditions of all.
+
+    ``guards``: to turn on and to turn off in turn; ``count``: how many.
+    """
+
+    switching: Sequence[Switching | None]
+    names: Sequence[str]
+    guards: Formula
+    count: int
+
+
+class SwitchedSteps(DeadBand):
+    """A model in fixed steps with ideal switches, which change over at starts of steps."""
+
+    def __init__(self, names: Names, friction: Friction, switches: Switches) -> None:
+        super().__init__(names, friction)
+        self.switches, self.switching = switches, switches.switching
+        self.places = [i for i, one in enumerate(self.switching) if one is not None]
+        self.rubs = np.array([one is None for one in self.switching])
+        self.first = self.mode_of(())
+
+    def mode_of(self, on: Collection[str]) -> Mode:
+        """The mode in which these switches are on; friction takes no part."""
+        every = zip(self.switches.names, self.switching, strict=True)
+        return tuple(1 if one is None else one.sign(name in on) for name, one in every)
+
+    def shown(self, mode: Mode) -> list[float]:
+        """For each switch 1 while it is on, 0 while it is off."""
+        words = [one.word(mode[i]) for i, one in enumerate(self.switching) if one is not None]
+        return [float(word == "on") for word in words]
+
+    def begin(self, at: Point, on: Collection[str], named: Collection[str]) -> Array:
+        """The vector s with which a run begins, states that are not ``named`` completed.
+
+        ``on``: the switches that are on at first, as far as conditions let them.
+        """
+        known = [self.switches.names[i] for i in self.places]
+        if unknown := [name for name in on if name not in known]:
+            raise ValueError(f"no switch is called {unknown[0]!r}; there is {', '.join(known)}")
+        now = self.any_of(at, (1,) * len(self.rubs))
+        told = self.told(now)
+        mode = self.first = self.mode_of(on)
+        self.first = flipped(mode, [i for i in self.places if self.leaves(i, mode, told)])
+        free = [j for j, name in enumerate(self.names.states[: len(now.x)]) if name not in named]
+        if 0 not in self.first or not free:
+            return at.s
+        held, s = self.friction.hold(self.first, now.numbers), at.s.copy()
+        slips, rows = held.slips(now), held.slip_x[:, free]
+        # What is heavy by itself moves least.
+        way = rows.T / np.abs(np.diag(now.numbers.A))[free, None]
+        moved = -way @ np.linalg.lstsq(rows @ way, slips, rcond=TUNING.nothing)[0]
+        s[free] += moved
+        self.tell_completed(free, now.x, moved)
+        return s
+
+    def tell_completed(self, free: Sequence[int], x: Array, moved: Array) -> None:
+        """Warn of states that follow switches at the start."""
+        told = [
+            f"{self.names.states[j]} = {x[j] + by:g}"
+            for j, by in zip(free, moved.tolist(), strict=True)
+            if by
+        ]
+        if told:
+            warnings.warn(
+                f"states that were not named follow what switches hold: {', '.join(told)}",
+                stacklevel=4,
+            )
+
+    def told(self, now: Instant) -> Array:
+        """The conditions at an instant."""
+        return self.switches.guards(now) if self.switches.count else np.zeros(0)
+
+    def leaves(self, port: int, mode: Mode, told: Array, near: Array | None = None) -> bool:
+        """Whether a condition changes a switch over in a mode; ``near``: what counts as zero."""
+        one = self.switching[port]
+        if one is None or one.side:
+            return False
+        at = one.guard + (one.on == (mode[port] == 0))
+        return bool(told[at] > (0.0 if near is None else near[at]))
+
+    def decided(self, at: Point, previous: Chosen, dead_band: float, h: float = 0.0) -> Mode:
+        """Which ports are held (0) and which let go; of friction which way it slips."""
+        return self.chosen(at, previous, dead_band, h)[0]
+
+    def settled(
+        self, at: Point, previous: Chosen, dead_band: float, h: float
+    ) -> tuple[Mode, Array]:
+        """The mode, and s after impulses, without the slips of the ports that hold."""
+        self.seen = np.maximum(self.seen, np.abs(at.s))
+        mode, s = self.chosen(at, previous, dead_band, h)
+        return mode, self.at_rest(at._replace(s=s), mode)
+
+    def chosen(self, at: Point, previous: Chosen, dead_band: float, h: float) -> tuple[Mode, Array]:
+        """The first consistent mode from the one so far on, and s after its impulses."""
+        tries = switchings(self.first if previous is None else previous, self.places)
+        mode, refused = next(tries), None
+        while True:
+            broken: Broken = frozenset()
+            try:
+                found, s, broken = self.tried(at, mode, previous, dead_band, h)
+                if not broken:
+                    return found, s
+            except EvaluationError as error:
+                refused = refused or error
+            try:
+                mode = tries.send(broken)
+            except StopIteration:
+                names = ", ".join(self.switches.names[i] for i in self.places)
+                why = f": {refused}" if refused else ""
+                raise EvaluationError(
+                    f"at t = {at.t:g} no mode of {names} is consistent{why}"
+                ) from refused
+
+    def tried(
+        self, at: Point, switched: Mode, previous: Chosen, dead_band: float, h: float
+    ) -> tuple[Mode, Array, Broken]:
+        """The mode with the switches so, s after its impulses, and the switches that contradict."""
+        s, signs = self.strike(at, switched, previous, h)
+        after, mode = at._replace(s=s), switched
+        if self.rubs.any():
+            mode = self.rubbing(after, switched, previous, dead_band, h)
+        now = self.consistent(after, mode, dead_band)
+        return mode, s, self.contrary(after, now, mode, signs, h)
+
+    def strike(
+        self, at: Point, switched: Mode, previous: Chosen, h: float
+    ) -> tuple[Array, Sequence[int]]:
+        """s after the impulses of the switches that are held, and how these go with the mode."""
+        held = tuple(np.where(self.rubs, 1, switched).tolist())
+        if 0 not in held:
+            return at.s, [0] * len(held)
+        now = self.any_of(at, (1,) * len(held))
+        hold = self.friction.hold(held, now.numbers)
+        near = TUNING.step_rounding * self.terms(now)
+        if previous is not None:
+            # What was held drifts by the step's own error, which is no impulse.
+            drift = TUNING.step_drift * h * self.rate_terms(now)
+            near += np.where(np.equal(previous, 0), drift, 0.0)
+        if (np.abs(hold.slips(now)) <= np.abs(hold.mix) @ near[hold.ports]).all():
+            return at.s, [0] * len(held)
+        found, s, n = struck(hold, now), at.s.copy(), self.form.states
+        s[:n] += found.jump
+        s[n : n + len(self.form.law_rates)] += found.received[self.form.law_rates]
+        places = self.efforts, self.slips
+        return s, shocks(found, now, switched, self.switching, places, self.told)
+
+    def contrary(
+        self, at: Point, now: Instant, mode: Mode, signs: Sequence[int], h: float
+    ) -> Broken:
+        """The switches that change over at once: by impulse, value or rate, whichever decides."""
+        found = {i for i in self.places if signs[i] < 0}
+        undecided = [i for i in self.places if not signs[i]]
+        slips, rates = now.y[self.slips], slip_rates(now, self.slips, self.moving)
+        near, slow = self.terms(now), self.rate_terms(now)
+        efforts, slack = now.u[self.efforts], self.effort_terms(now, mode)
+        for i in undecided:
+            one = self.switching[i]
+            side = one.side if one is not None else 0
+            if not side:
+                continue
+            if mode[i] == 0:
+                if side * efforts[i] > TUNING.step_rounding * slack[i]:
+                    found.add(i)
+            elif side * slips[i] < -TUNING.step_rounding * near[i]:
+                found.add(i)
+            elif side * slips[i] <= TUNING.step_rounding * near[i] and not self.beside[i]:
+                if side * rates[i] < -TUNING.step_rounding * slow[i]:
+                    found.add(i)
+        return frozenset(found | self.sent(at, now, mode, undecided, h))
+
+    def sent(self, at: Point, now: Instant, mode: Mode, ports: Sequence[int], h: float) -> set[int]:
+        """The switches whose conditions change them over: above zero, or at zero and about to be."""
+        if not self.switches.count:
+            return set()
+        told = self.told(now)
+        near = TUNING.step_rounding * level_terms(now, (), self.switches.guards)
+        found = {i for i in ports if self.leaves(i, mode, told, near)}
+        tied = [i for i in ports if i not in found and self.leaves(i, mode, told, -near)]
+        if tied and h > 0:
+            later = self.at(at._replace(t=at.t + h, s=at.s + h * now.rate), mode)
+            told = self.told(later)
+            found |= {i for i in tied if self.leaves(i, mode, told, near)}
+        return found
+
+    def effort_terms(self, now: Instant, mode: Mode) -> Array:
+        """The magnitudes of the terms that make up what holds the ports."""
+        sizes = np.full(len(mode), float(np.abs(now.u).max(initial=0.0)))
+        if 0 in mode:
+            held = self.friction.hold(mode, now.numbers)
+            terms = np.abs(held.X) @ np.abs(now.x) + np.abs(held.U) @ np.abs(now.u)
+            terms += np.abs(held.V) @ np.abs(now.du)
+            if held.inverse.size:
+                sizes[held.ports] = np.abs(held.inverse[:, : len(terms)]) @ terms
+        return sizes
