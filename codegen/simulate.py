@@ -42,7 +42,7 @@ from codegen.runs.arguments import (
     settings_of,
     signals_for,
 )
-from codegen.runs.completion import beginning
+from codegen.runs.completion import beginning, tell_completed
 from codegen.runs.hybrid import run_hybrid
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.methods import EXACT
@@ -129,7 +129,9 @@ class Simulator:
         Raises `SignalError` for unusable arguments, `SimulationError` if the run can't go on,
         `MissingExtraError` for what the method needs.
         """
-        return self.run_telling(tell, time, initial, inputs, method, rtol, atol, initially_on)
+        done = self.run_telling(tell, time, initial, inputs, method, rtol, atol, initially_on)
+        tell_completed(done.completed)
+        return done
 
     def run_telling(
         self,
