@@ -1,6 +1,6 @@
 """`simulator` and what it returns: a model with numbers, ready to run, and the record of a run."""
 
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
@@ -42,7 +42,7 @@ from codegen.runs.arguments import (
     settings_of,
     signals_for,
 )
-from codegen.runs.completion import beginning
+from codegen.runs.completion import beginning, tell_completed
 from codegen.runs.hybrid import run_hybrid
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.methods import EXACT
@@ -72,10 +72,17 @@ class Simulator:
     engine: CRuns | None = field(default=None, repr=False, compare=False)
     located: LocatedRuns | None = field(default=None, repr=False, compare=False)
 
-    def rhs(self, t: float, x: ArrayLike, u: ArrayLike = ()) -> Array:
+    def rhs(
+        self, t: float, x: ArrayLike, u: ArrayLike = (), initially_on: Iterable[Hashable] = ()
+    ) -> Array:
         """The rate of the states at one instant, inputs held; friction sticks where it can.
 
-        Raises `SignalError` for arrays of another length than ``states`` and ``inputs``.
+        Switches are as the states, the inputs and the time tell; where their conditions leave it open,
+        those in ``initially_on`` are on, the others off. Where one holds what still moves, the rate
+        is the one just after the impact.
+
+        Raises `SignalError` for arrays of another length than ``states`` and ``inputs``, `StructureError`
+        for a switch that there is not, `SimulationError` where there are no rates.
         """
         state, given = numbers_of(x, "x"), numbers_of(u, "u")
         for array, names, what in ((state, self.states, "states"), (given, self.inputs, "inputs")):
@@ -92,7 +99,8 @@ class Simulator:
         pieces += [signal.piece(t) for signal in sources]
         given = np.append(given, [signal(t) for signal in sources])
         s = self.vector(t, state, given)
-        slipping, peaks = self._all_slipping(), Peaks.none(self.closed)
+        on = checked_modes(self.switches, initially_on)
+        slipping, peaks = self._all_slipping(on), Peaks.none(self.closed)
         with np.errstate(all="ignore"):
             peaks.see(self.closed, t, s, pieces, slipping)
             ahead = TUNING.look_ahead * TUNING.standing
@@ -129,7 +137,9 @@ class Simulator:
         Raises `SignalError` for unusable arguments, `SimulationError` if the run can't go on,
         `MissingExtraError` for what the method needs.
         """
-        return self.run_telling(tell, time, initial, inputs, method, rtol, atol, initially_on)
+        done = self.run_telling(tell, time, initial, inputs, method, rtol, atol, initially_on)
+        tell_completed(done.completed)
+        return done
 
     def run_telling(
         self,
@@ -242,8 +252,12 @@ class Simulator:
         """What known sources do from ``begin`` to ``end`` [s]; their pieces follow those of the inputs."""
         return source_signals(self.closed.program, self.closed.parameters, begin, end)
 
-    def _all_slipping(self) -> tuple[int, ...]:
-        return tuple(1 for _ in self.closed.program.friction)
+    def _all_slipping(self, on: Collection[Hashable]) -> Mode:
+        """Friction that slips, and switches that are on or off."""
+        return tuple(
+            1 if port.switch is None else port.switch.sign(port.name in on)
+            for port in self.closed.program.friction
+        )
 
     def vector(self, t: float, state: Array, given: Array) -> Array:
         """The integrated vector at a state: x less what inputs that drive dependent storages add."""

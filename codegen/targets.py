@@ -8,7 +8,7 @@ object that `codegen.exports.TARGETS` lists.
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 from bondgraph.equations import StateEquations
 from codegen.inputs.signal import Signal
@@ -17,7 +17,10 @@ from codegen.numbers.arrays import Array
 
 @dataclass(frozen=True)
 class Export:
-    """One run to be written: equations, numbers, laws, start, inputs, samples [s], and what it is called."""
+    """One run to be written: equations, numbers, laws, start, inputs, samples [s], and what it is called.
+
+    ``initially_on``: the switches that are on at first.
+    """
 
     name: str
     equations: StateEquations
@@ -26,6 +29,13 @@ class Export:
     initial: Mapping[str, float]
     inputs: Mapping[str, Signal]
     times: Array
+    initially_on: tuple[Hashable, ...] = ()
+
+    @property
+    def start(self) -> dict[str, Any]:
+        """How it begins, as exports take it."""
+        on = {"initially_on": self.initially_on} if self.initially_on else {}
+        return {"initial": self.initial, "inputs": self.inputs, **on}
 
 
 class Target(Protocol):

@@ -1,7 +1,6 @@
-"""`trim`: a steady state, with friction ports that stick or slip as they would."""
+"""`trim`: a steady state, with friction and switches as they would be in it."""
 
-from collections.abc import Mapping, Sequence
-from itertools import product
+from collections.abc import Hashable, Mapping, Sequence
 
 import numpy as np
 
@@ -9,25 +8,34 @@ from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.trials import evaluated
+from codegen.modes.steady import choices, steady_modes
+from codegen.modes.switchings import Broken
+from codegen.modes.verdicts import look_at
 from codegen.numbers.arrays import Array
 from codegen.simulate import Simulator
 from codegen.tuning import TUNING
 
 ITERATIONS = 50
 
+SHOWN = 4
+"""So many reasons are told."""
+
 
 def trim(
     simulator: Simulator,
     inputs: Mapping[str, float] | None = None,
     initial: Mapping[str, float] | None = None,
+    mode: Mapping[Hashable, str] | None = None,
 ) -> dict[str, float]:
     """A point at which all states rest under constant inputs: every signal's value by name.
 
-    ``initial``: states to start the search from. Sticking is preferred where both would do. The result
-    is what `linearize` takes as ``at``.
+    ``initial``: states to start the search from. ``mode``: what friction and switches do there, in the
+    words of events, such as ``{"dog": "off", "brake": "stick"}``; of others a mode is found that is
+    consistent, from the one that the start shows. Sticking is preferred where both would do. The result is
+    what `linearize` takes as ``at``, and ``mode`` what it takes as that.
 
-    Raises `SignalError` for unusable arguments, `SimulationError` if no steady state was found.
+    Raises `SignalError` and `StructureError` for unusable arguments, `SimulationError` if no steady state
+    was found, with the ports that would leave it.
 
     >>> import bondgraph as bg, networkx as nx
     >>> from codegen import simulator
@@ -40,34 +48,63 @@ def trim(
     3.0
     """
     model = simulator.closed
+    allowed = choices(model, mode)
     pieces, start = simulator.steady(inputs or {}, initial or {})
+    left: dict[str, None] = {}
     with np.errstate(all="ignore"):
-        for mode in _modes(model, pieces, start):
+        tries = steady_modes(model, pieces, start, allowed)
+        tried = next(tries)
+        while True:
+            found, wrong = _point(model, pieces, tried, start)
+            if found is not None and not wrong:
+                return _named(model, found)
+            if wrong:
+                left.setdefault(_told(model, tried, wrong))
             try:
-                found = _rest(model, pieces, mode, start)
-            except SimulationError:
-                # Laws without a solution in a mode: it is none.
-                found = None
-            if found is not None and _consistent(model, mode, model.at(0.0, found, pieces, mode)):
-                return _named(model, model.at(0.0, found, pieces, mode))
+                tried = tries.send(frozenset(i for i in wrong if model.switching[i] is not None))
+            except StopIteration:
+                break
     raise SimulationError(
         "no steady state was found: a state may drift without end (a free rotation, an integrator), or "
         "the search needs a closer start in initial"
+        + "".join(f"; {reason}" for reason in list(left)[:SHOWN])
     )
 
 
-def _modes(model: ClosedModel, pieces: Sequence[Piece], start: Array) -> list[Mode]:
-    """All modes, those with the start's slips first."""
-    ports = len(model.friction_inputs)
-    if not ports:
-        return [()]
-    _, now = evaluated(model, 0.0, start, pieces, (1,) * ports)
-    slips = now.y[model.friction_readings]
-    signs = np.sign(np.round(slips, 12)).astype(int)
-    every = product((0, 1, -1), repeat=ports)
-    return sorted(
-        every, key=lambda mode: sum(int(s) != m for s, m in zip(signs, mode, strict=True))
-    )
+def _point(
+    model: ClosedModel, pieces: Sequence[Piece], mode: Mode, start: Array
+) -> tuple[Snapshot | None, Broken]:
+    """Where all rests in a mode, if it does, and the ports that would leave the mode there."""
+    try:
+        rest = _rest(model, pieces, mode, start)
+        if rest is None:
+            return None, frozenset()
+        now = model.at(0.0, rest, pieces, mode)
+        return now, _broken(model, mode, now) | _switched(model, pieces, mode, rest)
+    except SimulationError:
+        # Laws without a solution in a mode: it is none.
+        return None, frozenset()
+
+
+def _switched(model: ClosedModel, pieces: Sequence[Piece], mode: Mode, s: Array) -> Broken:
+    """The switches that would change over."""
+    if not model.program.switches:
+        return frozenset()
+    look = look_at(model, 0.0, s, pieces, mode)
+    ports = range(len(mode))
+    return frozenset(i for i in ports if model.switching[i] is not None and look.verdict(i) < 0)
+
+
+def _told(model: ClosedModel, mode: Mode, wrong: Broken) -> str:
+    """Which ports would leave a mode where all rests in it."""
+    words = []
+    for i in sorted(wrong):
+        port = model.program.friction[i]
+        if port.switch is not None:
+            words.append(f"{port.name!r} would not stay {port.switch.word(mode[i])}")
+        else:
+            words.append(f"{port.name!r} would not {'slip so' if mode[i] else 'stick'}")
+    return " and ".join(words)
 
 
 def _rest(model: ClosedModel, pieces: Sequence[Piece], mode: Mode, start: Array) -> Array | None:
@@ -122,16 +159,16 @@ def _slopes(
     return np.nan_to_num(slopes)
 
 
-def _consistent(model: ClosedModel, mode: Mode, now: Snapshot) -> bool:
-    """Whether slips have the mode's signs and holding efforts stay within what ports can hold."""
+def _broken(model: ClosedModel, mode: Mode, now: Snapshot) -> Broken:
+    """The friction ports whose slip has another sign, or that would need more than they can to hold."""
     slips, efforts = now.y[model.friction_readings], now.u[model.friction_inputs]
-    held = [
-        abs(efforts[i]) <= now.caps[i] * (1 + TUNING.consistent)
-        for i, m in enumerate(mode)
-        if m == 0
-    ]
-    slipping = [slips[i] * m > 0 for i, m in enumerate(mode) if m]
-    return all(held) and all(slipping)
+    return frozenset(
+        i for i, m in enumerate(mode)
+        if model.switching[i] is None
+        and not (
+            slips[i] * m > 0 if m else abs(efforts[i]) <= now.caps[i] * (1 + TUNING.consistent)
+        )
+    )  # fmt: skip
 
 
 def _named(model: ClosedModel, now: Snapshot) -> dict[str, float]:

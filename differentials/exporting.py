@@ -48,5 +48,6 @@ def write(
         ready.initial,
         ready.inputs,
         ready.times,
+        ready.initially_on,
     )
     return asked(target).write(run, out, platforms)

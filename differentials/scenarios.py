@@ -65,7 +65,10 @@ scenarios: Mapping[str, Scenario] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Prepared:
-    """A differential's full model in a scenario: equations, numbers, laws, start, inputs, samples [s]."""
+    """A full model in a scenario: equations, numbers, laws, start, inputs, samples [s].
+
+    ``initially_on``: the switches of a file's graph that are on at first.
+    """
 
     equations: bg.StateEquations
     parameters: Mapping[str, float]
@@ -73,6 +76,7 @@ class Prepared:
     initial: Mapping[str, float]
     inputs: Mapping[str, codegen.Signal]
     times: NDArray[np.float64]
+    initially_on: tuple[Hashable, ...] = ()
 
 
 def simulate(

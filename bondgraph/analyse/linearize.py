@@ -59,7 +59,12 @@ def linearize(
     shown = _shown(equations, closed, outputs)
     equations = equations.with_readings({*read, *shown, *equations.integrals.values()})
     outer = _outer(equations, closed, read, inputs, told)
-    known = {*equations.signals, *equations.integrals, *equations.parameters, *read, TIME}
+    # A point may tell what a law or a condition reads that the mode leaves out.
+    told_of = {name for law in merged.values() for name in law.free_symbols}
+    told_of |= {
+        name for one in equations.switches for name in one.on.free_symbols | one.off.free_symbols
+    }
+    known = {*equations.signals, *equations.integrals, *equations.parameters, *told_of, TIME}
     by_input = {
         p.given: closed[p.element.name] for p in equations.ports if p.element.name in closed
     }

@@ -34,6 +34,6 @@ class Fmu:
         path = folder / f"{export.name}.fmu"
         write_fmu(
             path, export.equations, export.parameters, export.laws, version=self.version,
-            initial=export.initial, inputs=export.inputs, name=export.name, platforms=platforms,
+            name=export.name, platforms=platforms, **export.start,
         )  # fmt: skip
         return [path]

@@ -1,11 +1,13 @@
 """A start: how switches are, and states that were not named completed by what switches hold."""
 
+import warnings
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 
+from bondgraph.errors import ModelWarning
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
@@ -51,7 +53,8 @@ def beginning(
     free = [j for j, name in enumerate(states) if name not in named]
     hold = model.hold(mode, now.numbers)
     slips = hold.slip_x @ now.x + hold.slip_u @ now.u
-    if not len(free) or not slips.any():
+    terms = np.abs(hold.slip_x) @ np.abs(now.x) + np.abs(hold.slip_u) @ np.abs(now.u)
+    if not len(free) or (np.abs(slips) <= TUNING.rounding * terms).all():
         return Beginning(s, mode, NOTHING, still)
     # What is heavy by itself moves least.
     rows = hold.slip_x[:, free]
@@ -64,6 +67,18 @@ def beginning(
         states[j]: float(now.x[j] + change) for j, change in zip(free, moved, strict=True) if change
     }
     return Beginning(made, mode, MappingProxyType(found), by)
+
+
+def tell_completed(completed: Mapping[str, float]) -> None:
+    """Warn whoever called what calls this of states that were completed."""
+    if completed:
+        told = ", ".join(f"{name} = {value:.9g}" for name, value in completed.items())
+        warnings.warn(
+            f"states that initial does not name follow what switches hold at the start: {told}; name them "
+            "in initial to say what is meant",
+            ModelWarning,
+            stacklevel=3,
+        )
 
 
 def _as_told(model: ClosedModel, guards: Array, mode: Mode) -> Mode:

@@ -8,7 +8,9 @@ from numpy.typing import ArrayLike
 
 from bondgraph.derive import derive
 from bondgraph.errors import StructureError
+from codegen.engine.fallback import tell
 from codegen.record.result import Result
+from codegen.runs.completion import tell_completed
 from codegen.simulate import Simulator, simulator
 from codegen.tuning import TUNING
 
@@ -49,7 +51,12 @@ class SwitchedSimulator:
         atol: float = TUNING.atol,
     ) -> Result:
         """Integrate over the given times [s]; see `Simulator.run`."""
-        return self.simulator.run(time, initial, inputs, method, rtol, atol, initially_on)
+        # Not by its `run`, so that warnings are told of who calls this.
+        done = self.simulator.run_telling(
+            tell, time, initial, inputs, method, rtol, atol, initially_on
+        )
+        tell_completed(done.completed)
+        return done
 
 
 def switched_simulator(

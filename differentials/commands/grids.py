@@ -1,6 +1,6 @@
 """Grids and measures of a sweep as they are typed."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
@@ -55,7 +55,8 @@ EVENTS: Mapping[str, tuple[Callable[[Any, str], Any], str]] = MappingProxyType(
 )
 """Measures of a port's events."""
 
-KINDS = ("stick", "slip", "cross")
+RUBBING, SWITCHING = ("stick", "slip", "cross"), ("on", "off")
+"""Events of friction, and of switches."""
 
 
 def measure_options(command: Command) -> Command:
@@ -70,9 +71,11 @@ def measure_options(command: Command) -> Command:
 
 
 def measures(
-    given: Mapping[str, Iterable[str]], signals: Iterable[str], ports: Iterable[Any]
+    given: Mapping[str, Iterable[str]], signals: Iterable[str], ports: Mapping[Any, Sequence[str]]
 ) -> dict[str, Any]:
     """Column to measure, such as ``peak_tau_k1`` and ``first_clutch_stick``.
+
+    ``ports``: node to the kinds of event that it has.
 
     Raises `BondGraphError` for signals, ports and kinds of event that there are not, and for no measure.
     """
@@ -81,12 +84,11 @@ def measures(
     for name, (make, _) in SIGNALS.items():
         check_names(given[name], known, "signal")
         found |= {f"{name}_{one}": make(one) for one in given[name]}
-    nodes = list(ports)
     for name, (count, _) in EVENTS.items():
         for text in given[name]:
             port, _, kind = text.rpartition(":")
-            (node,) = nodes_called([port or kind], nodes, "friction port")
-            check_names([kind], KINDS, "kind of event")
+            (node,) = nodes_called([port or kind], ports, "friction port or switch")
+            check_names([kind], ports[node], "kind of event")
             found[f"{name}_{port}_{kind}"] = count(node, kind)
     if not found:
         raise bg.SignalError(

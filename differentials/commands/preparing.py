@@ -38,37 +38,24 @@ def prepare(subject: Subject, asked: Asked, free: Collection[str] = ()) -> Prepa
     if subject.differential is not None:
         return _from_catalog(subject, asked)
     _refuse_catalog_options(subject, asked)
-    if subject.switches() and not asked.on:
-        raise bg.StructureError(
-            f"{subject.name} has switches, and this takes one of their modes: add --on "
-            f"{subject.switches()[0]}"
-        )
-    equations = bg.derive(subject.graph(on=asked.on))
+    first = nodes_called(asked.on, subject.switches(), "switch")
+    equations = bg.derive(subject.graph())
     missing = [name.name for name in equations.parameters if name.name not in asked.parameters]
     _refuse_missing(subject, [name for name in missing if name not in free])
     laws = _laws(asked, [port.element.name for port in equations.ports])
-    return Prepared(equations, asked.parameters, laws, asked.initial, asked.inputs, _times(asked))
+    return Prepared(
+        equations, asked.parameters, laws, asked.initial, asked.inputs, _times(asked), tuple(first)
+    )
 
 
 def run(subject: Subject, asked: Asked, backend: str, method: str) -> Result:
-    """The run itself; graphs with switches run from mode to mode."""
-    if subject.switches():
-        return _switched(subject, asked, backend, method)
+    """The run itself."""
     ready = prepare(subject, asked)
     simulator = codegen.simulator(ready.equations, ready.parameters, ready.laws, backend)
     _check_given(subject, asked, simulator)
-    return simulator.run(ready.times, ready.initial, ready.inputs, method)
-
-
-def _switched(subject: Subject, asked: Asked, backend: str, method: str) -> Result:
-    _refuse_catalog_options(subject, asked)
-    if backend != "numpy":
-        raise bg.SignalError("graphs with switches run with --backend numpy")
-    laws = _laws(asked, [] if subject.file is None else subject.file)
-    simulator = codegen.switched_simulator(subject.file, asked.parameters, laws)
-    _check_given(subject, asked, simulator)
-    first = nodes_called(asked.on, simulator.switches, "switch")
-    return simulator.run(_times(asked), asked.initial, asked.inputs, first, method)
+    return simulator.run(
+        ready.times, ready.initial, ready.inputs, method, initially_on=ready.initially_on
+    )
 
 
 def _laws(asked: Asked, nodes: Iterable[Any]) -> dict[Hashable, object]:
@@ -88,9 +75,7 @@ def _refuse_missing(subject: Subject, missing: Sequence[str]) -> None:
         raise bg.ParameterError(f"{subject.name}: no number for {', '.join(missing)}; add {more}")
 
 
-def _check_given(
-    subject: Subject, asked: Asked, simulator: codegen.Simulator | codegen.SwitchedSimulator
-) -> None:
+def _check_given(subject: Subject, asked: Asked, simulator: codegen.Simulator) -> None:
     """Refuse starts and inputs that the model has not, and inputs of a file that nothing gives."""
     check_names(asked.initial, simulator.states, "state")
     check_names(asked.inputs, simulator.inputs, "input")

@@ -12,7 +12,14 @@ import codegen
 import differentials.commands.options as options
 from bondgraph.writing import write_bytes
 from codegen.record.tables import write_columns
-from differentials.commands.grids import FORM, GRID, measure_options, measures
+from differentials.commands.grids import (
+    FORM,
+    GRID,
+    RUBBING,
+    SWITCHING,
+    measure_options,
+    measures,
+)
 from differentials.commands.names import FileOf, check_names
 from differentials.commands.options import Asked
 from differentials.commands.preparing import prepare
@@ -108,11 +115,11 @@ def _measures(
     family: codegen.Family, ready: Prepared, measured: Mapping[str, tuple[str, ...]]
 ) -> dict[str, Any]:
     signals = [*map(str, ready.equations.signals), *map(str, ready.equations.integrals)]
-    known = dict.fromkeys((*family.states, *family.inputs, *signals))
+    ports = {one.name: SWITCHING for one in ready.equations.switches}
+    known = dict.fromkeys((*family.states, *family.inputs, *signals, *map(str, ports)))
     declared = {**ready.equations.laws, **ready.laws}
-    return measures(
-        measured, known, [node for node, law in declared.items() if isinstance(law, bg.DryFriction)]
-    )
+    rubbing = [node for node, law in declared.items() if isinstance(law, bg.DryFriction)]
+    return measures(measured, known, {**dict.fromkeys(rubbing, RUBBING), **ports})
 
 
 def _swept(
@@ -125,6 +132,7 @@ def _swept(
             {name: value for name, value in ready.initial.items() if name not in grid},
             {name: value for name, value in ready.inputs.items() if name not in grid},
             workers=workers, store=store, progress=sys.stderr.isatty(),
+            initially_on=ready.initially_on,
         )  # fmt: skip
     except codegen.SweepInterrupted as stopped:
         way = "the same command goes on there" if store else "with --store DIR they would be kept"

@@ -80,12 +80,6 @@ def test_a_unit_of_a_file_has_its_inputs_inside(call: Call, tmp_path: Path) -> N
         assert 'fmiVersion="3.0"' in unit.read("modelDescription.xml").decode()
 
 
-def test_switches_need_a_mode(call: Call) -> None:
-    done = call("export", "examples/rectifier.json", "--to", "c")
-    assert done.exit_code == 2
-    assert "add --on d" in done.stderr
-
-
 HARD = (
     "class",
     "numpy",

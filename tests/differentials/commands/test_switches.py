@@ -1,0 +1,98 @@
+"""Files with switches go through the same commands as all others."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import networkx as nx
+import numpy as np
+import pytest
+from click.testing import Result
+
+import bondgraph as bg
+
+Call = Callable[..., Result]
+Data = Callable[..., Any]
+
+needs_compiler = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+RECTIFIER = ("--set", "R_s=1", "--set", "C=1e-3", "--set", "R_l=100", "--input", "u=sine(10, 50)")
+WINDOW = ("--until", "0.03", "--sample", "1e-4")
+
+
+@pytest.fixture
+def dog(call: Call) -> str:
+    """Two inertias of 1 and 3 that a dog joins while the input ``gate`` is positive."""
+    g: nx.DiGraph[Any] = nx.DiGraph()
+    g.add_nodes_from(
+        [bg.One("a"), bg.I("m_1", 1, flow="v_1"), bg.Zero("gap"), bg.Sw("dog", on="-gate"),
+         bg.One("b"), bg.I("m_2", 3, flow="v_2"), bg.R("air", "d")]
+    )  # fmt: skip
+    nx.add_path(g, ["a", "gap", "b", "m_2"])
+    g.add_edges_from([("a", "m_1"), ("gap", "dog"), ("b", "air")])
+    bg.write_json(g, "dog.json")
+    return "dog.json"
+
+
+@needs_compiler
+def test_c_runs_switches_as_numpy_does(data: Data) -> None:
+    found = {
+        backend: data("simulate", "examples/rectifier.json", *RECTIFIER, *WINDOW, "-o", "run.csv",
+                      "--backend", backend)
+        for backend in ("numpy", "c")
+    }  # fmt: skip
+    events = [(e["port"], e["kind"]) for e in found["c"]["events"]]
+    assert events == [("d", "off"), ("d", "on"), ("d", "off")]
+    times = [[e["time"] for e in found[backend]["events"]] for backend in ("numpy", "c")]
+    assert times[1] == pytest.approx(times[0], abs=1e-9)
+    assert found["c"]["final"] == pytest.approx(found["numpy"]["final"], abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("on", "kinds", "speeds"), [(("--on", "dog"), ["off"], [4.0, 0.0]), ((), [], [1.0, 1.0])]
+)
+def test_a_run_begins_with_the_switches_that_are_on(
+    dog: str, data: Data, tmp_path: Path, on: tuple[str, ...], kinds: list[str], speeds: list[float]
+) -> None:
+    """A gate of zero leaves the dog as it is: open until 1 s, or closed, and 4 rad/s shared by 1 and 3."""
+    gate = ("--set", "d=0", "--input", "gate=step(1, 1)", "--until", "2", "-o", "run.csv")
+    found = data("simulate", dog, *gate, *on, "--initial", "v_1=4", "--initial", "v_2=0")
+    assert [(e["port"], e["kind"]) for e in found["events"]] == [("dog", kind) for kind in kinds]
+    assert [found["final"][v] for v in ("v_1", "v_2")] == pytest.approx([1.0, 1.0], abs=1e-9)
+    run = np.genfromtxt(tmp_path / "run.csv", delimiter=",", names=True)
+    assert [run[v][0] for v in ("v_1", "v_2")] == pytest.approx(speeds, abs=1e-9)
+    assert run["dog"][[0, -1]].tolist() == [float(bool(on)), 0.0]
+
+
+def test_a_file_is_swept_over_numbers_and_a_switch_measured(dog: str, data: Data) -> None:
+    """Joined from 1 s on, both slow down with d/4: v = 1 exp(-d (t - 1)/4)."""
+    found = data(
+        "sweep", dog, "--grid", "d=0.5,1", "--on", "dog", "--initial", "v_1=4", "--initial", "v_2=0",
+        "--input", "gate=step(1, 1)", "--until", "2", "--final", "v_2", "--final", "dog",
+        "--first", "dog:off", "--workers", "0",
+    )  # fmt: skip
+    for run in found["runs"]:
+        assert run["final_v_2"] == pytest.approx(np.exp(-run["d"] / 4), abs=1e-9)
+        assert run["first_dog_off"] == pytest.approx(1.0, abs=1e-9)
+        assert run["final_dog"] == 0
+
+
+def test_events_are_those_that_the_port_has(dog: str, call: Call) -> None:
+    asked = ("sweep", dog, "--grid", "d=1,2", "--input", "gate=1", "--workers", "0")
+    done = call(*asked, "--first", "dog:stick")
+    assert done.exit_code == 2
+    assert "no kind of event is called 'stick'; there is on, off" in done.stderr
+    done = call(*asked, "--first", "cat:on")
+    assert "no friction port or switch is called 'cat'" in done.stderr
+
+
+def test_a_switch_that_there_is_not_is_refused(dog: str, call: Call) -> None:
+    for command in (("simulate", dog), ("export", dog, "--to", "c"), ("simulate", "alsd")):
+        done = call(*command, "--on", "cat")
+        assert done.exit_code == 2
+        there = (
+            "alsd has no switches"
+            if "alsd" in command
+            else "no switch is called 'cat'; there is dog"
+        )
+        assert there in done.stderr
