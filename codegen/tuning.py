@@ -64,6 +64,7 @@ class Tuning:
     rtol: float = _told(1e-10, "relative tolerance, unless it is told otherwise")
     atol: float = _told(1e-11, "the same in units of each state")
     stiff_span: float = _told(2e5, "run over time constant from which steps are implicit")
+    stiff_step: float = _told(5e3, "the same, over time constant, of a unit's communication step")
     followed: float = _told(0.1, "an implicit step in time constants of the inputs")
     refresh: int = _told(50, "steps after which time constants are looked at again")
     checks: int = _told(6, "points inside a step at which events are looked for")
@@ -140,6 +141,10 @@ class Tuning:
     )
     switch_floor: float = _told(1e-12, ".. and at the least")
     turns: float = _told(0.05, "radians, or powers of e, that known sources do little in")
+
+    kept_closer: float = _told(
+        1e-3, "of an importer's tolerance, which steps between its own keep: errors add up"
+    )
 
     # What is numpy's alone, by the folders that read it
     sparse_rtol: float = _told(1e-8, "relative tolerance of runs of sparse models")

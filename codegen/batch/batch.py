@@ -212,10 +212,7 @@ def _begun(asked: Asked, kept: Plan) -> Plan | None:
     given = () if callable(asked.initial) else (*map(str, asked.initial or ()), *asked.names)
     return replace(
         kept,
-        first=tuple(
-            1 if port.switch is None else port.switch.sign(port.name in asked.initially_on)
-            for port in program.friction
-        ),
+        first=program.before(asked.initially_on),
         named=tuple(int(state.name in given) for state in program.states),
     )
 

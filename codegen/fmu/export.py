@@ -5,21 +5,22 @@ import io
 import math
 import os
 import zipfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from bondgraph.algebra.expressions import normal
+from bondgraph.declare.switching import checked_modes
 from bondgraph.equations import StateEquations
 from bondgraph.errors import BondGraphError, SignalError
 from bondgraph.writing import write_bytes
-from codegen.c.export import exported, stepped
+from codegen.c.export import exported
 from codegen.c.runtime import runtime_file, runtime_names
 from codegen.fmu.binaries import binaries, chosen_platforms, headers
 from codegen.fmu.model import FmuModel, config_text, model_text
-from codegen.fmu.switches import switching
+from codegen.fmu.switches import switching, told_by_time
 from codegen.fmu.variables import Starts, variables
 from codegen.fmu.xml import build_description, description
 from codegen.inputs.signal import Signal
@@ -28,7 +29,7 @@ from codegen.model.doubts import warn_of_doubts
 from codegen.modes.pace import time_constant
 from codegen.program.identifiers import identifiers
 from codegen.program.records import Program
-from codegen.runs.arguments import initial_values
+from codegen.runs.arguments import initial_values, named_numbers
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import Leg
 from codegen.runs.steps import round_step, step_at_start
@@ -52,13 +53,19 @@ def write_fmu(
     inputs: Mapping[str, object] | None = None,
     name: str | None = None,
     platforms: str | Iterable[str] | None = None,
+    initially_on: Iterable[Hashable] = (),
 ) -> Path:
     """The equations, closed by laws, as an FMU of FMI ``version`` "2.0" or "3.0"; its path.
 
     ``parameters``, ``laws``, ``initial``: as `simulator` and its ``run`` take them. ``inputs``: a signal is a
     source inside the unit, a number is where an input of the unit starts; all others start at 0.
     ``name``: of the model, the path's stem if none is given. ``platforms``: names such as
-    "x86_64-windows", "all" for every one, this machine's if none is given; see `PLATFORMS`.
+    "x86_64-windows", "all" for every one, this machine's if none is given; see `PLATFORMS`. ``initially_on``:
+    the switches that are on before the start, as far as their conditions let them; states that neither
+    ``initial`` names nor the importer sets then follow what these hold.
+
+    Each switch is an integer variable, 1 on and 0 off. Co-simulation locates events and keeps the
+    importer's tolerance; with the parameter ``fixed_internal_step`` above zero [s] it takes fixed steps.
 
     The same arguments and compilers give the same bytes. Raises what `to_c` raises, `SignalError` for
     unusable arguments, `MissingExtraError` without the extra ``export``, `WriteError` where the file cannot
@@ -69,11 +76,13 @@ def write_fmu(
     target = Path(path)
     chosen = chosen_platforms(platforms)
     official = headers(version)
-    model = _model(name or target.stem, equations, parameters, laws, initial or {}, inputs or {})
+    model = _model(
+        name or target.stem, equations, parameters, laws, initial or {}, inputs or {}, initially_on
+    )
     closed, code = exported(equations, parameters, laws, name=model.name)
     warn_of_doubts(closed.program, equations, closed.parameters)
     own = [name for name in runtime_names("fmu") if not name.startswith(OTHERS[version])]
-    sources = stepped(code) | {name: runtime_file(name) for name in own}
+    sources = code | {name: runtime_file(name) for name in own}
     sources |= {"fmu_model.c": model_text(model), **official}
     units = sorted(file for file in sources if file.endswith(".c"))
     token = _token(sources, description(model, version, "", units), config_text(model, ""))
@@ -95,6 +104,7 @@ def _model(
     laws: Mapping[Any, object] | None,
     initial: Mapping[str, float],
     inputs: Mapping[str, object],
+    initially_on: Iterable[Hashable],
 ) -> FmuModel:
     """Everything about the unit but its sources."""
     ready = bare_simulator(equations, parameters, laws, timed=False)
@@ -105,11 +115,14 @@ def _model(
     every = [Constant(one) if isinstance(one, float) else one for one in signals]
     refuse_impulses(ready.closed, every, np.array([0.0, math.inf]))
     start = initial_values(initial, ready.states)
+    named = named_numbers(initial, ready.states)
+    on = checked_modes(ready.switches, initially_on)
     shortest = _shortest(told, start.tolist(), every)
     switches = switching(program)
     starts = Starts(
         tuple(float(exact[symbol.name]) for symbol in program.parameters),
         tuple(start.tolist()),
+        tuple(name in named for name in ready.states),
         tuple(one if isinstance(one, float) else 0.0 for one in signals),
         frozenset(inside),
         _internal_step(shortest, step_at_start(ready.closed, start, every)),
@@ -122,7 +135,9 @@ def _model(
         variables(program, equations, starts, _indicators(program) + len(switches)),
         starts,
         tuple(sorted(inside.items())),
+        program.before(on),
         switches,
+        told_by_time(program),
         told.closed.program.sources,
         shortest,
     )

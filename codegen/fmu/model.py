@@ -20,9 +20,10 @@ from codegen.program.records import Program, block
 class FmuModel:
     """A model on its way into a unit. ``sources``: external inputs with the signals that are inside.
 
-    ``known``: what holds the
-    time and parameters alone. ``shortest`` [s]: its shortest time constant. ``identifier``: what its binaries
-    are called.
+    ``first``: the mode of each port before a run. ``switches``: expressions at whose zeros laws switch,
+    ``timed``: those of time and parameters alone, with conditions of switches that are. ``known``: what
+    holds the time and parameters alone. ``shortest`` [s]: its shortest time constant. ``identifier``: what
+    its binaries are called.
     """
 
     name: str
@@ -32,13 +33,15 @@ class FmuModel:
     variables: tuple[Variable, ...]
     starts: Starts
     sources: tuple[tuple[int, Signal], ...]
+    first: tuple[int, ...]
     switches: tuple[sp.Expr, ...]
+    timed: tuple[sp.Expr, ...]
     known: tuple[sp.Expr, ...]
     shortest: float
 
     @property
     def indicators(self) -> int:
-        """Two for each friction port, one for each expression at whose zero a law switches."""
+        """Two for each port, one for each expression at whose zero a law switches."""
         return 2 * len(self.program.friction) + len(self.switches)
 
 
@@ -49,8 +52,8 @@ def config_text(model: FmuModel, token: str) -> str:
     sizes = {
         "VARIABLES": str(len(model.variables)),
         "SWITCHES": str(len(model.switches)),
+        "TIMED": str(len(model.timed)),
         "SHORTEST": repr(model.shortest),
-        "STEP": repr(model.starts.step),
         "TOKEN": quoted(token),
     }
     lines += [f"#define FMU_{key} {value}" for key, value in sizes.items()]
@@ -58,10 +61,10 @@ def config_text(model: FmuModel, token: str) -> str:
 
 
 def model_text(model: FmuModel) -> str:
-    """fmu_model.c: variables, start values, sources and switching expressions."""
+    """fmu_model.c: variables, start values and modes, sources and switching expressions."""
     program = model.program
     taken = {*program.parameters, *program.inputs, *program.readings, *program.external}
-    code = block(model.switches, taken)
+    code, timed = block(model.switches, taken), block(model.timed, taken)
     lines = [
         *comment(f"Tables of the unit {model.name}; written by bondgraph-toolkit."),
         "#include <math.h>",
@@ -75,8 +78,13 @@ def model_text(model: FmuModel) -> str:
         ),
         *doubles("fmu_starts", model.starts.states),
         *doubles("fmu_inputs", model.starts.inputs),
+        *integers("fmu_named", map(int, model.starts.named)),
+        *integers("fmu_first", model.first),
         *_sources(model.sources, len(program.external)),
         *function("fmu_switch_values", "Where laws switch", code, places(program), local=False),
+        *function(
+            "fmu_timed_values", "What changes by time alone", timed, places(program), local=False
+        ),
         *resolution_text(program, model.known),
     ]
     return "\n".join(lines) + "\n"

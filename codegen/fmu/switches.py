@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import sympy as sp
 
+from bondgraph.algebra.expressions import TIME
 from codegen.program.records import Block, Program
 
 MOST_CHOICES = 4
@@ -13,8 +14,25 @@ MOST_CHOICES = 4
 def switching(program: Program) -> tuple[sp.Expr, ...]:
     """Arguments of Abs, sign and Heaviside, differences that Min, Max and conditions compare.
 
-    Not those of parameters alone, nor the slips of friction ports, which are events anyway.
+    Not those of parameters or of time alone, nor the slips of friction ports, which are events anyway.
     """
+    return tuple(size for size in _sizes(program) if not _of_time(size, program))
+
+
+def told_by_time(program: Program) -> tuple[sp.Expr, ...]:
+    """What changes its sign by time alone, at given parameters: of those, and conditions of switches."""
+    found: dict[sp.Expr, None] = {}
+    for size in (*_sizes(program), *_whole(program.guards)):
+        if _of_time(size, program) and -size not in found:
+            found.setdefault(size)
+    return tuple(found)
+
+
+def _of_time(size: sp.Expr, program: Program) -> bool:
+    return TIME in size.free_symbols and size.free_symbols <= {TIME, *program.parameters}
+
+
+def _sizes(program: Program) -> tuple[sp.Expr, ...]:
     slips = {program.readings[port.reading] for port in program.friction}
     blocks = [program.known.values, *(group.values for group in program.groups)]
     blocks += [program.coupled.values, program.friction_values, program.coefficients]

@@ -10,7 +10,7 @@ from codegen.program.records import Program
 from codegen.program.units import units
 
 STEP = "fixed_internal_step"
-"""The parameter that is the length of co-simulation's internal steps [s]."""
+"""The parameter that is the length of co-simulation's fixed steps [s]; 0: events are located."""
 
 
 @dataclass(frozen=True)
@@ -33,16 +33,20 @@ class Variable:
 
     @property
     def integer(self) -> bool:
-        """Friction modes are whole numbers."""
-        return self.kind == "FMU_MODE"
+        """Friction modes and switches are whole numbers."""
+        return self.kind in ("FMU_MODE", "FMU_SWITCH")
 
 
 @dataclass(frozen=True)
 class Starts:
-    """Where parameters, states and inputs start; ``sources``: external inputs with sources inside."""
+    """Where parameters, states and inputs start; ``sources``: external inputs with sources inside.
+
+    ``named``: whether each state was. ``step``: what co-simulation may be stepped by [s].
+    """
 
     parameters: tuple[float, ...]
     states: tuple[float, ...]
+    named: tuple[bool, ...]
     inputs: tuple[float, ...]
     sources: frozenset[int]
     step: float
@@ -91,7 +95,7 @@ class _Listing:
             )  # fmt: skip
         self._made(
             STEP, "FMU_INTERNAL_STEP", causality="parameter", variability="fixed", initial="exact",
-            start=starts.step, unit="s",
+            start=0.0, unit="s",
         )  # fmt: skip
         free = [at for at in range(len(program.external)) if at not in starts.sources]
         for at in free:
@@ -137,7 +141,10 @@ class _Listing:
             base = self.found[place].name
             self._made(f"der({base})", "FMU_RATE", at, derivative=place, unit=rate)
         for at, port in enumerate(program.friction):
-            self._made(f"mode({port.name})", "FMU_MODE", at, variability="discrete")
+            if port.switch is None:
+                self._made(f"mode({port.name})", "FMU_MODE", at, variability="discrete")
+            else:
+                self._made(str(port.name), "FMU_SWITCH", at, variability="discrete")
         for at in range(indicators):
             self._made(f"event_indicator({at + 1})", "FMU_INDICATOR", at)
 

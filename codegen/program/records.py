@@ -1,6 +1,6 @@
 """What a program is made of: straight-line code, patterns of matrices, groups of laws."""
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Container, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -132,6 +132,13 @@ class Program:
     def switches(self) -> tuple[FrictionPort, ...]:
         """The ports that are ideal switches."""
         return tuple(port for port in self.friction if port.switch is not None)
+
+    def before(self, on: Container[Hashable]) -> tuple[int, ...]:
+        """The mode of each port before a run: these switches on, the others off, friction let go."""
+        return tuple(
+            1 if port.switch is None else port.switch.sign(port.name in on)
+            for port in self.friction
+        )
 
     @property
     def given(self) -> list[int]:

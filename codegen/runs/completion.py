@@ -39,10 +39,7 @@ def beginning(
     ``on``: the switches that are on; friction completes nothing.
     """
     still = np.zeros(len(model.program.states) + len(model.program.law_states))
-    mode = tuple(
-        1 if port.switch is None else port.switch.sign(port.name in on)
-        for port in model.program.friction
-    )
+    mode: Mode = model.program.before(on)
     if not model.program.switches:
         return Beginning(s, mode, NOTHING, still)
     _, now = evaluated(model, t, s, pieces, tuple(1 for _ in mode))

@@ -68,9 +68,10 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean limited, fmi2Real to
                                fmi2Real start, fmi2Boolean ends, fmi2Real stop)
 {
     fmu2 *const f = c;
-    (void)limited, (void)tolerance, (void)ends, (void)stop;
+    (void)ends, (void)stop;
     if (f->core.at.phase != FMU_MADE)
         return fmu2_tell(f, "an experiment is set up after instantiation");
+    f->core.at.tolerance = limited ? tolerance : 0.0;
     fmu_set_time(&f->core, start);
     return fmi2OK;
 }
@@ -108,7 +109,7 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
     return fmu2_tell(c, fmu_set_all(CORE(c), vr, nvr, value));
 }
 
-/* The only integers are friction modes. */
+/* The only integers are friction modes and switches. */
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                           fmi2Integer value[])
 {

@@ -87,7 +87,8 @@ void fmi3FreeInstance(fmi3Instance c)
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean limited, fmi3Float64 tolerance,
                                        fmi3Float64 start, fmi3Boolean ends, fmi3Float64 stop)
 {
-    (void)limited, (void)tolerance, (void)ends, (void)stop;
+    (void)ends, (void)stop;
+    CORE(c)->at.tolerance = limited ? tolerance : 0.0;
     return fmu3_tell(c, fmu_begin(CORE(c), start));
 }
 
@@ -124,7 +125,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t 
     return fmu3_tell(c, fmu_set_all(CORE(c), vr, nvr, values));
 }
 
-/* The only integers are friction modes. */
+/* The only integers are friction modes and switches. */
 fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr,
                         fmi3Int32 values[], size_t count)
 {

@@ -14,6 +14,7 @@ fmu_error fmu_begin(fmu_instance *f, double start)
         return "initialization begins once, after instantiation";
     f->at.phase = FMU_INITIALIZING;
     fmu_set_time(f, start);
+    f->at.began = start;
     fmu_pass(f, start);
     return NULL;
 }
@@ -72,7 +73,7 @@ fmu_error fmu_get_modes(fmu_instance *f, const unsigned *references, size_t coun
     fmu_error failed = NULL;
     for (size_t i = 0; i < count && !failed; i++) {
         double found = 0.0;
-        failed = references[i] < FMU_VARIABLES && fmu_variables[references[i]].kind == FMU_MODE
+        failed = references[i] < FMU_VARIABLES && fmu_variables[references[i]].kind >= FMU_MODE
             ? fmu_get(f, references[i], &found) : "this variable is no integer";
         values[i] = (int)found;
     }
@@ -91,7 +92,7 @@ fmu_error fmu_get_rates(fmu_instance *f, double *rates, size_t count)
 {
     const fmu_error failed = count == FMU_STATES ? fmu_refresh(f) : "wrong number of states";
     if (!failed)
-        memcpy(rates, f->view.shot.rate, sizeof(double) * count);
+        memcpy(rates, f->located.view.shot.rate, sizeof(double) * count);
     return failed;
 }
 

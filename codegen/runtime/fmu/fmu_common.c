@@ -16,7 +16,7 @@ static int externals_at(const void *self, double t, double *w, double *dw)
 {
     const fmu_instance *const f = self;
     double following;
-    fmu_externals(f, t, w, dw);
+    fmu_externals(f, f->at.segment, t, w, dw);
     return !(f->at.exchange && fmu_next_break(f, &following) && t > following);
 }
 
@@ -24,32 +24,54 @@ void fmu_reset(fmu_instance *f, int exchange)
 {
     memset(f, 0, sizeof *f);
     f->at.exchange = exchange;
-    f->at.step = FMU_STEP;
     bg_model_parameters(f->at.parameters);
     memcpy(f->at.start, fmu_starts, sizeof(double) * FMU_STATES);
     memcpy(f->at.given, fmu_inputs, sizeof(double) * BG_EXTERNAL);
-    for (int i = 0; i < BG_FRICTION; i++)
-        f->at.mode[i] = 1;
-    f->view.model = &f->model;
-    f->view.peaks = &f->at.peaks;
-    f->view.self = f;
-    f->view.given = externals_at;
+    memcpy(f->at.named, fmu_named, sizeof(int) * FMU_STATES);
+    memcpy(f->at.mode, fmu_first, sizeof(int) * BG_FRICTION);
     f->stale = f->changed = 1;
+}
+
+/* What the view looks at. */
+static void look_here(fmu_instance *f)
+{
+    bg_view *const v = &f->located.view;
+    v->model = &f->model;
+    v->peaks = &f->at.peaks;
+    v->self = f;
+    v->given = externals_at;
 }
 
 /* Parameters that were set take effect. */
 fmu_error fmu_apply(fmu_instance *f)
 {
     int status;
+    look_here(f);
     if (!f->changed)
         return NULL;
     status = bg_model_init(&f->model, f->at.parameters);
     memcpy(f->model.mode, f->at.mode, sizeof f->model.mode);
+    memcpy(f->model.seen, f->at.seen, sizeof f->model.seen);
     f->model.started = f->at.stepped;
     f->model.fastest = f->at.fastest;
     f->changed = status != BG_OK;
-    f->view.measured = 0;
+    f->located.view.measured = 0;
     return message(status);
+}
+
+/* The vector and the mode at the start values, which those that were not set follow. */
+static fmu_error start(fmu_instance *f)
+{
+    int mode[BG_ROOM(BG_FRICTION)];
+    memcpy(mode, fmu_first, sizeof(int) * BG_FRICTION);
+    int status = bg_model_vector(&f->model, f->at.time, f->at.start, f->w, f->at.s);
+    if (status == BG_OK)
+        status = bg_complete(&f->model, f->at.time, f->w, f->at.named, mode, f->at.s);
+    if (status != BG_OK || f->frozen)
+        return message(status);
+    memcpy(f->at.mode, mode, sizeof(int) * BG_FRICTION);
+    f->at.decided = 0;
+    return fmu_decide(f);
 }
 
 /* Every value at the instance's time, in its mode; before the start of a run the mode is looked for. */
@@ -61,14 +83,9 @@ fmu_error fmu_refresh(fmu_instance *f)
     failed = fmu_apply(f);
     if (failed)
         return failed;
-    fmu_externals(f, f->at.time, f->w, f->dw);
-    if (f->at.phase <= FMU_INITIALIZING) {
-        failed = message(bg_model_vector(&f->model, f->at.time, f->at.start, f->w, f->at.s));
-        if (!failed && !f->frozen) {
-            f->at.decided = 0;
-            failed = fmu_decide(f);
-        }
-    }
+    fmu_externals(f, f->at.segment, f->at.time, f->w, f->dw);
+    if (f->at.phase <= FMU_INITIALIZING)
+        failed = start(f);
     if (!failed)
         failed = fmu_look(f);
     if (!failed && FMU_SWITCHES)
@@ -79,12 +96,12 @@ fmu_error fmu_refresh(fmu_instance *f)
 
 fmu_error fmu_look(fmu_instance *f)
 {
-    return message(bg_view_look(&f->view, f->at.time, f->at.s, f->at.mode));
+    return message(bg_view_look(&f->located.view, f->at.time, f->at.s, f->at.mode));
 }
 
 static double state_of(const fmu_instance *f, int at)
 {
-    return at < BG_STATES ? f->view.shot.x[at] : f->view.shot.z[at - BG_STATES];
+    return at < BG_STATES ? f->located.view.shot.x[at] : f->located.view.shot.z[at - BG_STATES];
 }
 
 fmu_error fmu_get(fmu_instance *f, unsigned reference, double *value)
@@ -106,14 +123,15 @@ fmu_error fmu_get(fmu_instance *f, unsigned reference, double *value)
     case FMU_SLOPE: *value = f->at.slopes[v->index]; break;
     case FMU_STATE: *value = state_of(f, v->index); break;
     case FMU_VECTOR: *value = f->at.s[v->index]; break;
-    case FMU_RATE: *value = f->view.shot.rate[v->index]; break;
-    case FMU_READING: *value = f->view.shot.y[v->index]; break;
-    case FMU_GIVEN: *value = f->view.shot.u[v->index]; break;
+    case FMU_RATE: *value = f->located.view.shot.rate[v->index]; break;
+    case FMU_READING: *value = f->located.view.shot.y[v->index]; break;
+    case FMU_GIVEN: *value = f->located.view.shot.u[v->index]; break;
     case FMU_SOURCE: *value = f->w[v->index]; break;
     case FMU_INDICATOR:
-        fmu_indicators_of(f, &f->view.shot, indicators);
+        fmu_indicators_of(f, &f->located.view.shot, indicators);
         *value = indicators[v->index];
         break;
+    case FMU_SWITCH: *value = bg_switches[v->index].on == (f->at.mode[v->index] == 0); break;
     default: *value = f->at.mode[v->index];
     }
     return NULL;
@@ -145,10 +163,11 @@ fmu_error fmu_set(fmu_instance *f, unsigned reference, double value)
         if (f->at.phase > FMU_INITIALIZING)
             return "a start value can only be set before the start";
         f->at.start[v->index] = value;
+        f->at.named[v->index] = 1;
         return NULL;
     case FMU_INTERNAL_STEP:
-        if (f->at.phase > FMU_INITIALIZING || value <= 0)
-            return "fixed_internal_step must be positive, and set before the start";
+        if (f->at.phase > FMU_INITIALIZING || value < 0)
+            return "fixed_internal_step must be set before the start: 0, or a length [s]";
         f->at.step = value;
         return NULL;
     default: return "this variable cannot be set";

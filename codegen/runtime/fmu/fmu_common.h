@@ -4,8 +4,7 @@
 #define FMU_COMMON_H
 
 #include "fmu_config.h"
-#include "model_signals.h"
-#include "port_sight.h"
+#include "model_located.h"
 
 enum {
     FMU_STATES = BG_STATES + BG_LAW_STATES,
@@ -17,7 +16,7 @@ typedef const char *fmu_error;
 
 enum fmu_kind {
     FMU_TIME, FMU_PARAMETER, FMU_INTERNAL_STEP, FMU_INPUT, FMU_SLOPE, FMU_STATE, FMU_VECTOR, FMU_RATE,
-    FMU_READING, FMU_GIVEN, FMU_SOURCE, FMU_INDICATOR, FMU_MODE
+    FMU_READING, FMU_GIVEN, FMU_SOURCE, FMU_INDICATOR, FMU_MODE, FMU_SWITCH
 };
 
 enum fmu_phase { FMU_MADE, FMU_INITIALIZING, FMU_EVENT, FMU_CONTINUOUS, FMU_STEPPING, FMU_ENDED };
@@ -26,17 +25,19 @@ typedef struct {
     int kind, index;
 } fmu_variable;
 
-/* All that a run depends on: what is saved and restored. Plain numbers. `rest`, `margin`: how far a
- * slip or a holding effort may go beyond its bound before it counts as an event. */
+/* All that a run depends on: what is saved and restored. Plain numbers. `began`: when it did; `step`:
+ * of fixed internal steps, 0 where events are located; `tolerance`: relative, 0 where none is told;
+ * `seen`: as of the model. `named`: start values that are kept as they are. `rest`, `margin`: how far a
+ * slip or what holds or keeps a port may go beyond its bound before it counts as an event. */
 typedef struct {
-    double time, step;
+    double time, began, step, tolerance, seen[BG_SIZE];
     double parameters[BG_ROOM(BG_PARAMETERS)], start[BG_ROOM(FMU_STATES)], s[BG_SIZE];
     double given[BG_ROOM(BG_EXTERNAL)], slopes[BG_ROOM(BG_EXTERNAL)];
     bg_peaks peaks;
     double rest[BG_ROOM(BG_FRICTION)], margin[BG_ROOM(BG_FRICTION)];
     double switch_peak[BG_ROOM(FMU_SWITCHES)], switch_rest[BG_ROOM(FMU_SWITCHES)];
     int side[BG_ROOM(FMU_SWITCHES)], mode[BG_ROOM(BG_FRICTION)], segment;
-    int phase, decided, exchange, stepped;
+    int named[BG_ROOM(FMU_STATES)], phase, decided, exchange, stepped;
     bg_fastest fastest;
 } fmu_memory;
 
@@ -44,18 +45,21 @@ typedef struct fmu_instance {
     fmu_memory at;
     int stale, changed, frozen; /* values, parameters; frozen: the mode is not to be decided */
     bg_model model;
-    bg_view view;
+    bg_located located; /* its view is the instance's */
     double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)], point[BG_SIZE];
     double switches[BG_ROOM(FMU_SWITCHES)], steps[3 * BG_ROOM(BG_EXTERNAL)];
     char text[256]; /* of a failure that has numbers */
 } fmu_instance;
 
-/* What is generated: the variables by value reference, sources, start values, switching expressions. */
+/* What is generated: the variables by value reference, sources, start values and which of them are
+ * kept, how ports are before a run, switching expressions, those of time alone. */
 extern const fmu_variable fmu_variables[];
 extern const bg_signals fmu_signals; /* sources inside the unit .. */
 extern const int fmu_inside[];       /* .. and whether an external input is one */
 extern const double fmu_starts[], fmu_inputs[];
+extern const int fmu_named[], fmu_first[];
 void fmu_switch_values(const bg_values *v, double *out);
+void fmu_timed_values(const bg_values *v, double *out);
 int fmu_resolved(const bg_values *v, double t, double h); /* known sources do little in h */
 
 /* fmu_common.c: everything at the time and states of the instance in its mode. */
@@ -87,16 +91,20 @@ fmu_error fmu_get_indicators(fmu_instance *f, double *indicators, size_t count);
 void fmu_get_nominals(double *nominals, size_t count);
 fmu_error fmu_copy(void *to, const void *from, size_t size);
 
-/* fmu_sources.c: external inputs at a time; breakpoints that are passed; the next one. The time of
- * the next event: of a breakpoint, or where known sources have done enough to be looked at. */
-void fmu_externals(const fmu_instance *f, double t, double *w, double *dw);
+/* fmu_sources.c: external inputs at a time in a segment; breakpoints that are passed; the next one. The
+ * time of the next event: of a breakpoint, or of a look. That after t: where known sources have done
+ * enough to be looked at, or an expression of time alone changes its sign. */
+void fmu_externals(const fmu_instance *f, int segment, double t, double *w, double *dw);
 void fmu_pass(fmu_instance *f, double t);
 int fmu_next_break(const fmu_instance *f, double *time);
 int fmu_next_event(const fmu_instance *f, double *time);
+int fmu_next_look(const fmu_instance *f, double t, double *time);
 double fmu_resolution(const fmu_instance *f, double t, double longest);
 
-/* fmu_modes.c: the friction mode from the slips and efforts at an instant. */
+/* fmu_modes.c: the mode at an instant, and the vector after an impact there; what counts as zero of
+ * what keeps switches, once everything in their mode is known. */
 fmu_error fmu_decide(fmu_instance *f);
+void fmu_note_stays(fmu_instance *f);
 
 /* fmu_events.c */
 void fmu_indicators_of(fmu_instance *f, const bg_snapshot *now, double *values);
@@ -104,8 +112,11 @@ fmu_error fmu_indicators(fmu_instance *f, double *values);
 fmu_error fmu_initialize(fmu_instance *f);
 fmu_error fmu_event(fmu_instance *f, int *states_changed);
 
-/* fmu_step.c */
+/* fmu_step.c: a communication step; what went wrong at t. fmu_fixed.c, fmu_locate.c: from t to the end
+ * in fixed internal steps, or as a run with events located. */
 fmu_error fmu_advance(fmu_instance *f, double t, double h);
+fmu_error fmu_fixed(fmu_instance *f, double t, double end);
+fmu_error fmu_locate(fmu_instance *f, double t, double end);
 
 /* fmu_derive.c */
 fmu_error fmu_derive(fmu_instance *f, const unsigned *unknowns, size_t rows, const unsigned *knowns,

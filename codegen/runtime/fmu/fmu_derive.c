@@ -46,7 +46,7 @@ static fmu_error far_difference(fmu_instance *f, const unsigned *unknowns, size_
         memset(f->point, 0, sizeof f->point);
         memset(f->w, 0, sizeof f->w);
         push_along(knowns, columns, seed, out * BG_FAR, f->point, f->w, dw);
-        status = bg_evaluate(&f->model, 0.0, f->point, f->w, dw, f->at.mode, 0, &f->view.shot);
+        status = bg_evaluate(&f->model, 0.0, f->point, f->w, dw, f->at.mode, 0, &f->located.view.shot);
         if (status != BG_OK)
             return bg_model_message(status);
         if (FMU_SWITCHES)

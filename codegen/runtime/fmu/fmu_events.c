@@ -21,8 +21,25 @@ static void keep_at_rest(fmu_instance *f, const bg_snapshot *now, double *values
     }
 }
 
-/* Two for each friction port: its slip in its direction; margins to breakaway where it sticks. Then one
- * for each expression at whose zero a law switches. A little below zero still counts as holding. */
+/* What keeps switches in their mode. */
+static void keep_switches(fmu_instance *f, const bg_snapshot *now, double *values)
+{
+    bg_port ports[BG_ROOM(K)] = {{0}};
+    for (int i = 0; i < K; i++) {
+        ports[i].slip = now->y[bg_friction_readings[i]];
+        ports[i].effort = now->u[bg_friction_inputs[i]];
+    }
+    bg_view_keep(&f->located.view, f->at.mode, ports);
+    for (int i = 0; i < K; i++)
+        if (bg_switches[i].kind != BG_RUBS) {
+            values[2 * i] = ports[i].stay + f->at.margin[i];
+            values[2 * i + 1] = 1.0;
+        }
+}
+
+/* Two for each friction port: its slip in its direction; margins to breakaway where it sticks. Two for
+ * each switch, too: what keeps it, and none. Then one for each expression at whose zero a law switches.
+ * A little below zero still counts as holding. */
 void fmu_indicators_of(fmu_instance *f, const bg_snapshot *now, double *values)
 {
     for (int i = 0; i < K; i++) {
@@ -37,6 +54,8 @@ void fmu_indicators_of(fmu_instance *f, const bg_snapshot *now, double *values)
         }
     }
     keep_at_rest(f, now, values);
+    if (BG_SWITCHES)
+        keep_switches(f, now, values);
     for (int k = 0; k < FMU_SWITCHES; k++)
         values[2 * K + k] = f->at.side[k] * f->switches[k] + f->at.switch_rest[k];
 }
@@ -45,7 +64,7 @@ fmu_error fmu_indicators(fmu_instance *f, double *values)
 {
     const fmu_error failed = fmu_refresh(f);
     if (!failed)
-        fmu_indicators_of(f, &f->view.shot, values);
+        fmu_indicators_of(f, &f->located.view.shot, values);
     return failed;
 }
 
@@ -63,7 +82,7 @@ static void note_sides(fmu_instance *f)
 }
 
 /* Takes what slip is left at sticking ports from the states, along A^-1 F^T. */
-static fmu_error remove_slips(fmu_instance *f, int *moved)
+static fmu_error remove_slips(fmu_instance *f)
 {
     int sticking = 0;
     fmu_error failed = fmu_refresh(f);
@@ -72,27 +91,34 @@ static fmu_error remove_slips(fmu_instance *f, int *moved)
     if (failed || !sticking)
         return failed;
     memcpy(f->point, f->at.s, sizeof f->at.s);
-    const int status = bg_remove_slips(&f->model, f->at.mode, &f->view.shot, f->at.s);
+    const int status = bg_remove_slips(&f->model, f->at.mode, &f->located.view.shot, f->at.s);
     if (memcmp(f->point, f->at.s, sizeof f->at.s) != 0)
-        *moved = f->stale = 1;
+        f->stale = 1;
     return status == BG_OK ? NULL : bg_model_message(status);
 }
 
+/* Everything just after the instance's time; whether an impact, or what is held, moved the states. */
 static fmu_error settle_event(fmu_instance *f, int *states_changed)
 {
+    double before[BG_SIZE];
     fmu_error failed;
+    memcpy(before, f->at.s, sizeof before);
     fmu_pass(f, f->at.time);
     failed = fmu_apply(f);
     bg_have_seen(&f->model, f->at.s);
+    memcpy(f->at.seen, f->model.seen, sizeof f->at.seen);
     if (!failed)
         failed = fmu_decide(f);
     if (!failed)
-        failed = remove_slips(f, states_changed);
+        failed = remove_slips(f);
     if (!failed)
         failed = fmu_refresh(f);
-    if (!failed)
-        note_sides(f);
-    return failed;
+    *states_changed = memcmp(before, f->at.s, sizeof before) != 0;
+    if (failed)
+        return failed;
+    note_sides(f);
+    fmu_note_stays(f);
+    return NULL;
 }
 
 /* The end of initialization: the vector, the mode, and slips that stick at rest. */
@@ -100,6 +126,9 @@ fmu_error fmu_initialize(fmu_instance *f)
 {
     int moved = 0;
     fmu_error failed;
+    if (BG_SWITCHES && f->at.step > 0)
+        return "fixed_internal_step: no fixed steps of a model with switches; leave it 0, so that "
+               "events are located";
     fmu_pass(f, f->at.time);
     failed = fmu_refresh(f);
     if (failed)

@@ -1,4 +1,4 @@
-/* Which ports stick and which way the others slip: one consistent mode at one instant. */
+/* Which ports are held and which way the others slip: one consistent mode at one instant. */
 #include <math.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@ static void note_touched(fmu_instance *f, int *touched)
     double indicators[BG_ROOM(FMU_INDICATORS)];
     if (!f->at.decided || fmu_look(f))
         return; /* a mode that can no longer be evaluated tells nothing */
-    fmu_indicators_of(f, &f->view.shot, indicators);
+    fmu_indicators_of(f, &f->located.view.shot, indicators);
     for (int i = 0; i < K; i++)
         if (indicators[2 * i] <= 0 || indicators[2 * i + 1] <= 0)
             touched[i] = f->at.mode[i] ? BG_PASSED : BG_TOUCHED;
@@ -21,17 +21,28 @@ static void note_touched(fmu_instance *f, int *touched)
 static void note_sizes(fmu_instance *f)
 {
     bg_port ports[BG_ROOM(K)];
-    bg_view_ports(&f->view, f->at.mode, FMU_SHORTEST, ports);
+    bg_view_ports(&f->located.view, f->at.mode, FMU_SHORTEST, ports);
     for (int i = 0; i < K; i++) {
         f->at.rest[i] = BG_HYSTERESIS * ports[i].near_slip;
         f->at.margin[i] = BG_HYSTERESIS * ports[i].near_effort;
     }
 }
 
+void fmu_note_stays(fmu_instance *f)
+{
+    bg_port ports[BG_ROOM(K)];
+    if (!BG_SWITCHES)
+        return;
+    bg_view_ports(&f->located.view, f->at.mode, FMU_SHORTEST, ports);
+    for (int i = 0; i < K; i++)
+        if (bg_switches[i].kind != BG_RUBS)
+            f->at.margin[i] = BG_HYSTERESIS * ports[i].near_stay;
+}
+
 /* The mode just after the instance's time; ports at rest, or that crossed it, stick if they can. */
 fmu_error fmu_decide(fmu_instance *f)
 {
-    const bg_sight sight = bg_view_sight(&f->view);
+    const bg_sight sight = bg_view_sight(&f->located.view);
     bg_instant at = {f->at.time, FMU_SHORTEST, INFINITY, f->at.s, {0}};
     int slipping[BG_MOST_PORTS] = {0};
     if (K == 0)
@@ -42,7 +53,7 @@ fmu_error fmu_decide(fmu_instance *f)
     memcpy(slipping, f->at.mode, sizeof f->at.mode);
     int status = bg_evaluated(&sight, &at, 1, slipping);
     if (status == BG_OK) {
-        bg_view_see(&f->view, f->at.s, slipping);
+        bg_view_see(&f->located.view, f->at.s, slipping);
         note_sizes(f);
         status = bg_choose(&sight, &at, f->at.mode);
     }

@@ -1,96 +1,26 @@
-/* Co-simulation in steps of fixed length that end at breakpoints and communication points. */
+/* A communication step. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "fmu_common.h"
 
-/* What went wrong in an internal step of h from t. */
-static fmu_error told(fmu_instance *f, int status, double t, double h)
-{
-    if (status != BG_UNSTABLE)
-        return bg_model_message(status);
-    snprintf(f->text, sizeof f->text,
-             "at t = %.9g an internal step of %.6g s is beyond the stability of its method at the "
-             "model's fastest rates; the longest stable one is %.4g s there: set "
-             "fixed_internal_step below it",
-             t, h, f->model.fastest.step);
-    return f->text;
-}
-
-/* Equal steps from t to stop, none longer than `longest`. */
-static fmu_error stride(fmu_instance *f, double t, double stop, double longest)
-{
-    const double count = fmax(1.0, ceil((stop - t) / longest * (1 - BG_WHOLE_STEPS)));
-    const double h = (stop - t) / count;
-    for (double k = 0; k < count; k++) {
-        double rates[BG_ROOM(W)];
-        int status;
-        for (int i = 0; i < 3; i++)
-            fmu_externals(f, t + (k + 0.5 * i) * h, f->steps + i * W, rates);
-        status = bg_model_step(&f->model, t + k * h, h, f->at.s, f->steps);
-        if (status != BG_OK)
-            return told(f, status, t + k * h, h);
-    }
-    return NULL;
-}
-
-/* From t to stop in internal steps, shorter ones where known sources do much in one. */
-static fmu_error walk_on(fmu_instance *f, double t, double stop)
-{
-    fmu_error failed = NULL;
-    while (!failed && t < stop) {
-        const double ahead = fmu_resolution(f, t, stop - t), next = t + ahead;
-        const double until = next < stop && next > t ? next : stop;
-        failed = stride(f, t, until, fmin(f->at.step, ahead));
-        t = until;
-    }
-    return failed;
-}
-
-/* From t to the end, breakpoint by breakpoint. */
-static fmu_error walk_pieces(fmu_instance *f, double t, double end)
-{
-    fmu_error failed = NULL;
-    while (!failed && t < end) {
-        double stop = end;
-        fmu_pass(f, t);
-        if (fmu_next_break(f, &stop) && !(stop < end))
-            stop = end;
-        failed = walk_on(f, t, stop);
-        t = stop;
-    }
-    return failed;
-}
-
-/* Sticking as it is at the end of a step, so that outputs show it. */
-static int settle_end(fmu_instance *f, double t, double h)
-{
-    for (int i = 0; i < 3; i++)
-        fmu_externals(f, t + 0.5 * i * h, f->steps + i * W, f->dw);
-    return bg_model_settle(&f->model, t, h, f->at.s, f->steps);
-}
-
 fmu_error fmu_advance(fmu_instance *f, double t, double h)
 {
     const double end = t + h;
-    double before[BG_SIZE];
-    int status;
     fmu_error failed = fmu_apply(f);
     if (!isfinite(end))
         return "a step must begin and end at finite times";
     if (failed || !(h > 0))
         return failed ? failed : h == 0 ? NULL : "a step must not go backwards";
     fmu_set_time(f, t);
-    memcpy(before, f->at.s, sizeof before);
-    failed = walk_pieces(f, t, end);
+    const fmu_memory before = f->at;
+    failed = f->at.step > 0 ? fmu_fixed(f, t, end) : fmu_locate(f, t, end);
     if (failed) {
         /* Nothing has happened: the states are those of the instance's time. */
-        memcpy(f->at.s, before, sizeof before);
-        fmu_pass(f, t);
-        f->changed = 1;
+        fmu_restore(f, &before);
         return failed;
     }
+    memcpy(f->at.seen, f->model.seen, sizeof f->at.seen);
     for (int i = 0; i < W; i++) {
         f->at.given[i] += h * f->at.slopes[i];
         if (!BG_RATED)
@@ -98,10 +28,6 @@ fmu_error fmu_advance(fmu_instance *f, double t, double h)
     }
     f->at.time = end;
     fmu_pass(f, end);
-    status = settle_end(f, end, f->at.step);
-    memcpy(f->at.mode, f->model.mode, sizeof f->at.mode);
-    f->at.stepped = f->model.started;
-    f->at.fastest = f->model.fastest;
     f->stale = 1;
-    return status == BG_OK ? NULL : bg_model_message(status);
+    return NULL;
 }

@@ -26,7 +26,7 @@ int bg_located_rate(bg_located *c, double t, const double *s, double *rate)
         memcpy(rate, c->view.shot.rate, sizeof c->view.shot.rate);
         return status;
     }
-    bg_signals_at(c->signals, c->run.segment, t, w, dw);
+    c->view.given(c->view.self, t, w, dw);
     const int status = bg_model_rhs(c->model, t, s, w, signs, rate);
     return status == BG_OK && !bg_finite(BG_SIZE, rate) ? BG_NOT_FINITE : status;
 }
@@ -72,7 +72,7 @@ static int hand_over(bg_located *c, const double *s)
     const int status = bg_view_look(&c->view, t, s, c->run.mode);
     if (status != BG_OK)
         return status;
-    bg_signals_at(c->signals, c->run.segment, t, w, dw);
+    c->view.given(c->view.self, t, w, dw);
     asked->record(asked->to, c->next++, w, c->run.mode, &c->view.shot);
     return BG_OK;
 }
@@ -123,16 +123,17 @@ static int step(bg_located *c, double stop, int *ended)
     return BG_OK;
 }
 
-/* From the present instant to `stop` or the first event. */
+/* From the present instant to `stop`, to where one has to look, or to the first event. */
 static int go_on(void *run, double stop)
 {
     bg_located *const c = run;
     double fastest;
     int status = bg_located_fastest(c, c->run.at.t, c->s, &fastest), ended = 0;
     int method = c->asked->method;
-    const double span = c->asked->times[c->asked->samples - 1] - c->run.began;
+    if (c->ahead)
+        stop = c->ahead(c->view.self, c->run.at.t, stop);
     if (method == BG_AUTO)
-        method = fastest * span > BG_STIFF_SPAN ? BG_RADAU : BG_DOP853;
+        method = fastest > c->stiff ? BG_RADAU : BG_DOP853;
     if (status == BG_OK)
         status = bg_solver_begin(c, method, longest_now(c, method, fastest), stop);
     if (status == BG_OK)
@@ -149,27 +150,43 @@ static int go_on(void *run, double stop)
     return status;
 }
 
-static int set_up(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
+void bg_located_set_out(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked,
+                        double t, double end, const int *first)
 {
-    double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
     c->model = m;
     c->signals = signals;
     c->asked = asked;
     c->next = 0;
+    c->stiff = BG_STIFF_SPAN / (end - t);
+    c->ahead = NULL;
     c->run.segments = signals->segments;
     c->run.breaks = signals->breaks;
     c->run.events = asked->events;
     c->run.capacity = asked->capacity;
-    int first[BG_MOST_PORTS] = {0};
-    bg_all_off(first);
-    for (int i = 0; i < K && asked->first; i++)
-        first[i] = asked->first[i];
-    bg_set_out(&c->run, asked->times[0], asked->times[asked->samples - 1], c->s, first);
-    memset(&c->peaks, 0, sizeof c->peaks);
+    bg_set_out(&c->run, t, end, c->s, first);
     c->view.model = m;
     c->view.peaks = &c->peaks;
     c->view.self = c;
     c->view.given = inputs_now;
+}
+
+int bg_located_go(bg_located *c)
+{
+    const bg_engine engine = {bg_view_sight(&c->view), c, take_in, fastest_now, take_away, go_on};
+    return bg_run(&engine, &c->run);
+}
+
+/* The vector and the switches at the start. */
+static int set_up(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
+{
+    double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
+    int first[BG_MOST_PORTS] = {0};
+    bg_all_off(first);
+    for (int i = 0; i < K && asked->first; i++)
+        first[i] = asked->first[i];
+    bg_located_set_out(c, m, signals, asked, asked->times[0], asked->times[asked->samples - 1],
+                       first);
+    memset(&c->peaks, 0, sizeof c->peaks);
     c->view.measured = 0;
     memset(m->seen, 0, sizeof m->seen);
     inputs_now(c, c->run.at.t, w, dw);
@@ -183,9 +200,8 @@ static int set_up(bg_located *c, bg_model *m, const bg_signals *signals, bg_requ
 int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
 {
     int status = set_up(c, m, signals, asked);
-    const bg_engine engine = {bg_view_sight(&c->view), c, take_in, fastest_now, take_away, go_on};
     if (status == BG_OK)
-        status = bg_run(&engine, &c->run);
+        status = bg_located_go(c);
     if (status == BG_OK)
         status = hand_over(c, c->s); /* the last sample shows the instant after all events */
     asked->count = c->run.count;

@@ -38,8 +38,11 @@ typedef struct {
     int idle;
 } bg_progress;
 
-/* A run: where it is, what it looks at, the next sample. */
+/* A run: where it is, what it looks at, the next sample. From a rate `stiff` [1/s] on steps are
+ * implicit, where the method is chosen; `ahead` tells the latest time to stop at after t, no later
+ * than `stop`, to look what is to be decided; NULL: `stop`. */
 typedef struct {
+    double stiff, (*ahead)(const void *self, double t, double stop);
     bg_model *model;
     const bg_signals *signals;
     bg_request *asked;
@@ -52,6 +55,13 @@ typedef struct {
     bg_progress progress;
     bg_solver solver;
 } bg_located;
+
+/* A stretch of a run, for whoever keeps its own instant: set out from t, with c->s, the peaks and the
+ * magnitudes of the view as they are and modes before it, and then go to the end; in between the
+ * view's inputs, `stiff` and `ahead` may be set. A status. */
+void bg_located_set_out(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked,
+                        double t, double end, const int *first);
+int bg_located_go(bg_located *c);
 
 /* Runs; a status. */
 int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked);

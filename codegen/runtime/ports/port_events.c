@@ -25,7 +25,9 @@ int bg_note(bg_event *events, int *count, int capacity, double t, int ports,
                 continue;
             if (*count >= capacity)
                 return -1;
-            events[(*count)++] = (bg_event){t, i, kind};
+            if (events)
+                events[*count] = (bg_event){t, i, kind};
+            ++*count;
         }
     return 0;
 }

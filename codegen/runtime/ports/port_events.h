@@ -13,7 +13,8 @@ typedef struct {
 } bg_event;
 
 /* Appends an event for each of `ports` modes that is not what it was, of switches first; 0, or -1
- * where the events have no room for it. `switches`: NULL where no port is one. */
+ * where the events have no room for it; where they are NULL they are but counted. `switches`: NULL
+ * where no port is one. */
 int bg_note(bg_event *events, int *count, int capacity, double t, int ports,
             const bg_switch *switches, const int *before, const int *mode);
 
