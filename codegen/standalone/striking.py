@@ -1,8 +1,8 @@
 """Impulses as switches come to hold: what stops what they must not let through.
 
-Held, the ports S have ``y_S = F x + D u = 0``. Of the combinations that no effort of theirs rules at
-once the states jump by ``A^-1 B_S p``, where ``D_SS p = 0``. Friction takes no part: what it gives
-is finite.
+Held, the ports S have ``y_S = F x + D u = 0``. Of the combinations that no effort of theirs rules
+at once the states jump by ``A^-1 B_S p``, where ``D_SS p = 0``. Friction takes no part: what it
+gives is finite.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""Which ports of a fixed step are held where some are ideal switches, and what that does to states."""
+"""Which ports a fixed step holds where some are ideal switches, and what that does to states."""
 
 import warnings
 from collections.abc import Collection, Sequence
@@ -187,12 +187,11 @@ class SwitchedSteps(DeadBand):
             elif side * slips[i] < -TUNING.step_rounding * near[i]:
                 found.add(i)
             elif side * slips[i] <= TUNING.step_rounding * near[i] and not self.beside[i]:
-                if side * rates[i] < -TUNING.step_rounding * slow[i]:
-                    found.add(i)
+                found |= {i} if side * rates[i] < -TUNING.step_rounding * slow[i] else set()
         return frozenset(found | self.sent(at, now, mode, undecided, h))
 
     def sent(self, at: Point, now: Instant, mode: Mode, ports: Sequence[int], h: float) -> set[int]:
-        """The switches whose conditions change them over: above zero, or at zero and about to be."""
+        """The switches whose conditions change them over: above zero, or at zero and rising."""
         if not self.switches.count:
             return set()
         told = self.told(now)

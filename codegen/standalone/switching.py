@@ -7,9 +7,9 @@ from dataclasses import dataclass
 class Switching:
     """When an ideal switch changes over: let go it gives zero, held it receives zero.
 
-    ``on``: whether it is on while it is held. ``side``: of a one-sided switch, which is let go while
-    ``side * y >= 0`` and held while ``side * u <= 0``; 0: of one that is told by the two guards from
-    ``guard`` on, its conditions to turn on and off.
+    ``on``: whether it is on while it is held. ``side``: of a one-sided switch, which is let go
+    while ``side * y >= 0`` and held while ``side * u <= 0``; 0: of one that is told by the two
+    guards from ``guard`` on, its conditions to turn on and off.
     """
 
     on: bool

@@ -15,7 +15,7 @@ FEW = 2
 """So many changes at once, of more switches."""
 
 TURNS = 50
-"""So often for each switch the first that contradicts is changed over, before all ways are tried."""
+"""So often for each switch the first that contradicts changes over, before all ways are tried."""
 
 
 def flipped(mode: Mode, ports: Iterable[int]) -> Mode:

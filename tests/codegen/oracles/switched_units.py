@@ -60,7 +60,7 @@ def buck() -> SwitchedCase:
 
 
 def dog() -> SwitchedCase:
-    """A dog clutch, in unless it has slack, joins two inertias, one with a brake, by an impact, and lets them go again."""
+    """A dog clutch joins two inertias, one with a brake, by an impact, and lets them go again."""
     nodes = [
         bg.One("a"), bg.I("J1", "J_1", flow="w1"), bg.One("b"), bg.I("J2", 1, flow="w2"), bg.Zero("z"),
         bg.R("br", law=bg.DryFriction("level")), bg.Sw("slack", on="out", off="-out"),
