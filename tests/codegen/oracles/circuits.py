@@ -97,9 +97,9 @@ class Drawing:
         return found
 
     def initial(self) -> dict[str, float]:
-        """Charges and currents that are not zero at first."""
+        """Every charge and current: what is not named would be as the others need it to be."""
         storages = self.network.of("C", "L")
-        return {f"{'u' if b.kind == 'C' else 'i'}_{b.name}": b.start for b in storages if b.start}
+        return {f"{'u' if b.kind == 'C' else 'i'}_{b.name}": b.start for b in storages}
 
     def initially_on(self) -> list[Hashable]:
         """Switches that are on at first, in the toolkit's sense."""

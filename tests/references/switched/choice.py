@@ -25,6 +25,8 @@ ENUMERATED = 8
 
 PIVOTS = 400
 
+JUMPS = 20
+
 
 class Choice:
     """The modes of one network, each worked out once."""
@@ -43,11 +45,22 @@ class Choice:
             self._motions[mode] = motion(self._layout, named)
         return self._motions[mode]
 
-    def begin(self, old: Mode, y: Array) -> Mode:
-        """The mode that begins with the charges and currents of y and the commands of ``old``.
+    def begin(self, old: Mode, y: Array) -> tuple[Mode, Array]:
+        """The mode that begins with the charges and currents of y and the commands of ``old``, and its y.
 
-        Of several the one with most friction at rest among ports without slip, then one with few changes.
+        What carries an impulse may be done with it: after the jump the mode is chosen again, at the same instant.
+        Of several modes the one with most friction at rest among ports without slip, then one with few changes.
         """
+        for _ in range(JUMPS):
+            old = self._after(old, y)
+            made = self.motion(old)
+            assert isinstance(made, Motion)
+            y = made.onto @ y
+            if self._against(old, y) is None:
+                return old, y
+        raise RuntimeError(f"impulses without end: {self._told(old, y)}")
+
+    def _after(self, old: Mode, y: Array) -> Mode:
         found = self._pivoted(old, y)
         if found is None and len(self._free) <= ENUMERATED:
             found = next((m for m in self._all(old) if self._against(m, y) is None), None)

@@ -56,14 +56,14 @@ class Oracle:
         breaks = [at for at in self._layout.network.breaks if t < at < end]
         while True:
             y = self._layout.drive(y, t)
-            new = self._choice.begin(self._commanded(mode, t), y)
+            new, y = self._choice.begin(self._commanded(mode, t), y)
             if not first:
                 course.events += self._changes(t, mode, new)
             mode, first = new, False
             course.loose |= self._choice.loose(mode, y)
             motion = self._choice.motion(mode)
             assert isinstance(motion, Motion)
-            c = motion.Q.T @ (motion.onto @ y)
+            c = motion.Q.T @ y
             stop = min([at for at in breaks if at > t] + [end])
             left = first_left(motion, c, stop - t, (end - float(seconds[0])) / 400)
             later = stop if left is None else min(t + left, stop)
