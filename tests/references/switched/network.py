@@ -9,8 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import exp, log
 
-import numpy as np
-
 PORTS = ("D", "K", "F")
 """Kinds of branches that switch."""
 
@@ -135,10 +133,3 @@ def _branch(b: Branch, by: Units) -> Branch:
         start=b.start / (by.ampere if b.kind == "L" else by.volt),
         instants=tuple(at / by.second for at in b.instants),
     )  # fmt: skip
-
-
-def of_time(wave: Wave, times: np.ndarray) -> np.ndarray:
-    """A wave's values."""
-    lines = np.array([wave.level(t) for t in times])
-    angle = 2 * np.pi * wave.frequency * times + wave.phase
-    return np.asarray(lines + wave.amplitude * np.sin(angle))

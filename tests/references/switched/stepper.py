@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from references.switched.network import Branch, Network, of_time
+from references.switched.network import Branch, Network, Wave
 
 Array = NDArray[np.float64]
 LEAK = 1e-6
@@ -69,17 +69,23 @@ class Stepper:
         """Voltages of capacitors and currents of coils after each step, from the first on."""
         network, h = self._network, self._h
         times = h * np.arange(1, steps + 1)
-        waves = {b.name: of_time(b.wave, times) for b in network.of("S", "V", "I")}
+        waves = {b.name: self._values(b.wave, times) for b in network.of("S", "V", "I")}
         stored = {b.name: b.start for b in network.of("C", "L")}
         kept = {name: np.empty(steps) for name in stored}
         for k, t in enumerate(times):
-            v = self._step(float(t), stored, {name: wave[k] for name, wave in waves.items()})
+            v = self._step(float(t) - h / 2, stored, {name: wave[k] for name, wave in waves.items()})
             for b in network.of("C", "L"):
                 across = self._ways[b.name] @ v
                 new = across if b.kind == "C" else stored[b.name] + h / b.value * across
                 kept[b.name][k] = stored[b.name] = new
         names = {b.name: ("u_" if b.kind == "C" else "i_") + b.name for b in network.of("C", "L")}
         return {names[name]: values for name, values in kept.items()}
+
+    def _values(self, wave: Wave, times: Array) -> Array:
+        """Within a step, neither at its begin nor at its end, is what commands and levels are of it."""
+        lines = np.array([wave.level(t - self._h / 2) for t in times])
+        angle = 2 * np.pi * wave.frequency * times + wave.phase
+        return np.asarray(lines + wave.amplitude * np.sin(angle))
 
     def _step(self, t: float, stored: dict[str, float], wave: dict[str, float]) -> Array:
         """The voltages of the nodes after a step."""
