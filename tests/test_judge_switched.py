@@ -44,8 +44,11 @@ def test_a_chopped_current_is_periodic_between_its_two_exponentials() -> None:
     )  # fmt: skip
     course = Oracle(network).run(np.array([0.0, D * T, T, (1 + D) * T, 2 * T, 3.5 * T]))
     low = most * exp(-(0.5 - D) * T / tau)
-    assert course.columns["i_L0"] == pytest.approx([least, most, least, most, least, low], rel=1e-11)
-    assert len(course.events) == 2 * 7 and not course.loose
+    assert course.columns["i_L0"] == pytest.approx(
+        [least, most, least, most, least, low], rel=1e-11
+    )
+    assert len(course.events) == 2 * 7
+    assert not course.loose
 
 
 def test_a_buck_loses_no_volt_second() -> None:
@@ -56,13 +59,18 @@ def test_a_buck_loses_no_volt_second() -> None:
     u, i = course.columns["u_C0"], course.columns["i_L0"]
     assert i.min() > 0
     assert L * (i[-1] - i[0]) == pytest.approx(D * V * n * T - np.trapezoid(u, times), abs=1e-12)
-    assert [kind for *_, kind in course.events] == ["off", "on", "on", "off"] * (n - 1) + ["off", "on"]
+    assert [kind for *_, kind in course.events] == ["off", "on", "on", "off"] * (n - 1) + [
+        "off",
+        "on",
+    ]
 
 
 def test_a_capacitor_rings_once_through_a_diode() -> None:
     """Half a sine, which leaves it charged the other way."""
     network = _network(
-        Branch("C", "C0", 1, 0, 2.0, start=3.0), Branch("D", "D0", 1, 2), Branch("L", "L0", 2, 0, 0.5)
+        Branch("C", "C0", 1, 0, 2.0, start=3.0),
+        Branch("D", "D0", 1, 2),
+        Branch("L", "L0", 2, 0, 0.5),
     )
     times, course = _run(network, 5.0)
     _near(course.events, (pi, "D0", "off"))
@@ -218,7 +226,9 @@ def test_where_commands_contradict_sources_no_mode_is_consistent() -> None:
         Branch("V", "V0", 0, 1, wave=Wave(1.0)), Branch("V", "V1", 0, 2, wave=Wave(2.0)),
         Branch("K", "K0", 1, 2, instants=(0.5,)), Branch("R", "R0", 1, 2, 1.0),
     )  # fmt: skip
-    with pytest.raises(RuntimeError, match=r"no mode is consistent: \(1,\) is impossible by \['K0'"):
+    with pytest.raises(
+        RuntimeError, match=r"no mode is consistent: \(1,\) is impossible by \['K0'"
+    ):
         _run(network, 1.0)
 
 

@@ -41,9 +41,11 @@ NAMED: dict[str, tuple[Network, float, int]] = {
     "opened-inductor": (opened_inductor(10, 1, 1, 2, 1), 3, 600),
 }  # fmt: skip
 
+TURNS = [pulses(1e-3, 0.3 + 0.1 * k, 0.02, 1e-4 * k) for k in range(3)]
+
 LARGE: dict[str, tuple[Network, float, int]] = {
     "vienna": (
-        vienna(325, 50, 0.2, 1e-3, 1e-3, 50, [pulses(1e-3, 0.3 + 0.1 * k, 0.02, 1e-4 * k) for k in range(3)], 300),
+        vienna(325, 50, 0.2, 1e-3, 1e-3, 50, TURNS, 300),
         0.02, 6_000,
     ),
     "24-diodes": (bridge_chain(6, 10, 50, 0.5, 0.02, 1e-2, 5), 0.02, 1200),

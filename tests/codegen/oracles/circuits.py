@@ -11,8 +11,8 @@ from references.switched.oracle import Oracle
 import bondgraph as bg
 from codegen import Constant, Result, Signal, Sine, Step, simulator, switched_simulator
 
-MOMENT = 1e-5
-"""From complete rest a diode turns on only after a moment, 1e-6 of the run [s]."""
+MOMENT, APART = 3e-6, 3e-7
+"""Of the run: from complete rest a diode turns on only after a moment; events may be apart by so much."""
 
 Node = bg.declare.elements.Node
 
@@ -21,9 +21,9 @@ Node = bg.declare.elements.Node
 class Drawing:
     """A network as a bond graph.
 
-    Electrically a node is a 0-junction, a branch a 1-junction; mechanically, where voltages are speeds, a node
-    is a 1-junction, a branch a 0-junction, C is an I and L a C, and a switch that is closed holds its port
-    instead of letting it go. ``of_time``: sines without steps are expressions of time, not inputs.
+    Electrically a node is a 0-junction, a branch a 1-junction; mechanically, where voltages are speeds,
+    a node is a 1-junction, a branch a 0-junction, C is an I and L a C, and a switch that is closed holds
+    its port instead of letting it go. ``of_time``: sines without steps are expressions of time, not inputs.
     """
 
     network: Network
@@ -78,7 +78,9 @@ class Drawing:
         if b.kind == "K":
             return bg.Sw(b.name, on=f"1/2 - g_{b.name}" if self.mechanical else f"g_{b.name} - 1/2")
         on, off = f"e_{b.name}", f"-f_{b.name}"
-        return bg.Sw(b.name, on=f"-{on}", off=off[1:]) if self.mechanical else bg.Sw(b.name, on, off)
+        return (
+            bg.Sw(b.name, on=f"-{on}", off=off[1:]) if self.mechanical else bg.Sw(b.name, on, off)
+        )
 
     def _known(self, b: Branch) -> bool:
         return self.of_time and not b.wave.steps
@@ -86,9 +88,7 @@ class Drawing:
     def inputs(self) -> dict[str, Signal]:
         """What drives the sources and commands the switches."""
         found = {
-            f"u_{b.name}": _signal(b.wave)
-            for b in self.network.of(*SOURCES)
-            if not self._known(b)
+            f"u_{b.name}": _signal(b.wave) for b in self.network.of(*SOURCES) if not self._known(b)
         }
         for b in self.network.of("K"):
             size = -1.0 if b.on else 1.0
@@ -134,15 +134,15 @@ Found = tuple[dict[str, np.ndarray], Sequence[tuple[float, str, str]]]
 """Voltages of capacitors and currents of coils by name, and events in the toolkit's words."""
 
 
-def complaints(found: Found, result: Result) -> list[str]:
+def complaints(found: Found, result: Result, span: float = 3.0) -> list[str]:
     """What in a run is not as the judge finds it: events, voltages of capacitors, currents of coils."""
-    expected, right = found
-    events = sorted((e.time, str(e.port), e.kind) for e in result.events if e.time > MOMENT)
+    expected, right = found[0], [event for event in found[1] if event[0] > MOMENT * span]
+    events = sorted((e.time, str(e.port), e.kind) for e in result.events if e.time > MOMENT * span)
     wrong = []
     told = sorted(event[1:] for event in events)
     if told != sorted(tuple(event[1:]) for event in right):
         wrong.append(f"events {events} for {right}")
-    elif far := _apart(events, right):
+    elif far := _apart(events, right, APART * span):
         wrong.append(f"events at {far}")
     size = max((np.abs(column).max() for column in expected.values()), default=0.0)
     for name, values in expected.items():
@@ -152,11 +152,13 @@ def complaints(found: Found, result: Result) -> list[str]:
 
 
 def _apart(
-    events: Sequence[tuple[float, str, str]], right: Sequence[tuple[float, str, str]]
+    events: Sequence[tuple[float, str, str]], right: Sequence[tuple[float, str, str]], most: float
 ) -> list[float]:
     """When a port does at another time what it ought to do, port by port."""
-    pairs = zip(*(sorted(all_, key=lambda e: (e[1], e[0])) for all_ in (events, right)), strict=True)
-    return [t for (t, p, kind), (s, q, k) in pairs if abs(t - s) > 1e-6 or (p, kind) != (q, k)]
+    pairs = zip(
+        *(sorted(all_, key=lambda e: (e[1], e[0])) for all_ in (events, right)), strict=True
+    )
+    return [t for (t, p, kind), (s, q, k) in pairs if abs(t - s) > most or (p, kind) != (q, k)]
 
 
 def judged(network: Network, times: np.ndarray, mechanical: bool = False) -> Found:

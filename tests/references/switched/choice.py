@@ -1,9 +1,9 @@
 """Which mode begins at an instant.
 
-Every trigger's chain of impulse, value and derivatives must not begin below zero. So, without a rule for each
-kind: what conducts keeps its current's sign and what blocks its voltage's; what sticks takes no impulse, as its
-level is finite beside one, and at its level the current's rate decides; what slips has the sign of its slip.
-Switches are as commanded.
+Every trigger's chain of impulse, value and derivatives must not begin below zero. So, without a rule for
+each kind: what conducts keeps its current's sign and what blocks its voltage's; what sticks takes no impulse,
+as its level is finite beside one, and at its level the current's rate decides; what slips has the sign of its
+slip. Switches are as commanded.
 """
 
 from __future__ import annotations
@@ -46,10 +46,10 @@ class Choice:
         return self._motions[mode]
 
     def begin(self, old: Mode, y: Array) -> tuple[Mode, Array]:
-        """The mode that begins with the charges and currents of y and the commands of ``old``, and its y.
+        """The mode that begins with the charges and currents of y and the commands of ``old``; its y.
 
-        What carries an impulse may be done with it: after the jump the mode is chosen again, at the same instant.
-        Of several modes the one with most friction at rest among ports without slip, then one with few changes.
+        What carries an impulse may be done with it: after the jump the mode is chosen again, at the same
+        instant. Of several modes one with few changes, and of that what friction can stick, sticks.
         """
         for _ in range(JUMPS):
             old = self._after(old, y)

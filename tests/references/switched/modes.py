@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg
 
-from references.switched.pencil import Array, Layout, Pencil, State, pencil, signs
+from references.switched.pencil import Array, Layout, Pencil, State, pencil
 
 SMALL = 1e-9
 """Of what the largest source drives."""
@@ -104,8 +104,25 @@ def motion(layout: Layout, state: State) -> Motion | Impossible:
     E, A, one = made.E, made.A, np.eye(layout.size)
     M = np.linalg.lstsq(E @ Q, A @ Q, rcond=None)[0]
     impulse = W @ np.linalg.lstsq(A @ W, E @ (onto - one), rcond=None)[0]
-    rows, ways = _shared(signs(layout, state), made.free)
+    rows, ways = _shared(_signs(layout, state), made.free)
     return Motion(Q, M, onto, impulse, rows.reshape(-1, layout.size), tuple(ways))
+
+
+def _signs(layout: Layout, state: State) -> list[tuple[Array, str, int]]:
+    """Rows that a mode keeps from falling below zero, whose each is, and what its port does instead."""
+    rows: list[tuple[Array, str, int]] = []
+    for b in layout.network.of("D", "F"):
+        now, flow, across = state[b.name], layout.flow(b), layout.voltage(b)
+        if b.kind == "D":
+            rows.append((flow, b.name, 0) if now else (-across, b.name, 1))
+        elif now:
+            rows.append((now * across, b.name, 0))
+        else:
+            for way in (1, -1):
+                row = -way * flow
+                row[layout.one] = b.value
+                rows.append((row, b.name, way))
+    return rows
 
 
 def _wong(made: Pencil) -> tuple[Array, Array]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -106,8 +107,6 @@ def six_pulse(
 
 def _moved(b: Branch, by: int) -> Branch:
     """The nodes from 7 on renumbered where those of the source inductances are left out."""
-    from dataclasses import replace
-
     return replace(b, tail=b.tail - by * (b.tail >= 7), head=b.head - by * (b.head >= 7))
 
 

@@ -1,7 +1,7 @@
 """Kirchhoff networks with diodes, switches and dry friction, in numbers.
 
-Mechanically a node is a body, its voltage a speed: C is a mass, L a spring, R a damper, D a freewheel, K a dog
-clutch, F a Coulomb friction between two bodies, V an imposed speed, I an imposed force.
+Mechanically a node is a body, its voltage a speed: C is a mass, L a spring, R a damper, D a freewheel, K a
+dog clutch, F a Coulomb friction between two bodies, V an imposed speed, I an imposed force.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ SOURCES = ("S", "V", "I")
 
 @dataclass(frozen=True)
 class Wave:
-    """A constant, steps ``(instant, by how much)``, and a sine: ``amplitude sin(2 pi frequency t + phase)``."""
+    """A constant, steps ``(instant, by how much)``, and ``amplitude sin(2 pi frequency t + phase)``."""
 
     constant: float = 0.0
     steps: tuple[tuple[float, float], ...] = ()

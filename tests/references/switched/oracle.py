@@ -3,13 +3,13 @@
 Between events a mode's motion is exact, by matrix exponentials; events are roots of exactly propagated
 triggers. At each, and at each command or step of a source, that mode begins which no port is against.
 
-Assumed: ideal branches with constant values; positive C, L, R; levels of friction that are constant, and equal
-to those of breakaway. Charges and currents are as told before the run, and jump at its first instant to what
-the first mode allows, as at any other: charge and flux stay with those that an impulse joins. Between two
-steps, a twentieth of the fastest swing apart or less, a trigger turns round no more than once. Where ports
-share what is held (in a loop of branches without voltage), any share that each could bear is borne, and a
-port whose share nothing determines is told as ``loose``: its events are then a matter of taste. Nothing of a
-bond graph is here: networks and numbers in, voltages, currents and events out.
+Assumed: ideal branches with constant values; positive C, L, R; levels of friction that are constant, and
+equal to those of breakaway. Charges and currents are as told before the run, and jump at its first instant
+to what the first mode allows, as at any other: charge and flux stay with those that an impulse joins. Between
+two steps, a twentieth of the fastest swing apart or less, a trigger turns round no more than once. Where ports
+share what is held (in a loop of branches without voltage), any share that each could bear is borne; a port
+whose mode nothing determines is told as ``loose``, and its events are a matter of taste. Nothing of a bond
+graph is here: networks and numbers in, voltages, currents and events out.
 """
 
 from __future__ import annotations

@@ -11,8 +11,9 @@ the mode has to keep: voltages of sources round the loop, or currents into the n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import networkx as nx
 import numpy as np
@@ -98,7 +99,7 @@ class Layout:
 
 def pencil(layout: Layout, state: State) -> Pencil:
     """The pencil of one mode."""
-    size, n = layout.size, layout.network.nodes
+    size = layout.size
     E, A = np.zeros((size, size)), np.zeros((size, size))
     for b in layout.network.branches:
         row = layout.flow(b)
@@ -163,7 +164,6 @@ Free = tuple[int, Array, Array, set[str]]
 def _loops(layout: Layout, state: State) -> Iterator[Free]:
     forest: nx.Graph[int] = nx.Graph()
     forest.add_nodes_from(range(layout.network.nodes + 1))
-    # Sources first: the last branch of a loop is the one at zero, and a source's law is never left over alone.
     for b in layout.network.of("V", *PORTS):
         if not _rigid(b, state):
             continue
@@ -172,7 +172,7 @@ def _loops(layout: Layout, state: State) -> Iterator[Free]:
             continue
         column, names = layout.flow(b), {b.name}
         path = nx.shortest_path(forest, b.head, b.tail)
-        for here, there in zip(path, path[1:], strict=False):
+        for here, there in pairwise(path):
             passed: Branch = forest.edges[here, there]["branch"]
             column += layout.flow(passed) * (1.0 if passed.tail == here else -1.0)
             names.add(passed.name)
@@ -194,24 +194,3 @@ def _cuts(layout: Layout, state: State) -> Iterator[Free]:
         pin = np.zeros(layout.size)
         pin[min(nodes) - 1] = 1.0
         yield min(nodes) - 1, pin, column, names
-
-
-def signs(
-    layout: Layout, state: State, say: Callable[[Branch], bool] = lambda _: True
-) -> list[tuple[Array, str, int]]:
-    """Rows that a mode keeps from falling below zero, whose each is, and what its port does instead."""
-    rows: list[tuple[Array, str, int]] = []
-    for b in layout.network.of("D", "F"):
-        if not say(b):
-            continue
-        now, flow, across = state[b.name], layout.flow(b), layout.voltage(b)
-        if b.kind == "D":
-            rows.append((flow, b.name, 0) if now else (-across, b.name, 1))
-        elif now:
-            rows.append((now * across, b.name, 0))
-        else:
-            for way in (1, -1):
-                row = -way * flow
-                row[layout.one] = b.value
-                rows.append((row, b.name, way))
-    return rows

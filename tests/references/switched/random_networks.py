@@ -109,7 +109,9 @@ class _Drawing:
         if kind == "D":
             self._add("D", tail, head, more=_number(rng, 0.05, 0.3) * (rng.random() < 0.3))
         elif kind == "K":
-            instants = sorted({_number(rng, 0.05, SPAN - 0.05) for _ in range(int(rng.integers(1, 5)))})
+            instants = sorted(
+                {_number(rng, 0.05, SPAN - 0.05) for _ in range(int(rng.integers(1, 5)))}
+            )
             self._add("K", tail, head, on=bool(rng.random() < 0.5), instants=tuple(instants))
         else:
             level = _number(rng, 0.2, 2.0)

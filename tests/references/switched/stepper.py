@@ -1,6 +1,7 @@
 """Networks that switch by implicit Euler steps and Lemke's algorithm: no events, no modes, first order.
 
-It confirms the judge, with which it shares the networks alone. Where nothing else ties a node down, a leak does.
+It confirms the judge, with which it shares the networks alone. Where nothing else ties a node down, a leak
+does.
 """
 
 from __future__ import annotations
@@ -73,7 +74,9 @@ class Stepper:
         stored = {b.name: b.start for b in network.of("C", "L")}
         kept = {name: np.empty(steps) for name in stored}
         for k, t in enumerate(times):
-            v = self._step(float(t) - h / 2, stored, {name: wave[k] for name, wave in waves.items()})
+            v = self._step(
+                float(t) - h / 2, stored, {name: wave[k] for name, wave in waves.items()}
+            )
             for b in network.of("C", "L"):
                 across = self._ways[b.name] @ v
                 new = across if b.kind == "C" else stored[b.name] + h / b.value * across

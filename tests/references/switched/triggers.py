@@ -60,7 +60,9 @@ def _root(row: Array, motion: Motion, c: Array, h: float, risen: bool, low: floa
         return None if last > 0 or not risen else end
     begin = 0.0
     if not risen:
-        begin = next((h / 2.0**k for k in range(1, 40) if end > h / 2.0**k and value(h / 2.0**k) > 0), 0.0)
+        begin = next(
+            (h / 2.0**k for k in range(1, 40) if end > h / 2.0**k and value(h / 2.0**k) > 0), 0.0
+        )
         if not begin:
             return 0.0
     return float(brentq(value, begin, end, xtol=1e-15))
