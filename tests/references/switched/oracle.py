@@ -6,7 +6,7 @@ triggers. At each, and at each command or step of a source, that mode begins whi
 Assumed: ideal branches with constant values; positive C, L, R; levels of friction that are constant, and
 equal to those of breakaway. Charges and currents are as told before the run, and jump at its first instant
 to what the first mode allows, as at any other: charge and flux stay with those that an impulse joins. Between
-two steps, a twentieth of the fastest swing apart or less, a trigger turns round no more than once. Where ports
+two steps, a twentieth of the fastest swing apart, a trigger turns round no more than once. Where ports
 share what is held (in a loop of branches without voltage), any share that each could bear is borne; a port
 whose mode nothing determines is told as ``loose``, and its events are a matter of taste. Nothing of a bond
 graph is here: networks and numbers in, voltages, currents and events out.
