@@ -221,6 +221,48 @@ def test_commutation_takes_what_the_source_inductance_needs() -> None:
     assert off - on == pytest.approx(overlap, rel=2e-2)
 
 
+def test_a_diode_conducts_for_less_than_a_step() -> None:
+    """Above 0.9999 a sine is for 0.028 of its radians, where a step is 0.3."""
+    short = Wave(-0.9999, amplitude=1.0, frequency=1 / (2 * pi))
+    network = _network(
+        Branch("V", "V0", 0, 1, wave=short), Branch("D", "D0", 1, 2), Branch("R", "R0", 2, 0, 1.0)
+    )
+    _, course = _run(network, 120.0, 2)
+    first = asin(0.9999)
+    turns = [k for k in range(20) if 2 * pi * k + pi - first < 120]
+    expected = [
+        (2 * pi * k + t, "D0", kind)
+        for k in turns
+        for t, kind in ((first, "on"), (pi - first, "off"))
+    ]
+    assert [e[1:] for e in course.events] == [e[1:] for e in expected]
+    times = [e[0] for e in course.events]
+    assert times == pytest.approx([e[0] for e in expected], abs=1e-8)
+
+
+def test_a_diode_passes_an_impulse_and_blocks_in_the_same_instant() -> None:
+    """Into a capacitor from a source that jumps up and then falls: charged at once, and no event."""
+    wave = Wave(0.0, ((0.5, 3.0),), 1.0, 1 / (2 * pi), 2.0)
+    network = _network(
+        Branch("V", "V0", 0, 1, wave=wave), Branch("D", "D0", 1, 2), Branch("C", "C0", 2, 0, 1.0)
+    )
+    times, course = _run(network, 3.0)
+    assert course.events == []
+    charged = np.where(times < 0.5, sin(2.0), 3 + sin(2.5))
+    assert course.columns["u_C0"] == pytest.approx(charged, abs=1e-11)
+
+
+def test_friction_beside_a_dog_that_closes_sticks() -> None:
+    """It could as well be said to slip for ever, without a slip."""
+    network = _network(
+        Branch("C", "C0", 1, 0, 1.0, start=1.0), Branch("F", "F0", 1, 0, 0.1),
+        Branch("K", "K0", 1, 0, instants=(0.5,)),
+    )  # fmt: skip
+    _, course = _run(network, 1.0, 3)
+    _near(course.events, (0.5, "F0", "stick"), (0.5, "K0", "on"))
+    assert course.columns["u_C0"] == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
+
+
 def test_where_commands_contradict_sources_no_mode_is_consistent() -> None:
     network = _network(
         Branch("V", "V0", 0, 1, wave=Wave(1.0)), Branch("V", "V1", 0, 2, wave=Wave(2.0)),

@@ -31,9 +31,9 @@ ONE = pulses(1e-3, 0.5, 2e-3, 1e-4)
 NAMED: dict[str, tuple[Network, float, int]] = {
     "buck": (buck(10, 1e-4, 1e-4, 1, pulses(5e-5, 0.4, 2e-4), 4, 4), 2e-4, 800),
     "buck-discontinuous": (buck(10, 1e-5, 1e-4, 50, pulses(5e-5, 0.1, 2e-4)), 2e-4, 2000),
-    "boost": (boost(10, 1e-4, 1e-4, 10, pulses(5e-5, 0.4, 2e-4)), 2e-4, 800),
+    "boost": (boost(10, 1e-4, 1e-4, 10, pulses(5e-5, 0.4, 2e-4), 8), 2e-4, 800),
     "half-bridge": (half_bridge(10, 1e-3, 1, 1e-2, ONE, pulses(1e-3, 0.4, 2e-3, 6.5e-4)), 2e-3, 800),
-    "full-bridge": (full_bridge(10, 1e-3, 1, 1e-2, ONE, pulses(1e-3, 0.5, 2e-3, 4e-4), 1e-5), 2e-3, 800),
+    "full-bridge": (full_bridge(10, 1e-3, 1, 1e-2, ONE, pulses(1e-3, 0.5, 2e-3, 4e-4), 1e-5, 0.5), 2e-3, 800),
     "six-pulse": (six_pulse(325, 50, 0.3, 1e-2, 10), 0.02, 800),
     "six-pulse-overlap": (six_pulse(325, 50, 0.3, 1e-4, 10, 1e-3), 0.02, 1200),
     "jenkins": (jenkins([1, 1], [0.3, 0.5], Wave(amplitude=2, frequency=0.25)), 8, 400),
@@ -69,7 +69,9 @@ def _confirm(network: Network, span: float, steps: int) -> Course:
 
 @pytest.mark.parametrize("name", NAMED | LARGE if whole("large-circuits") else NAMED)
 def test_named_circuits(name: str) -> None:
-    assert _confirm(*(NAMED | LARGE)[name]).events
+    course = _confirm(*(NAMED | LARGE)[name])
+    assert course.events
+    assert not course.loose
 
 
 @pytest.mark.parametrize("seed", seeds("judge-steps"))

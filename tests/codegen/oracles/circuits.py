@@ -162,8 +162,9 @@ def _apart(
 
 
 def judged(network: Network, times: np.ndarray, mechanical: bool = False) -> Found:
-    """What the judge finds."""
+    """What the judge finds in a network that leaves no port's mode open."""
     course = Oracle(network).run(times)
+    assert not course.loose, f"nothing determines what {sorted(course.loose)} do"
     names = [f"{'u' if b.kind == 'C' else 'i'}_{b.name}" for b in network.of("C", "L")]
     columns = {name: course.columns[name] for name in names}
     return columns, Drawing(network, mechanical).events(course.events)

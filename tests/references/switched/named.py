@@ -33,12 +33,14 @@ def buck(
     )  # fmt: skip
 
 
-def boost(V: float, L: float, C: float, R: float, instants: Sequence[float]) -> Network:
+def boost(
+    V: float, L: float, C: float, R: float, instants: Sequence[float], voltage: float
+) -> Network:
     """A coil from V to a switch to ground, and by a diode to a capacitor and a resistance."""
     return _network(
         Branch("V", "V0", 0, 1, wave=Wave(V)), Branch("L", "L0", 1, 2, L),
         Branch("K", "K0", 2, 0, instants=tuple(instants)), Branch("D", "D0", 2, 3),
-        Branch("C", "C0", 3, 0, C), Branch("R", "R0", 3, 0, R),
+        Branch("C", "C0", 3, 0, C, start=voltage), Branch("R", "R0", 3, 0, R),
     )  # fmt: skip
 
 
@@ -55,11 +57,12 @@ def half_bridge(
 
 def full_bridge(
     V: float, L: float, R: float, on: float, first: Sequence[float], second: Sequence[float],
-    pause: float,
+    pause: float, current: float,
 ) -> Network:  # fmt: skip
     """Two legs of two switches with diodes; ``first`` and ``second``: when each leg's upper one turns.
 
-    ``pause``: how long both of a leg are off before one turns on.
+    ``pause``: how long both of a leg are off before one turns on. ``current``: of the load at first, when
+    all switches are off; without it nothing tells where between its rails the load is.
     """
     legs = []
     for at, instants in enumerate((first, second)):
@@ -68,7 +71,7 @@ def full_bridge(
         legs += _leg(2 * at, 1, 2 + 3 * at, 0, 3 + 3 * at, on, upper, lower)
     return _network(
         Branch("V", "V0", 0, 1, wave=Wave(V)), *legs,
-        Branch("L", "L0", 2, 8, L), Branch("R", "R0", 8, 5, R),
+        Branch("L", "L0", 2, 8, L, start=current), Branch("R", "R0", 8, 5, R),
     )  # fmt: skip
 
 
