@@ -55,10 +55,10 @@ def test_a_buck_loses_no_volt_second() -> None:
     """L (i(n T) - i(0)) = D V n T - the integral of the capacitor's voltage, while current flows."""
     V, L, T, D, n = 10.0, 1e-4, 5e-5, 0.4, 8
     network = buck(V, L, 1e-4, 1.0, pulses(T, D, n * T), 4.0, 4.0)
-    times, course = _run(network, n * T, 20_001)
+    times, course = _run(network, n * T, 4001)
     u, i = course.columns["u_C0"], course.columns["i_L0"]
     assert i.min() > 0
-    assert L * (i[-1] - i[0]) == pytest.approx(D * V * n * T - np.trapezoid(u, times), abs=1e-12)
+    assert L * (i[-1] - i[0]) == pytest.approx(D * V * n * T - np.trapezoid(u, times), abs=1e-9)
     assert [kind for *_, kind in course.events] == ["off", "on", "on", "off"] * (n - 1) + [
         "off",
         "on",
@@ -134,7 +134,7 @@ def test_a_spring_and_a_slider_in_series_go_round_their_loop() -> None:
     """Imposed X (1 - cos(omega t)): it slips 2 L/k after each turn; a loop takes 4 L (X - L/k)."""
     X, omega, k, L = 1.5, 2.0, 2.0, 0.8
     network = jenkins([1 / k], [L], Wave(amplitude=X * omega, frequency=omega / (2 * pi)))
-    times, course = _run(network, 3 * pi, 30_001)
+    times, course = _run(network, 3 * pi, 12_001)
     first, later = acos(1 - L / (k * X)) / omega, acos(1 - 2 * L / (k * X)) / omega
     turn = pi / omega
     expected = [(first, "F0", "slip")]
@@ -143,7 +143,7 @@ def test_a_spring_and_a_slider_in_series_go_round_their_loop() -> None:
     _near(course.events[: len(expected)], *expected)
     loop = (times >= 2 * turn) & (times <= 4 * turn + 1e-9)
     power = course.columns["i_L0"] * X * omega * np.sin(omega * times)
-    assert np.trapezoid(power[loop], times[loop]) == pytest.approx(4 * L * (X - L / k), abs=1e-6)
+    assert np.trapezoid(power[loop], times[loop]) == pytest.approx(4 * L * (X - L / k), abs=1e-5)
 
 
 def test_an_opened_inductor_hands_its_current_to_the_diode() -> None:

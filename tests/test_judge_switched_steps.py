@@ -76,7 +76,9 @@ def test_named_circuits(name: str) -> None:
 
 @pytest.mark.parametrize("seed", seeds("judge-steps"))
 def test_random_networks(seed: int) -> None:
-    assert not _confirm(random_switched(np.random.default_rng(seed)), SPAN, 3000).loose
+    """Every fifth has more ports than are enumerated."""
+    network = random_switched(np.random.default_rng(seed), 12 if seed % 5 == 4 else None)
+    assert not _confirm(network, SPAN, 3000).loose
 
 
 @pytest.mark.parametrize("seed", seeds("judge-modes"))

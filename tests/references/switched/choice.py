@@ -55,7 +55,7 @@ class Choice:
             old = self._after(old, y)
             made = self.motion(old)
             assert isinstance(made, Motion)
-            y = made.onto @ y
+            y = made.Q @ made.read @ y
             if self._against(old, y) is None:
                 return old, y
         raise RuntimeError(f"impulses without end: {self._told(old, y)}")

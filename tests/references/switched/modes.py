@@ -1,8 +1,9 @@
 """One mode's exact motion, and which modes can begin at an instant.
 
 The limits of Wong's sequences (Berger, Ilchmann, Trenn 2012) give the consistent subspace of the pencil and
-the projector along its impulses. What must not become negative is a row over y; where currents or voltages
-are free, rows are added up so that these drop out (Fourier, Motzkin), and any share is as good as another.
+that of its impulses, in which what the sources drive follows from their derivatives. What must not become
+negative is a row over y; where currents or voltages are free, rows are added up so that these drop out
+(Fourier, Motzkin), and any share is as good as another.
 """
 
 from __future__ import annotations
@@ -11,12 +12,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-import scipy.linalg
 
-from references.switched.pencil import Array, Layout, Pencil, State, pencil
+from references.switched.pencil import Array, Layout, State, pencil
 
 SMALL = 1e-9
 """Of what the largest source drives."""
+
+TERMS = 16
+"""Of an exponential: the next is less than 1e-19."""
 
 ORDERS = 8
 """Derivatives that are looked at where all before are zero."""
@@ -24,14 +27,14 @@ ORDERS = 8
 
 @dataclass(frozen=True)
 class Motion:
-    """``y = Q c``, ``c' = M c``; the projector onto Q, and the impulses of a jump, both over y before it.
+    """``y = Q c``, ``c' = M c``; c of a y, and the impulses of a jump, both over y before it.
 
     ``triggers``: rows that stay positive; ``ways``: for each, what ports do instead where it does not.
     """
 
     Q: Array
     M: Array
-    onto: Array
+    read: Array
     impulse: Array
     triggers: Array
     ways: tuple[frozenset[tuple[str, int]], ...]
@@ -56,14 +59,14 @@ class Motion:
 
     def after(self, h: float) -> Array:
         """What leads c over a time."""
-        return np.asarray(scipy.linalg.expm(self.M * h))
+        return _exponential(self.M * h)
 
     def chains(self, y: Array) -> tuple[Array, Array]:
         """Impulse, value and derivatives of each trigger where the mode begins, and what is zero of each.
 
         Rounding in the derivatives grows by the fastest rate from one to the next.
         """
-        c = self.Q.T @ (self.onto @ y)
+        c = self.read @ y
         T, fast, size = self.watched, np.linalg.norm(self.M, 2), np.linalg.norm(y)
         reach = np.linalg.norm(T, axis=1)
         chain, zero = [self.triggers @ self.impulse @ y], [np.full(len(T), SMALL * size)]
@@ -93,19 +96,29 @@ class Impossible:
 def motion(layout: Layout, state: State) -> Motion | Impossible:
     """The motion in one mode; RuntimeError where rounding spoils it."""
     made = pencil(layout, state)
-    Q, W = _wong(made)
+    n = layout.driven
+    E, A, B, G = made.E[:n, :n], made.A[:n, :n], made.A[:n, n:], made.A[n:, n:]
+    Q, W = _wong(E, A)
     both = np.hstack([Q, W])
-    if both.shape[1] != layout.size or np.linalg.cond(both) > 1e10:
-        raise RuntimeError(f"the judge's numbers are lost: {Q.shape}, {W.shape} of {layout.size}")
-    if len(made.left_over) and np.abs(made.left_over @ Q).max() > SMALL:
+    if both.shape[1] != n or np.linalg.cond(both) > 1e10:
+        raise RuntimeError(f"the judge's numbers are lost: {Q.shape}, {W.shape} of {n}")
+    r = Q.shape[1]
+    apart, rows = np.linalg.inv(both), np.linalg.inv(np.hstack([E @ Q, A @ W]))
+    # a' = M a + ..., N b' = b + B_b g with nilpotent N; so b = -(B_b g + N B_b g' + ...), g' = G g.
+    M, N, driven = (rows @ A @ Q)[:r], (rows @ E @ W)[r:], rows @ B
+    follows, term = np.zeros_like(driven[r:]), driven[r:]
+    for _ in range(n):
+        follows, term = follows - term, N @ term @ G
+    g = np.eye(len(G))
+    space = np.block([[Q, W @ follows], [np.zeros((len(g), r)), g]])
+    if len(made.left_over) and np.abs(made.left_over @ space).max() > SMALL:
         return Impossible(made.unruled)
-    parts = np.linalg.inv(both)
-    onto = Q @ parts[: Q.shape[1]]
-    E, A, one = made.E, made.A, np.eye(layout.size)
-    M = np.linalg.lstsq(E @ Q, A @ Q, rcond=None)[0]
-    impulse = W @ np.linalg.lstsq(A @ W, E @ (onto - one), rcond=None)[0]
-    rows, ways = _shared(_signs(layout, state), made.free)
-    return Motion(Q, M, onto, impulse, rows.reshape(-1, layout.size), tuple(ways))
+    read = np.block([[apart[:r], np.zeros((r, len(g)))], [np.zeros((len(g), n)), g]])
+    rate = np.block([[M, driven[:r]], [np.zeros((len(g), r)), G]])
+    jump = W @ N @ np.hstack([-apart[r:], follows])
+    impulse = np.vstack([jump, np.zeros((len(g), layout.size))])
+    triggers, ways = _shared(_signs(layout, state), made.free)
+    return Motion(space, rate, read, impulse, triggers.reshape(-1, layout.size), tuple(ways))
 
 
 def _signs(layout: Layout, state: State) -> list[tuple[Array, str, int]]:
@@ -125,8 +138,7 @@ def _signs(layout: Layout, state: State) -> list[tuple[Array, str, int]]:
     return rows
 
 
-def _wong(made: Pencil) -> tuple[Array, Array]:
-    E, A = made.E, made.A
+def _wong(E: Array, A: Array) -> tuple[Array, Array]:
     Q, W = np.eye(len(E)), np.zeros((len(E), 0))
     while True:
         sizes = Q.shape, W.shape
@@ -151,10 +163,26 @@ def _shared(
     return np.array([row for row, _ in found]), [names for _, names in found]
 
 
+def _exponential(matrix: Array) -> Array:
+    """By Taylor's series of a part of the matrix, squared again: products of small matrices alone."""
+    halvings = max(
+        0, int(np.ceil(np.log2(max(2 * float(np.abs(matrix).sum(axis=0).max()), 1e-300))))
+    )
+    part, one = matrix / 2.0**halvings, np.eye(len(matrix))
+    found = one
+    for k in range(TERMS, 0, -1):
+        found = one + part @ found / k
+    for _ in range(halvings):
+        found = found @ found
+    return found
+
+
 def _kernel(matrix: Array) -> Array:
     if not matrix.size:
         return np.eye(matrix.shape[1])
-    return np.asarray(scipy.linalg.null_space(matrix, rcond=1e-11))
+    _, sizes, rows = np.linalg.svd(matrix)
+    # Of one at least: a matrix of rounding alone has no rank.
+    return np.asarray(rows[int((sizes > 1e-11 * max(sizes[0], 1.0)).sum()) :].T)
 
 
 def _away(columns: Array) -> Array:

@@ -63,7 +63,7 @@ class Oracle:
             course.loose |= self._choice.loose(mode, y)
             motion = self._choice.motion(mode)
             assert isinstance(motion, Motion)
-            c = motion.Q.T @ y
+            c = motion.read @ y
             stop = min([at for at in breaks if at > t] + [end])
             left = first_left(motion, c, stop - t, (end - float(seconds[0])) / 400)
             later = stop if left is None else min(t + left, stop)

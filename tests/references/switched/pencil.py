@@ -49,6 +49,8 @@ class Layout:
         n += len(flows)
         self.charge = {b.name: n + k for k, b in enumerate(network.of("C"))}
         n += len(self.charge)
+        #: What is before follows; the sources, from here on, drive.
+        self.driven = n
         self.source = {b.name: n + 3 * k for k, b in enumerate(network.of(*SOURCES))}
         self.one = n + 3 * len(self.source)
         self.size = self.one + 1
