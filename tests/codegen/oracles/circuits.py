@@ -175,6 +175,8 @@ def switched(network: Network, times: np.ndarray, mechanical: bool = False) -> R
     drawing = Drawing(network, mechanical)
     graph, start, inputs = drawing.graph(), drawing.initial(), drawing.inputs()
     if not network.of("D", "K"):
-        return simulator(bg.derive(graph), {}).run(times, start, inputs)
+        still = simulator(bg.derive(graph), {})
+        known = {name: value for name, value in start.items() if name in still.states}
+        return still.run(times, known, inputs)
     on = drawing.initially_on()
     return switched_simulator(graph, {}).run(times, start, inputs, initially_on=on)

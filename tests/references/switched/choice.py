@@ -65,7 +65,9 @@ class Choice:
         if found is None and len(self._free) <= ENUMERATED:
             found = next((m for m in self._all(old) if self._against(m, y) is None), None)
         if found is None:
-            raise RuntimeError(f"no mode is consistent: {self._told(old, y)}")
+            few = len(self._free) <= ENUMERATED
+            what = "no mode is consistent" if few else "no consistent mode was found"
+            raise RuntimeError(f"{what}: {self._told(old, y)}")
         return self._resting(found, y)
 
     def loose(self, mode: Mode, y: Array) -> set[str]:

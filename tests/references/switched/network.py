@@ -7,7 +7,7 @@ dog clutch, F a Coulomb friction between two bodies, V an imposed speed, I an im
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import exp, log
+from math import exp, log, sqrt
 
 PORTS = ("D", "K", "F")
 """Kinds of branches that switch."""
@@ -104,7 +104,7 @@ def units(network: Network) -> Units:
     """Units in which a network's values are near one, and no source or start is larger."""
     ohms = [b.value for b in network.of("R")] + [b.more for b in network.of("S", "D") if b.more]
     C, L = ([b.value for b in network.of(kind)] for kind in "CL")
-    ohm = _mean(ohms)
+    ohm = _mean(ohms) if ohms or not (C and L) else sqrt(_mean(L) / _mean(C))
     second = _mean([value * ohm for value in C] + [value / ohm for value in L])
     volts = [b.wave.size for b in network.of("S", "V")] + [abs(b.start) for b in network.of("C")]
     amperes = [b.wave.size for b in network.of("I")] + [abs(b.start) for b in network.of("L")]

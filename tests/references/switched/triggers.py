@@ -53,16 +53,14 @@ def _root(row: Array, motion: Motion, c: Array, h: float, risen: bool, low: floa
 
     end, last = h, value(h)
     if last > 0:
+        if not rate(0.0) < 0 < rate(h):
+            return None
         # It turned round between: is its least value below zero?
         end = float(brentq(rate, 0.0, h, xtol=1e-15))
         last = value(end)
     if last >= (0.0 if risen else -low):
-        return None if last > 0 or not risen else end
-    begin = 0.0
-    if not risen:
-        begin = next(
-            (h / 2.0**k for k in range(1, 40) if end > h / 2.0**k and value(h / 2.0**k) > 0), 0.0
-        )
-        if not begin:
-            return 0.0
-    return float(brentq(value, begin, end, xtol=1e-15))
+        return end if risen and last == 0 else None
+    # One that begins at zero rises first, if not by more than rounding.
+    before = (0.0,) if risen else (h / 2.0**k for k in range(1, 40) if h / 2.0**k < end)
+    begin = next((s for s in before if value(s) > 0), None)
+    return 0.0 if begin is None else float(brentq(value, begin, end, xtol=1e-15))
