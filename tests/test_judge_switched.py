@@ -4,26 +4,15 @@ from math import acos, asin, cos, exp, pi, sin, sqrt
 
 import numpy as np
 import pytest
-from references.switched.named import (
-    buck,
-    dog_beside_clutch,
-    jenkins,
-    opened_inductor,
-    pulses,
-    six_pulse,
-    two_dogs,
-)
-from references.switched.network import Branch, Network, Wave
+from references.switched.mechanisms import dog_beside_clutch, jenkins, two_dogs
+from references.switched.named import buck, opened_inductor, pulses, six_pulse
+from references.switched.network import Branch, Network, Wave, joined
 from references.switched.oracle import Course, Event, Oracle
 
 
 def _run(network: Network, end: float, count: int = 101) -> tuple[np.ndarray, Course]:
     times = np.linspace(0.0, end, count)
     return times, Oracle(network).run(times)
-
-
-def _network(*branches: Branch) -> Network:
-    return Network(max(max(b.tail, b.head) for b in branches), branches)
 
 
 def _near(events: list[Event], *right: Event) -> None:
@@ -37,7 +26,7 @@ def test_a_chopped_current_is_periodic_between_its_two_exponentials() -> None:
     tau = L / R
     most = V / R * (1 - exp(-D * T / tau)) / (1 - exp(-T / tau))
     least = most * exp(-(1 - D) * T / tau)
-    network = _network(
+    network = joined(
         Branch("V", "V0", 0, 1, wave=Wave(V)),
         Branch("K", "K0", 1, 2, instants=pulses(T, D, 4 * T)),
         Branch("D", "D0", 0, 2), Branch("L", "L0", 2, 3, L, start=least), Branch("R", "R0", 3, 0, R),
@@ -67,7 +56,7 @@ def test_a_buck_loses_no_volt_second() -> None:
 
 def test_a_capacitor_rings_once_through_a_diode() -> None:
     """Half a sine, which leaves it charged the other way."""
-    network = _network(
+    network = joined(
         Branch("C", "C0", 1, 0, 2.0, start=3.0),
         Branch("D", "D0", 1, 2),
         Branch("L", "L0", 2, 0, 0.5),
@@ -82,7 +71,7 @@ def test_a_capacitor_rings_once_through_a_diode() -> None:
 
 def test_a_block_on_a_spring_loses_twice_the_level_in_each_swing() -> None:
     """m = k = 1, level 0.15: the spring's force at the turns is 1, -0.7, 0.4, -0.1, and there it sticks."""
-    network = _network(
+    network = joined(
         Branch("C", "C0", 1, 0, 1.0), Branch("L", "L0", 1, 0, 1.0, start=1.0),
         Branch("F", "F0", 1, 0, 0.15),
     )  # fmt: skip
@@ -97,7 +86,7 @@ def test_a_block_on_a_spring_loses_twice_the_level_in_each_swing() -> None:
 
 def test_a_block_is_pulled_by_a_spring_and_breaks_away_at_the_level() -> None:
     """Pulled at 0.5 by k = 2 it waits for level/(k 0.5), and then has the speed 0.5 (1 - cos(omega t))."""
-    network = _network(
+    network = joined(
         Branch("V", "V0", 0, 1, wave=Wave(0.5)), Branch("L", "L0", 1, 2, 0.5),
         Branch("C", "C0", 2, 0, 3.0), Branch("F", "F0", 2, 0, 0.8),
     )  # fmt: skip
@@ -112,8 +101,8 @@ def test_a_dog_closes_beside_a_stuck_clutch_which_then_slips() -> None:
     network = dog_beside_clutch((1.0, 2.0, 3.0), (0.0, 0.0, 1.0), 1.0, 0.2, 1.0)
     _, course = _run(network, 3.0, 4)
     both = (2 * (0.2 / 3) + 3) / 5
-    joined = 1 + (both - 0.2 / 3) / (1.2 + 0.2)
-    _near(course.events, (1.0, "F0", "slip"), (1.0, "K0", "on"), (joined, "F0", "stick"))
+    together = 1 + (both - 0.2 / 3) / (1.2 + 0.2)
+    _near(course.events, (1.0, "F0", "slip"), (1.0, "K0", "on"), (together, "F0", "stick"))
     assert course.columns["u_C1"] == pytest.approx([0, both, 0.6 - 0.2 / 6, 0.6], abs=1e-11)
     assert course.columns["u_C0"] == pytest.approx([0, 0.2 / 3, 0.6 - 0.2 / 6, 0.6], abs=1e-11)
 
@@ -167,15 +156,15 @@ def test_a_coil_that_is_opened_without_a_diode_loses_its_current_at_once() -> No
 def test_charges_that_a_switch_joins_add_up() -> None:
     """2 at 3 V and 1 at 0 V; and what contradicts itself at the start does so at once."""
     parts = Branch("C", "C0", 1, 0, 2.0, start=3.0), Branch("C", "C1", 2, 0, 1.0)
-    later = _network(*parts, Branch("K", "K0", 1, 2, instants=(0.5,)), Branch("R", "R0", 1, 0, 1e9))
-    at_once = _network(*parts, Branch("K", "K0", 1, 2, on=True), Branch("R", "R0", 1, 0, 1e9))
+    later = joined(*parts, Branch("K", "K0", 1, 2, instants=(0.5,)), Branch("R", "R0", 1, 0, 1e9))
+    at_once = joined(*parts, Branch("K", "K0", 1, 2, on=True), Branch("R", "R0", 1, 0, 1e9))
     assert _run(later, 1.0, 3)[1].columns["u_C1"] == pytest.approx([0, 2, 2], abs=1e-6)
     assert _run(at_once, 1.0, 3)[1].columns["u_C1"] == pytest.approx([2, 2, 2], abs=1e-6)
 
 
 def test_of_two_frictions_in_series_the_weaker_one_slips() -> None:
     """A force of sin(t) on one body; the one behind both frictions never moves."""
-    network = _network(
+    network = joined(
         Branch("C", "C0", 1, 0, 1.0), Branch("F", "F0", 1, 2, 0.5), Branch("F", "F1", 2, 0, 0.7),
         Branch("I", "I0", 0, 1, wave=Wave(amplitude=1.0, frequency=1 / (2 * pi))),
     )  # fmt: skip
@@ -189,7 +178,7 @@ def test_of_two_frictions_in_series_the_weaker_one_slips() -> None:
 
 
 def test_two_frictions_side_by_side_hold_what_their_levels_add_up_to() -> None:
-    network = _network(
+    network = joined(
         Branch("C", "C0", 1, 0, 1.0), Branch("F", "F0", 1, 0, 0.5), Branch("F", "F1", 1, 0, 0.2),
         Branch("I", "I0", 0, 1, wave=Wave(amplitude=1.0, frequency=1 / (2 * pi))),
     )  # fmt: skip
@@ -224,7 +213,7 @@ def test_commutation_takes_what_the_source_inductance_needs() -> None:
 def test_a_diode_conducts_for_less_than_a_step() -> None:
     """Above 0.9999 a sine is for 0.028 of its radians, where a step is 0.3."""
     short = Wave(-0.9999, amplitude=1.0, frequency=1 / (2 * pi))
-    network = _network(
+    network = joined(
         Branch("V", "V0", 0, 1, wave=short), Branch("D", "D0", 1, 2), Branch("R", "R0", 2, 0, 1.0)
     )
     _, course = _run(network, 120.0, 2)
@@ -243,7 +232,7 @@ def test_a_diode_conducts_for_less_than_a_step() -> None:
 def test_a_diode_passes_an_impulse_and_blocks_in_the_same_instant() -> None:
     """Into a capacitor from a source that jumps up and then falls: charged at once, and no event."""
     wave = Wave(0.0, ((0.5, 3.0),), 1.0, 1 / (2 * pi), 2.0)
-    network = _network(
+    network = joined(
         Branch("V", "V0", 0, 1, wave=wave), Branch("D", "D0", 1, 2), Branch("C", "C0", 2, 0, 1.0)
     )
     times, course = _run(network, 3.0)
@@ -254,7 +243,7 @@ def test_a_diode_passes_an_impulse_and_blocks_in_the_same_instant() -> None:
 
 def test_friction_beside_a_dog_that_closes_sticks() -> None:
     """It could as well be said to slip for ever, without a slip."""
-    network = _network(
+    network = joined(
         Branch("C", "C0", 1, 0, 1.0, start=1.0), Branch("F", "F0", 1, 0, 0.1),
         Branch("K", "K0", 1, 0, instants=(0.5,)),
     )  # fmt: skip
@@ -264,7 +253,7 @@ def test_friction_beside_a_dog_that_closes_sticks() -> None:
 
 
 def test_where_commands_contradict_sources_no_mode_is_consistent() -> None:
-    network = _network(
+    network = joined(
         Branch("V", "V0", 0, 1, wave=Wave(1.0)), Branch("V", "V1", 0, 2, wave=Wave(2.0)),
         Branch("K", "K0", 1, 2, instants=(0.5,)), Branch("R", "R0", 1, 2, 1.0),
     )  # fmt: skip
@@ -276,7 +265,7 @@ def test_where_commands_contradict_sources_no_mode_is_consistent() -> None:
 
 def test_a_diode_across_a_closed_switch_is_loose() -> None:
     """Which of them carries the current nothing tells."""
-    network = _network(
+    network = joined(
         Branch("S", "S0", 0, 1, more=1.0, wave=Wave(1.0)),
         Branch("K", "K0", 1, 0, on=True), Branch("D", "D0", 1, 0),
     )  # fmt: skip
@@ -285,7 +274,7 @@ def test_a_diode_across_a_closed_switch_is_loose() -> None:
 
 def test_a_wave_is_what_it_says() -> None:
     wave = Wave(0.5, ((1.0, 2.0),), 3.0, 0.25, 0.1)
-    network = _network(Branch("V", "V0", 0, 1, wave=wave), Branch("R", "R0", 1, 0, 2.0))
+    network = joined(Branch("V", "V0", 0, 1, wave=wave), Branch("R", "R0", 1, 0, 2.0))
     times, course = _run(network, 2.0, 5)
     expected = [0.5 + 2.0 * (t >= 1) + 3 * sin(pi / 2 * t + 0.1) for t in times]
     assert course.columns["u_R0"] == pytest.approx(expected, abs=1e-12)

@@ -6,13 +6,13 @@ Steps of h and h/2 give the limit for h to zero (Richardson); the stepper alone 
 import numpy as np
 import pytest
 from references.switched.choice import Choice, Mode
+from references.switched.mechanisms import jenkins
 from references.switched.named import (
     boost,
     bridge_chain,
     buck,
     full_bridge,
     half_bridge,
-    jenkins,
     opened_inductor,
     pulses,
     six_pulse,
@@ -45,7 +45,7 @@ TURNS = [pulses(1e-3, 0.3 + 0.1 * k, 0.02, 1e-4 * k) for k in range(3)]
 
 LARGE: dict[str, tuple[Network, float, int]] = {
     "vienna": (
-        vienna(325, 50, 0.2, 1e-3, 1e-3, 50, TURNS, 300),
+        vienna(325, 50, 0.2, 1e-3, 1e-3, 50, TURNS, 300, 500),
         0.02, 6_000,
     ),
     "24-diodes": (bridge_chain(6, 10, 50, 0.5, 0.02, 1e-2, 5), 0.02, 1200),

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from oracles.circuits import Drawing, complaints, judged, switched
-from references.switched.named import buck, dog_beside_clutch, opened_inductor, pulses, two_dogs
+from references.switched.mechanisms import dog_beside_clutch, two_dogs
+from references.switched.named import buck, opened_inductor, pulses
 from references.switched.network import Branch, Network, Wave
 from references.switched.random_networks import random_switched
 

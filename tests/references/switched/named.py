@@ -1,4 +1,4 @@
-"""Circuits of power electronics and driveline parts, by name, as networks that switch."""
+"""Circuits of power electronics, by name, as networks that switch."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from math import pi
 
 import numpy as np
 
-from references.switched.network import Branch, Network, Wave
+from references.switched.network import Branch, Network, Wave, joined
 
 
 def pulses(period: float, duty: float, end: float, begin: float = 0.0) -> tuple[float, ...]:
@@ -17,16 +17,12 @@ def pulses(period: float, duty: float, end: float, begin: float = 0.0) -> tuple[
     return tuple(float(t) for start in starts for t in (start, start + duty * period) if t < end)
 
 
-def _network(*branches: Branch) -> Network:
-    return Network(max(max(b.tail, b.head) for b in branches), branches)
-
-
 def buck(
     V: float, L: float, C: float, R: float, instants: Sequence[float], current: float = 0.0,
     voltage: float = 0.0,
 ) -> Network:  # fmt: skip
     """A switch from V into a coil, a capacitor and a resistance; a diode from the ground."""
-    return _network(
+    return joined(
         Branch("V", "V0", 0, 1, wave=Wave(V)), Branch("K", "K0", 1, 2, instants=tuple(instants)),
         Branch("D", "D0", 0, 2), Branch("L", "L0", 2, 3, L, start=current),
         Branch("C", "C0", 3, 0, C, start=voltage), Branch("R", "R0", 3, 0, R),
@@ -37,7 +33,7 @@ def boost(
     V: float, L: float, C: float, R: float, instants: Sequence[float], voltage: float
 ) -> Network:
     """A coil from V to a switch to ground, and by a diode to a capacitor and a resistance."""
-    return _network(
+    return joined(
         Branch("V", "V0", 0, 1, wave=Wave(V)), Branch("L", "L0", 1, 2, L),
         Branch("K", "K0", 2, 0, instants=tuple(instants)), Branch("D", "D0", 2, 3),
         Branch("C", "C0", 3, 0, C, start=voltage), Branch("R", "R0", 3, 0, R),
@@ -48,7 +44,7 @@ def half_bridge(
     V: float, L: float, R: float, on: float, upper: Sequence[float], lower: Sequence[float]
 ) -> Network:
     """Two sources of V, two switches behind ``on`` with diodes across them, a coil and a resistance."""
-    return _network(
+    return joined(
         Branch("V", "V0", 0, 1, wave=Wave(V)), Branch("V", "V1", 2, 0, wave=Wave(V)),
         *_leg(0, 1, 3, 2, 4, on, upper, lower),
         Branch("L", "L0", 3, 6, L), Branch("R", "R0", 6, 0, R),
@@ -69,7 +65,7 @@ def full_bridge(
         upper = [t + pause * (k % 2 == 0) for k, t in enumerate(instants)]
         lower = [0.5 * pause] + [t + pause * (k % 2) for k, t in enumerate(instants)]
         legs += _leg(2 * at, 1, 2 + 3 * at, 0, 3 + 3 * at, on, upper, lower)
-    return _network(
+    return joined(
         Branch("V", "V0", 0, 1, wave=Wave(V)), *legs,
         Branch("L", "L0", 2, 8, L, start=current), Branch("R", "R0", 8, 5, R),
     )  # fmt: skip
@@ -105,7 +101,7 @@ def six_pulse(
         made.append(Branch("D", f"D{k}", a, plus, more=more))
         made.append(Branch("D", f"D{k + 3}", minus, a, more=more))
     made += [Branch("L", "L0", plus, 9, L), Branch("R", "R0", 9, minus, R)]
-    return _network(*(made if Ls else [_moved(b, 3) for b in made]))
+    return joined(*(made if Ls else [_moved(b, 3) for b in made]))
 
 
 def _moved(b: Branch, by: int) -> Branch:
@@ -115,9 +111,13 @@ def _moved(b: Branch, by: int) -> Branch:
 
 def vienna(
     V: float, f: float, phase: float, L: float, C: float, R: float,
-    instants: Sequence[Sequence[float]], charged: float,
+    instants: Sequence[Sequence[float]], charged: float, neutral: float,
 ) -> Network:  # fmt: skip
-    """Three phases behind coils, six diodes to two capacitors, a switch from each phase to between them."""
+    """Three phases behind coils, six diodes to two capacitors, a switch from each phase to between them.
+
+    A resistance ``neutral`` ties that place to the ground: without it nothing tells whether the last diode
+    to conduct does once no other does.
+    """
     made, plus, middle, minus = [], 7, 8, 9
     for k in range(3):
         made += [
@@ -126,9 +126,10 @@ def vienna(
             Branch("D", f"D{k}", k + 4, plus), Branch("D", f"D{k + 3}", minus, k + 4),
             Branch("K", f"K{k}", k + 4, middle, instants=tuple(instants[k])),
         ]  # fmt: skip
-    return _network(
+    return joined(
         *made, Branch("C", "C0", plus, middle, C, start=charged),
         Branch("C", "C1", middle, minus, C, start=charged), Branch("R", "R0", plus, minus, R),
+        Branch("R", "R1", middle, 0, neutral),
     )  # fmt: skip
 
 
@@ -145,58 +146,15 @@ def bridge_chain(
         made += [Branch("D", f"D{4 * k + j}", *way, more=more) for j, way in enumerate(ways)]
         minus = plus
     last = 3 * count + 1
-    return _network(
+    return joined(
         *made, Branch("L", "L0", minus, last, L), Branch("R", "R0", last, 0, R),
-    )  # fmt: skip
-
-
-def jenkins(
-    springs: Sequence[float], levels: Sequence[float], wave: Wave, mass: float = 0.0
-) -> Network:
-    """Springs (as L), each in series with a slider, side by side from an imposed speed to the ground.
-
-    With a mass the wave is a force on it.
-    """
-    drive = [Branch("C", "C0", 1, 0, mass), Branch("I", "I0", 0, 1, wave=wave)]
-    made = drive if mass else [Branch("V", "V0", 0, 1, wave=wave)]
-    for k, (spring, level) in enumerate(zip(springs, levels, strict=True)):
-        made += [Branch("L", f"L{k}", 1, k + 2, spring), Branch("F", f"F{k}", k + 2, 0, level)]
-    return _network(*made)
-
-
-def dog_beside_clutch(
-    masses: tuple[float, float, float], speeds: tuple[float, float, float], level: float,
-    force: float, closes: float,
-) -> Network:  # fmt: skip
-    """Three bodies: friction between the first two, a dog that closes between the last two.
-
-    A force pulls the first.
-    """
-    bodies = zip(masses, speeds, strict=True)
-    made = [Branch("C", f"C{k}", k + 1, 0, m, start=v) for k, (m, v) in enumerate(bodies)]
-    return _network(
-        *made, Branch("F", "F0", 1, 2, level), Branch("K", "K0", 2, 3, instants=(closes,)),
-        Branch("I", "I0", 0, 1, wave=Wave(force)),
     )  # fmt: skip
 
 
 def opened_inductor(V: float, L: float, R: float, Rd: float, opens: float) -> Network:
     """A switch that opens a coil's current into a diode and a resistance."""
-    return _network(
+    return joined(
         Branch("V", "V0", 0, 1, wave=Wave(V)), Branch("K", "K0", 1, 2, on=True, instants=(opens,)),
         Branch("L", "L0", 2, 3, L), Branch("R", "R0", 3, 0, R), Branch("D", "D0", 4, 2),
         Branch("R", "R1", 0, 4, Rd),
-    )  # fmt: skip
-
-
-def two_dogs(
-    masses: tuple[float, float], speeds: tuple[float, float], force: float,
-    first: Sequence[float], second: Sequence[float],
-) -> Network:  # fmt: skip
-    """Two bodies with two dogs between them, a force on the first."""
-    bodies = zip(masses, speeds, strict=True)
-    made = [Branch("C", f"C{k}", k + 1, 0, m, start=v) for k, (m, v) in enumerate(bodies)]
-    return _network(
-        *made, Branch("K", "K0", 1, 2, instants=tuple(first)),
-        Branch("K", "K1", 1, 2, instants=tuple(second)), Branch("I", "I0", 0, 1, wave=Wave(force)),
     )  # fmt: skip

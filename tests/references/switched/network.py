@@ -86,6 +86,11 @@ class Network:
         return sorted(steps | {at for b in self.of("K") for at in b.instants})
 
 
+def joined(*branches: Branch) -> Network:
+    """The network of some branches."""
+    return Network(max(max(b.tail, b.head) for b in branches), branches)
+
+
 @dataclass(frozen=True)
 class Units:
     """What one of a network's own units is in those it was given in: a voltage, a resistance, a time."""
