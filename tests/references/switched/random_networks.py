@@ -84,8 +84,8 @@ class _Drawing:
             if rng.random() < 0.55:
                 self._passive("CCCL", k, 0)
         for _ in range(int(rng.integers(0, n))):
-            pair = rng.choice(n, size=2, replace=False) + 1 if n > 1 else (1, 0)
-            self._passive("RRRCL", int(pair[0]), int(pair[1]))
+            tail, head = (rng.choice(n, size=2, replace=False) + 1).tolist() if n > 1 else (1, 0)
+            self._passive("RRRCL", tail, head)
         return Network(self._last, tuple(self._made))
 
     def _add(self, kind: str, tail: int, head: int, value: float = 0.0, **more: object) -> None:

@@ -69,7 +69,7 @@ class Stepper:
     def run(self, steps: int) -> dict[str, Array]:
         """Voltages of capacitors and currents of coils after each step, from the first on."""
         network, h = self._network, self._h
-        times = h * np.arange(1, steps + 1)
+        times: Array = h * np.arange(1, steps + 1, dtype=float)
         waves = {b.name: self._values(b.wave, times) for b in network.of("S", "V", "I")}
         stored = {b.name: b.start for b in network.of("C", "L")}
         kept = {name: np.empty(steps) for name in stored}
@@ -78,7 +78,7 @@ class Stepper:
                 float(t) - h / 2, stored, {name: wave[k] for name, wave in waves.items()}
             )
             for b in network.of("C", "L"):
-                across = self._ways[b.name] @ v
+                across = float(self._ways[b.name] @ v)
                 new = across if b.kind == "C" else stored[b.name] + h / b.value * across
                 kept[b.name][k] = stored[b.name] = new
         names = {b.name: ("u_" if b.kind == "C" else "i_") + b.name for b in network.of("C", "L")}
@@ -139,7 +139,7 @@ class Stepper:
             K[:n, :n] += lead * np.outer(way, way)
         for at, b in enumerate(forced):
             K[:n, n + at] = K[n + at, :n] = self._ways[b.name]
-        inverse = np.linalg.inv(K)
+        inverse: Array = np.asarray(np.linalg.inv(K), dtype=float)
         ways = np.array([self._ways[b.name] for b in self._ports]).reshape(-1, n).T
         lift = inverse[:, :n] @ ways
         M = ways.T @ lift[:n] + np.diag([b.more for b in self._ports])
