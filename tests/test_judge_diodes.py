@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 from oracles.circuits import Found, complaints, judged
-from references.diode_networks import Branch, Network, random_network
+from references.switched.network import Branch, Network, Wave
+from references.switched.random_networks import random_network
 
 from codegen import Event
 
@@ -16,7 +17,7 @@ def test_a_half_wave_rectifier_into_a_resistance_and_a_coil() -> None:
     """u = sin(w t) on R = 1 and L = 1: i = (sin(w t) - w cos(w t) + w exp(-t))/(1 + w^2) until it is zero."""
     w = 2 * np.pi * 0.5
     parts = (
-        Branch("S", "S0", 0, 1, 1.0, more=1.0, frequency=0.5),
+        Branch("S", "S0", 0, 1, more=1.0, wave=Wave(amplitude=1.0, frequency=0.5)),
         Branch("D", "D0", 1, 2),
         Branch("L", "L0", 2, 0, 1.0),
     )

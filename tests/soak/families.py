@@ -231,4 +231,10 @@ FAMILIES = (
     Family(
         "ideal-diodes", "codegen/switched/test_switched_networks.py::test_ideal_diodes", 12, 1_000
     ),
+    # The judge of networks that switch.
+    Family("judge-steps", "test_judge_switched_steps.py::test_random_networks", 3, 300),
+    Family(
+        "judge-modes", "test_judge_switched_steps.py::test_no_second_mode_is_consistent", 4, 300
+    ),
+    Family("large-circuits", "test_judge_switched_steps.py::test_named_circuits", 0, 1),
 )

@@ -8,8 +8,8 @@ import networkx as nx
 import numpy as np
 from references.build import bond_graph
 from references.cases import CASES
-from references.diode_networks import random_network
 from references.random_graphs import random_graph
+from references.switched.random_networks import random_network
 
 import bondgraph as bg
 from codegen import (
@@ -27,7 +27,7 @@ from codegen.numbers.arrays import Array
 from codegen.record.measures import Measure
 from codegen.sweeps.job import Job, batch_of
 from oracles.chains import random_chain
-from oracles.circuits import as_graph
+from oracles.circuits import Drawing
 
 CLOSED = 1e-9
 """Of the energy turned over."""
@@ -164,8 +164,8 @@ def _modulate(graph: nx.DiGraph, rng: random.Random, followed: str) -> None:
 def rectifying(seed: int) -> Result:
     """A random network with diodes, ideal ones and with resistances; switches run in Python alone."""
     network = random_network(np.random.default_rng(seed), ideal=bool(seed % 2))
-    inputs = {f"u_{b.name}": Sine(b.value, b.frequency, phase=b.phase) for b in network.of("S")}
-    return switched_simulator(as_graph(network), {}).run(np.linspace(0.0, 3.0, 7), inputs=inputs)
+    drawing, times = Drawing(network), np.linspace(0.0, 3.0, 7)
+    return switched_simulator(drawing.graph(), {}).run(times, inputs=drawing.inputs())
 
 
 FAMILIES: dict[str, Callable[[int], Case | None]] = {
