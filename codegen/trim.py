@@ -9,10 +9,10 @@ from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.modes.steady import choices, steady_modes
-from codegen.modes.switchings import Broken
 from codegen.modes.verdicts import look_at
 from codegen.numbers.arrays import Array
 from codegen.simulate import Simulator
+from codegen.standalone.switchings import Broken
 from codegen.tuning import TUNING
 
 ITERATIONS = 50

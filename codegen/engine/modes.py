@@ -131,6 +131,7 @@ class Tables:
             view(self.engine, made.left, size["L"], -1)[:, : len(rest)] = self._wide(rest).T
             away = view(self.engine, made.take_away, -1, size["N"])
             away[: len(rest), : len(held.take_away)] = held.take_away.T
+            view(self.engine, made.mix, size["PORTS"], -1)[: len(rest), held.ports] = held.mix
 
     def _fill_switches(self, made: Any, mode: Mode, affine: AffineMap) -> None:
         """What keeps switches; where friction slips forwards also what they do as they come to hold."""
@@ -143,7 +144,7 @@ class Tables:
         found = struck(model, mode)
         if found is None:
             return
-        for name, part in (("mix", found.mix), ("jump", found.jump), ("shock", found.shock)):
+        for name, part in (("jump", found.jump), ("shock", found.shock)):
             table = view(self.engine, getattr(made, name), size["PORTS"], -1)
             table[: part.shape[0], : part.shape[1]] = part
 

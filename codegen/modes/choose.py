@@ -15,7 +15,7 @@ from codegen.modes.closed import ClosedModel
 from codegen.modes.impact import impact, pushed
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.trials import evaluated
-from codegen.modes.verdicts import Look, look_at, ruled_out, ruled_out_later
+from codegen.modes.verdicts import Look, look_at, ruled_out, ruled_out_later, torn
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
 from codegen.standalone.switchings import Broken, switchings
@@ -224,7 +224,7 @@ def _looked_at(
     model = now.model
     try:
         look = look_at(model, now.t, s, now.pieces, mode, now.peaks)
-        wrong = ruled_out(look)
+        wrong = ruled_out(look) or torn(look)
         if wrong is not None:
             return _Finding(wrong)
         shocks = np.zeros(len(mode), dtype=int) if jump is None else pushed(look, now.t, jump)

@@ -66,11 +66,9 @@ def _taken(model: ClosedModel, before: Snapshot, after: Snapshot, given: Array) 
 class Struck:
     """Impacts of an affine mode, per unit of the slips that its switches stop.
 
-    ``mix``: what those slips are of the ports' own; ``jump``: what s gains; ``shock``: how far the
-    impulse goes with each switch's way.
+    ``jump``: what s gains; ``shock``: how far the impulse goes with each switch's way.
     """
 
-    mix: Array
     jump: Array
     shock: Array
 
@@ -90,9 +88,7 @@ def struck(model: ClosedModel, mode: Mode) -> Struck | None:
     jump = np.zeros((model.size, len(hold.mix)))
     n, rates = len(model.program.states), list(model.program.law_rates)
     jump[:n], jump[n : n + len(rates)] = moved @ amounts, received[rates]
-    mix = np.zeros((len(hold.mix), len(ports)))
-    mix[:, hold.ports] = hold.mix
-    return Struck(mix, jump.T, _shocks(model, mode, given, received).T)
+    return Struck(jump.T, _shocks(model, mode, given, received).T)
 
 
 def _shocks(model: ClosedModel, mode: Mode, given: Array, received: Array) -> Array:

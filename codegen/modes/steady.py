@@ -11,9 +11,9 @@ from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
 from codegen.modes.choose import Occasion, decide
 from codegen.modes.closed import ClosedModel
-from codegen.modes.switchings import ALL_WAYS, FEW, Broken, flipped
 from codegen.modes.trials import evaluated
 from codegen.numbers.arrays import Array
+from codegen.standalone.switchings import ALL_WAYS, FEW, Broken, flipped
 from codegen.tuning import TUNING
 
 Choices = tuple[tuple[int, ...], ...]

@@ -156,6 +156,23 @@ def ruled_out(look: Look) -> str | None:
     return None
 
 
+def torn(look: Look) -> str | None:
+    """Why a set of ports cannot hold: a combination of what they receive would have to stop at once.
+
+    Friction gives no impulse, and what switches stop at once they have stopped before.
+    """
+    if 0 not in look.mode:
+        return None
+    held, now, near = look.model.hold(look.mode, look.now.numbers), look.now, look.size.slip
+    slips = held.slip_x @ now.x + held.slip_u @ now.u
+    least = TUNING.wide * np.abs(held.mix) @ near[held.ports]
+    for k in np.flatnonzero(np.abs(slips) > least).tolist():
+        ports = held.ports[np.flatnonzero(held.mix[k])]
+        names = " and ".join(repr(look.model.program.friction[i].name) for i in ports)
+        return f"what {names} receive together would have to be zero, not {slips[k]:.6g}"
+    return None
+
+
 def _ruled_at(look: Look, row: int) -> str:
     """What other inputs rule, by its ports."""
     names = [repr(look.model.program.friction[i].name) for i in np.flatnonzero(look.ruling[row])]

@@ -22,6 +22,8 @@ class DeadBand(FixedSteps):
         self.efforts, self.slips, self.beside = ports.inputs, ports.readings, np.array(ports.beside)
         self.moving = ports.moving
         self.rubs = np.ones(len(self.slips), dtype=bool)
+        #: What slips may change by in a step, twice.
+        self.turning = np.zeros(len(self.slips))
 
     def decided(self, at: Point, previous: Chosen, dead_band: float, h: float = 0.0) -> Mode:
         """Which ports stick (0) and which way the others slip (+1, -1)."""
@@ -41,11 +43,11 @@ class DeadBand(FixedSteps):
         slips = now.y[self.slips]
         mode = np.where(self.rubs, np.where(slips > 0, 1, -1), switched).tolist()
         near = (np.abs(slips) <= self.least(now, dead_band)) | self.beside
+        self.turning = np.zeros(len(slips))
         if previous is not None:
             # An input that steps may turn a slip round too; what a step of h can't reach slips on.
-            near |= (slips * previous < 0) & (
-                np.abs(slips) <= 2 * h * np.abs(slip_rates(now, self.slips, self.moving))
-            )
+            self.turning = 2 * h * np.abs(slip_rates(now, self.slips, self.moving))
+            near |= (slips * previous < 0) & (np.abs(slips) <= self.turning)
         near &= self.rubs
         for i in np.flatnonzero(near):
             mode[i] = 0
@@ -71,15 +73,22 @@ class DeadBand(FixedSteps):
         raise refused or EvaluationError("there is no mode")
 
     def consistent(self, at: Point, mode: Sequence[int], dead_band: float) -> Instant:
-        """Every variable in a mode, unless what other inputs rule does not let its ports stick."""
+        """Every variable in a mode, unless what its ports receive together does not let them stick.
+
+        That is what other inputs rule of it, and what friction would have to stop at once; what a
+        step can bring to rest counts as being there; of a single port its own slip has told.
+        """
         now = self.at(at, tuple(mode))
-        if 0 in mode and len(rows := self.friction.hold(tuple(mode), now.numbers).ruled):
-            stuck = np.flatnonzero(np.equal(mode, 0))
-            least = self.least(now, dead_band)[stuck]
-            if (np.abs(rows @ now.y[self.slips[stuck]]) > np.abs(rows) @ least).any():
-                raise EvaluationError(
-                    f"at t = {at.t:g} no way of sticking and slipping is consistent"
-                )
+        if 0 not in mode:
+            return now
+        hold = self.friction.hold(tuple(mode), now.numbers)
+        slips, least = now.y[self.slips[hold.ports]], self.least(now, dead_band)[hold.ports]
+        together = (hold.mix != 0).sum(axis=1) > 1
+        mix = hold.mix[together & ~(hold.mix[:, ~self.rubs[hold.ports]] != 0).any(axis=1)]
+        ruled = np.abs(hold.ruled @ slips) > np.abs(hold.ruled) @ least
+        torn = np.abs(mix @ slips) > np.abs(mix) @ (least + self.turning[hold.ports])
+        if ruled.any() or torn.any():
+            raise EvaluationError(f"at t = {at.t:g} no way of sticking and slipping is consistent")
         return now
 
     def least(self, now: Instant, dead_band: float) -> Array:

@@ -171,6 +171,9 @@ static void fill_held(ex_mode *made, const bg_hold *held)
     for (int k = 0; k < held->kept; k++)
         for (int i = 0; i < N; i++)
             made->take_away[k][i] = held->take_away[i * held->kept + k];
+    for (int k = 0; k < held->kept; k++)
+        for (int c = 0; c < held->count; c++)
+            made->mix[k][held->ports[c]] = held->mix[k * held->count + c];
     made->held = held->kept;
     made->ruled = held->ruled;
     for (int r = 0; r < held->ruled; r++)
@@ -252,8 +255,6 @@ static void fill_switches(ex_mode *made, const double *map, bg_model *m, const i
     for (int k = 0; k < held->kept; k++) {
         bg_pass_on(m, impulses + k * K, made->jump[k], received);
         bg_shocks(m, mode, impulses + k * K, received, made->shock[k]);
-        for (int c = 0; c < held->count; c++)
-            made->mix[k][held->ports[c]] = held->mix[k * held->count + c];
     }
 }
 

@@ -50,10 +50,11 @@ typedef struct {
                                       the slips change; the rates of s */
     double left[EX_L][EX_PORTS];   /* the slips that are to be removed .. */
     double take_away[EX_PORTS][EX_N]; /* .. and what to add to s per unit of each */
+    double mix[EX_PORTS][EX_PORTS]; /* what those slips are of the ports' own */
     double stay[EX_L][EX_PORTS];   /* what keeps switches */
-    /* where friction slips forwards: what those slips are of the ports' own; as switches come to hold
-     * what s gains per unit of each, and how far the impulse goes with each switch's way */
-    double mix[EX_PORTS][EX_PORTS], jump[EX_PORTS][EX_N], shock[EX_PORTS][EX_PORTS];
+    /* where friction slips forwards, as switches come to hold: what s gains per unit of each slip, and
+     * how far the impulse goes with each switch's way */
+    double jump[EX_PORTS][EX_N], shock[EX_PORTS][EX_PORTS];
     int rates;                     /* how many of `spectrum` are known */
     double spectrum[EX_N][2];      /* rates of s by itself: magnitudes, and how fast they decay */
     int sharp;                     /* whether `rate` and `rest` are known .. */

@@ -50,6 +50,9 @@ static void tell(void *context, const int *mode, const bg_instant *at, bg_port *
         return;
     ruling->unknown = found->supported ? BG_OK : BG_NOT_AFFINE;
     ruling->count = found->ruled;
+    ruling->kept = found->held;
+    for (int k = 0; k < found->held; k++)
+        memcpy(ruling->mix[k], found->mix[k], sizeof found->mix[k]);
     for (int k = 0; k < found->ruled; k++)
         memcpy(ruling->rows[k], found->ruling[k], sizeof found->ruling[k]);
 }

@@ -77,6 +77,7 @@ typedef struct {
     double weight[BG_SIZE], reach[BG_SIZE], image[BG_SIZE], next[BG_SIZE];
     double given[3][BG_ROOM(BG_EXTERNAL)], rates[3][BG_ROOM(BG_EXTERNAL)];
     double origin[BG_MAP_ROWS], external[2][BG_ROOM(BG_EXTERNAL)];
+    double turning[BG_ROOM(BG_FRICTION)]; /* what slips may change by in a step, twice */
     double loop[BG_ROOM(BG_LOOP)][6], slopes[BG_TABLE(BG_LOOP, BG_LOOP)];
     int pivots[BG_ROOM(BG_LOOP)];
     bg_values sizes;

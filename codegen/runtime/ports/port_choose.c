@@ -66,6 +66,25 @@ static int ruled_out(int ports, const bg_ruling *ruling, const bg_port *now, con
     return 0;
 }
 
+/* Whether ports of a mode would have to stop at once what they receive together: friction gives no
+ * impulse, and what switches stop they have stopped before. What is only found long after it has
+ * happened may have moved on. */
+static int is_torn(int ports, const bg_ruling *ruling, const bg_port *now, const int *touched)
+{
+    for (int k = 0; k < ruling->kept; k++) {
+        double slip = 0.0, near = 0.0;
+        int passed = 0;
+        for (int i = 0; i < ports; i++) {
+            slip += ruling->mix[k][i] * now[i].slip;
+            near += fabs(ruling->mix[k][i]) * now[i].near_slip;
+            passed |= ruling->mix[k][i] != 0.0 && touched[i] == BG_PASSED;
+        }
+        if (!passed && !(fabs(slip) <= BG_WIDE * near))
+            return 1;
+    }
+    return 0;
+}
+
 /* Looks a moment later, by one midpoint step from the instant that was looked at in the mode. */
 static int look_later(const bg_sight *sight, const bg_instant *at, const double *s, const int *mode)
 {
@@ -129,7 +148,7 @@ static int consistent(bg_choice *choice, const int *mode, bg_finding *found)
     }
     choice->why = BG_UNDECIDED;
     c->tell(c->self, mode, choice->at, now, &ruling);
-    if (ruled_out(c->ports, &ruling, now, 0))
+    if (ruled_out(c->ports, &ruling, now, 0) || is_torn(c->ports, &ruling, now, choice->at->touched))
         return BG_OK;
     if (ruling.unknown)
         return ruling.unknown;

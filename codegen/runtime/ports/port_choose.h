@@ -26,6 +26,9 @@ typedef struct {
 typedef struct {
     int count, unknown;
     double rows[BG_MOST_PORTS][BG_MOST_PORTS];
+    /* so many combinations that the ports stop: friction does not do so at once */
+    int kept;
+    double mix[BG_MOST_PORTS][BG_MOST_PORTS];
 } bg_ruling;
 
 /* An instant: the shortest time constant there, and the inputs' next breakpoint. */

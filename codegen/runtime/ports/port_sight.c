@@ -82,6 +82,10 @@ static void rule(bg_model *m, const int *mode, bg_ruling *ruling)
     if (!sticking || bg_hold_of(m, mode, &held) != BG_OK)
         return;
     ruling->count = held->ruled;
+    ruling->kept = held->kept;
+    for (int k = 0; k < held->kept; k++)
+        for (int c = 0; c < held->count; c++)
+            ruling->mix[k][held->ports[c]] = held->mix[k * held->count + c];
     for (int r = 0; r < held->ruled; r++)
         for (int c = 0; c < held->count; c++)
             ruling->rows[r][held->ports[c]] = held->share[r * held->count + c];

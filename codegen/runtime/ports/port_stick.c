@@ -35,14 +35,15 @@ static int first_guess(bg_model *m, const bg_start *at, int *near)
     for (int i = 0; i < K; i++) {
         double around, terms;
         near[i] = 0;
+        m->work.turning[i] = 0.0;
         if (!rubs(i))
             continue;
         const double slip = bg_slip(m, &m->shot, i, &around);
         const double rate = bg_slip_rate(m, &m->shot, i, &terms);
         near[i] = fabs(slip) <= least_slip(m, i, around) || bg_beside[i];
         /* An input that steps may turn a slip round too; what a step can't reach slips on. */
-        near[i] |= at->started && slip * at->before[i] < 0
-            && fabs(slip) <= 2 * at->h * fabs(rate);
+        m->work.turning[i] = at->started ? 2 * at->h * fabs(rate) : 0.0;
+        near[i] |= slip * at->before[i] < 0 && fabs(slip) <= m->work.turning[i];
         m->mode[i] = near[i] ? 0 : slip > 0 ? 1 : -1;
         count += near[i];
     }
@@ -86,6 +87,28 @@ static int caught(bg_model *m, const int *near)
     return 0;
 }
 
+/* Whether friction ports would have to stop at once what they receive together; what a step can bring
+ * to rest counts as being there. Of a single port its own slip has told. */
+static int is_torn_in_step(const bg_model *m, const bg_hold *held)
+{
+    for (int k = 0; k < held->kept; k++) {
+        double slip = 0.0, least = 0.0;
+        int together = 0, switched = 0;
+        for (int c = 0; c < held->count; c++) {
+            const double weight = held->mix[k * held->count + c];
+            const int port = held->ports[c];
+            double terms;
+            slip += weight * bg_slip(m, &m->shot, port, &terms);
+            least += fabs(weight) * (least_slip(m, port, terms) + m->work.turning[port]);
+            together += weight != 0.0;
+            switched |= weight != 0.0 && !rubs(port);
+        }
+        if (together > 1 && !switched && fabs(slip) > least)
+            return 1;
+    }
+    return 0;
+}
+
 /* Whether slips that only inputs rule are not zero though ports are to be held there. */
 static int rules_out(bg_model *m)
 {
@@ -103,7 +126,7 @@ static int rules_out(bg_model *m)
         if (fabs(slip) > least)
             return 1;
     }
-    return 0;
+    return is_torn_in_step(m, held);
 }
 
 int bg_look(bg_model *m, const bg_start *at, const int *mode)
