@@ -14,10 +14,10 @@ static void over_slots(const ex_chains *chains, int rows, const double *map, dou
         double *const to = slots + chains->first[i] * rows;
         for (int r = 0; r < rows; r++)
             to[r] = by_w[r] + re * by_dw[r];
-        if (width == 2)
+        if (EX_G > 1 && width == 2)
             for (int r = 0; r < rows; r++)
                 to[rows + r] = -im * by_dw[r];
-        if (chains->depth[i] > 1)
+        if (EX_G > 1 && chains->depth[i] > 1)
             for (int r = 0; r < rows; r++)
                 to[width * rows + r] = by_dw[r];
     }

@@ -53,6 +53,7 @@ const int bg_law_rates[] = {0};
 const int bg_friction_inputs[] = {1};
 const int bg_friction_readings[] = {1};
 const int bg_moving[] = {-1};
+const int bg_first_modes[] = {1};
 const int bg_beside[] = {0};
 const int bg_outside_inputs[] = {0};
 const int bg_differentiable[] = {1, 1, 0, 0};
