@@ -142,9 +142,7 @@ class Tuning:
     switch_floor: float = _told(1e-12, ".. and at the least")
     turns: float = _told(0.05, "radians, or powers of e, that known sources do little in")
 
-    kept_closer: float = _told(
-        1e-3, "of an importer's tolerance, which steps between its own keep: errors add up"
-    )
+    kept_closer: float = _told(1e-3, "of an importer's tolerance, which steps between its own keep")
 
     # What is numpy's alone, by the folders that read it
     sparse_rtol: float = _told(1e-8, "relative tolerance of runs of sparse models")

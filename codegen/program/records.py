@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from codegen.standalone.switching import Switching
+from codegen.standalone.switchings import Switching
 
 TEMPORARY = "c"
 """Temporaries are c0, c1, ...; names that are taken are passed over."""

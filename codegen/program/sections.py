@@ -10,7 +10,7 @@ from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from codegen.program.closing import Closing
 from codegen.program.records import FrictionPort, Group, Pattern, block
-from codegen.standalone.switching import Switching
+from codegen.standalone.switchings import Switching
 
 
 def coefficients(

@@ -36,7 +36,7 @@ class Ports:
     exact: bool
 
 
-ALL_WAYS = 10
+MOST_SLIPPING = 10
 """Up to so many ports all ways of slipping are tried where laws have no solution one way."""
 
 
@@ -132,6 +132,6 @@ def ways(mode: Mode) -> Iterator[Mode]:
     yield tuple(sign or 1 for sign in mode)
     yield tuple(sign or -1 for sign in mode)
     yield mode
-    if len(mode) <= ALL_WAYS:
+    if len(mode) <= MOST_SLIPPING:
         yield from product((1, -1), repeat=len(mode))
     yield (0,) * len(mode)

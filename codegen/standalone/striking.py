@@ -13,7 +13,7 @@ import numpy as np
 from codegen.standalone.arrays import Array, Places
 from codegen.standalone.holding import Hold
 from codegen.standalone.instant import Instant
-from codegen.standalone.switching import Switching
+from codegen.standalone.switchings import Switching
 from codegen.tuning import TUNING
 
 FAR = 2.0**40

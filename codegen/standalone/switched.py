@@ -14,8 +14,7 @@ from codegen.standalone.instant import Formula, Instant
 from codegen.standalone.levels import level_terms
 from codegen.standalone.stepping import Chosen, Names
 from codegen.standalone.striking import shocks, struck
-from codegen.standalone.switching import Switching
-from codegen.standalone.switchings import Broken, flipped, switchings
+from codegen.standalone.switchings import Broken, Switching, flipped, switchings
 from codegen.tuning import TUNING
 
 

@@ -1,6 +1,7 @@
-"""Which switches hold: the ways to try, from the one at hand to those with more changes."""
+"""When switches change over, and the ways to try: from the one at hand to those farther off."""
 
 from collections.abc import Generator, Iterable
+from dataclasses import dataclass
 from itertools import combinations
 
 from codegen.standalone.arrays import Mode
@@ -16,6 +17,28 @@ FEW = 2
 
 TURNS = 50
 """So often for each switch the first that contradicts changes over, before all ways are tried."""
+
+
+@dataclass(frozen=True)
+class Switching:
+    """When an ideal switch changes over: let go it gives zero, held it receives zero.
+
+    ``on``: whether it is on while it is held. ``side``: of a one-sided switch, which is let go
+    while ``side * y >= 0`` and held while ``side * u <= 0``; 0: of one that is told by the two
+    guards from ``guard`` on, its conditions to turn on and off.
+    """
+
+    on: bool
+    side: int
+    guard: int = -1
+
+    def word(self, sign: int) -> str:
+        """What it is in a mode, held being 0: "on" or "off"."""
+        return "on" if self.on == (sign == 0) else "off"
+
+    def sign(self, on: bool) -> int:
+        """The mode in which it is on, or off."""
+        return 0 if on == self.on else 1
 
 
 def flipped(mode: Mode, ports: Iterable[int]) -> Mode:

@@ -10,7 +10,9 @@ from bondgraph.derive import derive
 from bondgraph.errors import StructureError
 from codegen.engine.fallback import tell
 from codegen.record.result import Result
+from codegen.runs.arguments import named_numbers
 from codegen.runs.completion import tell_completed
+from codegen.runs.dependent import dependent_variables, over_states
 from codegen.simulate import Simulator, simulator
 from codegen.tuning import TUNING
 
@@ -19,16 +21,17 @@ from codegen.tuning import TUNING
 class SwitchedSimulator:
     """A graph with switches and numbers for its parameters: a `Simulator` whose switches are named.
 
-    ``states``: those of the simulator. ``inputs``: what the model must be given. ``switches``: the names
-    of switches and controlled junctions.
+    ``states``: those of the simulator, then the co-energy variables of storages that depend on them, by
+    which a start can be told as well. ``inputs``: what the model must be given. ``switches``: the names of
+    switches and controlled junctions.
     """
 
     simulator: Simulator
 
     @property
     def states(self) -> tuple[str, ...]:
-        """The co-energy variables of independent storages, then states that laws own."""
-        return self.simulator.states
+        """Co-energy variables of independent storages, states that laws own, those of dependent ones."""
+        return (*self.simulator.states, *dependent_variables(self.simulator.closed))
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -52,8 +55,10 @@ class SwitchedSimulator:
     ) -> Result:
         """Integrate over the given times [s]; see `Simulator.run`."""
         # Not by its `run`, so that warnings are told of who calls this.
+        given = named_numbers({} if initial is None else initial, self.states)
+        told = over_states(self.simulator.closed, given)
         done = self.simulator.run_telling(
-            tell, time, initial, inputs, method, rtol, atol, initially_on
+            tell, time, told, inputs, method, rtol, atol, initially_on
         )
         tell_completed(done.completed)
         return done

@@ -62,7 +62,7 @@ void ex_round_stay(const ex_context *c, const ex_mode *mode, const double *v, co
 /* The mode whose friction slips forwards, with switches as they are or all let go. */
 static int find_way(ex_context *c, const int *mode, int loose, const ex_mode **found)
 {
-    int other[BG_MOST_PORTS];
+    int other[BG_MOST_PORTS] = {0};
     for (int i = 0; i < EX_K; i++)
         other[i] = loose || !ex_switches(c, i) ? 1 : mode[i];
     const int status = ex_find(c, ex_number(other), found);

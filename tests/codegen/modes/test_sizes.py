@@ -7,7 +7,7 @@ from references.build import bond_graph
 
 import bondgraph as bg
 from codegen import Constant, Result, simulator
-from codegen.modes.sizes import input_terms
+from codegen.modes.rounding import input_terms
 
 #: Two shafts tied by a clutch, each with its own road at its own speed.
 NODES = [

@@ -12,7 +12,7 @@ import bondgraph as bg
 import differentials
 from codegen import Simulator
 from codegen.inputs.pieces import Piece
-from codegen.modes.choose import decide
+from codegen.modes.choose import Occasion, decide
 from codegen.modes.rounding import Peaks
 from codegen.tuning import TUNING
 from differentials.model import Model, model
@@ -167,7 +167,8 @@ def instant(ready: Simulator, t: float, x: np.ndarray, u: np.ndarray, du: np.nda
     peaks = Peaks.none(closed)
     with np.errstate(all="ignore"):
         peaks.see(closed, t, s, pieces, slipping)
-        mode = decide(closed, t, s, pieces, slipping, frozenset(), 1e-3 * TUNING.look_ahead, peaks)
+        ahead = 1e-3 * TUNING.look_ahead
+        mode, s, _ = decide(Occasion(closed, t, pieces, slipping, ahead, peaks), s)
         now = closed.evaluate(t, s, u, du, mode)
     rate = now.rate[: len(x)].copy()
     if not program.varying:
