@@ -1,65 +1,16 @@
 """Switched circuits and drives against closed forms and integrations phase by phase."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import networkx as nx
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from oracles.energy import misfit
+from oracles.phases import Array, Phase, follow
 from references.build import bond_graph
 from scipy.linalg import expm
-from scipy.optimize import brentq
 
 import bondgraph as bg
 from bondgraph.declare.renaming import Part
 from codegen import Constant, Result, Signal, Sine, Step, switched_simulator
-
-Array = NDArray[np.floating[Any]]
-Phase = tuple[list[list[float]], list[tuple[list[float], str]]]
-"""The matrix of x' = M x, and rows that lead to another phase where they fall below zero."""
-
-
-def _follow(
-    phases: Mapping[str, Phase],
-    name: str,
-    x: Array,
-    times: Array,
-    forced: Mapping[float, Mapping[str, str]],
-) -> tuple[Array, list[tuple[float, str]]]:
-    """States at the times and when which phase began; ``forced``: times that change phases."""
-    t, end, rows, began = float(times[0]), float(times[-1]), [], list[tuple[float, str]]()
-    while True:
-        M, exits = np.array(phases[name][0]), phases[name][1]
-        stop = min([at for at in forced if at > t + 1e-12] + [end])
-        first, after = stop, forced.get(stop, {}).get(name, name)
-        for row, following in exits:
-            left = _fall(np.array(row), M, x, stop - t)
-            if left is not None and t + left < first:
-                first, after = t + left, following
-        inside = times[(times >= t) & ((times < first) | (first >= end))]
-        rows += [expm(M * (s - t)) @ x for s in inside]
-        if first >= end:
-            return np.array(rows), began
-        x, t = expm(M * (first - t)) @ x, first
-        if after != name:
-            began.append((t, after))
-        name = after
-
-
-def _fall(row: Array, M: Array, x: Array, length: float) -> float | None:
-    """When row @ x falls below zero, not at once."""
-    step, forward = length / 200, expm(M * length / 200)
-    y = x
-    for k in range(200):
-        later = forward @ y
-        if row @ later < 0 and (k > 0 or row @ x > 1e-12):
-            return float(
-                k * step + brentq(lambda s, y=y: row @ expm(M * s) @ y, 0, step, xtol=1e-16)
-            )
-        y = later
-    return None
 
 
 def _gate(edges: Array) -> Signal:
@@ -94,7 +45,7 @@ def test_half_wave_rectifier() -> None:
         "off": ([[-10, 0, 0], [0, 0, w], [0, -w, 0]], [([1, -1, 0], "on")]),
         "on": ([[-1010, 1000, 0], [0, 0, w], [0, -w, 0]], [([-1, 1, 0], "off")]),
     }
-    expected, began = _follow(phases, "off", np.array([2.0, 0.0, 10.0]), times, {})
+    expected, began = follow(phases, "off", np.array([2.0, 0.0, 10.0]), times, {})
     run = switched_simulator(_rectifier(), RECTIFIER)
     result = run.run(times, {"v": 2.0}, {"u": Sine(10, 50)})
     assert [event.kind for event in result.events] == [name for _, name in began]
@@ -164,7 +115,7 @@ def test_converters_with_steady_and_interrupted_current(kind: str, R: float) -> 
     times = (np.arange(100) + 0.37) * 3e-5
     start = np.array([2.1 if buck and R < 100 else 0.0, 12.0 if buck else 30.0, 1.0])
     first: Array = expm(np.array(phases["on"][0]) * times[0]).astype(float) @ start
-    expected, began = _follow(phases, "on", first, times, forced)
+    expected, began = follow(phases, "on", first, times, forced)
     run = switched_simulator(_buck() if buck else _boost(), {"L": L, "C": C, "R": R})
     result = run.run(
         times, {"i": first[0], "v": first[1]}, {"E": E, "g": _gate(edges)}, initially_on=["q"]
@@ -319,7 +270,7 @@ def test_a_bridge_gives_the_magnitude_of_its_source(smoothed: bool) -> None:
     }
     angle = w * times[0] + 0.1
     start = np.array([0.0, 10 * np.sin(angle), 10 * np.cos(angle)])
-    expected, _ = _follow(phases, "forth", start, times, {})
+    expected, _ = follow(phases, "forth", start, times, {})
     assert result["v"] == pytest.approx(expected[:, 0], abs=1e-7)
 
 
