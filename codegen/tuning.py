@@ -47,6 +47,7 @@ class Tuning:
     look_ahead: float = _told(1e-4, "ties are decided this part of a time constant later")
     slowest: float = _told(100.0, "1/s, below which nothing is called fast while a run is young")
     coarsest: float = _told(20.0, "no step is longer than what went before over this")
+    impacts: int = _told(20, "so often a mode is decided again where one impact leads to another")
     stalled: int = _told(60, "so many events within a moment are a run that goes nowhere")
     together: float = _told(1e-12, "events so close, of the time, are one")
 

@@ -1,7 +1,7 @@
 """Which ports hold and which are let go, and which way these slip: one consistent mode at one instant."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -47,7 +47,7 @@ class Decision(NamedTuple):
 
     mode: Mode
     s: Array
-    impact: Impact | None
+    impacts: tuple[Impact, ...]
 
 
 class _Refusal(NamedTuple):
@@ -81,10 +81,24 @@ def decide(now: Occasion, s: Array) -> Decision:
     switches. A mode that cannot be evaluated is none: laws without a solution in it,
     ports without unique holding efforts.
 
+    After an impact it is decided again: what passed an impulse may well not stay as it was for that.
+
     Raises `SimulationError`, with the numbers, if no mode is consistent.
     """
     if not now.previous:
-        return Decision((), s, None)
+        return Decision((), s, ())
+    found = _decided(now, s)
+    impacts = found.impacts
+    for _ in range(TUNING.impacts if impacts else 0):
+        found = _decided(replace(now, previous=found.mode, touched=frozenset()), found.s)
+        if not found.impacts:
+            break
+        impacts += found.impacts
+    return Decision(found.mode, found.s, impacts)
+
+
+def _decided(now: Occasion, s: Array) -> Decision:
+    """The first consistent mode, at most one impact later."""
     switching = now.model.switching
     switches = [i for i, switch in enumerate(switching) if switch is not None]
     refused: dict[Mode, str] = {}
@@ -139,7 +153,11 @@ def _tried(now: Occasion, before: Array, switched: Mode) -> Decision | _Refusal:
             return found
         mode, blocks = found, [[]]
     found = _in_block(now, s, mode, *blocks, [*undecided, *switches], jump)
-    return found if isinstance(found, _Refusal) else Decision(found, s, jump)
+    return (
+        found
+        if isinstance(found, _Refusal)
+        else Decision(found, s, () if jump is None else (jump,))
+    )
 
 
 def _undecided(now: Occasion, shot: Snapshot) -> list[int]:

@@ -115,24 +115,25 @@ class _Course:
         # A breakpoint may set the slips anew, so sticking ports are decided again with the others.
         loose = self._touched | {i for i, sign in enumerate(self.mode) if sign == 0}
         occasion = Occasion(model, t, pieces, self.mode, ahead, peaks, loose, self._touched)
-        new, after, impact = decide(occasion, self.s)
+        new, after, impacts = decide(occasion, self.s)
         if self._settled is not None:
             _note(model, self.track.events, t, self.mode, new)
         if self._settled is not None and self._touched:
             _check_progress(self._rounds, t, hardly_apart(peaks.time), self.track.events)
-        self._come_to_rest(pieces, new, after, impact)
+        self._come_to_rest(pieces, new, after, impacts)
         self.mode, self._touched, self._settled = new, frozenset(), t
 
     def _come_to_rest(
-        self, pieces: list[Piece], mode: Mode, struck: Array, impact: Impact | None
+        self, pieces: list[Piece], mode: Mode, struck: Array, impacts: Sequence[Impact]
     ) -> None:
         before, tally = self.s, self.track.tally
         self.s = _at_rest(self._model, self.t, struck, pieces, mode)
         # What happens before the first sample is not of the run.
         if tally is not None and self._before is not None:
             tally.step(self.t, self._before, pieces, before, mode)
-            if impact is not None:
+            for impact in impacts:
                 tally.impact(self.t, pieces, mode, before, impact)
+                before = impact.s
             tally.rest(self.t, pieces, mode, struck, self.s)
         self._before = pieces
 

@@ -60,7 +60,8 @@ static int choose_switched(bg_search *search, int *holds)
     return bg_try_ways(c->ports, search->switches, first, try_way, search, holds);
 }
 
-int bg_choose(const bg_sight *c, const bg_instant *at, int *mode)
+/* The first consistent mode, at most one impact later: *struck. */
+static int choose_once(const bg_sight *c, const bg_instant *at, int *mode, int *struck)
 {
     int before[BG_MOST_PORTS], holds = 0;
     unsigned broken;
@@ -71,7 +72,20 @@ int bg_choose(const bg_sight *c, const bg_instant *at, int *mode)
                                    : bg_choose_rubbing(&search.choice, mode, &holds, &broken);
     if (status || !holds)
         return status ? status : search.choice.why;
-    if (search.choice.struck)
+    *struck = search.choice.struck;
+    if (*struck)
         memcpy(at->s, search.choice.s, sizeof(double) * (size_t)c->size);
     return BG_OK;
+}
+
+int bg_choose(const bg_sight *c, const bg_instant *at, int *mode)
+{
+    bg_instant again = *at;
+    int struck = 0;
+    int status = choose_once(c, at, mode, &struck);
+    memset(again.touched, 0, sizeof again.touched);
+    /* What passed an impulse may well not stay as it was for that. */
+    for (int k = 0; k < BG_IMPACTS && status == BG_OK && struck; k++)
+        status = choose_once(c, &again, mode, &struck);
+    return status;
 }
