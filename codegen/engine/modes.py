@@ -9,7 +9,7 @@ from bondgraph.errors import SimulationError
 from codegen.engine.sizes import Engine, view
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
-from codegen.modes.impact import keeping, struck
+from codegen.modes.keeping import keeping, struck
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
 from codegen.program.affine import AffineMap

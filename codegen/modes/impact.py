@@ -6,7 +6,7 @@ and ``D_SS p = 0``. Friction takes no part: what it gives is finite.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +16,8 @@ from codegen.model.snapshot import Impact, Mode, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.trials import evaluated
-from codegen.modes.verdicts import GUARDS, SLIPS, Look, kept_by
+from codegen.modes.verdicts import Look
 from codegen.numbers.arrays import Array
-from codegen.program.affine import AffineMap
-from codegen.program.layout import INPUTS, READINGS
 from codegen.tuning import TUNING
 
 
@@ -60,85 +58,6 @@ def _taken(model: ClosedModel, before: Snapshot, after: Snapshot, given: Array) 
     """An impulse works on the mean of what its port receives before and after."""
     mean = 0.5 * (before.y + after.y)[model.friction_readings]
     return float(given @ mean)
-
-
-@dataclass(frozen=True)
-class Struck:
-    """Impacts of an affine mode, per unit of the slips that its switches stop.
-
-    ``jump``: what s gains; ``shock``: how far the impulse goes with each switch's way.
-    """
-
-    jump: Array
-    shock: Array
-
-
-def struck(model: ClosedModel, mode: Mode) -> Struck | None:
-    """The impacts of a mode in which friction slips; None where nothing holds, or cannot."""
-    if 0 not in mode:
-        return None
-    numbers, ports = model.constant, np.array(model.friction_inputs, dtype=int)
-    hold = model.hold(mode, numbers)
-    columns = ports[hold.ports]
-    moved = numbers.Q[:, columns] @ hold.free
-    amounts = -np.linalg.pinv(hold.slip_x @ moved, rcond=TUNING.nothing)
-    given = np.zeros((len(ports), len(hold.mix)))
-    given[hold.ports] = hold.free @ amounts
-    received = numbers.D[:, ports] @ given
-    jump = np.zeros((model.size, len(hold.mix)))
-    n, rates = len(model.program.states), list(model.program.law_rates)
-    jump[:n], jump[n : n + len(rates)] = moved @ amounts, received[rates]
-    return Struck(jump.T, _shocks(model, mode, given, received).T)
-
-
-def _shocks(model: ClosedModel, mode: Mode, given: Array, received: Array) -> Array:
-    """How far impulses go with the way of each switch, less what is rounding of their terms."""
-    terms = np.abs(model.constant.D[:, model.friction_inputs]) @ np.abs(given)
-    largest = np.abs(given).max(axis=0)
-    guards = [_guards_pushed(model, g, r) for g, r in zip(given.T, received.T, strict=True)]
-    rows = []
-    for i, switch in enumerate(model.switching):
-        if switch is None:
-            rows.append((np.zeros(given.shape[1]), largest))
-            continue
-        part, at, sign = kept_by(model, mode, i)
-        reading = model.friction_readings[i]
-        if part == GUARDS:
-            rows.append((np.array([sign * pushed[at] for pushed in guards]), largest))
-        elif part == SLIPS:
-            rows.append((sign * received[reading], terms[reading]))
-        else:
-            rows.append((sign * given[i], largest))
-    return np.array([np.where(np.abs(way) <= TUNING.rounding * size, 0, way) for way, size in rows])
-
-
-def _guards_pushed(model: ClosedModel, given: Array, received: Array) -> Array:
-    """How affine conditions change with impulses."""
-    program = model.program
-    if not program.guards.results:
-        return np.zeros(0)
-    nothing = [np.zeros(len(part)) for part in (program.states, program.law_states)]
-    u, w = np.zeros(len(program.inputs)), np.zeros(len(program.external))
-    still = Snapshot(*nothing, u, u, np.zeros(len(received)), w, w, w, model.constant)
-    moved = u.copy()
-    moved[model.friction_inputs] = given
-    struck = replace(still, u=moved, y=received)
-    return np.asarray(model.guards(0.0, struck) - model.guards(0.0, still), dtype=float)
-
-
-def keeping(model: ClosedModel, mode: Mode, affine: AffineMap) -> Array:
-    """What keeps each switch of an affine mode, as rows over [s, w, w', 1]; of friction nothing."""
-    rows = np.zeros((len(mode), affine.matrix.shape[1]))
-    guards = model.guard_rows(mode, len(model.program.external))
-    slips = affine.rows(READINGS)[model.friction_readings]
-    efforts = affine.rows(INPUTS)[model.friction_inputs]
-    for i, switch in enumerate(model.switching):
-        if switch is not None:
-            part, at, sign = kept_by(model, mode, i)
-            found = (slips, efforts, guards)[part]
-            assert found is not None
-            rows[i] = sign * found[at]
-    return rows
 
 
 FAR = 2.0**40

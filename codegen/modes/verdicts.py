@@ -9,6 +9,7 @@ import numpy as np
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
+from codegen.modes.keeping import kept_by
 from codegen.modes.rounding import Peaks, Scales, guard_rounding, holding, scales, slip_rates
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING
@@ -116,19 +117,6 @@ def look_at(
         return Look(model, mode, now, size)
     near = guard_rounding(model, t, s, pieces, mode, peaks)
     return Look(model, mode, now, size, model.guards(t, now), near)
-
-
-SLIPS, EFFORTS, GUARDS = range(3)
-"""What keeps a switch: what it receives, what it gives, a condition of its own."""
-
-
-def kept_by(model: ClosedModel, mode: Mode, port: int) -> tuple[int, int, int]:
-    """What keeps a switch from changing over, its place there, and the sign with which it is positive."""
-    switch, sign = model.switching[port], mode[port]
-    assert switch is not None
-    if not switch.side:
-        return GUARDS, switch.guard + (switch.on == (sign == 0)), -1
-    return (SLIPS, port, switch.side) if sign else (EFFORTS, port, -switch.side)
 
 
 def limits_of(look: Look) -> Array:

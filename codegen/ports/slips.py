@@ -9,9 +9,9 @@ import sympy as sp
 from bondgraph.algebra.residues import PRIME
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
+from bondgraph.reduce.record import ReadingSum
 from codegen.model.numbers import residue_rows
 from codegen.program.gains import written_out
-from codegen.program.moving import bends
 from codegen.program.records import Program
 from codegen.standalone.holding import HeldSet
 
@@ -60,10 +60,26 @@ def slip_rows(
             {
                 at: port.name
                 for at, port in enumerate(program.friction)
-                if bends(equations, program.readings[port.reading])
+                if _bends(equations, program.readings[port.reading])
             }
         ),
     )
+
+
+def _bends(equations: StateEquations, received: sp.Symbol) -> bool:
+    """Whether a slip has factors of inputs that move with the rates of states.
+
+    By itself such a port holds at once; a set of ports that does not would need what is not known.
+    """
+    motion = equations.reduction.motion
+    if motion is None:
+        return False
+    for column, factor in equations.readings[received].D.items():
+        part = ReadingSum()
+        motion.add_rate(part, factor, equations.inputs[column])
+        if part.H or part.K:
+            return True
+    return False
 
 
 def _moved(program: Program, equations: StateEquations, column: int) -> tuple[int, ...]:

@@ -9,7 +9,6 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
 from bondgraph.reduce.motion import Motion
 from bondgraph.reduce.record import Reading, ReadingSum
@@ -51,26 +50,10 @@ def _rate_of_factors(closing: Closing, motion: Motion, reading: Reading) -> Read
     for column, factor in sorted(reading.D.items()):
         name, part = equations.inputs[column], ReadingSum()
         motion.add_rate(part, factor, name)
-        # What a port gives at once would multiply rates that it changes itself; see `bends`.
+        # What a port gives at once would multiply rates that it changes itself; `SlipRows.bent` has these.
         if name not in answering or not (part.H or part.K):
             result.add(part.whole(), sp.Integer(1))
     return result.whole()
-
-
-def bends(equations: StateEquations, received: sp.Symbol) -> bool:
-    """Whether a slip has factors of inputs that move with the rates of states.
-
-    By itself such a port holds at once; a set of ports that does not would need what is not known.
-    """
-    motion = equations.reduction.motion
-    if motion is None:
-        return False
-    for column, factor in equations.readings[received].D.items():
-        part = ReadingSum()
-        motion.add_rate(part, factor, equations.inputs[column])
-        if part.H or part.K:
-            return True
-    return False
 
 
 def _check(closing: Closing, given: sp.Symbol, reading: Reading) -> None:

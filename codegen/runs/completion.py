@@ -11,8 +11,8 @@ from bondgraph.errors import ModelWarning
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
+from codegen.modes.keeping import kept_by
 from codegen.modes.trials import evaluated
-from codegen.modes.verdicts import kept_by
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING
 

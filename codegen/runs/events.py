@@ -8,9 +8,10 @@ from scipy.optimize import minimize_scalar
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
+from codegen.modes.keeping import kept_by
 from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks
-from codegen.modes.verdicts import kept_by, limits_of, look_at, room
+from codegen.modes.verdicts import limits_of, look_at, room
 from codegen.numbers.arrays import Array
 from codegen.program.layout import CAPS, INPUTS, READINGS
 from codegen.runs.track import Dense

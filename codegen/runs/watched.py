@@ -8,7 +8,7 @@ import scipy.linalg
 from codegen.inputs.generators import Generator
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
-from codegen.modes.verdicts import kept_by
+from codegen.modes.keeping import kept_by
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
 from codegen.program.layout import CAPS, INPUTS, RATE, READINGS

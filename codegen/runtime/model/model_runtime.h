@@ -93,8 +93,9 @@ typedef struct {
 
 /* One instance. `band` [unit of each slip]: the dead band inside which a step lets a port stick;
  * `mode`: 0 sticking, 1 or -1 the sign of the slip; of a switch 0 where it is held, 1 where it is
- * let go; as the last step left it (`started`: there was one), or as switches are before the first. `where`: the friction port or group of laws that a failure is about, -1 for none. The
- * rest is its own. */
+ * let go; as the last step left it (`started`: there was one), or as switches are before the first.
+ * `where`: the friction port or group of laws that a failure is about, -1 for none. The rest is its
+ * own. */
 typedef struct {
     double band[BG_ROOM(BG_FRICTION)];
     int mode[BG_ROOM(BG_FRICTION)], started, where;

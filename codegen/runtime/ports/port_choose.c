@@ -148,7 +148,8 @@ static int consistent(bg_choice *choice, const int *mode, bg_finding *found)
     }
     choice->why = BG_UNDECIDED;
     c->tell(c->self, mode, choice->at, now, &ruling);
-    if (ruled_out(c->ports, &ruling, now, 0) || is_torn(c->ports, &ruling, now, choice->at->touched))
+    if (ruled_out(c->ports, &ruling, now, 0)
+        || is_torn(c->ports, &ruling, now, choice->at->touched))
         return BG_OK;
     if (ruling.unknown)
         return ruling.unknown;

@@ -14,10 +14,10 @@ typedef struct {
     bg_start at;
     double *s, begun[BG_SIZE];
     int why;
-} search;
+} step_search;
 
 /* Whether impulses are more than rounding and what a step leaves of slips that were held before. */
-static int is_struck(const search *c, const bg_hold *held, const double *slips)
+static int is_struck(const step_search *c, const bg_hold *held, const double *slips)
 {
     double near[PORTS] = {0};
     for (int i = 0; i < held->count; i++) {
@@ -40,7 +40,7 @@ static int is_struck(const search *c, const bg_hold *held, const double *slips)
 }
 
 /* s after the impulses of what the switches of a mode hold; how far these go with the mode. */
-static int strike(search *c, const int *mode, double *ways)
+static int strike(step_search *c, const int *mode, double *ways)
 {
     double impulses[PORTS * PORTS], slips[PORTS] = {0}, given[PORTS] = {0};
     double received[BG_ROOM(ROWS)];
@@ -67,7 +67,7 @@ static int strike(search *c, const int *mode, double *ways)
 }
 
 /* Whether a one-sided switch changes over at once, by value or rate. */
-static int turns_over(const search *c, int port, double slack)
+static int turns_over(const step_search *c, int port, double slack)
 {
     const bg_model *const m = c->m;
     const bg_switch *const one = bg_switches + port;
@@ -82,7 +82,7 @@ static int turns_over(const search *c, int port, double slack)
 }
 
 /* The magnitudes of what makes up what holds the ports. */
-static void find_slack(search *c, double *slack)
+static void find_slack(step_search *c, double *slack)
 {
     bg_model *const m = c->m;
     double terms[PORTS];
@@ -105,8 +105,8 @@ static int condition(const bg_model *m, int port)
     return bg_switches[port].guard + (bg_switches[port].on == (m->mode[port] == 0));
 }
 
-/* Switches whose conditions change them over: above zero, or at zero and about to be in the step. */
-static unsigned sent(search *c, const double *ways)
+/* Switches whose conditions change them over: above zero, or at zero and above it in the step. */
+static unsigned sent(step_search *c, const double *ways)
 {
     bg_model *const m = c->m;
     double told[BG_ROOM(BG_GUARDS)] = {0}, near[BG_ROOM(BG_GUARDS)] = {0};
@@ -138,7 +138,7 @@ static unsigned sent(search *c, const double *ways)
 }
 
 /* The switches that change over at once: by impulse, value or rate, whichever decides. */
-static unsigned contrary(search *c, const double *ways)
+static unsigned contrary(step_search *c, const double *ways)
 {
     double slack[PORTS];
     unsigned found = 0;
@@ -150,9 +150,9 @@ static unsigned contrary(search *c, const double *ways)
     return BG_GUARDS ? found | sent(c, ways) : found;
 }
 
-static int try_way(void *self, unsigned held, int *holds, unsigned *broken)
+static int try_in_step(void *self, unsigned held, int *holds, unsigned *broken)
 {
-    search *const c = self;
+    step_search *const c = self;
     bg_model *const m = c->m;
     double ways[PORTS] = {0};
     int rubbing = 0, status = BG_OK;
@@ -178,7 +178,7 @@ static int try_way(void *self, unsigned held, int *holds, unsigned *broken)
 }
 
 /* Where some ports are switches; a step that has no mode leaves all as it was. */
-static int search_ways(search *c, const int *before)
+static int search_ways(step_search *c, const int *before)
 {
     unsigned switches = 0, first = 0;
     int holds;
@@ -187,7 +187,7 @@ static int search_ways(search *c, const int *before)
             switches |= 1u << i;
             first |= (unsigned)(before[i] == 0) << i;
         }
-    const int status = bg_try_ways(K, switches, first, try_way, c, &holds);
+    const int status = bg_try_ways(K, switches, first, try_in_step, c, &holds);
     if (status == BG_OK && holds)
         return BG_OK;
     memcpy(c->s, c->begun, sizeof c->begun);
@@ -197,7 +197,7 @@ static int search_ways(search *c, const int *before)
 int bg_decide_step(bg_model *m, double t, double h, double *s, const double *w)
 {
     int before[BG_ROOM(K)];
-    search c = {.m = m, .s = s, .at = {t, h, s, w, m->work.rates[0], before, m->started}};
+    step_search c = {.m = m, .s = s, .at = {t, h, s, w, m->work.rates[0], before, m->started}};
     memcpy(before, m->mode, sizeof before);
     memcpy(c.begun, s, sizeof c.begun);
     const int status = BG_SWITCHES ? search_ways(&c, before) : bg_stick(m, &c.at);

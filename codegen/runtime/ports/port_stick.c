@@ -1,5 +1,5 @@
-/* Which friction ports stick in a step: Karnopp's dead band, in at most 4 evaluations for each port near
- * rest; where that comes to what is no mode, all modes of these ports. */
+/* Which friction ports stick in a step: Karnopp's dead band, in at most 4 evaluations for each port
+ * near rest; where that comes to what is no mode, all modes of these ports. */
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ static int sticks(const int *mode)
     return any;
 }
 
-static int rubs(int port)
+static int is_rubbing(int port)
 {
     return bg_switches[port].kind == BG_RUBS;
 }
@@ -23,7 +23,7 @@ static int rubs(int port)
 static double least_slip(const bg_model *m, int port, double terms)
 {
     const double rounding = BG_STEP_ROUNDING * terms;
-    return rubs(port) ? fmax(m->band[port], rounding) : rounding;
+    return is_rubbing(port) ? fmax(m->band[port], rounding) : rounding;
 }
 
 /* A port may stick if its slip is inside the band, has changed its sign since the step before, by
@@ -36,7 +36,7 @@ static int first_guess(bg_model *m, const bg_start *at, int *near)
         double around, terms;
         near[i] = 0;
         m->work.turning[i] = 0.0;
-        if (!rubs(i))
+        if (!is_rubbing(i))
             continue;
         const double slip = bg_slip(m, &m->shot, i, &around);
         const double rate = bg_slip_rate(m, &m->shot, i, &terms);
@@ -59,7 +59,8 @@ static int let_go(bg_model *m)
         most = fmax(most, fabs(m->shot.u[bg_friction_inputs[i]]));
     for (int i = 0; i < K; i++) {
         const double effort = fabs(m->shot.u[bg_friction_inputs[i]]), cap = m->shot.caps[i];
-        const double over = rubs(i) && m->mode[i] == 0 ? effort - cap * (1 + BG_BREAKAWAY) : 0.0;
+        const int sticking = is_rubbing(i) && m->mode[i] == 0;
+        const double over = sticking ? effort - cap * (1 + BG_BREAKAWAY) : 0.0;
         if (over > 0 && (found < 0 || over / (cap + BG_BREAKAWAY * most) > worst)) {
             found = i;
             worst = over / (cap + BG_BREAKAWAY * most);
@@ -87,8 +88,8 @@ static int caught(bg_model *m, const int *near)
     return 0;
 }
 
-/* Whether friction ports would have to stop at once what they receive together; what a step can bring
- * to rest counts as being there. Of a single port its own slip has told. */
+/* Whether friction ports would have to stop at once what they receive together; what a step can
+ * bring to rest counts as being there. Of a single port its own slip has told. */
 static int is_torn_in_step(const bg_model *m, const bg_hold *held)
 {
     for (int k = 0; k < held->kept; k++) {
@@ -101,7 +102,7 @@ static int is_torn_in_step(const bg_model *m, const bg_hold *held)
             slip += weight * bg_slip(m, &m->shot, port, &terms);
             least += fabs(weight) * (least_slip(m, port, terms) + m->work.turning[port]);
             together += weight != 0.0;
-            switched |= weight != 0.0 && !rubs(port);
+            switched |= weight != 0.0 && !is_rubbing(port);
         }
         if (together > 1 && !switched && fabs(slip) > least)
             return 1;
@@ -191,7 +192,7 @@ int bg_stick(bg_model *m, const bg_start *at)
 {
     int near[PORTS], now[BG_MOST_PORTS] = {0};
     for (int i = 0; i < K; i++)
-        now[i] = at->started ? at->before[i] : rubs(i) ? 0 : m->mode[i];
+        now[i] = at->started ? at->before[i] : is_rubbing(i) ? 0 : m->mode[i];
     int status = bg_look_slipping(m, at, now);
     const int tries = status == BG_OK ? 4 * first_guess(m, at, near) : 0;
     for (int k = 0; k < tries; k++) {

@@ -11,9 +11,9 @@ typedef struct {
     bg_way attempt;
     void *self;
     unsigned char seen[WAYS];
-} search;
+} way_search;
 
-static int try_way(search *s, unsigned held, int *holds, unsigned *broken)
+static int try_one(way_search *s, unsigned held, int *holds, unsigned *broken)
 {
     s->seen[held] = 1;
     *holds = 0;
@@ -22,12 +22,12 @@ static int try_way(search *s, unsigned held, int *holds, unsigned *broken)
 }
 
 /* All that contradict change over until that has been tried, then the first of them (Murty). */
-static int follow(search *s, unsigned held, int *holds)
+static int follow(way_search *s, unsigned held, int *holds)
 {
     unsigned broken = 0, last = held;
     int status = 0;
     while (!s->seen[held]) {
-        status = try_way(s, held, holds, &broken);
+        status = try_one(s, held, holds, &broken);
         if (status || *holds || broken == 0)
             return status;
         last = held;
@@ -35,7 +35,7 @@ static int follow(search *s, unsigned held, int *holds)
     }
     held = last ^ (broken & (~broken + 1u));
     for (int k = 0; k < TURNS * s->ports && !s->seen[held]; k++) {
-        status = try_way(s, held, holds, &broken);
+        status = try_one(s, held, holds, &broken);
         if (status || *holds || broken == 0)
             return status;
         held ^= broken & (~broken + 1u);
@@ -45,7 +45,7 @@ static int follow(search *s, unsigned held, int *holds)
 
 /* How many of the switches differ in `change`, whose highest bit is the first of them; those, as
  * bits of the ports. */
-static int changes(const search *s, unsigned change, int count, unsigned *ports)
+static int changes(const way_search *s, unsigned change, int count, unsigned *ports)
 {
     int changed = 0, at = count;
     *ports = 0;
@@ -61,7 +61,7 @@ static int changes(const search *s, unsigned change, int count, unsigned *ports)
 }
 
 /* All ways, by how many switches differ from the first. */
-static int try_all(search *s, unsigned first, int *holds)
+static int try_all(way_search *s, unsigned first, int *holds)
 {
     int count = 0, status = 0;
     for (int i = 0; i < s->ports; i++)
@@ -71,16 +71,17 @@ static int try_all(search *s, unsigned first, int *holds)
             unsigned ports, broken;
             if (changes(s, change, count, &ports) != changed || s->seen[first ^ ports])
                 continue;
-            status = try_way(s, first ^ ports, holds, &broken);
+            status = try_one(s, first ^ ports, holds, &broken);
             if (status || *holds)
                 return status;
         }
     return status;
 }
 
-int bg_try_ways(int ports, unsigned switches, unsigned first, bg_way attempt, void *self, int *holds)
+int bg_try_ways(int ports, unsigned switches, unsigned first, bg_way attempt, void *self,
+                int *holds)
 {
-    search s = {.ports = ports, .switches = switches, .attempt = attempt, .self = self};
+    way_search s = {.ports = ports, .switches = switches, .attempt = attempt, .self = self};
     *holds = 0;
     const int status = follow(&s, first, holds);
     return status || *holds ? status : try_all(&s, first, holds);

@@ -1,4 +1,4 @@
-/* Which switches hold: the ways to try, from the one at hand to those with more and more changes. */
+/* Which switches hold: the ways to try, from the one at hand to those with more changes. */
 #ifndef BG_PORT_WAYS_H
 #define BG_PORT_WAYS_H
 
@@ -6,8 +6,9 @@
  * which switches contradict it, if these alone do. A status that ends the search. */
 typedef int (*bg_way)(void *self, unsigned held, int *holds, unsigned *broken);
 
-/* Tries ways of so many ports, of which `switches` are some, from the first on, each once, until one
- * holds. */
-int bg_try_ways(int ports, unsigned switches, unsigned first, bg_way attempt, void *self, int *holds);
+/* Tries ways of so many ports, of which `switches` are some, from the first on, each once, until
+ * one holds. */
+int bg_try_ways(int ports, unsigned switches, unsigned first, bg_way attempt, void *self,
+                int *holds);
 
 #endif
