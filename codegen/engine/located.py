@@ -108,13 +108,13 @@ class LocatedRuns:
         """Run and record, or why it could not go on; ``first``: the mode before the run."""
         ffi, _ = self.library.opened
         rows = np.empty((len(times), self.width))
-        modes = np.array([*first, *[1] * MOST_PORTS], dtype=np.intc)
+        begin = np.array([*first, *[1] * MOST_PORTS], dtype=np.intc)
         start = np.append(states, 0.0)
         asked = ffi.new("bg_request *")
         asked.times, asked.states = _pointer(ffi, times), _pointer(ffi, start)
         asked.samples, asked.method = len(times), METHODS.index(settings.method)
         asked.rtol, asked.atol = settings.rtol, settings.atol
-        asked.first = _pointer(ffi, modes, "int *")
+        asked.first = _pointer(ffi, begin, "int *")
         events = self._called(asked, rows, signal_table(signals, float(times[0]), float(times[-1])))
         if isinstance(events, Stopped):
             return events

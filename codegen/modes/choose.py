@@ -152,12 +152,10 @@ def _tried(now: Occasion, before: Array, switched: Mode) -> Decision | _Refusal:
         if isinstance(found, _Refusal):
             return found
         mode, blocks = found, [[]]
-    found = _in_block(now, s, mode, *blocks, [*undecided, *switches], jump)
-    return (
-        found
-        if isinstance(found, _Refusal)
-        else Decision(found, s, () if jump is None else (jump,))
-    )
+    found = _in_block(now, s, mode, blocks[0], [*undecided, *switches], jump)
+    if isinstance(found, _Refusal):
+        return found
+    return Decision(found, s, () if jump is None else (jump,))
 
 
 def _undecided(now: Occasion, shot: Snapshot) -> list[int]:

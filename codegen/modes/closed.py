@@ -178,8 +178,9 @@ class ClosedModel:
 
             def point(v: Array) -> list[Array]:
                 s, w, dw = np.split(v, [size, size + inputs])
-                parts = affine(s, w, dw)
-                return [self._guards(Snapshot(*parts, w, self.constant).instant(0.0))]
+                x, z, u, du, y, rate, caps = affine(s, w, dw)
+                now = Snapshot(x, z, u, du, y, rate, caps, w, self.constant)
+                return [self._guards(now.instant(0.0))]
 
             self._guard_maps[mode] = probed(point, size + 2 * inputs, 0).matrix
         return self._guard_maps[mode]

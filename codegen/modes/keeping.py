@@ -79,9 +79,9 @@ def _guards_pushed(model: ClosedModel, given: Array, received: Array) -> Array:
     program = model.program
     if not program.guards.results:
         return np.zeros(0)
-    nothing = [np.zeros(len(part)) for part in (program.states, program.law_states)]
+    x, z = np.zeros(len(program.states)), np.zeros(len(program.law_states))
     u, w = np.zeros(len(program.inputs)), np.zeros(len(program.external))
-    still = Snapshot(*nothing, u, u, np.zeros(len(received)), w, w, w, model.constant)
+    still = Snapshot(x, z, u, u, np.zeros(len(received)), w, w, w, model.constant)
     moved = u.copy()
     moved[model.friction_inputs] = given
     struck = replace(still, u=moved, y=received)

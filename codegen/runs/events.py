@@ -105,7 +105,8 @@ class Watch:
     def _triggers(self, t: float, now: Snapshot) -> Array:
         efforts, slips = now.u[self._model.friction_inputs], now.y[self._model.friction_readings]
         guards = self._model.guards(t, now)
-        return self._of_ports(efforts[None], slips[None], now.caps[None], guards[None])[0]
+        found: Array = self._of_ports(efforts[None], slips[None], now.caps[None], guards[None])[0]
+        return found
 
     def _of_ports(self, efforts: Array, slips: Array, caps: Array, guards: Array) -> Array:
         """The triggers of ports, by rows; one that sticks lets go where sources move it, too."""

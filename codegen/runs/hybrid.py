@@ -10,10 +10,9 @@ import numpy as np
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.inputs.signal import Signal
-from codegen.model.snapshot import Mode
+from codegen.model.snapshot import Impact, Mode
 from codegen.modes.choose import Occasion, decide
 from codegen.modes.closed import ClosedModel
-from codegen.modes.impact import Impact
 from codegen.modes.pace import hardly_apart, look_ahead, time_constant
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.trials import evaluated

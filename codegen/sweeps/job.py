@@ -120,17 +120,18 @@ class Job:
         inputs |= {name: v for name, v in values.items() if name in model.inputs}
         runner = model.simulator(**changes)
         if not isinstance(runner, Simulator):
-            return runner.run(self.time, initial, inputs, **self.settings, **self._on)
+            return runner.run(self.time, initial, inputs, **self._settings)
         # Times differ from run to run; the reason is what is counted.
         return runner.run_telling(
             lambda stopped: fallen.append(stopped.reason),
-            self.time, initial, inputs, **self.settings, **self._on,
+            self.time, initial, inputs, **self._settings,
         )  # fmt: skip
 
     @property
-    def _on(self) -> dict[str, tuple[Hashable, ...]]:
-        """The switches that are on at first, where any is."""
-        return {"initially_on": self.initially_on} if self.initially_on else {}
+    def _settings(self) -> dict[str, Any]:
+        """The settings, with the switches that are on at first where any is."""
+        on = {"initially_on": self.initially_on} if self.initially_on else {}
+        return {**self.settings, **on}
 
     def about(self) -> dict[str, object]:
         """What identifies the job, part by part: everything that the results depend on but the rows."""
@@ -141,7 +142,7 @@ class Job:
             "inputs": _described(self.inputs),
             "settings": {name: _described(value) for name, value in self.settings.items()},
             "names": list(self.names),
-            **({"initially_on": [repr(name) for name in self.initially_on]} if self._on else {}),
+            **({"initially_on": list(map(repr, self.initially_on))} if self.initially_on else {}),
             "measures": [[name, _described(measure)] for name, measure in self.measures.items()],
         }
 
