@@ -8,7 +8,7 @@ object that `codegen.exports.TARGETS` lists.
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 from bondgraph.equations import StateEquations
 from codegen.inputs.signal import Signal
@@ -30,12 +30,6 @@ class Export:
     inputs: Mapping[str, Signal]
     times: Array
     initially_on: tuple[Hashable, ...] = ()
-
-    @property
-    def start(self) -> dict[str, Any]:
-        """How it begins, as exports take it."""
-        on = {"initially_on": self.initially_on} if self.initially_on else {}
-        return {"initial": self.initial, "inputs": self.inputs, **on}
 
 
 class Target(Protocol):

@@ -23,7 +23,7 @@ class C:
         """See `Target`."""
         files = to_c(
             export.equations, export.parameters, export.laws, name=export.name, main=True,
-            **export.start,
+            initial=export.initial, inputs=export.inputs, initially_on=export.initially_on,
         )  # fmt: skip
         texts = {folder / export.name / file: text for file, text in files.items()}
         write_all(texts)

@@ -34,6 +34,7 @@ class Fmu:
         path = folder / f"{export.name}.fmu"
         write_fmu(
             path, export.equations, export.parameters, export.laws, version=self.version,
-            name=export.name, platforms=platforms, **export.start,
+            name=export.name, platforms=platforms, initial=export.initial, inputs=export.inputs,
+            initially_on=export.initially_on,
         )  # fmt: skip
         return [path]

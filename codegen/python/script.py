@@ -46,6 +46,8 @@ def script(name: str, export: Export, names: Sequence[str]) -> str:
     inputs = "".join(f"    {_text(one)}: {value}\n" for one, value in given.items())
     initial = "".join(f"    {_text(one)}: {float(v)!r},\n" for one, v in export.initial.items())
     used = [helper for word, helper in _HELPERS.items() if f": {word}(" in inputs]
+    on = [str(node) for node in export.initially_on]
+    told = f", initially_on={on!r}" if on else ""
     imports = "".join(f"import {one}\n" for modules, _ in used for one in modules)
     imports += "\n" if imports else ""
     helpers = "".join(text for _, text in used)
@@ -62,7 +64,7 @@ inputs = {{
 initial = {{
 {initial}}}
 times = np.linspace({begin!r}, {end!r}, {len(export.times)})
-result = simulate(times, initial, inputs)
+result = simulate(times, initial, inputs{told})
 table = np.column_stack([*result.values()])
 header = ",".join(result)
 np.savetxt("{name}.csv", table, delimiter=",", header=header, comments="")

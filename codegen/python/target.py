@@ -25,7 +25,7 @@ class Python:
     ) -> list[Path]:
         """See `Target`."""
         model = (export.equations, export.parameters, export.laws)
-        module = to_python(*model, export.name, **export.start)
+        module = to_python(*model, export.name, initial=export.initial, inputs=export.inputs)
         program = lower(export.equations, export.laws, export.parameters, timed=True)
         own = module_name(export.name)
         run = script(own, export, [symbol.name for symbol in program.asked])

@@ -191,7 +191,6 @@ FAMILIES = (
     Family("memory", "codegen/engine/test_memory.py", 0, 1),
     Family("switches-in-c", "codegen/engine/test_switches_in_c.py", 0, 1),
     Family("switches-swept", "codegen/batch/test_batch_switches.py", 0, 1),
-    Family("routes", "codegen/routes/test_routes.py", 0, 1),
     Family("flat", "codegen/numbers/test_roots.py", 0, 1),
     Family("agreements", "differentials/test_agreement.py", 0, 1),
     Family("platforms", "codegen/fmu/test_fmu_platforms.py", 0, 1),

@@ -1,6 +1,8 @@
 """Files with switches go through the same commands as all others."""
 
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -96,3 +98,39 @@ def test_a_switch_that_there_is_not_is_refused(dog: str, call: Call) -> None:
             else "no switch is called 'cat'; there is dog"
         )
         assert there in done.stderr
+
+
+STAYS = ("--set", "d=0", "--input", "gate=step(1, 1)", "--initial", "v_1=4", "--initial", "v_2=0")
+"""A gate of zero up to 1 s leaves the dog as it begins."""
+
+
+@pytest.mark.parametrize(
+    ("on", "speeds"), [(("--on", "dog"), (4.0, 0.0)), ((), (1.0, 1.0))], ids=["on", "off"]
+)
+def test_exports_begin_with_the_switches_that_are_on(
+    dog: str, call: Call, tmp_path: Path, on: tuple[str, ...], speeds: tuple[float, float]
+) -> None:
+    """The exported script, and the exported C if there is a compiler, from its first line to its last."""
+    window = ("--until", "0.5", "--sample", "0.1")
+    assert call("export", dog, "--to", "python", *STAYS, *window, *on).exit_code == 0
+    script = [sys.executable, "run_dog.py"]
+    subprocess.run(script, cwd=tmp_path / "out", check=True, capture_output=True)
+    found = np.genfromtxt(tmp_path / "out" / "dog.csv", delimiter=",", names=True)
+    assert [found[v][-1] for v in ("v_1", "v_2")] == pytest.approx(speeds, abs=1e-9)
+    if shutil.which("cc") is None:
+        return
+    assert call("export", dog, "--to", "c", *STAYS, *on).exit_code == 0
+    sources = [str(path) for path in (tmp_path / "out" / "dog").glob("*.c")]
+    program = str(tmp_path / "program")
+    subprocess.run(["cc", "-std=c99", "-O1", *sources, "-lm", "-o", program], check=True)
+    done = subprocess.run([program, "0.5", "0.1"], check=True, capture_output=True, text=True)
+    header, *rows = done.stdout.splitlines()
+    last = dict(zip(header.removeprefix("# ").split(","), rows[-1].split(","), strict=True))
+    assert [float(last[v]) for v in ("v_1", "v_2")] == pytest.approx(speeds, abs=1e-9)
+
+
+@needs_compiler
+@pytest.mark.slow
+def test_a_unit_begins_with_the_switches_that_are_on(dog: str, call: Call, tmp_path: Path) -> None:
+    assert call("export", dog, "--to", "fmu3", *STAYS, "--on", "dog").exit_code == 0
+    assert (tmp_path / "out" / "dog.fmu").stat().st_size > 0
