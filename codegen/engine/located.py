@@ -103,9 +103,9 @@ class LocatedRuns:
 
     def run(
         self, times: Array, states: Array, signals: Sequence[Signal], settings: Settings,
-        first: Mode,
+        first: Mode = (),
     ) -> Recorded | Stopped:  # fmt: skip
-        """Run and record, or why it could not go on; ``first``: the mode before the run."""
+        """Run and record, or why it could not go on; ``first``: the mode before, all let go unless told."""
         ffi, _ = self.library.opened
         rows = np.empty((len(times), self.width))
         begin = np.array([*first, *[1] * MOST_PORTS], dtype=np.intc)

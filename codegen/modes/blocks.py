@@ -7,6 +7,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from bondgraph.errors import BondGraphError
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.standalone.matrices import Numbers
@@ -35,6 +36,13 @@ def blocks_of(model: ClosedModel, numbers: Numbers, ports: list[int]) -> list[li
     columns = np.array(model.friction_inputs)[ports]
     moved = numbers.F[rows] @ numbers.Q[:, columns]
     touch = (moved != 0) | (numbers.D[np.ix_(rows, columns)] != 0)
+    together = tuple(0 if i in ports else 1 for i in range(len(model.switching)))
+    try:
+        shared = model.hold(together, numbers).share
+    except BondGraphError:
+        return [ports]
+    # What none of them rules alone, held together, joins them as well.
+    touch |= (shared.T != 0).astype(int) @ (shared != 0).astype(int) > 0
     count, label = connected_components(csr_array(touch), directed=False)
     return [[ports[k] for k in np.flatnonzero(label == block)] for block in range(count)]
 

@@ -172,6 +172,17 @@ def _undecided(now: Occasion, shot: Snapshot) -> list[int]:
 
 
 def _in_blocks(now: Occasion, s: Array, mode: Mode, blocks: list[list[int]]) -> Mode | _Refusal:
+    """The first way of each block; where some ports depend on others only as they hold, of all at once."""
+    found = _side_by_side(now, s, mode, blocks)
+    if found is None:
+        found = _one_by_one(now, s, mode, blocks)
+    if found is None:
+        every = sorted(i for block in blocks for i in block)
+        return _in_block(now, s, mode, every, every, None)
+    return found
+
+
+def _side_by_side(now: Occasion, s: Array, mode: Mode, blocks: list[list[int]]) -> Mode | None:
     """The first way of each block, all looked at together: at an instant none touches another."""
     tries = [ways_to_rub(mode, now.previous, block, now.touched) for block in blocks]
     for block, tried in zip(blocks, tries, strict=True):
@@ -182,18 +193,21 @@ def _in_blocks(now: Occasion, s: Array, mode: Mode, blocks: list[list[int]]) -> 
         if found.reason is None:
             return mode
         if not found.turned:
-            break
+            return None
         for block, tried in zip(blocks, tries, strict=True):
             turned = {i: sign for i, sign in found.turned.items() if i in block}
             try:
                 mode = turned_to(mode, tried.send(turned), block) if turned else mode
             except StopIteration:
-                return _refused(now, s, {mode: found})
-    # One by one, where a whole way cannot be looked at.
+                return None
+
+
+def _one_by_one(now: Occasion, s: Array, mode: Mode, blocks: list[list[int]]) -> Mode | None:
+    """The first way of each block after those before it, where a whole way cannot be looked at."""
     for block in blocks:
         told = _in_block(now, s, mode, block, block, None)
         if isinstance(told, _Refusal):
-            return told
+            return None
         mode = told
     return mode
 

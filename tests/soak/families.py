@@ -189,6 +189,7 @@ FAMILIES = (
     ),
     Family("audits-swept", "codegen/energy/test_audit.py::test_random_sweeps_in_c_close", 1, 500),
     Family("memory", "codegen/engine/test_memory.py", 0, 1),
+    Family("units", "codegen/fmu/test_fmu_switches.py", 0, 1),
     Family("switches-in-c", "codegen/engine/test_switches_in_c.py", 0, 1),
     Family("switches-swept", "codegen/batch/test_batch_switches.py", 0, 1),
     Family("flat", "codegen/numbers/test_roots.py", 0, 1),

@@ -219,13 +219,10 @@ static void guards_in(const double *map, bg_model *m, int column, const double *
 
 static void forget_instant(bg_model *m)
 {
-    bg_values *const now = &m->now;
-    memset(now->x, 0, sizeof now->x);
-    memset(now->z, 0, sizeof now->z);
-    memset(now->u, 0, sizeof now->u);
-    memset(now->y, 0, sizeof now->y);
-    memset(now->w, 0, sizeof now->w);
-    now->t = 0.0;
+    double p[BG_ROOM(BG_PARAMETERS)];
+    memcpy(p, m->now.p, sizeof p);
+    memset(&m->now, 0, sizeof m->now);
+    memcpy(m->now.p, p, sizeof p);
 }
 
 /* What keeps switches, and where friction slips forwards what they do as they come to hold. */

@@ -20,9 +20,19 @@ static int externals_at(const void *self, double t, double *w, double *dw)
     return !(f->at.exchange && fmu_next_break(f, &following) && t > following);
 }
 
+/* What a known source does below what is nothing is rounding: nothing is ruled by it. */
+static void see_nothing(bg_peaks *peaks)
+{
+    for (int i = 0; i < BG_STATES; i++)
+        peaks->x[i] = BG_NOTHING_THERE / BG_ROUNDING;
+    for (int i = 0; i < BG_INPUTS; i++)
+        peaks->u[i] = BG_NOTHING_THERE / BG_ROUNDING;
+}
+
 void fmu_reset(fmu_instance *f, int exchange)
 {
     memset(f, 0, sizeof *f);
+    see_nothing(&f->at.peaks);
     f->at.exchange = exchange;
     bg_model_parameters(f->at.parameters);
     memcpy(f->at.start, fmu_starts, sizeof(double) * FMU_STATES);

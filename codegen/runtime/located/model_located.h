@@ -57,8 +57,8 @@ typedef struct {
 } bg_located;
 
 /* A stretch of a run, for whoever keeps its own instant: set out from t, with c->s, the peaks and
- * the magnitudes of the view as they are and modes before it, and then go to the end; in between the
- * view's inputs, `stiff` and `ahead` may be set. A status. */
+ * the magnitudes of the view as they are and modes before it, and then go to the end; in between
+ * the view's inputs, `stiff` and `ahead` may be set. A status. */
 void bg_located_set_out(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked,
                         double t, double end, const int *first);
 int bg_located_go(bg_located *c);

@@ -93,6 +93,15 @@ class CModel:
         assert status == 0, self.message(status)
         return np.array(room)
 
+    def complete(self, t: float, w, named, s) -> np.ndarray:
+        """s with the states that are not named as switches let them be."""
+        room = _numbers(s)
+        status = self.library.bg_model_complete(
+            self.instance, ctypes.c_double(t), _numbers(w), self._mode(named), room
+        )
+        assert status == 0, self.message(status)
+        return np.array(room)
+
     def rhs(self, t: float, s, w, signs) -> np.ndarray:
         room = _numbers(np.zeros(self.size))
         status = self.library.bg_model_rhs(
@@ -146,9 +155,11 @@ class CModel:
 class Pair:
     """A model in C and in Python, from the same equations."""
 
-    def __init__(self, folder: Path, equations, values, laws=None, level: str = "-O0") -> None:
+    def __init__(
+        self, folder: Path, equations, values, laws=None, level: str = "-O0", on=()
+    ) -> None:
         self.equations, self.laws = equations, laws
-        sources = written(folder, stepped(to_c(equations, values, laws)))
+        sources = written(folder, stepped(to_c(equations, values, laws, initially_on=on)))
         library = compiled(
             folder, [*sources, str(HARNESS)], level, "-shared", "-fPIC", to="model.so"
         )

@@ -27,8 +27,10 @@ static int located(const bg_signals *signals, double end, int samples, int metho
     double *const rows = malloc(sizeof(double) * (size_t)(samples * BG_ROW_WIDTH + 1));
     double *const p = malloc(sizeof(double) * (BG_PARAMETERS + 1));
     bg_event *const events = malloc(sizeof(bg_event) * 256);
-    bg_request asked = {times, scenario_states, samples, method, 1e-10, 1e-11, NULL, NULL, events,
-                        256, 0, 0.0, NULL};
+    bg_request asked = {
+        .times = times, .states = scenario_states, .samples = samples, .method = method,
+        .rtol = 1e-10, .atol = 1e-11, .events = events, .capacity = 256,
+    };
     for (int k = 0; k < samples; k++)
         times[k] = samples > 1 ? end * k / (samples - 1) : 0.0;
     bg_model_parameters(p);

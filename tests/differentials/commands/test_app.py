@@ -60,7 +60,7 @@ def command(*arguments: str) -> subprocess.CompletedProcess[str]:
         (["sweep", "alsd", "--grid", "k=1:2:2", "--peak", "tau_q1"], "no signal is called 'tau_q1'"),
         (["sweep", "alsd", "--grid", "k=1:2:2", "--first", "clutch:stuck"], "(did you mean 'stick'?)"),
         (["sweep", "alsd", "--grid", "k=1:2:2", "--first", "clutsh:stick"], "(did you mean 'clutch'?)"),
-        (["sweep", "examples/rectifier.json", "--grid", "C=1,2", "--peak", "v"], "add --on d"),
+        (["sweep", "examples/rectifier.json", "--grid", "C=1,2", "--peak", "v"], "add --set R_l="),
         (["export", "alsd", "--to", "fmu"], "no target is called 'fmu' (did you mean 'fmu"),
         (["export", "alsd", "--to", "fmu2", "--platforms", "beos"], "no platform is called 'beos'"),
         (["figures", "fig10"], "no figure is called 'fig10'"),
