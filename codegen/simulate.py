@@ -1,6 +1,6 @@
 """`simulator` and what it returns: a model with numbers, ready to run, and the record of a run."""
 
-from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
@@ -42,7 +42,7 @@ from codegen.runs.arguments import (
     settings_of,
     signals_for,
 )
-from codegen.runs.completion import beginning, tell_completed
+from codegen.runs.completion import Beginning, beginning, tell_completed
 from codegen.runs.hybrid import run_hybrid
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.methods import EXACT
@@ -100,7 +100,7 @@ class Simulator:
         given = np.append(given, [signal(t) for signal in sources])
         s = self.vector(t, state, given)
         on = checked_modes(self.switches, initially_on)
-        slipping, peaks = self._all_slipping(on), Peaks.none(self.closed)
+        slipping, peaks = self.closed.program.before(on), Peaks.none(self.closed)
         with np.errstate(all="ignore"):
             peaks.see(self.closed, t, s, pieces, slipping)
             ahead = TUNING.look_ahead * TUNING.standing
@@ -171,18 +171,11 @@ class Simulator:
         with np.errstate(all="ignore"):
             pieces = [signal.piece(begin) for signal in signals]
             begun = beginning(self.closed, begin, start, pieces, on, {str(n) for n in initial})
-            start = begun.s
-            found = self._in_c(times, states + begun.moved, start, signals, settings, begun.mode)
-            if not isinstance(found, Recorded):
-                stopped = found
-                if stopped is not None and stopped.limit:
-                    tell(stopped)
-                run = run_hybrid(self.closed, times, start, signals, settings, first=begun.mode)
-                found = self._recorded(times, signals, run.track, "numpy")
-                if stopped is not None and not stopped.limit:
-                    tell(stopped)
+            found = self._found(tell, times, states + begun.moved, begun, signals, settings)
             columns, observer = named_columns(self.closed, times, found.shots)
         columns = with_switches(columns, self.closed.program, found.modes)
+        laws, numbers, start = self.laws, self.closed.parameters, read_only(begun.s)
+        run = Run(laws, numbers, times, start, tuple(asked), settings, begun.mode)
         return Result(
             times,
             self.states,
@@ -191,17 +184,7 @@ class Simulator:
             found.events,
             columns,
             observer,
-            self._ledger(
-                Run(
-                    self.laws,
-                    self.closed.parameters,
-                    times,
-                    read_only(start),
-                    tuple(asked),
-                    settings,
-                    begun.mode,
-                )
-            ),
+            self._ledger(run),
             told_units(self.closed.equations),
             found.backend,
             begun.completed,
@@ -211,6 +194,22 @@ class Simulator:
         program = self.closed.program
         names = (*program.states, *program.law_states, *program.inputs, *program.asked)
         return Ledger(self.closed.equations, tuple(name.name for name in names), run.again)
+
+    def _found(
+        self, tell: Callable[[Stopped], None], times: Array, states: Array, begun: Beginning,
+        signals: Sequence[Signal], settings: Settings,
+    ) -> Recorded:  # fmt: skip
+        """The run in C, or in numpy where it cannot go on there; ``states``: at the start."""
+        found = self._in_c(times, states, begun.s, signals, settings, begun.mode)
+        if isinstance(found, Recorded):
+            return found
+        if found is not None and found.limit:
+            tell(found)
+        run = run_hybrid(self.closed, times, begun.s, signals, settings, first=begun.mode)
+        recorded = self._recorded(times, signals, run.track, "numpy")
+        if found is not None and not found.limit:
+            tell(found)
+        return recorded
 
     def _in_c(
         self, times: Array, states: Array, start: Array, signals: Sequence[Signal],
@@ -251,13 +250,6 @@ class Simulator:
     def sources(self, begin: float, end: float) -> list[Signal]:
         """What known sources do from ``begin`` to ``end`` [s]; their pieces follow those of the inputs."""
         return source_signals(self.closed.program, self.closed.parameters, begin, end)
-
-    def _all_slipping(self, on: Collection[Hashable]) -> Mode:
-        """Friction that slips, and switches that are on or off."""
-        return tuple(
-            1 if port.switch is None else port.switch.sign(port.name in on)
-            for port in self.closed.program.friction
-        )
 
     def vector(self, t: float, state: Array, given: Array) -> Array:
         """The integrated vector at a state: x less what inputs that drive dependent storages add."""
