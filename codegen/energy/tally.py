@@ -113,8 +113,8 @@ class Tally:
         jump = np.zeros(_length(b))
         inputs = len(b.x) + len(b.z)
         readings = inputs + 2 * len(b.u)
-        jump[[inputs + at for at in self.model.friction_inputs]] = struck.given
-        jump[readings : readings + len(b.y)] = struck.received
+        jump[inputs : inputs + len(b.u)] = struck.strike.given
+        jump[readings : readings + len(b.y)] = struck.strike.received
         one, other = (
             np.where(self.stored, (past + now) / 2, now)
             for past, now in zip(*(self._pair(vector_of(end)) for end in (a, b)), strict=True)

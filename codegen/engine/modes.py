@@ -9,7 +9,7 @@ from bondgraph.errors import SimulationError
 from codegen.engine.sizes import Engine, view
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
-from codegen.modes.keeping import keeping, struck
+from codegen.modes.keeping import impacts_of, keeping
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
 from codegen.program.affine import AffineMap
@@ -141,7 +141,7 @@ class Tables:
         stay[:, : len(rows)] = self._wide(rows).T
         if any(sign != 1 and s is None for sign, s in zip(mode, model.switching, strict=True)):
             return
-        found = struck(model, mode)
+        found = impacts_of(model, mode)
         if found is None:
             return
         for name, part in (("jump", found.jump), ("shock", found.shock)):

@@ -9,6 +9,7 @@ from codegen.standalone.arrays import Array
 from codegen.standalone.arrays import Mode as Mode
 from codegen.standalone.instant import Instant
 from codegen.standalone.matrices import Numbers
+from codegen.standalone.striking import Strike
 
 
 class Run(Protocol):
@@ -46,11 +47,9 @@ class Snapshot:
 class Impact:
     """An instant at which states jump: the integrated vector after it, and the impulses.
 
-    ``given``: what each port gives, in its own order; ``received``: what every reading has.
     ``taken`` [J]: the energy that the ports take.
     """
 
     s: Array
-    given: Array
-    received: Array
+    strike: Strike
     taken: float

@@ -257,8 +257,8 @@ def _looked_at(
         wrong = ruled_out(look) or torn(look)
         if wrong is not None:
             return _Finding(wrong)
-        shocks = np.zeros(len(mode), dtype=int) if jump is None else pushed(look, now.t, jump)
-        verdicts = {i: int(shocks[i]) or look.verdict(i) for i in asked}
+        shocks = [0] * len(mode) if jump is None else pushed(look, now.t, jump)
+        verdicts = {i: shocks[i] or look.verdict(i) for i in asked}
         contrary = [i for i, sure in verdicts.items() if sure < 0]
         tied = [i for i, sure in verdicts.items() if sure == 0]
         if not contrary and (tied or len(look.ruled[0])):

@@ -58,6 +58,7 @@ class ClosedModel:
         self.moving = np.array(
             [-1 if port.moving is None else port.moving for port in program.friction], dtype=int
         )
+        self.law_rates = np.array(program.law_rates, dtype=np.intp)
         #: Of each port that is a switch when it changes over, None of the others.
         self.switching = [port.switch for port in program.friction]
         binding = Binding(program, exact)
@@ -146,7 +147,11 @@ class ClosedModel:
 
     def guards(self, t: float, now: Snapshot) -> Array:
         """The conditions of switches at an instant, to turn on and to turn off in turn."""
-        values = self._guards(now.instant(t))
+        return self.guards_at(now.instant(t))
+
+    def guards_at(self, now: Instant) -> Array:
+        """The same of an instant as formulas see it."""
+        values = self._guards(now)
         if not np.isfinite(values).all():
             at = int(np.argmin(np.isfinite(values)))
             port = next(
@@ -154,7 +159,7 @@ class ClosedModel:
                 if port.switch is not None and port.switch.guard in (at, at - 1)
             )  # fmt: skip
             raise SimulationError(
-                f"at t = {t:.9g} the condition of switch {port.name!r} has no finite value"
+                f"at t = {now.t:.9g} the condition of switch {port.name!r} has no finite value"
             )
         return values
 

@@ -9,6 +9,7 @@ from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
 from codegen.program.layout import INPUTS, READINGS
+from codegen.standalone.striking import struck
 from codegen.tuning import TUNING
 
 SLIPS, EFFORTS, GUARDS = range(3)
@@ -20,13 +21,13 @@ def kept_by(model: ClosedModel, mode: Mode, port: int) -> tuple[int, int, int]:
     switch, sign = model.switching[port], mode[port]
     assert switch is not None
     if not switch.side:
-        return GUARDS, switch.guard + (switch.on == (sign == 0)), -1
+        return GUARDS, switch.condition(sign), -1
     return (SLIPS, port, switch.side) if sign else (EFFORTS, port, -switch.side)
 
 
 @dataclass(frozen=True)
-class Struck:
-    """Impacts of an affine mode, per unit of the slips that its switches stop.
+class Impacts:
+    """What an affine mode begins with, per unit of the slips that its switches stop.
 
     ``jump``: what s gains; ``shock``: how far the impulse goes with each switch's way.
     """
@@ -35,27 +36,19 @@ class Struck:
     shock: Array
 
 
-def struck(model: ClosedModel, mode: Mode) -> Struck | None:
+def impacts_of(model: ClosedModel, mode: Mode) -> Impacts | None:
     """The impacts of a mode in which friction slips; None where nothing holds, or cannot."""
     if 0 not in mode:
         return None
-    numbers, ports = model.constant, np.array(model.friction_inputs, dtype=int)
-    hold = model.hold(mode, numbers)
-    columns = ports[hold.ports]
-    moved = numbers.Q[:, columns] @ hold.free
-    amounts = -np.linalg.pinv(hold.slip_x @ moved, rcond=TUNING.nothing)
-    given = np.zeros((len(ports), len(hold.mix)))
-    given[hold.ports] = hold.free @ amounts
-    received = numbers.D[:, ports] @ given
-    jump = np.zeros((model.size, len(hold.mix)))
-    n, rates = len(model.program.states), list(model.program.law_rates)
-    jump[:n], jump[n : n + len(rates)] = moved @ amounts, received[rates]
-    return Struck(jump.T, _shocks(model, mode, given, received).T)
+    hold = model.hold(mode, model.constant)
+    found = struck(hold, model.constant, np.eye(len(hold.mix)))
+    jump = found.gained(model.size, model.law_rates)
+    return Impacts(jump.T, _shocks(model, mode, found.given, found.received).T)
 
 
 def _shocks(model: ClosedModel, mode: Mode, given: Array, received: Array) -> Array:
     """How far impulses go with the way of each switch, less what is rounding of their terms."""
-    terms = np.abs(model.constant.D[:, model.friction_inputs]) @ np.abs(given)
+    terms = np.abs(model.constant.D) @ np.abs(given)
     largest = np.abs(given).max(axis=0)
     guards = [_guards_pushed(model, g, r) for g, r in zip(given.T, received.T, strict=True)]
     rows = []
@@ -70,7 +63,7 @@ def _shocks(model: ClosedModel, mode: Mode, given: Array, received: Array) -> Ar
         elif part == SLIPS:
             rows.append((sign * received[reading], terms[reading]))
         else:
-            rows.append((sign * given[i], largest))
+            rows.append((sign * given[model.friction_inputs[i]], largest))
     return np.array([np.where(np.abs(way) <= TUNING.rounding * size, 0, way) for way, size in rows])
 
 
@@ -82,10 +75,8 @@ def _guards_pushed(model: ClosedModel, given: Array, received: Array) -> Array:
     x, z = np.zeros(len(program.states)), np.zeros(len(program.law_states))
     u, w = np.zeros(len(program.inputs)), np.zeros(len(program.external))
     still = Snapshot(x, z, u, u, np.zeros(len(received)), w, w, w, model.constant)
-    moved = u.copy()
-    moved[model.friction_inputs] = given
-    struck = replace(still, u=moved, y=received)
-    return np.asarray(model.guards(0.0, struck) - model.guards(0.0, still), dtype=float)
+    moved = replace(still, u=given, y=received)
+    return np.asarray(model.guards(0.0, moved) - model.guards(0.0, still), dtype=float)
 
 
 def keeping(model: ClosedModel, mode: Mode, affine: AffineMap) -> Array:

@@ -12,7 +12,7 @@ from codegen.modes.trials import evaluated
 from codegen.numbers.arrays import Array
 from codegen.program.layout import INPUTS
 from codegen.standalone.friction import slip_rates as rates_of_slips
-from codegen.standalone.levels import terms_of
+from codegen.standalone.levels import effort_terms, terms_of
 from codegen.tuning import TUNING
 
 
@@ -99,11 +99,9 @@ def holding(
         return size
     held, peaks = model.hold(mode, now.numbers), peaks or Peaks.none(model)
     x, u = np.maximum(np.abs(now.x), peaks.x), np.maximum(np.abs(now.u), peaks.u)
-    terms = np.abs(held.X) @ x + np.abs(held.U) @ u + np.abs(held.V) @ np.abs(now.du)
+    own = TUNING.rounding * effort_terms(held, x, u, now.du)
     efforts = size.effort.copy()
-    if held.inverse.size:
-        own = np.abs(held.inverse[:, : len(terms)]) @ terms
-        efforts[held.ports] = np.maximum(efforts[held.ports], TUNING.rounding * own)
+    efforts[held.ports] = np.maximum(efforts[held.ports], own)
     return replace(size, effort=efforts)
 
 

@@ -151,9 +151,9 @@ def torn(look: Look) -> str | None:
     """
     if 0 not in look.mode:
         return None
-    held, now, near = look.model.hold(look.mode, look.now.numbers), look.now, look.size.slip
-    slips = held.slip_x @ now.x + held.slip_u @ now.u
-    least = TUNING.wide * np.abs(held.mix) @ near[held.ports]
+    held = look.model.hold(look.mode, look.now.numbers)
+    slips = held.slips(look.now.instant(0.0))
+    least = TUNING.wide * np.abs(held.mix) @ look.size.slip[held.ports]
     for k in np.flatnonzero(np.abs(slips) > least).tolist():
         ports = held.ports[np.flatnonzero(held.mix[k])]
         names = " and ".join(repr(look.model.program.friction[i].name) for i in ports)

@@ -14,6 +14,7 @@ from codegen.modes.closed import ClosedModel
 from codegen.modes.keeping import kept_by
 from codegen.modes.trials import evaluated
 from codegen.numbers.arrays import Array
+from codegen.standalone.striking import completing
 from codegen.tuning import TUNING
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
@@ -49,14 +50,11 @@ def beginning(
     states = [name.name for name in model.program.states]
     free = [j for j, name in enumerate(states) if name not in named]
     hold = model.hold(mode, now.numbers)
-    slips = hold.slip_x @ now.x + hold.slip_u @ now.u
+    slips = hold.slips(now.instant(t))
     terms = np.abs(hold.slip_x) @ np.abs(now.x) + np.abs(hold.slip_u) @ np.abs(now.u)
     if not len(free) or (np.abs(slips) <= TUNING.rounding * terms).all():
         return Beginning(s, mode, NOTHING, still)
-    # What is heavy by itself moves least.
-    rows = hold.slip_x[:, free]
-    way = rows.T / np.abs(np.diag(now.numbers.A))[free, None]
-    moved = -way @ np.linalg.lstsq(rows @ way, slips, rcond=TUNING.nothing)[0]
+    moved = completing(hold, now.instant(t), free)
     made, by = s.copy(), still.copy()
     made[free] += moved
     by[free] = moved

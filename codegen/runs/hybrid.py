@@ -221,7 +221,7 @@ def _at_rest(model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mo
     held = model.hold(mode, now.numbers)
     n = len(model.program.states)
     s = s.copy()
-    s[:n] += held.take_away @ (held.slip_x @ now.x + held.slip_u @ now.u)
+    s[:n] += held.take_away @ held.slips(now.instant(t))
     return s
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from codegen.standalone.arrays import Array, Places
 from codegen.standalone.holding import Hold
 from codegen.standalone.instant import Instant
+from codegen.standalone.matrices import Numbers
 from codegen.standalone.switchings import Switching
 from codegen.tuning import TUNING
 
@@ -28,15 +29,28 @@ class Strike:
     received: Array
     jump: Array
 
+    def gained(self, size: int, law_rates: Places) -> Array:
+        """What the vector s of this size gains: its states, then those that laws own."""
+        n, found = len(self.jump), np.zeros((size, *self.jump.shape[1:]))
+        found[:n], found[n : n + len(law_rates)] = self.jump, self.received[law_rates]
+        return found
 
-def struck(held: Hold, now: Instant) -> Strike:
-    """The least impulses of ports that stop the slips at an instant where all are let go."""
-    m = now.numbers
-    moved = m.Q[:, held.inputs] @ held.free
-    amounts = -np.linalg.lstsq(held.slip_x @ moved, held.slips(now), rcond=TUNING.nothing)[0]
-    given = np.zeros(len(now.u))
+
+def struck(held: Hold, numbers: Numbers, slips: Array) -> Strike:
+    """The least impulses of ports that stop these slips, or, by columns, each of several such."""
+    moved = numbers.Q[:, held.inputs] @ held.free
+    amounts = -np.linalg.lstsq(held.slip_x @ moved, slips, rcond=TUNING.nothing)[0]
+    given = np.zeros((numbers.Q.shape[1], *slips.shape[1:]))
     given[held.inputs] = held.free @ amounts
-    return Strike(given, m.D @ given, moved @ amounts)
+    return Strike(given, numbers.D @ given, moved @ amounts)
+
+
+def completing(held: Hold, now: Instant, free: Sequence[int]) -> Array:
+    """What free states must gain to stop the slips; of them what is heavy by itself moves least."""
+    rows = held.slip_x[:, free]
+    way = rows.T / np.abs(np.diag(now.numbers.A))[free, None]
+    slips = held.slips(now)
+    return np.asarray(-way @ np.linalg.lstsq(rows @ way, slips, rcond=TUNING.nothing)[0], float)
 
 
 def shocks(
@@ -62,7 +76,7 @@ def shocks(
         if one is None:
             continue
         if not one.side:
-            way, least = -pushed[one.guard + (one.on == (mode[i] == 0))], size
+            way, least = -pushed[one.condition(mode[i])], size
         elif mode[i]:
             way, least = one.side * received[i], terms[i]
         else:

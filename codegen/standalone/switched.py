@@ -11,9 +11,9 @@ from codegen.standalone.deadband import DeadBand
 from codegen.standalone.evaluation import Point
 from codegen.standalone.friction import Friction, slip_rates
 from codegen.standalone.instant import Formula, Instant
-from codegen.standalone.levels import level_terms
+from codegen.standalone.levels import effort_terms, level_terms
 from codegen.standalone.stepping import Chosen, Names
-from codegen.standalone.striking import shocks, struck
+from codegen.standalone.striking import completing, shocks, struck
 from codegen.standalone.switchings import Broken, Switching, flipped, switchings
 from codegen.tuning import TUNING
 
@@ -67,10 +67,7 @@ class SwitchedSteps(DeadBand):
         if 0 not in self.first or not free:
             return at.s
         held, s = self.friction.hold(self.first, now.numbers), at.s.copy()
-        slips, rows = held.slips(now), held.slip_x[:, free]
-        # What is heavy by itself moves least.
-        way = rows.T / np.abs(np.diag(now.numbers.A))[free, None]
-        moved = -way @ np.linalg.lstsq(rows @ way, slips, rcond=TUNING.nothing)[0]
+        moved = completing(held, now, free)
         s[free] += moved
         self.tell_completed(free, now.x, moved)
         return s
@@ -97,7 +94,7 @@ class SwitchedSteps(DeadBand):
         one = self.switching[port]
         if one is None or one.side:
             return False
-        at = one.guard + (one.on == (mode[port] == 0))
+        at = one.condition(mode[port])
         return bool(told[at] > (0.0 if near is None else near[at]))
 
     def decided(self, at: Point, previous: Chosen, dead_band: float, h: float = 0.0) -> Mode:
@@ -158,11 +155,11 @@ class SwitchedSteps(DeadBand):
             # What was held drifts by the step's own error, which is no impulse.
             drift = TUNING.step_drift * h * self.rate_terms(now)
             near += np.where(np.equal(previous, 0), drift, 0.0)
-        if (np.abs(hold.slips(now)) <= np.abs(hold.mix) @ near[hold.ports]).all():
+        slips = hold.slips(now)
+        if (np.abs(slips) <= np.abs(hold.mix) @ near[hold.ports]).all():
             return at.s, [0] * len(held)
-        found, s, n = struck(hold, now), at.s.copy(), self.form.states
-        s[:n] += found.jump
-        s[n : n + len(self.form.law_rates)] += found.received[self.form.law_rates]
+        found = struck(hold, now.numbers, slips)
+        s = at.s + found.gained(len(at.s), self.form.law_rates)
         places = self.efforts, self.slips
         return s, shocks(found, now, switched, self.switching, places, self.told)
 
@@ -208,8 +205,6 @@ class SwitchedSteps(DeadBand):
         sizes = np.full(len(mode), float(np.abs(now.u).max(initial=0.0)))
         if 0 in mode:
             held = self.friction.hold(mode, now.numbers)
-            terms = np.abs(held.X) @ np.abs(now.x) + np.abs(held.U) @ np.abs(now.u)
-            terms += np.abs(held.V) @ np.abs(now.du)
             if held.inverse.size:
-                sizes[held.ports] = np.abs(held.inverse[:, : len(terms)]) @ terms
+                sizes[held.ports] = effort_terms(held, now.x, now.u, now.du)
         return sizes

@@ -36,6 +36,10 @@ class Switching:
         """What it is in a mode, held being 0: "on" or "off"."""
         return "on" if self.on == (sign == 0) else "off"
 
+    def condition(self, sign: int) -> int:
+        """The guard that changes it over in a mode."""
+        return self.guard + (self.on == (sign == 0))
+
     def sign(self, on: bool) -> int:
         """The mode in which it is on, or off."""
         return 0 if on == self.on else 1
