@@ -103,6 +103,9 @@ void bg_effort_terms(const bg_hold *held, const double *x, const double *u, cons
                      double *sums);
 void bg_correct(const bg_hold *held, double *rate, const double *du, const double *y);
 
+/* The slips that bind the states, at an instant. */
+void bg_held_slips(const bg_hold *held, const bg_snapshot *shot, double *slips);
+
 /* Takes what slips are left at sticking ports from s, along A^-1 F^T; `shot` is of that mode. */
 int bg_remove_slips(bg_model *m, const int *mode, const bg_snapshot *shot, double *s);
 
@@ -113,6 +116,12 @@ int bg_impulses(bg_model *m, const int *mode, bg_hold **held, double *impulses);
 void bg_pass_on(const bg_model *m, const double *given, double *s, double *received);
 void bg_shocks(bg_model *m, const int *mode, const double *given, const double *received,
                double *ways);
+
+/* Whether slips are more than those `near`, one for each port that is held; and what stops them at
+ * once, by the impulses per unit of each. */
+int bg_have_slips(const bg_hold *held, const double *slips, const double *near);
+void bg_stop(bg_model *m, const int *mode, const bg_hold *held, const double *impulses,
+             const double *slips, double *s, double *ways);
 
 /* port_start.c: all switches off. From how switches are told to be before a run, to how conditions
  * let them; states that are not `named` follow what they hold. */

@@ -197,15 +197,21 @@ void bg_correct(const bg_hold *held, double *rate, const double *du, const doubl
     bg_multiply_add(N, held->kept, held->take_away, drift, rate);
 }
 
+void bg_held_slips(const bg_hold *held, const bg_snapshot *shot, double *slips)
+{
+    memset(slips, 0, sizeof(double) * (size_t)held->kept);
+    bg_multiply_add(held->kept, N, held->slip_x, shot->x, slips);
+    bg_multiply_add(held->kept, M, held->slip_u, shot->u, slips);
+}
+
 int bg_remove_slips(bg_model *m, const int *mode, const bg_snapshot *shot, double *s)
 {
-    double slips[PORTS] = {0};
+    double slips[PORTS];
     bg_hold *held = NULL;
     const int status = bg_hold_of(m, mode, &held);
     if (status != BG_OK)
         return status;
-    bg_multiply_add(held->kept, N, held->slip_x, shot->x, slips);
-    bg_multiply_add(held->kept, M, held->slip_u, shot->u, slips);
+    bg_held_slips(held, shot, slips);
     bg_multiply_add(N, held->kept, held->take_away, slips, s);
     return BG_OK;
 }

@@ -169,11 +169,34 @@ void bg_shocks(bg_model *m, const int *mode, const double *given, const double *
         double terms = 0.0;
         for (int k = 0; k < K; k++)
             terms += fabs(D[bg_friction_inputs[k]] * given[k]);
-        ways[i] = w->kind == BG_TOLD ? -pushed[w->guard + (w->on == (mode[i] == 0))]
+        ways[i] = w->kind == BG_TOLD ? -pushed[bg_condition(w, mode[i])]
             : mode[i]                ? w->side * received[bg_friction_readings[i]]
                                      : -w->side * given[i];
         const double least = w->kind == BG_TOLD ? size : mode[i] ? terms : largest;
         if (w->kind == BG_RUBS || fabs(ways[i]) <= BG_ROUNDING * least)
             ways[i] = 0.0;
     }
+}
+
+int bg_have_slips(const bg_hold *held, const double *slips, const double *near)
+{
+    for (int k = 0; k < held->kept; k++) {
+        double least = 0.0;
+        for (int c = 0; c < held->count; c++)
+            least += fabs(held->mix[k * held->count + c]) * near[c];
+        if (fabs(slips[k]) > least)
+            return 1;
+    }
+    return 0;
+}
+
+void bg_stop(bg_model *m, const int *mode, const bg_hold *held, const double *impulses,
+             const double *slips, double *s, double *ways)
+{
+    double given[PORTS] = {0}, received[BG_ROOM(ROWS)];
+    for (int k = 0; k < held->kept; k++)
+        for (int i = 0; i < K; i++)
+            given[i] += impulses[k * K + i] * slips[k];
+    bg_pass_on(m, given, s, received);
+    bg_shocks(m, mode, given, received, ways);
 }

@@ -46,7 +46,7 @@ void bg_view_stay(bg_view *v, const int *mode, double time, const double *x, con
         bg_guard_terms(v->model, &v->shot, time, terms, slopes);
     for (int i = 0; i < K; i++) {
         const bg_switch *const s = bg_switches + i;
-        const int at = s->guard + (s->on == (mode[i] == 0));
+        const int at = bg_condition(s, mode[i]);
         if (s->kind == BG_TOLD)
             ports[i].near_stay =
                 BG_ROUNDING * terms[at] + BG_LATE * spacing * slopes[at] + DBL_MIN;
@@ -59,24 +59,18 @@ void bg_view_stay(bg_view *v, const int *mode, double time, const double *x, con
 static int have_to_jump(const bg_hold *held, const bg_snapshot *shot, const bg_port *ports,
                         double *slips)
 {
-    int any = 0;
-    bg_multiply_add(held->kept, N, held->slip_x, shot->x, slips);
-    bg_multiply_add(held->kept, M, held->slip_u, shot->u, slips);
-    for (int k = 0; k < held->kept; k++) {
-        double near = 0.0;
-        for (int c = 0; c < held->count; c++)
-            near += fabs(held->mix[k * held->count + c]) * ports[held->ports[c]].near_slip;
-        any |= fabs(slips[k]) > BG_WIDE * near;
-    }
-    return any;
+    double near[PORTS];
+    for (int c = 0; c < held->count; c++)
+        near[c] = BG_WIDE * ports[held->ports[c]].near_slip;
+    bg_held_slips(held, shot, slips);
+    return bg_have_slips(held, slips, near);
 }
 
 int bg_view_strike(void *view, const bg_instant *at, const int *mode, double *s, int *shocks,
                    int *struck)
 {
     bg_view *const v = view;
-    double impulses[PORTS * PORTS], slips[PORTS] = {0}, given[PORTS] = {0}, ways[PORTS] = {0};
-    double received[BG_ROOM(ROWS)];
+    double impulses[PORTS * PORTS], slips[PORTS], ways[PORTS];
     bg_port ports[PORTS];
     bg_hold *held = NULL;
     int loose[BG_MOST_PORTS];
@@ -92,11 +86,7 @@ int bg_view_strike(void *view, const bg_instant *at, const int *mode, double *s,
     if (status || !held || !have_to_jump(held, &v->shot, ports, slips))
         return status;
     *struck = 1;
-    for (int k = 0; k < held->kept; k++)
-        for (int i = 0; i < K; i++)
-            given[i] += impulses[k * K + i] * slips[k];
-    bg_pass_on(v->model, given, s, received);
-    bg_shocks(v->model, mode, given, received, ways);
+    bg_stop(v->model, mode, held, impulses, slips, s, ways);
     for (int i = 0; i < K; i++)
         shocks[i] = ways[i] == 0.0 ? 0 : ways[i] > 0.0 ? 1 : -1;
     return BG_OK;

@@ -53,7 +53,7 @@ static void make_up(const bg_hold *held, const double *weight, const double *sli
 int bg_complete(bg_model *m, double t, const double *w, const int *named, int *mode, double *s)
 {
     int loose[BG_ROOM(K)], holding[BG_ROOM(K)], any = 0;
-    double slips[PORTS] = {0}, weight[BG_ROOM(N)];
+    double slips[PORTS], weight[BG_ROOM(N)];
     bg_hold *held = NULL;
     if (!BG_SWITCHES)
         return BG_OK;
@@ -71,8 +71,7 @@ int bg_complete(bg_model *m, double t, const double *w, const int *named, int *m
         status = bg_hold_of(m, holding, &held);
     if (status != BG_OK || !held)
         return BG_OK; /* whoever decides the mode tells */
-    bg_multiply_add(held->kept, N, held->slip_x, m->shot.x, slips);
-    bg_multiply_add(held->kept, M, held->slip_u, m->shot.u, slips);
+    bg_held_slips(held, &m->shot, slips);
     /* One over the own inertia of each state that is free. */
     for (int i = 0; i < N; i++)
         weight[i] = named[i] ? 0.0 : m->numbers.scale[i] * m->numbers.scale[i];

@@ -29,21 +29,13 @@ static int is_struck(const step_search *c, const bg_hold *held, const double *sl
         if (c->at.started && c->at.before[port] == 0)
             near[i] += BG_STEP_DRIFT * c->at.h * moves;
     }
-    for (int k = 0; k < held->kept; k++) {
-        double least = 0.0;
-        for (int i = 0; i < held->count; i++)
-            least += fabs(held->mix[k * held->count + i]) * near[i];
-        if (fabs(slips[k]) > least)
-            return 1;
-    }
-    return 0;
+    return bg_have_slips(held, slips, near);
 }
 
 /* s after the impulses of what the switches of a mode hold; how far these go with the mode. */
 static int strike(step_search *c, const int *mode, double *ways)
 {
-    double impulses[PORTS * PORTS], slips[PORTS] = {0}, given[PORTS] = {0};
-    double received[BG_ROOM(ROWS)];
+    double impulses[PORTS * PORTS], slips[PORTS];
     bg_model *const m = c->m;
     bg_hold *held = NULL;
     int loose[BG_MOST_PORTS];
@@ -54,15 +46,9 @@ static int strike(step_search *c, const int *mode, double *ways)
         status = bg_impulses(m, mode, &held, impulses);
     if (status || !held)
         return status;
-    bg_multiply_add(held->kept, N, held->slip_x, m->shot.x, slips);
-    bg_multiply_add(held->kept, M, held->slip_u, m->shot.u, slips);
-    if (!is_struck(c, held, slips))
-        return BG_OK;
-    for (int k = 0; k < held->kept; k++)
-        for (int i = 0; i < K; i++)
-            given[i] += impulses[k * K + i] * slips[k];
-    bg_pass_on(m, given, c->s, received);
-    bg_shocks(m, mode, given, received, ways);
+    bg_held_slips(held, &m->shot, slips);
+    if (is_struck(c, held, slips))
+        bg_stop(m, mode, held, impulses, slips, c->s, ways);
     return BG_OK;
 }
 
@@ -99,12 +85,6 @@ static void find_slack(step_search *c, double *slack)
         slack[held->ports[i]] = terms[i];
 }
 
-/* The condition that changes a switch over in its mode, by its place. */
-static int condition(const bg_model *m, int port)
-{
-    return bg_switches[port].guard + (bg_switches[port].on == (m->mode[port] == 0));
-}
-
 /* Switches whose conditions change them over: above zero, or at zero and above it in the step. */
 static unsigned sent(step_search *c, const double *ways)
 {
@@ -114,7 +94,7 @@ static unsigned sent(step_search *c, const double *ways)
     bg_guards(&m->now, told);
     bg_told_terms(m, near);
     for (int i = 0; i < K; i++) {
-        const int at = condition(m, i);
+        const int at = bg_condition(bg_switches + i, m->mode[i]);
         if (bg_switches[i].kind != BG_TOLD || ways[i] != 0.0)
             continue;
         found |= (unsigned)(told[at] > BG_STEP_ROUNDING * near[at]) << i;
@@ -130,7 +110,7 @@ static unsigned sent(step_search *c, const double *ways)
         return found;
     bg_guards(&m->now, told);
     for (int i = 0; i < K; i++) {
-        const int at = condition(m, i);
+        const int at = bg_condition(bg_switches + i, m->mode[i]);
         if (tied >> i & 1u)
             found |= (unsigned)(told[at] > BG_STEP_ROUNDING * near[at]) << i;
     }

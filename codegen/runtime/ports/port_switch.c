@@ -4,10 +4,15 @@
 #include "port_choosing.h"
 #include "port_ways.h"
 
+int bg_condition(const bg_switch *s, int sign)
+{
+    return s->guard + (s->on == (sign == 0));
+}
+
 double bg_stay(const bg_switch *s, int sign, double slip, double effort, const double *guards)
 {
     if (s->kind == BG_TOLD)
-        return -guards[s->guard + (s->on == (sign == 0))];
+        return -guards[bg_condition(s, sign)];
     return sign ? s->side * slip : -s->side * effort;
 }
 

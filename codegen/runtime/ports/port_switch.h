@@ -11,6 +11,9 @@ typedef struct {
     int kind, on, side, guard;
 } bg_switch;
 
+/* The place of the condition that changes a switch over in its mode. */
+int bg_condition(const bg_switch *s, int sign);
+
 /* What keeps a switch from changing over in its mode: positive as long as it stays. */
 double bg_stay(const bg_switch *s, int sign, double slip, double effort, const double *guards);
 
