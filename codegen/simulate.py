@@ -171,7 +171,15 @@ class Simulator:
         with np.errstate(all="ignore"):
             pieces = [signal.piece(begin) for signal in signals]
             begun = beginning(self.closed, begin, start, pieces, on, {str(n) for n in initial})
-            found = self._found(tell, times, states + begun.moved, begun, signals, settings)
+            states = states + begun.moved
+            found = self._in_c(times, states, begun.s, signals, settings, begun.mode)
+            if not isinstance(found, Recorded):
+                stopped = found
+                if stopped is not None and stopped.limit:
+                    tell(stopped)
+                found = self._in_numpy(times, begun, signals, settings)
+                if stopped is not None and not stopped.limit:
+                    tell(stopped)
             columns, observer = named_columns(self.closed, times, found.shots)
         columns = with_switches(columns, self.closed.program, found.modes)
         laws, numbers, start = self.laws, self.closed.parameters, read_only(begun.s)
@@ -195,21 +203,11 @@ class Simulator:
         names = (*program.states, *program.law_states, *program.inputs, *program.asked)
         return Ledger(self.closed.equations, tuple(name.name for name in names), run.again)
 
-    def _found(
-        self, tell: Callable[[Stopped], None], times: Array, states: Array, begun: Beginning,
-        signals: Sequence[Signal], settings: Settings,
-    ) -> Recorded:  # fmt: skip
-        """The run in C, or in numpy where it cannot go on there; ``states``: at the start."""
-        found = self._in_c(times, states, begun.s, signals, settings, begun.mode)
-        if isinstance(found, Recorded):
-            return found
-        if found is not None and found.limit:
-            tell(found)
+    def _in_numpy(
+        self, times: Array, begun: Beginning, signals: Sequence[Signal], settings: Settings
+    ) -> Recorded:
         run = run_hybrid(self.closed, times, begun.s, signals, settings, first=begun.mode)
-        recorded = self._recorded(times, signals, run.track, "numpy")
-        if found is not None and not found.limit:
-            tell(found)
-        return recorded
+        return self._recorded(times, signals, run.track, "numpy")
 
     def _in_c(
         self, times: Array, states: Array, start: Array, signals: Sequence[Signal],

@@ -12,7 +12,8 @@ from codegen.modes.trials import evaluated
 from codegen.numbers.arrays import Array
 from codegen.program.layout import INPUTS
 from codegen.standalone.friction import slip_rates as rates_of_slips
-from codegen.standalone.levels import effort_terms, terms_of
+from codegen.standalone.levels import terms_of
+from codegen.standalone.striking import effort_terms
 from codegen.tuning import TUNING
 
 

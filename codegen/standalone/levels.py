@@ -6,7 +6,6 @@ import numpy as np
 
 from codegen.standalone.arrays import Array
 from codegen.standalone.evaluation import Laws
-from codegen.standalone.holding import Hold
 from codegen.standalone.instant import Formula, Instant
 from codegen.tuning import TUNING
 
@@ -40,15 +39,6 @@ def level_terms(now: Instant, laws: Sequence[Laws], values: Formula) -> Array:
         sizes[ends[3] + some.inputs] = found(some.formula)
     show()
     return found(values)
-
-
-def effort_terms(held: Hold, x: Array, u: Array, du: Array) -> Array:
-    """For each holding effort the magnitudes of what it follows from; zero where laws share it."""
-    if not held.inverse.size:
-        return np.zeros(len(held.ports))
-    terms = np.abs(held.X) @ np.abs(x) + np.abs(held.U) @ np.abs(u)
-    terms += np.abs(held.V) @ np.abs(du)
-    return np.asarray(np.abs(held.inverse[:, : len(terms)]) @ terms, dtype=float)
 
 
 def terms_of(

@@ -53,6 +53,15 @@ def completing(held: Hold, now: Instant, free: Sequence[int]) -> Array:
     return np.asarray(-way @ np.linalg.lstsq(rows @ way, slips, rcond=TUNING.nothing)[0], float)
 
 
+def effort_terms(held: Hold, x: Array, u: Array, du: Array) -> Array:
+    """For each holding effort the magnitudes of what it follows from; zero where laws share it."""
+    if not held.inverse.size:
+        return np.zeros(len(held.ports))
+    terms = np.abs(held.X) @ np.abs(x) + np.abs(held.U) @ np.abs(u)
+    terms += np.abs(held.V) @ np.abs(du)
+    return np.asarray(np.abs(held.inverse[:, : len(terms)]) @ terms, dtype=float)
+
+
 def shocks(
     strike: Strike,
     now: Instant,

@@ -11,9 +11,9 @@ from codegen.standalone.deadband import DeadBand
 from codegen.standalone.evaluation import Point
 from codegen.standalone.friction import Friction, slip_rates
 from codegen.standalone.instant import Formula, Instant
-from codegen.standalone.levels import effort_terms, level_terms
+from codegen.standalone.levels import level_terms
 from codegen.standalone.stepping import Chosen, Names
-from codegen.standalone.striking import completing, shocks, struck
+from codegen.standalone.striking import completing, effort_terms, shocks, struck
 from codegen.standalone.switchings import Broken, Switching, flipped, switchings
 from codegen.tuning import TUNING
 
