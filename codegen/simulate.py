@@ -32,6 +32,7 @@ from codegen.program.records import Program
 from codegen.program.units import told_units
 from codegen.record.columns import named_columns, with_switches
 from codegen.record.replay import Run
+from codegen.record.resting import tell_resting
 from codegen.record.result import Result
 from codegen.record.snapshots import snapshots
 from codegen.runs.arguments import (
@@ -130,7 +131,8 @@ class Simulator:
         ``sundae``): backward differences, Adams's formulas where a mode is affine and not stiff.
         ``initially_on``: the switches that are on at first, as far as their conditions let them; each
         switch is a column of the result, 1 or 0. States that are not named then follow what these hold:
-        the result's ``completed`` has them, and a `ModelWarning` tells.
+        the result's ``completed`` has them, and a `ModelWarning` tells. One tells, too, of a switch that
+        stays on while its command rests at zero.
 
         What backend "c" cannot go on with is run by numpy, and a `BackendWarning` tells why.
 
@@ -139,6 +141,7 @@ class Simulator:
         """
         done = self.run_telling(tell, time, initial, inputs, method, rtol, atol, initially_on)
         tell_completed(done.completed)
+        tell_resting(self.closed, done)
         return done
 
     def run_telling(

@@ -197,8 +197,9 @@ def Sw(name: Hashable, on: object, off: object = None, **more: object) -> Node:
     """An ideal switch: zero effort while it is on (closed), zero flow while it is off (open).
 
     Off, it turns on as the expression ``on`` rises above zero; on, it turns off as ``off`` does, which
-    is ``-on`` unless given. They may use any signal, its own effort and flow among them: `Diode`, which
-    is also a `CheckValve`, and `Freewheel` write such a switch. One that inputs from outside command:
+    is ``-on`` unless given; where they are at rest at zero it stays as it is. They may use any signal, its
+    own effort and flow among them: `Diode`, which is also a `CheckValve`, and `Freewheel` write such a
+    switch. One that an input from outside commands, which is 0 or 1:
 
     >>> Sw("key", on="gate - 1/2")
     ('key', {'kind': 'Sw', 'on': 'gate - 1/2'})

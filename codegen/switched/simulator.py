@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from bondgraph.derive import derive
 from bondgraph.errors import StructureError
 from codegen.engine.fallback import tell
+from codegen.record.resting import tell_resting
 from codegen.record.result import Result
 from codegen.runs.arguments import named_numbers
 from codegen.runs.completion import tell_completed
@@ -61,6 +62,7 @@ class SwitchedSimulator:
             tell, time, told, inputs, method, rtol, atol, initially_on
         )
         tell_completed(done.completed)
+        tell_resting(self.simulator.closed, done)
         return done
 
 

@@ -65,7 +65,8 @@ def test_rounding_completes_nothing(ready: Simulator) -> None:
 
 def test_a_switch_that_is_let_go_completes_nothing(ready: Simulator) -> None:
     """A gate of zero leaves the dog as it is told: on."""
-    result = ready.run(T, {"v_1": 4.0}, {"gate": 0.0}, initially_on=["dog"])
+    with pytest.warns(bg.ModelWarning, match="'dog' stays on while its command gate rests at zero"):
+        result = ready.run(T, {"v_1": 4.0}, {"gate": 0.0}, initially_on=["dog"])
     assert not result.completed
     assert result["v_1"] == pytest.approx(np.full(5, 4.0))
     assert result["v_2"] == pytest.approx(np.zeros(5))
