@@ -67,8 +67,9 @@ def drawing(
     writes names of elements instead of their values and conditions.
 
     The first source is on top. Elements left of their bond read ``J :I``, so that the symbol is at the
-    bond. A switch is a Sw with what turns it on above zero, in a mode it is on or off. A graph that
-    `assign_causality` refuses is drawn without strokes, with the reason under it.
+    bond. A switch is a Sw with what turns it on above zero (a diode with what it lets through, a latch with
+    what turns it off, too); in a mode it is on or off. A graph that `assign_causality` refuses is drawn
+    without strokes, with the reason under it.
 
     Raises `StructureError` for what is not a bond graph.
 

@@ -8,7 +8,7 @@ import sympy as sp
 
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
-from bondgraph.declare.elements import Bond, Element
+from bondgraph.declare.elements import OTHER, Bond, Element, Switch
 from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.validate import validate
@@ -129,9 +129,9 @@ def _switched(element: Element) -> str:
 
 
 def _value(element: Element) -> Rich | None:
-    """What the element is by its value, by its law or by what turns it on, if that is short."""
+    """What the element is by its value, by its law or by how it switches, if that is short."""
     if element.switch is not None:
-        text = (*formula(element.switch.on), Run(" > 0"))
+        text = _one_way(element) or _conditions(element.switch)
         return joined([*text]) if length(text) <= MOST else None
     given = element.value
     if given is None and element.kind.supplies and element.owner is None:
@@ -141,6 +141,29 @@ def _value(element: Element) -> Rich | None:
         return None
     text = formula(given)
     return text if length(text) <= MOST else None
+
+
+def _one_way(element: Element) -> Rich:
+    """What a switch lets through, where its own two variables change it over, as a diode's; else nothing."""
+    switch = element.switch
+    own = None if switch is None else element.variable(switch.gives)
+    other = None if switch is None else element.variable(OTHER[switch.gives])
+    if switch is None or own is None or other is None:
+        return ()
+    on, off = switch.on / own, switch.off / other
+    if on.is_positive and off.is_negative:
+        return (*named(other), Run(" ≥ 0"))
+    if on.is_negative and off.is_positive:
+        return (*named(other), Run(" ≤ 0"))
+    return ()
+
+
+def _conditions(switch: Switch) -> Rich:
+    """What turns a switch on, and what turns it off where that is more than the opposite."""
+    text: Rich = (*formula(switch.on), Run(" > 0"))
+    if switch.off != -switch.on:
+        text = (*text, Run(", off "), *formula(switch.off), Run(" > 0"))
+    return text
 
 
 def _link(

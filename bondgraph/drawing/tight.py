@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+import networkx as nx
+
 Gap = tuple[int, int, float]
 """The second number is at least this much more than the first."""
 
@@ -15,10 +17,12 @@ def extremes(count: int, gaps: Sequence[Gap], pulls: Sequence[Pull]) -> tuple[li
     """Of all the best numbers the least and the greatest, with the first number at 0.
 
     The weighted sum of distances is least. The best solutions form a lattice, so both extremes are
-    unique, and whole for whole gaps. The pulls must connect all numbers and the gaps have a solution.
+    unique, and whole for whole gaps. The gaps must have a solution. Numbers that no pulls connect with the
+    first, as of signals that rule no bond, lie as close to it as the gaps let them.
     """
     if count == 1:
         return [0], [0]
+    pulls = [*pulls, *((0, apart, 1.0, 0.0) for apart in _apart(count, pulls))]
     import numpy as np
     from scipy.optimize import linprog
     from scipy.sparse import csr_array
@@ -54,3 +58,11 @@ def extremes(count: int, gaps: Sequence[Gap], pulls: Sequence[Pull]) -> tuple[li
     total[:count] = 1.0
     low, high = (least(sign * total)[:count] for sign in (1.0, -1.0))
     return [round(value) for value in low], [round(value) for value in high]
+
+
+def _apart(count: int, pulls: Sequence[Pull]) -> list[int]:
+    """The first number of each set that pulls connect, but of the one that has the first of all."""
+    joined: nx.Graph[int] = nx.Graph()
+    joined.add_nodes_from(range(count))
+    joined.add_edges_from((first, second) for first, second, *_ in pulls)
+    return [min(numbers) for numbers in nx.connected_components(joined) if 0 not in numbers]

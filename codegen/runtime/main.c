@@ -1,4 +1,4 @@
-/* Runs the model and prints its states and outputs as CSV:
+/* Runs the model and prints its states, outputs and switches (1 on, 0 off) as CSV:
  *     ./model END SAMPLE [name=value ...]    names of parameters, initial states, inputs
  * A row every SAMPLE seconds, by fixed steps of SAMPLE or, with `step=H`, of a part of it that is
  * about H; `band=B` is the dead band of every friction port. With the word `located` steps are
@@ -69,7 +69,7 @@ static int assign(command *asked, const char *text)
     return 1;
 }
 
-static void print_row(double t, const bg_snapshot *shot)
+static void print_row(double t, const int *mode, const bg_snapshot *shot)
 {
     double outputs[BG_ROOM(BG_OUTPUTS)] = {0};
     bg_model_outputs(shot, outputs);
@@ -80,6 +80,9 @@ static void print_row(double t, const bg_snapshot *shot)
         printf(",%.17g", shot->z[i]);
     for (int i = 0; i < BG_OUTPUTS; i++)
         printf(",%.17g", outputs[i]);
+    for (int i = 0; i < BG_FRICTION; i++)
+        if (bg_model_switched(i, mode[i]) >= 0)
+            printf(",%d", bg_model_switched(i, mode[i]));
     printf("\n");
 }
 
@@ -90,6 +93,9 @@ static void print_head(void)
         printf(",%s", bg_state_names[i]);
     for (int i = 0; i < BG_OUTPUTS; i++)
         printf(",%s", bg_output_names[i]);
+    for (int i = 0; i < BG_FRICTION; i++)
+        if (bg_model_switched(i, 0) >= 0)
+            printf(",%s", bg_friction_names[i]);
     printf("\n");
 }
 
@@ -122,7 +128,7 @@ static int run_stepped(bg_model *m, const command *asked, const bg_signals *sign
         if (k % parts == 0) {
             if (failed(bg_model_evaluate(m, t, s, w, dw, m->mode, &shot)))
                 return 1;
-            print_row(t, &shot);
+            print_row(t, m->mode, &shot);
         }
         const int status = bg_model_advance(m, t, h, s, w);
         if (status == BG_UNSTABLE)
@@ -138,8 +144,7 @@ static void print_sample(void *to, int sample, const double *w, const int *mode,
                          const bg_snapshot *shot)
 {
     (void)w;
-    (void)mode;
-    print_row(((const double *)to)[sample], shot);
+    print_row(((const double *)to)[sample], mode, shot);
 }
 
 /* Rows by adaptive steps. The samples are the only memory that is asked for. */

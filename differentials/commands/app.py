@@ -1,7 +1,9 @@
-"""The commands together, and what becomes of errors: one line that says how to go on, and a status."""
+"""The commands together, and what becomes of errors and warnings: one line each, and a status."""
 
 import sys
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, NoReturn
 
 import click
@@ -40,7 +42,8 @@ class App(click.Group):
         program = prog_name or self.name or ""
         where = next((f"{program} {one}" for one in given if one in self.commands), program)
         try:
-            status = super().main(given, program, *rest, **more)
+            with _doubts_told(where):
+                status = super().main(given, program, *rest, **more)
         except click.exceptions.NoArgsIsHelpError as error:
             error.show()
             status = REFUSED
@@ -64,6 +67,26 @@ class App(click.Group):
             _complain(where, "interrupted")
             status = FAILED
         sys.exit(status if isinstance(status, int) else 0)
+
+
+@contextmanager
+def _doubts_told(where: str) -> Iterator[None]:
+    """Warnings of models in one line each, and each once; what Python's own switch -W says goes first."""
+    told: set[str] = set()
+    with warnings.catch_warnings():
+        plain = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+            if not issubclass(category, bg.ModelWarning):
+                plain(message, category, *place, **more)
+            elif str(message) not in told:
+                told.add(str(message))
+                _complain(where, f"warning: {message}")
+
+        warnings.showwarning = show
+        if not sys.warnoptions:
+            warnings.simplefilter("always", bg.ModelWarning)
+        yield
 
 
 def _complain(where: str, message: str) -> None:

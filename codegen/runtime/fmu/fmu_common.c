@@ -141,7 +141,7 @@ fmu_error fmu_get(fmu_instance *f, unsigned reference, double *value)
         fmu_indicators_of(f, &f->located.view.shot, indicators);
         *value = indicators[v->index];
         break;
-    case FMU_SWITCH: *value = bg_switches[v->index].on == (f->at.mode[v->index] == 0); break;
+    case FMU_SWITCH: *value = bg_model_switched(v->index, f->at.mode[v->index]); break;
     default: *value = f->at.mode[v->index];
     }
     return NULL;

@@ -53,6 +53,11 @@ int bg_model_complete(bg_model *m, double t, const double *w, const int *named, 
     return bg_complete(m, t, w, named, m->mode, s);
 }
 
+int bg_model_switched(int port, int mode)
+{
+    return bg_switches[port].kind == BG_RUBS ? -1 : bg_switches[port].on == (mode == 0);
+}
+
 void bg_model_outputs(const bg_snapshot *shot, double *outputs)
 {
     for (int i = 0; i < BG_OUTPUTS; i++)

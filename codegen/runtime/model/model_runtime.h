@@ -131,6 +131,9 @@ int bg_model_vector(bg_model *m, double t, const double *states, const double *w
  * not `named` follow what the switches then hold. */
 int bg_model_complete(bg_model *m, double t, const double *w, const int *named, double *s);
 
+/* Whether a port is a switch that is on, 1, or off, 0, in this mode of its; -1 for friction. */
+int bg_model_switched(int port, int mode);
+
 /* Everything at t, s, external inputs w and their rates dw (NULL: zero), in a friction mode. */
 int bg_model_evaluate(bg_model *m, double t, const double *s, const double *w, const double *dw,
                       const int *mode, bg_snapshot *shot);

@@ -7,6 +7,7 @@ import networkx as nx
 import pytest
 from references.random_graphs import random_graph
 
+import bondgraph as bg
 from bondgraph.algebra.expressions import expression
 from bondgraph.drawing.layers import layered
 from bondgraph.drawing.order import crossings, mirrored, ordered
@@ -66,6 +67,27 @@ def test_extremes_against_all_numbers(seed: int) -> None:
     low, high = extremes(count, gaps, pulls)
     assert tuple(low) == tuple(map(min, zip(*best, strict=True)))
     assert tuple(high) == tuple(map(max, zip(*best, strict=True)))
+
+
+def test_numbers_that_no_pull_connects_lie_close_to_the_first() -> None:
+    """Two pairs, three apart by a gap: the second pair is as near as that lets it; a single one is at 0."""
+    pulls = [(0, 1, 1.0, 0.0), (2, 3, 1.0, 0.0)]
+    gaps = [(0, 1, 1.0), (2, 3, 2.0), (1, 2, 3.0)]
+    assert extremes(5, gaps, pulls) == ([0, 1, 4, 6, 0], [0, 1, 4, 6, 0])
+
+
+def test_parts_that_signals_alone_connect_stand_side_by_side() -> None:
+    """A force by a controller whose integrator has bonds of its own: both sources on top."""
+    g = nx.DiGraph()
+    g.add_nodes_from([
+        bg.Se("force", "k*x_i"), bg.One("mass"), bg.I("m", "m", flow="v"),
+        bg.Sf("error", "r - v"), bg.Zero("sum"), bg.C("integral", 1, effort="x_i"),
+    ])  # fmt: skip
+    g.add_edges_from([("force", "mass"), ("mass", "m"), ("error", "sum"), ("sum", "integral")])
+    boxes = {node.name: node.box for node in bg.drawing(g).scene.nodes}
+    force, error, mass, sums = (boxes[name] for name in ("force", "error", "mass", "sum"))
+    assert force.top == error.top < mass.top == sums.top
+    assert force.right < error.left or error.right < force.left
 
 
 def test_letters_and_subscripts() -> None:

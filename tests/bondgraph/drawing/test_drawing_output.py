@@ -11,6 +11,7 @@ import pytest
 
 import bondgraph as bg
 import differentials
+from bondgraph.declare.elements import Node
 from bondgraph.drawing.metrics import ADVANCES, FAMILY
 
 ROOT = Path(bg.__file__).parents[1]
@@ -130,6 +131,28 @@ def test_switches_are_drawn_with_strokes_and_what_turns_them_on() -> None:
     assert all(bond.stroke for drawing in (on, off) for bond in drawing.scene.bonds)
     assert [node.name for node in on.scene.nodes if node.frame] == ["cap"]
     assert [node.name for node in off.scene.nodes if node.frame] == []
+
+
+@pytest.mark.parametrize(
+    ("switch", "shown"),
+    [
+        (bg.Diode("d"), "f_d ≥ 0"),
+        (bg.CheckValve("d", effort="dp", flow="Q"), "Q ≥ 0"),
+        (bg.Freewheel("d"), "f_d ≤ 0"),
+        (bg.Sw("d", on="-3*e_d", off="f_d/2"), "f_d ≤ 0"),
+        (bg.Sw("d", on="e_d", off="f_d"), "e_d > 0, off f_d > 0"),
+        (bg.Sw("d", on="e_d - 1", off="-f_d"), "e_d − 1 > 0, off −f_d > 0"),
+        (bg.Sw("d", on="3*e_d - 100", off="7 - f_d"), "d"),
+        (bg.Sw("d", on="u - 2", off="1 - u"), "u − 2 > 0, off 1 − u > 0"),
+        (bg.Sw("d", on="t - 2"), "t − 2 > 0"),
+    ],
+)
+def test_each_kind_of_switch_is_drawn_as_what_it_is(switch: Node, shown: str) -> None:
+    made = graph(
+        [bg.Se("battery", "u"), bg.One("wire"), switch, bg.R("load", "R")],
+        [("battery", "wire"), ("wire", "d"), ("wire", "load")],
+    )
+    assert f"Sw: {shown}" in bg.drawing(made).text().splitlines()[-2]
 
 
 def test_long_conditions_are_left_to_the_name() -> None:

@@ -224,3 +224,27 @@ def test_where_no_mode_is_consistent_the_switches_are_named(tmp_path: Path) -> N
     assert "is consistent" in pair.c.message(status)
     assert s == pytest.approx([1.0])
     assert pair.c.mode() == (0,)
+
+
+def test_the_exported_program_prints_whether_switches_are_on(tmp_path: Path) -> None:
+    """Behind states and outputs 1 and 0, in either way of running; friction has no such column."""
+    case = CASES["coil with diode"]
+    given = {"initial": case.initial, "inputs": case.inputs, "initially_on": case.on}
+    files = to_c(bg.derive(case.graph), case.numbers, name="coil", main=True, **given)
+    program = compiled(tmp_path, written(tmp_path, files))
+    for how in ("located", "step=1e-4"):
+        told = subprocess.run(
+            [program, "0.06", "1e-3", how], capture_output=True, text=True, check=True
+        )
+        head, *rows = told.stdout.splitlines()
+        columns = dict(
+            zip(head.split(","), np.array([r.split(",") for r in rows], float).T, strict=True)
+        )
+        assert [*columns][-2:] == ["k", "d"]
+        assert columns["k"] == pytest.approx((columns["t"] < 0.0313).astype(float))
+        assert columns["d"] == pytest.approx((columns["t"] > 0.0313).astype(float))
+    files = to_c(bg.derive(CASES["freewheel"].graph), CASES["freewheel"].numbers, main=True)
+    (tmp_path / "other").mkdir()
+    program = compiled(tmp_path / "other", written(tmp_path / "other", files))
+    told = subprocess.run([program, "0.01", "0.01"], capture_output=True, text=True, check=True)
+    assert told.stdout.splitlines()[0] == "t,w_1,w_2,fw"

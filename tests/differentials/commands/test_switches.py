@@ -134,3 +134,31 @@ def test_exports_begin_with_the_switches_that_are_on(
 def test_a_unit_begins_with_the_switches_that_are_on(dog: str, call: Call, tmp_path: Path) -> None:
     assert call("export", dog, "--to", "fmu3", *STAYS, "--on", "dog").exit_code == 0
     assert (tmp_path / "out" / "dog.fmu").stat().st_size > 0
+
+
+def test_a_start_that_was_completed_is_told_in_one_line_and_once(dog: str, call: Call) -> None:
+    """Closed from the start, the dog carries the second mass along, whose speed nobody named."""
+    given = (
+        "--set",
+        "d=0",
+        "--input",
+        "gate=1",
+        "--until",
+        "1",
+        "--initial",
+        "v_1=4",
+        "--on",
+        "dog",
+    )
+    done = call("simulate", dog, *given, "-o", "run.csv")
+    assert done.exit_code == 0
+    [line] = done.stderr.splitlines()
+    assert line.startswith(
+        "bondgraph simulate: warning: states that initial does not name follow what "
+    )
+    assert "v_2 = 4;" in line
+    silent = subprocess.run(
+        [sys.executable, "-W", "ignore", "-m", "differentials", "simulate", dog, *given, "-o", "run.csv"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert silent.stderr == ""
