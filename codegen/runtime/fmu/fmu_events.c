@@ -126,9 +126,6 @@ fmu_error fmu_initialize(fmu_instance *f)
 {
     int moved = 0;
     fmu_error failed;
-    if (BG_SWITCHES && f->at.step > 0)
-        return "fixed_internal_step: no fixed steps of a model with switches; leave it 0, so that "
-               "events are located";
     fmu_pass(f, f->at.time);
     failed = fmu_refresh(f);
     if (failed)

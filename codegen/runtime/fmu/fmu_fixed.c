@@ -74,6 +74,7 @@ static int settle_end(fmu_instance *f, double t, double h)
 
 fmu_error fmu_fixed(fmu_instance *f, double t, double end)
 {
+    memcpy(f->model.mode, f->at.mode, sizeof f->at.mode);
     fmu_error failed = walk_pieces(f, t, end);
     fmu_pass(f, end);
     if (!failed) {

@@ -4,7 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.called import Unit
 from oracles.units import Case, belt, divider, duffing, figure_11, ran
+
+from codegen import Result, simulator
 
 CASES = {"fig11": figure_11, "duffing": duffing, "belt": belt, "divider": divider}
 
@@ -45,6 +48,34 @@ def test_model_exchange_follows_the_simulator(
     found, changes = ran(units[version], "ModelExchange", case, expected.states, modes=MODES[named])
     assert _error(found, expected, expected.states) < REACHED[named]
     assert changes == pytest.approx([event.time for event in expected.events], abs=1e-6)
+
+
+@pytest.fixture(scope="module")
+def limited_slip(tmp_path_factory: pytest.TempPathFactory) -> tuple[Unit, Result]:
+    """The unit of Fig. 11, and its run by the backend in C at every tenth of a millisecond."""
+    case = figure_11()
+    ready = simulator(case.equations, case.parameters, case.laws, "c")
+    times = np.linspace(0.0, case.end, 10_001)
+    right = ready.run(times, case.initial, case.inputs)
+    assert right.backend == "c"
+    assert len(right.events) > 1
+    folder = tmp_path_factory.mktemp("limited_slip")
+    return Unit(case, "3.0", folder, inputs=case.inputs), right
+
+
+@pytest.mark.parametrize("step", [1e-4, 1e-3, 0.01, 0.1])
+def test_co_simulation_is_the_compiled_run_at_any_communication_step(
+    limited_slip: tuple[Unit, Result], step: float
+) -> None:
+    unit, right = limited_slip
+    every = round(step / 1e-4)
+    made, rows = unit.started("CoSimulation"), [[right[name][0] for name in right.states]]
+    for k in range(round(1 / step)):
+        made.doStep(currentCommunicationPoint=k * step, communicationStepSize=step)
+        rows.append(unit.get(made, *right.states).tolist())
+    unit.free(made)
+    for name, found in zip(right.states, np.transpose(rows), strict=True):
+        assert np.abs(found - right[name][::every]).max() < 1e-6 * np.ptp(right[name]), name
 
 
 @pytest.mark.parametrize("version", ["2.0", "3.0"])

@@ -168,12 +168,6 @@ def test_a_condition_of_time_alone_is_an_event_at_its_instant(tmp_path: Path) ->
     unit.free(made)
 
 
-def test_fixed_steps_of_a_model_with_switches_are_refused(tmp_path: Path) -> None:
-    unit = Unit(rectifier(), "3.0", tmp_path)
-    with pytest.raises(Exception, match="ExitInitializationMode"):
-        unit.started("CoSimulation", fixed_internal_step=1e-4)
-
-
 def test_switches_that_are_not_there_are_refused(tmp_path: Path) -> None:
     with pytest.raises(bg.BondGraphError, match="nobody"):
         dog().written(tmp_path / "unit.fmu", "2.0", initially_on=["nobody"])
