@@ -1,6 +1,6 @@
 """The judge of networks that switch: what is known in closed form, of diodes, switches and friction."""
 
-from math import acos, asin, cos, exp, pi, sin, sqrt
+from math import acos, asin, cos, exp, log, pi, sin, sqrt
 
 import numpy as np
 import pytest
@@ -279,3 +279,29 @@ def test_a_wave_is_what_it_says() -> None:
     expected = [0.5 + 2.0 * (t >= 1) + 3 * sin(pi / 2 * t + 0.1) for t in times]
     assert course.columns["u_R0"] == pytest.approx(expected, abs=1e-12)
     assert course.columns["i_V0"] == pytest.approx(course.columns["i_R0"], abs=1e-12)
+
+
+def test_a_voltage_turns_a_switch_with_hysteresis() -> None:
+    """RC from 4 V with 1 s, 0.5 s while a resistance of 1 is across: on above 2.5, off below 2.2.
+
+    Alone it goes towards 4, with the resistance towards 2.
+    """
+    switch = Branch("G", "G0", 1, 2, 2.5, watched="C0", off=2.2)
+    network = joined(
+        Branch("S", "S0", 0, 1, more=1.0, wave=Wave(4.0)), Branch("C", "C0", 1, 0, 1.0),
+        switch, Branch("R", "R0", 2, 0, 1.0),
+    )  # fmt: skip
+    first = log(4.0 / 1.5)
+    falls, rises = 0.5 * log(0.5 / 0.2), log(1.8 / 1.5)
+    expected = [first, first + falls, first + falls + rises, first + 2 * falls + rises]
+    _, course = _run(network, 2.2)
+    kinds = ["on", "off", "on", "off"]
+    _near(course.events, *((t, "G0", k) for t, k in zip(expected, kinds, strict=True)))
+    # The other way round it is on at first, and the source finds it so.
+    other = joined(
+        *(b for b in network.branches if b.kind != "G"),
+        Branch("G", "G0", 1, 2, -2.2, watched="C0", off=-2.5, sense=-1),
+    )
+    _, course = _run(other, 2.2)
+    assert course.events == []
+    assert course.columns["u_C0"][-1] == pytest.approx(2 - 2 * exp(-2 * 2.2), abs=1e-10)

@@ -234,6 +234,20 @@ FAMILIES = (
     Family(
         "ideal-diodes", "codegen/switched/test_switched_networks.py::test_ideal_diodes", 12, 1_000
     ),
+    Family(
+        "mixed-ports",
+        "codegen/switched/test_mixed_ports.py::test_random_networks",
+        2,
+        1_000,
+        1,
+    ),
+    Family(
+        "mixed-ports-in-c",
+        "codegen/switched/test_mixed_ports.py::test_random_networks_in_c",
+        3,
+        1_000,
+        1,
+    ),
     # The judge of networks that switch.
     Family("judge-steps", "test_judge_switched_steps.py::test_random_networks", 3, 300),
     Family(

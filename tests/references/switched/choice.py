@@ -3,7 +3,7 @@
 Every trigger's chain of impulse, value and derivatives must not begin below zero. So, without a rule for
 each kind: what conducts keeps its current's sign and what blocks its voltage's; what sticks takes no impulse,
 as its level is finite beside one, and at its level the current's rate decides; what slips has the sign of its
-slip. Switches are as commanded.
+slip. Switches are as commanded; what a voltage or current turns on stays as it is while that lets it.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ class Choice:
     def _others(self, name: str, mode: Mode) -> Iterator[tuple[str, int]]:
         at = self._at.get(name)
         if at in self._free:
-            ways = (0, 1) if self.ports[at].kind == "D" else (-1, 0, 1)
+            ways = (-1, 0, 1) if self.ports[at].kind == "F" else (0, 1)
             yield from ((name, way) for way in ways if way != mode[at])
 
     def _but(self, mode: Mode, name: str, way: int) -> Mode:

@@ -124,10 +124,14 @@ def motion(layout: Layout, state: State) -> Motion | Impossible:
 def _signs(layout: Layout, state: State) -> list[tuple[Array, str, int]]:
     """Rows that a mode keeps from falling below zero, whose each is, and what its port does instead."""
     rows: list[tuple[Array, str, int]] = []
-    for b in layout.network.of("D", "F"):
+    for b in layout.network.of("D", "G", "F"):
         now, flow, across = state[b.name], layout.flow(b), layout.voltage(b)
         if b.kind == "D":
             rows.append((flow, b.name, 0) if now else (-across, b.name, 1))
+        elif b.kind == "G":
+            row = (2 * now - 1) * b.sense * layout.stored(b.watched)
+            row[layout.one] = b.value - (b.value + b.off) * now
+            rows.append((row, b.name, 1 - now))
         elif now:
             rows.append((now * across, b.name, 0))
         else:

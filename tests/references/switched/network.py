@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import exp, log, sqrt
 
-PORTS = ("D", "K", "F")
+PORTS = ("D", "K", "G", "F")
 """Kinds of branches that switch."""
 
 SOURCES = ("S", "V", "I")
@@ -45,6 +45,8 @@ class Branch:
     R    ``value``
     D    a diode, conducting from tail to head, behind a resistance ``more``, which may be zero
     K    a switch, ``on`` at first, changing over at each of ``instants``
+    G    a switch that a capacitor's voltage or a coil's current turns on above ``value``, and off below
+         ``off``: that of the branch ``watched``, times ``sense``
     F    friction: it slips with the current ``value * sign(voltage)``, or has no voltage
     S    a source that lifts its head above its tail by ``wave``, behind a resistance ``more``
     V    the same without a resistance
@@ -62,6 +64,9 @@ class Branch:
     start: float = 0.0
     on: bool = False
     instants: tuple[float, ...] = ()
+    watched: str = ""
+    off: float = 0.0
+    sense: int = 1
 
     def commanded(self, t: float) -> bool:
         """Whether a switch is on from an instant on."""
@@ -123,11 +128,19 @@ def _mean(values: list[float]) -> float:
 
 def measured(network: Network, by: Units) -> Network:
     """The network in other units."""
-    return replace(network, branches=tuple(_branch(b, by) for b in network.branches))
+    coils = {b.name for b in network.of("L")}
+    return replace(network, branches=tuple(_branch(b, by, coils) for b in network.branches))
 
 
-def _branch(b: Branch, by: Units) -> Branch:
-    value = {"C": by.second / by.ohm, "L": by.second * by.ohm, "R": by.ohm, "F": by.ampere}
+def _branch(b: Branch, by: Units, coils: set[str]) -> Branch:
+    watched = by.ampere if b.watched in coils else by.volt
+    value = {
+        "G": watched,
+        "C": by.second / by.ohm,
+        "L": by.second * by.ohm,
+        "R": by.ohm,
+        "F": by.ampere,
+    }
     size = by.ampere if b.kind == "I" else by.volt
     wave = Wave(
         b.wave.constant / size, tuple((at / by.second, step / size) for at, step in b.wave.steps),
@@ -136,5 +149,5 @@ def _branch(b: Branch, by: Units) -> Branch:
     return replace(
         b, value=b.value / value.get(b.kind, 1.0), more=b.more / by.ohm, wave=wave,
         start=b.start / (by.ampere if b.kind == "L" else by.volt),
-        instants=tuple(at / by.second for at in b.instants),
+        instants=tuple(at / by.second for at in b.instants), off=b.off / watched,
     )  # fmt: skip

@@ -20,7 +20,7 @@ import numpy as np
 
 from references.switched.choice import Choice, Mode
 from references.switched.modes import Motion
-from references.switched.network import Network, measured, units
+from references.switched.network import Branch, Network, measured, units
 from references.switched.pencil import Array, Layout
 from references.switched.triggers import first_left
 
@@ -51,8 +51,8 @@ class Oracle:
         """Voltages ``u_`` and currents ``i_`` of all branches, just after each time, and the events."""
         seconds = np.asarray(times, dtype=float) / self._units.second
         t, end, course, rows = float(seconds[0]), float(seconds[-1]), Course(), []
-        mode = self._commanded(tuple(0 for _ in self._choice.ports), t)
         y, first, still = self._layout.start(), True, 0
+        mode = self._commanded(tuple(self._before(b, y) for b in self._choice.ports), t)
         breaks = [at for at in self._layout.network.breaks if t < at < end]
         while True:
             y = self._layout.drive(y, t)
@@ -78,6 +78,10 @@ class Oracle:
                 raise RuntimeError(f"the judge makes no progress at {t * self._units.second}")
         course.columns = self._columns(np.array(rows))
         return course
+
+    def _before(self, b: Branch, y: Array) -> int:
+        """What a port does before the run: what is turned by a voltage or a current goes by what is told."""
+        return int(b.kind == "G" and b.sense * (self._layout.stored(b.watched) @ y) > b.value)
 
     def _commanded(self, mode: Mode, t: float) -> Mode:
         ports = zip(self._choice.ports, mode, strict=True)

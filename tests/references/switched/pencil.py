@@ -23,7 +23,7 @@ from references.switched.network import PORTS, SOURCES, Branch, Network
 
 Array = NDArray[np.float64]
 State = Mapping[str, int]
-"""What each port does: D, K 1 on, 0 off; F 0 sticks, 1 or -1 the sign of its voltage."""
+"""What each port does: D, K, G 1 on, 0 off; F 0 sticks, 1 or -1 the sign of its voltage."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,12 @@ class Layout:
         if b.kind == "I":
             return self.wave(b)
         row[self.current[b.name]] = 1.0
+        return row
+
+    def stored(self, name: str) -> Array:
+        """The row of a capacitor's voltage or a coil's current."""
+        row = np.zeros(self.size)
+        row[(self.charge if name in self.charge else self.current)[name]] = 1.0
         return row
 
     def start(self) -> Array:
@@ -149,14 +155,14 @@ def _rigid(b: Branch, state: State) -> bool:
     """Whether a branch's voltage is given and its current is not."""
     if b.kind == "F":
         return state[b.name] == 0
-    return b.kind == "V" or (b.kind in "DK" and state[b.name] == 1 and not b.more)
+    return b.kind == "V" or (b.kind in "DKG" and state[b.name] == 1 and not b.more)
 
 
 def _given(b: Branch, state: State) -> bool:
     """Whether a branch's current is given and its voltage is not."""
     if b.kind == "F":
         return state[b.name] != 0
-    return b.kind == "I" or (b.kind in "DK" and state[b.name] == 0)
+    return b.kind == "I" or (b.kind in "DKG" and state[b.name] == 0)
 
 
 Free = tuple[int, Array, Array, set[str]]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import networkx as nx
 import numpy as np
 
@@ -52,6 +54,32 @@ def random_switched(
     series with a coil of their own, some frictions with another of a different level.
     """
     return _Drawing(rng, ports or int(rng.integers(1, 9)), kinds).network()
+
+
+def random_mixed(rng: np.random.Generator) -> Network:
+    """The same, charged at first, some of whose switches are turned by a voltage or a current instead.
+
+    Charges and currents are such that no source or other charge is against them: each node has a potential.
+    """
+    network = random_switched(rng)
+    stored = network.of("C", "L")
+    potentials = {k: _number(rng, -1, 1) for k in range(1, network.nodes + 1)} | {0: 0.0}
+    for b in network.of("V"):
+        potentials[b.head] = b.wave.level(0.0) + b.wave.amplitude * float(np.sin(b.wave.phase))
+
+    def changed(b: Branch) -> Branch:
+        if b.kind == "C":
+            return replace(b, start=potentials[b.tail] - potentials[b.head])
+        if b.kind != "K" or not stored or rng.random() < 0.6:
+            return b
+        watched = stored[int(rng.integers(len(stored)))]
+        level, sense = _number(rng, -0.5, 0.8), int(rng.choice([-1, 1]))
+        off = round(level - _number(rng, 0.1, 0.6), 3)
+        return Branch(
+            "G", b.name, b.tail, b.head, level, watched=watched.name, off=off, sense=sense
+        )
+
+    return replace(network, branches=tuple(changed(b) for b in network.branches))
 
 
 class _Drawing:

@@ -1,0 +1,49 @@
+"""Random networks of one to eight ports of every kind, drawn in every way, against the judge."""
+
+import shutil
+
+import numpy as np
+import pytest
+from oracles.circuits import complaints, judged_as
+from oracles.drawings import Drawing
+from references.switched.random_networks import SPAN, random_mixed
+from soak.families import seeds
+
+import bondgraph as bg
+from codegen import Result, simulator
+
+TIMES = np.linspace(0.0, SPAN, 31)
+
+
+def _drawn(seed: int) -> Drawing:
+    """A network as a graph: each way of drawing one, and half of its switches as controlled junctions."""
+    rng = np.random.default_rng(seed)
+    network = random_mixed(rng)
+    joints = frozenset(b.name for b in network.of("K", "G") if rng.random() < 0.5)
+    return Drawing(network, seed % 2 == 1, seed % 3 == 0, joints)
+
+
+def _run(drawing: Drawing, backend: str) -> Result:
+    ready = simulator(bg.derive(drawing.graph()), {}, backend=backend)
+    start = {name: value for name, value in drawing.initial().items() if name in ready.states}
+    on = drawing.initially_on()
+    return ready.run(TIMES, start, drawing.inputs(), initially_on=on)
+
+
+def _check(seed: int, backend: str) -> None:
+    drawing = _drawn(seed)
+    found = judged_as(drawing, TIMES)
+    result = _run(drawing, backend)
+    assert result.backend == backend
+    assert complaints(found, result) == []
+
+
+@pytest.mark.parametrize("seed", seeds("mixed-ports"))
+def test_random_networks(seed: int) -> None:
+    _check(seed, "numpy")
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+@pytest.mark.parametrize("seed", seeds("mixed-ports-in-c"))
+def test_random_networks_in_c(seed: int) -> None:
+    _check(seed, "c")
