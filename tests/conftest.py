@@ -2,7 +2,14 @@
 
 import pytest
 
-pytest_plugins = ["rig.needs", "rig.used", "rig.guard", "rig.compilers", "rig.summary"]
+pytest_plugins = [
+    "rig.bytecode",
+    "rig.needs",
+    "rig.used",
+    "rig.guard",
+    "rig.compilers",
+    "rig.summary",
+]
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -8,7 +8,7 @@ series; then ``W(2h) = W(h) + E(h)^T W(h) E(h)``, whatever the steps of the run 
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
+import scipy
 
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING

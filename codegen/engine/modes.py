@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-import scipy.linalg
+import scipy
 
 from bondgraph.errors import SimulationError
 from codegen.engine.sizes import Engine, view

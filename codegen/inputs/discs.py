@@ -7,9 +7,9 @@ about its value at the centre; the rules are the mean value theorem's and the ad
 from collections.abc import Callable, Mapping
 
 import numpy as np
+import scipy
 import sympy as sp
 from numpy.typing import NDArray
-from scipy.special import erf
 
 from bondgraph.algebra.expressions import TIME
 from codegen.numbers.arrays import Array
@@ -145,7 +145,7 @@ def _by_slope(value: Callable[[Array], Array], least: Callable[[Array, Array], A
 
 def _erf(a: Array, r: Array) -> Disc:
     slope = 2 / np.sqrt(np.pi) * np.exp(-(a**2) + 2 * np.abs(a) * r + r**2)
-    return np.asarray(erf(a)), r * slope
+    return np.asarray(scipy.special.erf(a)), r * slope
 
 
 def _erfc(a: Array, r: Array) -> Disc:

@@ -1,7 +1,7 @@
 """A search that needs scipy, for what Newton's iteration does not find."""
 
 import numpy as np
-import scipy.optimize
+import scipy
 
 from codegen.standalone.arrays import Array
 from codegen.standalone.loops import Residual

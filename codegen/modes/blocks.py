@@ -4,8 +4,7 @@ from collections.abc import Generator, Mapping, Sequence
 from itertools import product
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from bondgraph.errors import BondGraphError
 from codegen.model.snapshot import Mode, Snapshot
@@ -43,7 +42,9 @@ def blocks_of(model: ClosedModel, numbers: Numbers, ports: list[int]) -> list[li
         return [ports]
     # What none of them rules alone, held together, joins them as well.
     touch |= (shared.T != 0).astype(int) @ (shared != 0).astype(int) > 0
-    count, label = connected_components(csr_array(touch), directed=False)
+    count, label = scipy.sparse.csgraph.connected_components(
+        scipy.sparse.csr_array(touch), directed=False
+    )
     return [[ports[k] for k in np.flatnonzero(label == block)] for block in range(count)]
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+import scipy
 
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
@@ -158,7 +158,7 @@ class Watch:
             return None
         if b - slope**2 / (2 * curve) > 0.5 * min(values):
             return None
-        lowest = minimize_scalar(
+        lowest = scipy.optimize.minimize_scalar(
             lambda t: float(self._triggers(t, self._snapshot(t, dense(t)))[i]),
             bounds=(grid[0], grid[2]), method="bounded", options={"xatol": TUNING.dip * (grid[2] - grid[0])},
         )  # fmt: skip

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from scipy.integrate import DOP853, Radau
+import scipy
 
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
@@ -14,7 +14,7 @@ from codegen.modes.pace import longest_step
 from codegen.modes.rounding import Peaks
 from codegen.numbers.arrays import Array
 from codegen.runs.events import Watch
-from codegen.runs.methods import METHODS
+from codegen.runs.methods import METHODS, integrator
 from codegen.runs.progress import Progress, difference, no_progress
 from codegen.runs.track import Dense, Ended, Settings, Track
 from codegen.tuning import TUNING
@@ -64,9 +64,9 @@ class Leg:
                     track.tally.record()
             return stop, s, frozenset()
         fastest = self.fastest(t, s)
-        integrator = self._integrator(fastest, float(times[-1]) - self._origin)
-        explicit = integrator is DOP853
-        solver = integrator(
+        name = self._integrator(fastest, float(times[-1]) - self._origin)
+        explicit = name == "DOP853"
+        solver = integrator(name)(
             self._rate, t, s, stop, rtol=self._settings.rtol, atol=self._settings.atol,
             max_step=self._bound(explicit, fastest, t),
         )  # fmt: skip
@@ -97,7 +97,7 @@ class Leg:
         settings = self._settings
         return Progress(self._rates, self._origin, driven, settings.rtol, settings.atol, t)
 
-    def _integrator(self, fastest: float, span: float) -> Any:
+    def _integrator(self, fastest: float, span: float) -> str:
         method = self._settings.method
         stiff = fastest * span > TUNING.stiff_span
         if method == "CVODE" and not self._model.program.affine:
@@ -127,7 +127,7 @@ class Leg:
 
 def _failed(solver: Any, message: str | None) -> SimulationError:
     """Why an integrator gives up: scipy's do where a step no longer changes the time."""
-    if isinstance(solver, DOP853 | Radau):
+    if isinstance(solver, scipy.integrate.DOP853 | scipy.integrate.Radau):
         return no_progress(solver.t, "jump there, or grow without bound")
     return SimulationError(f"at t = {solver.t:.9g} the integrator failed: {message}")
 

@@ -3,20 +3,27 @@
 from functools import partial
 from typing import Any
 
-from scipy.integrate import DOP853, Radau
+import scipy
 
 from codegen.runs.sundials import Cvode
 
-METHODS: dict[str, tuple[Any, Any]] = {
-    "auto": (DOP853, Radau),
-    "DOP853": (DOP853, DOP853),
-    "Radau": (Radau, Radau),
-    "CVODE": (partial(Cvode, "Adams"), partial(Cvode, "BDF")),
+METHODS: dict[str, tuple[str, str]] = {
+    "auto": ("DOP853", "Radau"),
+    "DOP853": ("DOP853", "DOP853"),
+    "Radau": ("Radau", "Radau"),
+    "CVODE": ("Adams", "BDF"),
 }
-"""The integrator of each method: where the model is not stiff, and where it is."""
+"""The integrator of each method by name: where the model is not stiff, and where it is."""
 
 EXACT = "exact"
 """The method of models that are affine in each friction mode: no integrator, matrix exponentials."""
 
 CHOICES = (EXACT, *METHODS)
 """What a run's method may be."""
+
+
+def integrator(name: str) -> Any:
+    """What makes the solver of a stretch: CVODE's, or scipy's class, which is loaded when first asked for."""
+    if name in METHODS["CVODE"]:
+        return partial(Cvode, name)
+    return getattr(scipy.integrate, name)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
+import scipy
 
 from codegen.inputs.generators import Generator
 from codegen.model.snapshot import Mode

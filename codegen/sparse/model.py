@@ -4,12 +4,14 @@ Nothing here has a closed form, so nothing grows with products of ratios: a trai
 costs what ten thousand masses on springs cost. Causality is decided exactly, as everywhere.
 """
 
+from __future__ import annotations
+
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-import scipy.sparse as sps
+import scipy
 
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
@@ -18,7 +20,7 @@ from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.errors import StructureError
 from codegen.inputs.signals import Constant
 from codegen.numbers.arrays import read_only
-from codegen.sparse.signal_rows import Matrix, Row, SignalRows, matrix
+from codegen.sparse.signal_rows import Row, SignalRows, matrix
 from codegen.sparse.valued import valued_graph
 
 
@@ -32,14 +34,14 @@ class SparseModel:
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    A: Matrix
-    J: Matrix
-    B: Matrix
-    E: Matrix
-    F: Matrix
-    D: Matrix
-    H: Matrix
-    K: Matrix
+    A: scipy.sparse.csr_array
+    J: scipy.sparse.csr_array
+    B: scipy.sparse.csr_array
+    E: scipy.sparse.csr_array
+    F: scipy.sparse.csr_array
+    D: scipy.sparse.csr_array
+    H: scipy.sparse.csr_array
+    K: scipy.sparse.csr_array
     known: Mapping[str, Constant]
 
 
@@ -80,7 +82,7 @@ def _assembled(rows: SignalRows, outputs: Iterable[Hashable]) -> SparseModel:
         tuple(rows.given(node).name for node in rows.states),
         tuple(name.name for name in rows.inputs),
         tuple(names),
-        A=_fixed(sps.diags_array(values, shape=(n, n)) - received[:, rates:last]),
+        A=_fixed(scipy.sparse.diags_array(values, shape=(n, n)) - received[:, rates:last]),
         J=_fixed(received[:, :n]),
         B=_fixed(received[:, n:rates]),
         E=_fixed(received[:, last:]),
@@ -92,9 +94,9 @@ def _assembled(rows: SignalRows, outputs: Iterable[Hashable]) -> SparseModel:
     )
 
 
-def _fixed(made: Any) -> Matrix:
+def _fixed(made: Any) -> scipy.sparse.csr_array:
     """A matrix whose arrays nobody can write to."""
-    fixed = Matrix(made)
+    fixed = scipy.sparse.csr_array(made)
     fixed.sort_indices()
     for part in (fixed.data, fixed.indices, fixed.indptr):
         read_only(part)

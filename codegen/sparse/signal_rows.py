@@ -4,12 +4,13 @@ Each entry is a float with its residue modulo a large prime beside it, so that w
 exactly, whatever rounding leaves of it.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-import scipy.sparse as sps
-import scipy.sparse.linalg as spl
+import scipy
 import sympy as sp
 
 from bondgraph.algebra.elimination import ResidueRows
@@ -19,8 +20,6 @@ from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import causal_equations, causal_groups
 from bondgraph.errors import AlgebraicLoopError
 from codegen.numbers.arrays import Array
-
-Matrix = sps.csr_array
 
 
 class Entry(NamedTuple):
@@ -133,6 +132,8 @@ class SignalRows:
 
     def _solved(self, group: tuple[int, ...], inside: list[Row], outside: list[Row]) -> list[Row]:
         """``inside s = outside`` in floats, with what vanishes, and whether it can be solved, by residues."""
+        from scipy.sparse.linalg import splu
+
         size = len(inside)
         columns = sorted({column for row in outside for column in row})
         place = {column: size + at for at, column in enumerate(columns)}
@@ -148,7 +149,7 @@ class SignalRows:
             )
         packed = [{place[c] - size: e for c, e in row.items()} for row in outside]
         right = matrix(packed, len(columns)).toarray()
-        values = spl.splu(matrix(inside, size).tocsc()).solve(right)
+        values = splu(matrix(inside, size).tocsc()).solve(right)
         result: list[Row] = [{} for _ in range(size)]
         for at, pivot in exact.pivots.items():
             scale = pow(-exact.rows[at][pivot], -1, PRIME)
@@ -200,13 +201,13 @@ def _put_in(row: Row, rows: dict[int, Row]) -> Row:
     return {column: entry for column, entry in result.items() if entry.residue}
 
 
-def matrix(rows: Sequence[Row], width: int) -> Matrix:
+def matrix(rows: Sequence[Row], width: int) -> scipy.sparse.csr_array:
     """Sparse rows as a csr array."""
     starts = np.cumsum([0, *(len(row) for row in rows)])
     columns = np.fromiter((j for row in rows for j in row), dtype=np.int64, count=starts[-1])
     entries: Array = np.fromiter(
         (e.value for row in rows for e in row.values()), float, count=starts[-1]
     )
-    made = Matrix((entries, columns, starts), shape=(len(rows), width))
+    made = scipy.sparse.csr_array((entries, columns, starts), shape=(len(rows), width))
     made.sort_indices()
     return made

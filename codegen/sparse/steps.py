@@ -1,12 +1,12 @@
 """Integration of ``A v' = J v + g(t)`` with sparse A and J that are never inverted or filled in."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sps
-import scipy.sparse.linalg as spl
-from scipy.integrate import DOP853, OdeSolver, Radau
+import scipy
 
 from bondgraph.errors import SimulationError
 from codegen.numbers.arrays import Array
@@ -24,27 +24,31 @@ FOLLOWED = 0.05
 
 def mass_radau(
     rate: Callable[[float, Array], Array], t: float, v: Array, stop: float, rtol: float, atol: float,
-    longest: float, mass: sps.csc_array, jac: sps.csc_array,
-) -> OdeSolver:  # fmt: skip
+    longest: float, mass: scipy.sparse.csc_array, jac: scipy.sparse.csc_array,
+) -> scipy.integrate.OdeSolver:  # fmt: skip
     """scipy's Radau for ``A v' = J v + g``, of which ``rate`` is v'.
 
     Its systems ``(mu/h - A^-1 J) d = r`` are solved as ``(mu/h A - J) d = A r``, so that only A and J
     have to be sparse. ``longest``: its error estimate is blind to what follows an input at once, so a step
     must not be long beside the inputs' own changes.
     """
-    solver: Any = Radau(rate, t, v, stop, rtol=rtol, atol=atol, jac=jac, max_step=longest)
+    solver: Any = scipy.integrate.Radau(
+        rate, t, v, stop, rtol=rtol, atol=atol, jac=jac, max_step=longest
+    )
     solver.I = mass
     solver.solve_lu = lambda factors, right: factors.solve(mass @ right)
-    made: OdeSolver = solver
+    made: scipy.integrate.OdeSolver = solver
     return made
 
 
 class SparseSystem:
     """``A v' = J v + g(t)``, A factored once."""
 
-    def __init__(self, A: sps.csr_array, J: sps.csr_array) -> None:
-        self.A, self.J = sps.csc_array(A), sps.csc_array(J)
-        self._factors = spl.splu(self.A) if A.shape[0] else None
+    def __init__(self, A: scipy.sparse.csr_array, J: scipy.sparse.csr_array) -> None:
+        from scipy.sparse.linalg import splu
+
+        self.A, self.J = scipy.sparse.csc_array(A), scipy.sparse.csc_array(J)
+        self._factors = splu(self.A) if A.shape[0] else None
 
     def solve(self, right: Array) -> Array:
         """``A^-1 right``, one column or several."""
@@ -53,13 +57,15 @@ class SparseSystem:
     @property
     def fastest(self) -> float:
         """A bound on the largest rate [1/s], exact to a small factor where A is nearly diagonal."""
-        scale = sps.diags_array(1 / np.sqrt(self.A.diagonal()))
-        return float(spl.norm(scale @ self.J @ scale, np.inf)) if self.J.nnz else 0.0
+        from scipy.sparse.linalg import norm
+
+        scale = scipy.sparse.diags_array(1 / np.sqrt(self.A.diagonal()))
+        return float(norm(scale @ self.J @ scale, np.inf)) if self.J.nnz else 0.0
 
     def stepper(
         self, forced: Callable[[float], Array], t: float, v: Array, stop: float, method: str,
         rtol: float, atol: float, driven: float,
-    ) -> OdeSolver:  # fmt: skip
+    ) -> scipy.integrate.OdeSolver:  # fmt: skip
         """An integrator from t to ``stop``; ``forced``: g over time, ``driven`` [1/s]: its largest rate."""
 
         def rate(time: float, values: Array) -> Array:
@@ -70,12 +76,12 @@ class SparseSystem:
             implicit = self.fastest * (stop - t) > STIFF
         longest = min((stop - t) / LEAST_STEPS, FOLLOWED / driven if driven else np.inf)
         if not implicit:
-            return DOP853(rate, t, v, stop, rtol=rtol, atol=atol, max_step=longest)
+            return scipy.integrate.DOP853(rate, t, v, stop, rtol=rtol, atol=atol, max_step=longest)
         return mass_radau(rate, t, v, stop, rtol, atol, longest, self.A, self.J)
 
 
 def integrate(
-    solver: OdeSolver, times: Array, until: float, record: Callable[[Array], None]
+    solver: scipy.integrate.OdeSolver, times: Array, until: float, record: Callable[[Array], None]
 ) -> Array:
     """Step to the end, recording at those of ``times`` that lie before ``until``; the last vector."""
     done = 0
