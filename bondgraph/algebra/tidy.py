@@ -1,6 +1,7 @@
 """Entries in the form in which a person would write them."""
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 
 import sympy as sp
 
@@ -16,6 +17,9 @@ MOST_SYMBOLS = 20
 LARGEST_TIDIED = 2_000
 """Matrices with more entries in all are left as they were derived."""
 
+KEPT = 4_096
+"""Entries whose forms are remembered: matrices repeat them, and so do graphs that are derived again."""
+
 
 def tidy_matrices(
     parts: Sequence[tuple[Sequence[FixedRow], int]],
@@ -30,6 +34,7 @@ def tidy_matrices(
     return [matrix_of(rows, width) for rows, width in parts]
 
 
+@lru_cache(maxsize=KEPT)
 def tidy(expr: sp.Expr) -> sp.Expr:
     """The shortest of an expression's plain, cancelled, factored and by-symbol forms.
 

@@ -17,6 +17,21 @@ Block = Callable[[Mapping[str, float], Any], Any]
 PARTS = ("x", "z", "y", "u", "w", "dw")
 
 
+class Plain:
+    """What formulas read, as plain numbers: quicker, and an error where they have no value.
+
+    A part of an instant is one of it when it is first read; most formulas read one or two.
+    """
+
+    def __init__(self, now: Instant) -> None:
+        self.t, self._now = float(now.t), now
+
+    def __getattr__(self, part: str) -> list[float]:
+        found: list[float] = getattr(self._now, part).tolist()
+        setattr(self, part, found)
+        return found
+
+
 class BlockFormula(Formula):
     """What a generated function gives: so many numbers; nan where it has no value."""
 
@@ -26,7 +41,7 @@ class BlockFormula(Formula):
 
     def __call__(self, now: Instant) -> Array:
         """What it gives at an instant."""
-        return self._values(self.parameters, plain(now))
+        return self._values(self.parameters, Plain(now))
 
     def of_pool(self, pool: Array, like: Instant) -> Array:
         """What it gives, of a pool laid out like that of an instant."""
@@ -36,16 +51,11 @@ class BlockFormula(Formula):
         now = SimpleNamespace(t=float(pool[0]), **dict(zip(PARTS, parts, strict=True)))
         return self._values(parameters, now)
 
-    def _values(self, parameters: Mapping[str, float], now: SimpleNamespace) -> Array:
+    def _values(self, parameters: Mapping[str, float], now: Plain | SimpleNamespace) -> Array:
         try:
             return np.array(self.block(parameters, now), dtype=float).reshape(self.count)
         except (ArithmeticError, TypeError, ValueError):
             return np.full(self.count, np.nan)
-
-
-def plain(now: Instant) -> SimpleNamespace:
-    """What formulas read, as plain numbers: quicker, and an error where they have no value."""
-    return SimpleNamespace(t=float(now.t), **{part: getattr(now, part).tolist() for part in PARTS})
 
 
 def matrix(shape: tuple[int, int], entries: Mapping[tuple[int, int], float]) -> Array:
@@ -66,7 +76,7 @@ def matrices(
 
     def found(now: Instant) -> Numbers:
         try:
-            return solved(**coefficients(parameters, plain(now)))
+            return solved(**coefficients(parameters, Plain(now)))
         except (ArithmeticError, TypeError, ValueError) as error:
             raise EvaluationError(
                 f"at t = {now.t:g} the matrices have no values: {error}"

@@ -2,9 +2,10 @@
 
 Run as a script, by bare Python: FOLDER COMPILER ARGUMENTS. Calls that are no builds of C files, or that ask
 for warnings of each file as errors, go to the compiler as they are. The files of a build are compiled as one,
-in a third of the time that they take one by one; what comes of it depends on the compiler, the flags, the
-files' texts, and the texts of what they include from their own folder or one given by ``-I``; comments do
-not count. Files that are refused as one, or with a word, are compiled one by one, as without this program.
+in a third of the time that they take one by one, but for those that only some programs of a model have,
+which are one of their own; what comes of it depends on the compiler, the flags, the files' texts, and the
+texts of what they include from their own folder or one given by ``-I``; comments do not count. Files that
+are refused as one, or with a word, are compiled one by one, as without this program.
 """
 
 import fcntl
@@ -19,6 +20,10 @@ from functools import cache
 ALONE = ("-c", "-E", "-S", "-fsyntax-only", "-M", "-MM", "-x", "-v", "-###", "-Werror")
 """Flags of calls that are the compiler's own: no links of files, or checks of each."""
 
+OWN = ("fmu", "batch")
+"""How files begin that are compiled beside the others: a model's units of both versions share the rest, and
+so do its runs one by one and all at once."""
+
 WITH_ARGUMENT = ("-o", "-I", "-D", "-U", "-l", "-L", "-include", "-isystem")
 
 INCLUDED = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.M)
@@ -32,10 +37,19 @@ def main(folder: str, compiler: str, arguments: Sequence[str]) -> int:
     if parts is None:
         os.execv(compiler, [compiler, *arguments])
     files, flags, places, rest = parts
-    joined = compiled(folder, compiler, files, flags, places)
-    if joined is None:
-        return subprocess.run([compiler, *arguments], check=False).returncode
-    return subprocess.run([compiler, *flags, joined, *rest], check=False).returncode
+    objects = []
+    for group in grouped(files):
+        joined = compiled(folder, compiler, group, flags, places)
+        if joined is None:
+            return subprocess.run([compiler, *arguments], check=False).returncode
+        objects.append(joined)
+    return subprocess.run([compiler, *flags, *objects, *rest], check=False).returncode
+
+
+def grouped(files: Sequence[str]) -> list[list[str]]:
+    """Files that are compiled as one, without the groups that have none."""
+    own = [one for one in files if os.path.basename(one).startswith(OWN)]
+    return [group for group in ([one for one in files if one not in own], own) if group]
 
 
 def split(arguments: Sequence[str]) -> tuple[list[str], list[str], list[str], list[str]] | None:

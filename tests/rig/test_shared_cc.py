@@ -106,3 +106,22 @@ def test_arguments_of_a_build_are_told_apart() -> None:
     flags = ["-O1", "-shared", "-fPIC", "-D", "X=1"]
     rest = ["-o", "a.so", "-L", "lib", "-lm"]
     assert shared_cc.split(said) == (["one.c", "two.c"], flags, ["."], rest)
+
+
+def test_units_of_one_model_share_what_is_not_their_own(tmp_path: Path) -> None:
+    """Of a unit's own file and the rest the rest is taken again; a name in both files is no conflict."""
+    for version in (2, 3):
+        own = f"static int model(void) {{ return {version}; }}\nint unit(void) {{ return model(); }}\n"
+        (tmp_path / f"fmu{version}.c").write_text(own)
+    (tmp_path / "model.c").write_text(
+        "int unit(void);\nstatic int model(void) { return 10; }\n"
+        "int main(void) { return unit() + model(); }\n"
+    )
+    assert COMPILER
+    for version, words in ((2, ["compiled", "compiled"]), (3, ["shared", "compiled"])):
+        (tmp_path / "log").write_text("")
+        files = [str(tmp_path / name) for name in ("model.c", f"fmu{version}.c")]
+        to = str(tmp_path / f"run{version}")
+        assert shared_cc.main(str(tmp_path), COMPILER, [*files, "-o", to]) == 0
+        assert subprocess.run([to], check=False).returncode == 10 + version
+        assert (tmp_path / "log").read_text().split() == words
