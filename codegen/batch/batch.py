@@ -65,8 +65,10 @@ class Loop(Protocol):
 
     def run(
         self, inputs: Any, parameters: Array, states: Array, /
-    ) -> tuple[Array, NDArray[np.intc]]:
-        """A row of results for each run, and its status: not 0 where it has to be done another way."""
+    ) -> tuple[Array, NDArray[np.intc], Array]:
+        """For each run a row of results, a status, not 0 where it has to be done another way, and what
+        its states gain as the start is completed.
+        """
 
 
 class Batch:
@@ -82,21 +84,32 @@ class Batch:
         self, rows: Sequence[Sequence[float]] | Array
     ) -> tuple[tuple[Array, ...], list[int]]:
         """A column for each measure, and which runs have to be done another way."""
+        columns, left, _ = self.telling(rows)
+        return columns, left
+
+    def telling(
+        self, rows: Sequence[Sequence[float]] | Array
+    ) -> tuple[tuple[Array, ...], list[int], Array]:
+        """As a call; and of each run the states that were completed, NaN where one was not."""
         table = np.asarray(rows, dtype=float).reshape(len(rows), len(self.asked.names))
         found = np.empty((len(table), self.plan.width))
         done = np.zeros(len(table), dtype=bool)
         with self._lock:
             parameters, usable = self._parameters(table)
             states, settled = self._states(table)
+            completed = np.full_like(states, np.nan)
             groups = self._inputs(table, np.flatnonzero(usable & settled))
         for inputs in groups:
             indices = inputs.indices
-            results, status = self.loop.run(inputs, parameters[indices], states[indices])
+            results, status, moved = self.loop.run(inputs, parameters[indices], states[indices])
             with self._lock:
                 kinds, counts = np.unique(status, return_counts=True)
                 self.statuses.update(dict(zip(kinds.tolist(), counts.tolist(), strict=True)))
             found[indices], done[indices] = results, status == 0
-        return self.plan.told(found, self._numbers(table)), np.flatnonzero(~done).tolist()
+            followed = (moved != 0) & (status == 0)[:, None]
+            completed[indices] = np.where(followed, states[indices] + moved, np.nan)
+        columns = self.plan.told(found, self._numbers(table))
+        return columns, np.flatnonzero(~done).tolist(), completed
 
     def _numbers(self, table: Array) -> Mapping[str, Array]:
         """The parameters of each run by name."""

@@ -48,14 +48,18 @@ def job_record(ffi: Any, kept: Plan, time: Array, grid: float) -> tuple[Any, lis
 
 def outcome_of(
     ffi: Any, runs: Any, inputs: NDArray[np.uintp], parameters: Array, states: Array, width: int
-) -> tuple[Array, NDArray[np.intc]]:
-    """Fill in the record of what each run has of its own; a row of results and a status for each."""
+) -> tuple[Array, NDArray[np.intc], Array]:
+    """Fill in the record of what each run has of its own.
+
+    For each a row of results, a status, and what its states gain as the start is completed.
+    """
     count = len(inputs)
     results, status = np.empty((count, width)), np.empty(count, dtype=np.intc)
+    moved = np.zeros_like(states)
     runs.runs = count
     for name, array in (
         ("inputs", inputs), ("parameters", parameters), ("states", states), ("results", results),
-        ("status", status),
+        ("status", status), ("moved", moved),
     ):  # fmt: skip
         setattr(runs, name, ffi.cast("void *", array.ctypes.data))
-    return results, status
+    return results, status, moved

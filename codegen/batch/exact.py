@@ -56,8 +56,10 @@ class ExactLoop:
 
     def run(
         self, inputs: BatchInputs, parameters: Array, states: Array
-    ) -> tuple[Array, NDArray[np.intc]]:
-        """A row of results for each run, and its status: not 0 where it has to be done another way."""
+    ) -> tuple[Array, NDArray[np.intc], Array]:
+        """For each run a row of results, a status, not 0 where it has to be done another way, and what
+        its states gain as the start is completed.
+        """
         engine, kept = inputs.engine, self._plan
         job, pointed = job_record(engine.ffi, kept, self._time, self._grid)
         runs = engine.new("batch_runs")

@@ -103,8 +103,10 @@ class LocatedLoop:
 
     def run(
         self, inputs: LocatedInputs, parameters: Array, states: Array
-    ) -> tuple[Array, NDArray[np.intc]]:
-        """A row of results for each run, and its status: not 0 where it has to be done another way."""
+    ) -> tuple[Array, NDArray[np.intc], Array]:
+        """For each run a row of results, a status, not 0 where it has to be done another way, and what
+        its states gain as the start is completed.
+        """
         ffi, kept = self._ffi, self._plan
         job, pointed = job_record(ffi, kept, self._time, 0.0)
         runs = ffi.new("located_runs *")

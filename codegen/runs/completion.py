@@ -76,6 +76,18 @@ def tell_completed(completed: Mapping[str, float]) -> None:
         )
 
 
+def tell_all_completed(completed: Mapping[int, Mapping[str, float]], runs: int) -> None:
+    """Warn whoever called what calls this, once, of a sweep's runs whose starts were completed."""
+    if completed:
+        names = ", ".join(sorted({name for one in completed.values() for name in one}))
+        warnings.warn(
+            f"in {len(completed)} of {runs} runs states that initial does not name follow what switches hold "
+            f"at the start: {names}; completed has their values, name them in initial to say what is meant",
+            ModelWarning,
+            stacklevel=3,
+        )
+
+
 def _as_told(model: ClosedModel, guards: Array, mode: Mode) -> Mode:
     """The mode with those switches changed over whose conditions say so."""
     result = list(mode)

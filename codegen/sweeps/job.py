@@ -7,6 +7,7 @@ from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from threading import Lock
+from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol
 from weakref import WeakKeyDictionary
 
@@ -24,6 +25,8 @@ from codegen.runs.track import Settings
 from codegen.simulate import Simulator
 from codegen.sweeps.columns import Columns
 from codegen.tuning import TUNING
+
+NOTHING: Mapping[int, Mapping[str, float]] = MappingProxyType({})
 
 
 class Runner(Protocol):
@@ -74,12 +77,14 @@ class Outcome(NamedTuple):
     """What a chunk gave: for each run its measures, or the text of why there are none.
 
     ``seconds``: how long it took. ``fallen``: why numpy ran what C was asked to, once for each run.
+    ``completed``: by index the states that a run's start did not name and that followed what switches held.
     """
 
     indices: Sequence[int] | NDArray[np.intp]
     results: Sequence[tuple[Array, ...] | str] | Columns
     seconds: float
     fallen: tuple[str, ...] = ()
+    completed: Mapping[int, Mapping[str, float]] = NOTHING
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,8 +100,14 @@ class Job:
     settings: Mapping[str, Any] = field(default_factory=dict)
     initially_on: tuple[Hashable, ...] = ()
 
-    def run(self, row: Sequence[float], fallen: list[str] | None = None) -> tuple[Array, ...] | str:
-        """The measures of one run, or why there are none; in ``fallen`` why numpy did it for C."""
+    def run(
+        self, row: Sequence[float], fallen: list[str] | None = None,
+        completed: dict[str, float] | None = None,
+    ) -> tuple[Array, ...] | str:  # fmt: skip
+        """The measures of one run, or why there are none.
+
+        In ``fallen`` why numpy did it for C, in ``completed`` the states that followed switches at the start.
+        """
         values = dict(zip(self.names, row, strict=True))
         try:
             result = self._result(values, [] if fallen is None else fallen)
@@ -104,6 +115,8 @@ class Job:
             return str(error)
         except Exception as error:  # noqa: BLE001 - one run of many: told with its numbers
             return f"{type(error).__name__}: {error}"
+        if completed is not None:
+            completed |= getattr(result, "completed", {})
         found = []
         for name, measure in self.measures.items():
             try:
@@ -160,13 +173,21 @@ def measured(job: Job, chunk: Chunk) -> Outcome:
     loop = batch_of(job)
     rows = np.asarray(chunk.rows, dtype=float)
     fallen: list[str] = []
+    starts: list[dict[str, float]] = [{} for _ in rows]
     results: tuple[tuple[Array, ...] | str, ...] | Columns
     if loop is None:
-        results = tuple(job.run(row, fallen) for row in rows.tolist())
+        each = zip(rows.tolist(), starts, strict=True)
+        results = tuple(job.run(row, fallen, own) for row, own in each)
     else:
-        columns, left = loop(rows)
-        results = Columns(columns, {at: job.run(rows[at].tolist(), fallen) for at in left})
-    return Outcome(chunk.indices, results, time.perf_counter() - start, tuple(fallen))
+        columns, left, completed = loop.telling(rows)
+        for at in np.flatnonzero(np.isfinite(completed).any(axis=1)):
+            named = zip(job.model.states, completed[at].tolist(), strict=True)
+            starts[at] |= {name: value for name, value in named if np.isfinite(value)}
+        results = Columns(
+            columns, {at: job.run(rows[at].tolist(), fallen, starts[at]) for at in left}
+        )
+    told = {int(index): own for index, own in zip(chunk.indices, starts, strict=True) if own}
+    return Outcome(chunk.indices, results, time.perf_counter() - start, tuple(fallen), told)
 
 
 def batch_of(job: Job) -> Batch | None:

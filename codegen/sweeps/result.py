@@ -13,7 +13,7 @@ from bondgraph.errors import MissingExtraError
 from codegen.numbers.arrays import Array
 from codegen.sweeps.columns import Columns
 from codegen.sweeps.design import Table
-from codegen.sweeps.job import Outcome
+from codegen.sweeps.job import NOTHING, Outcome
 
 Shapes = tuple[tuple[int, ...], ...]
 
@@ -33,6 +33,8 @@ class Sweep:
     Its arrays are read-only. ``design``: the runs' numbers. ``failed``: runs that gave nothing, in the
     order of their indices.
     ``done``: which runs were done, failed ones included; all of them, unless the sweep was interrupted.
+    ``completed``: of runs by their index the states that ``initial`` does not name and that followed what
+    switches held at the start, see `Result`.
     """
 
     design: Table
@@ -41,6 +43,9 @@ class Sweep:
     failed: tuple[Failure, ...]
     done: NDArray[np.bool_] = field(repr=False)
     over_time: frozenset[str] = field(repr=False, default=frozenset())
+    completed: Mapping[int, Mapping[str, float]] = field(
+        repr=False, default_factory=lambda: NOTHING
+    )
 
     def __len__(self) -> int:
         return len(self.design)
@@ -111,6 +116,7 @@ class Collected:
         self.done = np.zeros(runs, dtype=bool)
         #: Why numpy ran what C was asked to, and how often.
         self.fallen: Counter[str] = Counter()
+        self._completed: dict[int, Mapping[str, float]] = {}
         self._measures = tuple(measures)
         self._messages: dict[int, str] = {}
         self._shapes: Shapes | None = None
@@ -121,6 +127,7 @@ class Collected:
     def add(self, outcome: Outcome) -> int:
         """Take what is new; how many runs that is."""
         self.fallen.update(outcome.fallen)
+        self._completed |= outcome.completed
         if isinstance(outcome.results, Columns) and self._alike(outcome.results):
             return self._add_columns(np.asarray(outcome.indices), outcome.results)
         new = 0
@@ -183,7 +190,11 @@ class Collected:
         measures = MappingProxyType(dict(zip(self._measures, arrays, strict=True)))
         done = self.done.copy()
         done.flags.writeable = False
-        return Sweep(design, time, measures, failed, done, over_time)
+        completed = {
+            index: MappingProxyType(dict(self._completed[index]))
+            for index in sorted(self._completed)
+        }
+        return Sweep(design, time, measures, failed, done, over_time, MappingProxyType(completed))
 
     def _misshapen(self) -> dict[int, str]:
         """Why runs whose measures have other shapes than the first run's are left out."""

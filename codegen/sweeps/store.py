@@ -88,7 +88,8 @@ class Store:
         indices = tuple(about["indices"])
         if len(indices) != len(results) or not all(0 <= index < self._runs for index in indices):
             raise ValueError
-        return Outcome(indices, tuple(results), 0.0)
+        completed = {int(index): own for index, own in about.get("completed", {}).items()}
+        return Outcome(indices, tuple(results), 0.0, (), completed)
 
     def keep(self, outcome: Outcome) -> None:
         """Write a finished chunk."""
@@ -103,7 +104,10 @@ class Store:
             if not isinstance(found, str)
             for part in found
         ]
-        about = json.dumps({"indices": indices, "results": results})
+        told = {int(index): dict(own) for index, own in outcome.completed.items()}
+        about = json.dumps(
+            {"indices": indices, "results": results, **({"completed": told} if told else {})}
+        )
         name = f"runs-{min(indices):09d}-{secrets.token_hex(4)}.npz"
         with replacing(self._folder / name) as file:
             np.savez(file, about=np.array(about), values=np.concatenate([np.zeros(0), *parts]))

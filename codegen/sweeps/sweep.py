@@ -19,6 +19,7 @@ from codegen.inputs.swept import Swept, settled
 from codegen.record.measures import Measure
 from codegen.record.result import Result
 from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
+from codegen.runs.completion import tell_all_completed
 from codegen.sweeps.cluster import Cluster
 from codegen.sweeps.crews import Crew, Here, Processes, Threads
 from codegen.sweeps.design import Table, design
@@ -71,7 +72,8 @@ def sweep(
     ``store``: a folder to keep finished runs in; the same call continues there. ``progress``: a bar, where
     tqdm is installed.
 
-    Runs that backend "c" cannot do are done by numpy; one `BackendWarning` tells how many, and why.
+    Runs that backend "c" cannot do are done by numpy; one `BackendWarning` tells how many, and why. Starts
+    that were completed by what switches hold are in ``completed``; one `ModelWarning` tells of them.
 
     A run that is refused, or whose process ends, is told in ``failed``; the others go on. Interrupted, it
     raises `SweepInterrupted`, a `KeyboardInterrupt` whose ``sweep`` has what is done.
@@ -124,7 +126,9 @@ def sweep(
     except KeyboardInterrupt:
         raise SweepInterrupted(collected.sweep(runs, job.time, over_time)) from None
     tell_all(collected.fallen, len(runs))
-    return collected.sweep(runs, job.time, over_time)
+    found = collected.sweep(runs, job.time, over_time)
+    tell_all_completed(found.completed, len(runs))
+    return found
 
 
 def _run(crew: Crew, work: Work, keep: Callable[[Outcome], None]) -> None:

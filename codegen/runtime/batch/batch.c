@@ -13,9 +13,10 @@ void batch_sizes(unsigned long *sizes)
     sizes[4] = EX_ENTRIES;
 }
 
-/* The integrated vector at the start, and the mode before it; a status. */
+/* The integrated vector at the start, what it gained as it was completed, and the mode before it;
+ * a status. */
 static int start_of(const batch_room *room, const ex_inputs *inputs, const double *states,
-                    int *mode, double *s)
+                    int *mode, double *s, double *moved)
 {
     const double t = room->job->times[0];
     const int segment = bg_segment(inputs->segments, inputs->breaks, t);
@@ -27,7 +28,12 @@ static int start_of(const batch_room *room, const ex_inputs *inputs, const doubl
         mode[i] = room->job->first[i];
     if (bg_model_vector(&own->m, t, states, w, s))
         return BG_REFUSED;
-    return bg_complete(&own->m, t, w, room->job->named, mode, s) ? BG_REFUSED : BG_OK;
+    for (int i = 0; i < EX_N; i++)
+        moved[i] = -s[i];
+    const int status = bg_complete(&own->m, t, w, room->job->named, mode, s);
+    for (int i = 0; i < EX_N; i++)
+        moved[i] += s[i];
+    return status ? BG_REFUSED : BG_OK;
 }
 
 /* Binds parameters. The modes that the run before needed are worked out at once; a status. */
@@ -55,7 +61,8 @@ static int bind(batch_room *room, const double *parameters)
 }
 
 /* One run, modes supplied as it asks for them, which begins it again; a status. */
-static int run(batch_room *room, const ex_inputs *inputs, const double *states, double *results)
+static int run(batch_room *room, const ex_inputs *inputs, const double *states, double *results,
+               double *moved)
 {
     double start[EX_N];
     int first[BG_MOST_PORTS] = {0};
@@ -63,7 +70,7 @@ static int run(batch_room *room, const ex_inputs *inputs, const double *states, 
         .times = room->job->times, .samples = room->job->samples, .grid = room->job->grid,
         .start = start, .events = room->events, .capacity = room->capacity, .first = first,
     };
-    int status = start_of(room, inputs, states, first, start);
+    int status = start_of(room, inputs, states, first, start, moved);
     if (status)
         return status;
     status = BG_MISSING;
@@ -95,6 +102,7 @@ void batch_run(batch_room *room, const batch_job *job, const batch_runs *runs)
         bound = own;
         runs->status[k] = refused ? refused
                                   : run(room, runs->inputs[k], runs->states + k * EX_N,
-                                        runs->results + (long)k * job->width);
+                                        runs->results + (long)k * job->width,
+                                        runs->moved + (long)k * EX_N);
     }
 }

@@ -16,12 +16,13 @@ enum {
     BATCH_SQUARES = 4
 };
 
-/* What each run has of its own; `results` has `width` places for each. */
+/* What each run has of its own; `results` has `width` places for each, `moved` one for each state:
+ * what a start that was completed gained. */
 typedef struct {
     int runs;
     const double *parameters, *states;
     const ex_inputs *const *inputs;
-    double *results;
+    double *results, *moved;
     int *status;
 } batch_runs;
 

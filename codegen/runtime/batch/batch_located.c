@@ -56,14 +56,14 @@ static int smooth(void *to, void *run, double begin, double end)
 
 /* One run; a status. */
 static int run_located_once(located_room *room, const double *parameters, const double *states,
-               const bg_signals *inputs, double *results)
+               const bg_signals *inputs, double *results, double *moved)
 {
     const batch_job *const job = room->job;
     bg_request asked = {
         .times = job->times, .states = states, .samples = job->samples, .method = room->method,
         .rtol = room->rtol, .atol = room->atol, .to = room, .record = keep_signals,
         .events = room->events, .capacity = room->capacity, .smooth = job->products ? smooth : 0,
-        .first = job->first, .named = job->named,
+        .first = job->first, .named = job->named, .moved = moved,
     };
     for (int k = 0; k < job->products; k++)
         room->totals[k] = 0.0;
@@ -86,5 +86,6 @@ void located_batch(located_room *room, const batch_job *job, const located_runs 
     for (int k = 0; k < runs->runs; k++)
         runs->status[k] = run_located_once(room, runs->parameters + (long)k * BG_PARAMETERS,
                               runs->states + (long)k * (N + OWN), runs->inputs[k],
-                              runs->results + (long)k * job->width);
+                              runs->results + (long)k * job->width,
+                              runs->moved + (long)k * (N + OWN));
 }

@@ -6,12 +6,13 @@
 #include "batch_measure.h"
 #include "model_located.h"
 
-/* What each run has of its own; `results` has places for each as the job tells. */
+/* What each run has of its own; `results` has places for each as the job tells, `moved` one for each
+ * state, law states last: what a start that was completed gained. */
 typedef struct {
     int runs;
     const double *parameters, *states;
     const bg_signals *const *inputs;
-    double *results;
+    double *results, *moved;
     int *status;
 } located_runs;
 

@@ -27,6 +27,7 @@ typedef struct {
     int (*smooth)(void *to, void *run, double begin, double end);
     const int *first; /* a mode for each port before the run; NULL: all switches are off */
     const int *named; /* whether each state is kept as it is; NULL: all are */
+    double *moved;    /* NULL, or for what each state gains as the start is completed */
 } bg_request;
 
 #endif

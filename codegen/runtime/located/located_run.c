@@ -191,8 +191,12 @@ static int set_up(bg_located *c, bg_model *m, const bg_signals *signals, bg_requ
     memset(m->seen, 0, sizeof m->seen);
     inputs_now(c, c->run.at.t, w, dw);
     int status = bg_model_vector(m, c->run.at.t, asked->states, w, c->s);
+    for (int i = 0; i < ALL && asked->moved; i++)
+        asked->moved[i] = -c->s[i];
     if (status == BG_OK && asked->named)
         status = bg_complete(m, c->run.at.t, w, asked->named, c->run.mode, c->s);
+    for (int i = 0; i < ALL && asked->moved; i++)
+        asked->moved[i] += c->s[i];
     bg_have_seen(m, c->s);
     return status;
 }

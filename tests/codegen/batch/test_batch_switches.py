@@ -1,6 +1,7 @@
 """The loop over runs in C on models with switches against single runs in numpy."""
 
 import shutil
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,8 @@ import pytest
 from oracles.switching import CASES, Case, case, equations
 from soak.families import whole
 
-from codegen import Family, event_count, final, first_event, samples
+from bondgraph import ModelWarning
+from codegen import Family, event_count, final, first_event, samples, sweep
 from codegen.sweeps.job import Job, batch_of
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
@@ -67,3 +69,26 @@ def test_a_start_is_completed_as_in_a_run(on: tuple[str, ...]) -> None:
     assert loop is not None
     (column,), _ = loop(np.array([[3.0]]))
     assert column[0][0] == pytest.approx(0.0 if on else 4.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(("backend", "method"), [("numpy", "auto"), ("c", "auto"), ("c", "DOP853")])
+def test_a_sweep_tells_once_of_starts_that_were_completed(
+    backend: str, method: str, tmp_path: Path
+) -> None:
+    """While the dog holds, v_2 is v_1, which is swept: 4 and 2 m/s; a start of 0 moves nothing."""
+    name = "dog clutch, by an input"
+    one = case(name)
+    family = Family(equations(name), one.parameters, one.laws, backend)
+    given = (one.times, {"v": final("v_2")}, None, one.inputs)
+    kept = {"method": method, "workers": 0, "progress": False, "store": tmp_path / "runs"}
+    for _ in range(2):  # the second time from the store
+        with pytest.warns(
+            ModelWarning, match="in 2 of 3 runs states .*: v_2; completed has"
+        ) as told:
+            found = sweep(family, {"v_1": [4.0, 0.0, 2.0]}, *given, **kept)
+        assert len(told) == 1
+        assert {at: dict(own) for at, own in found.completed.items()} == {
+            0: pytest.approx({"v_2": 4.0}), 2: pytest.approx({"v_2": 2.0})
+        }  # fmt: skip
+    quiet = sweep(family, {"v_1": [4.0], "v_2": [4.0]}, *given, workers=0, progress=False)
+    assert quiet.completed == {}
