@@ -10,7 +10,7 @@ roots of small integers, and functions keep their identities: with ``u = exp(i x
 
 import random
 from collections.abc import Callable, Iterator
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import sympy as sp
 from sympy.ntheory import factorint, sqrt_mod
@@ -154,11 +154,17 @@ def is_zero(expr: sp.Expr) -> bool:
     if expr.is_Symbol:
         return False
     if not decided_by_residues(expr):
-        return bool(expr.equals(0))
+        return _vanishes(expr)
     try:
         return residues()(expr) == 0 and residues(1)(expr) == 0
     except ZeroDivisionError:
         return False
+
+
+@lru_cache(maxsize=1_024)
+def _vanishes(expr: sp.Expr) -> bool:
+    """What sympy says, which takes long; graphs that are derived again ask for the same."""
+    return bool(expr.equals(0))
 
 
 def is_rational_function(expr: sp.Expr) -> bool:

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -75,12 +76,19 @@ def loaded(library: Path, declarations: str) -> tuple[Any, Any]:
 
     Raises `MissingExtraError` without cffi, `SimulationError` for a library that does not open.
     """
-    ffi = _interface()()
-    ffi.cdef(declarations)
+    ffi = _declared(_interface(), declarations)
     try:
         return ffi, ffi.dlopen(str(library))
     except OSError as error:
         raise SimulationError(f"the library {library} does not open: {error}") from None
+
+
+@lru_cache(maxsize=32)
+def _declared(interface: Any, declarations: str) -> Any:
+    """cffi's interface; reading declarations takes longer than opening a library, and many have the same."""
+    ffi = interface()
+    ffi.cdef(declarations)
+    return ffi
 
 
 def _interface() -> Any:

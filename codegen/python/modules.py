@@ -3,6 +3,7 @@
 import ast
 from collections.abc import Iterable, Iterator
 from dataclasses import fields
+from functools import lru_cache
 from importlib.resources import files
 
 from codegen.python.text import RULE
@@ -20,6 +21,13 @@ def written_out(names: Iterable[str]) -> tuple[list[str], str]:
 
     First the lines that import what is not the project's.
     """
+    lines, text = _written_out(tuple(names))
+    return [*lines], text
+
+
+@lru_cache(maxsize=64)
+def _written_out(names: tuple[str, ...]) -> tuple[tuple[str, ...], str]:
+    """Models differ in few of them; the project's files do not change while it runs."""
     found: dict[str, ast.Module] = {}
     for name in names:
         _gather(name, found)
@@ -35,7 +43,7 @@ def written_out(names: Iterable[str]) -> tuple[list[str], str]:
         for one, used in sorted(imports.items(), key=lambda each: (bool(each[1]), each[0]))
     ]
     ours = [line for line in lines if "numpy" in line]
-    return [*(line for line in lines if line not in ours), "", *ours], text
+    return (*(line for line in lines if line not in ours), "", *ours), text
 
 
 def _gather(name: str, found: dict[str, ast.Module]) -> None:

@@ -30,7 +30,7 @@ def case(named: str) -> Case:
 @pytest.fixture(scope="module")
 def units(case: Case, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("units")
-    return {v: case.written(folder / f"unit{v[0]}.fmu", v) for v in ("2.0", "3.0")}
+    return {v: case.written(folder / v / "unit.fmu", v) for v in ("2.0", "3.0")}
 
 
 def _error(found, expected, names) -> float:

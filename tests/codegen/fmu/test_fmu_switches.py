@@ -33,7 +33,7 @@ class Pair:
         self.case: SwitchedCase = SWITCHED[name]()
         self.expected = self.case.run(101)
         self.names = [str(e) for e in dict.fromkeys(e.port for e in self._switchings)]
-        self.path = self.case.written(folder / f"{name}{version[0]}.fmu", version)
+        self.path = self.case.written(folder / version / f"{name}.fmu", version)
 
     @property
     def _switchings(self) -> list[codegen.Event]:

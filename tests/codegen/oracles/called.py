@@ -13,7 +13,7 @@ class Unit:
 
     def __init__(self, case: Case, version: str, folder: Path, **more) -> None:
         self.case, self.version = case, version
-        path = case.written(folder / f"calls{version[0]}.fmu", version, **more)
+        path = case.written(folder / version / "calls.fmu", version, **more)
         self.description = read_model_description(str(path))
         self.place = extract(str(path), str(folder / f"unpacked{version[0]}"))
         self.at = {one.name: one.valueReference for one in self.description.modelVariables}

@@ -80,7 +80,7 @@ class Made:
         return self.pairs[self.name].at(self.case.parameters)
 
     def unit(self, version: str) -> Path:
-        path = self.folder / f"{self.name}_{self.scenario}_{version[0]}.fmu"
+        path = self.folder / version / f"{self.name}_{self.scenario}.fmu"
         return path if path.exists() else self.case.written(path, version)
 
 

@@ -25,7 +25,9 @@ class Case:
     end: float
 
     def written(self, path: Path, version: str, **more) -> Path:
+        """The unit; those of both versions share most objects where their names are the same."""
         given = {"initial": self.initial, "inputs": self.inputs} | more
+        path.parent.mkdir(exist_ok=True)
         return codegen.write_fmu(path, self.equations, self.parameters, self.laws, version, **given)
 
     def run(self, samples: int = 1001, method: str = "auto") -> codegen.Result:
