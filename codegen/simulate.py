@@ -204,7 +204,7 @@ class Simulator:
     def _ledger(self, run: Run) -> Ledger:
         program = self.closed.program
         names = (*program.states, *program.law_states, *program.inputs, *program.asked)
-        return Ledger(self.closed.equations, tuple(name.name for name in names), run.again)
+        return Ledger(self.closed.declared, tuple(name.name for name in names), run.again)
 
     def _in_numpy(
         self, times: Array, begun: Beginning, signals: Sequence[Signal], settings: Settings

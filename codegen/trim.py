@@ -88,7 +88,7 @@ def _point(
 
 def _switched(model: ClosedModel, pieces: Sequence[Piece], mode: Mode, s: Array) -> Broken:
     """The switches that would change over."""
-    if not model.program.switches:
+    if not model.program.switched:
         return frozenset()
     look = look_at(model, 0.0, s, pieces, mode)
     ports = range(len(mode))
@@ -100,7 +100,9 @@ def _told(model: ClosedModel, mode: Mode, wrong: Broken) -> str:
     words = []
     for i in sorted(wrong):
         port = model.program.friction[i]
-        if port.switch is not None:
+        if port.slides:
+            words.append(f"{port.name!r} would not {'stick' if mode[i] else 'slip so'}")
+        elif port.switch is not None:
             words.append(f"{port.name!r} would not stay {port.switch.word(mode[i])}")
         else:
             words.append(f"{port.name!r} would not {'slip so' if mode[i] else 'stick'}")
@@ -173,9 +175,11 @@ def _broken(model: ClosedModel, mode: Mode, now: Snapshot) -> Broken:
 
 def _named(model: ClosedModel, now: Snapshot) -> dict[str, float]:
     program = model.program
+    given, shown = program.shown_inputs, program.shown
     groups = (
-        (program.states, now.x), (program.law_states, now.z), (program.inputs, now.u),
-        (program.asked, now.external), (program.readings, now.y),
+        (program.states, now.x), (program.law_states, now.z),
+        ([program.inputs[j] for j in given], now.u[list(given)]), (program.asked, now.external),
+        ([program.readings[i] for i in shown], now.y[list(shown)]),
     )  # fmt: skip
     values: dict[str, float] = {}
     for names, row in groups:

@@ -11,7 +11,7 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.residues import residues
 from bondgraph.analyse.holding import balances_of, solve_for
 from bondgraph.analyse.slopes import Point, slopes, turns_with_slip
-from bondgraph.declare.laws import ExpressionLaw, Law
+from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, SignalError, SingularStorageError
 from bondgraph.reduce.motion import slope_of
@@ -40,7 +40,7 @@ class ClosedRows:
         self._point = point
         self.states = (*equations.states, *self._rated)
         self.columns = (*equations.inputs, *outer)
-        signals = {*equations.signals, *self._rated, *outer}
+        signals = self._signals = {*equations.signals, *self._rated, *outer}
         moved: dict[int, Reading] = {}
         owner: dict[int, Hashable] = {}
         for name, law in closed.items():
@@ -88,6 +88,17 @@ class ClosedRows:
         if name in self.columns:
             return Reading({}, {self.columns.index(name): one}, {}, {})
         return self._frozen(self._equations.readings[name])
+
+    def received(self, port: Port, laws: Mapping[Hashable, Law]) -> Reading:
+        """What a held port receives, less the level of dry friction that gives a flow and slips."""
+        law, own = laws.get(port.element.name), self.signal(port.received)
+        if port.gives != "flow" or not isinstance(law, DryFriction):
+            return own
+        point = self._completed(self._point, set(law.free_symbols))
+        level = slopes(law, port.element.name, port.given, self._signals, point)
+        result = ReadingSum(own)
+        result.add(self._combined(level), -sp.Integer(1))
+        return result.whole()
 
     def _frozen(self, row: Reading) -> Reading:
         """A row whose coefficients change in time, for deviations from the point, where all rates are 0.

@@ -3,7 +3,7 @@
 from collections.abc import Hashable, Mapping, Sequence
 
 from bondgraph.algebra.exact import rows_of
-from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, law
+from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, check_slider, law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
 from bondgraph.reduce.readings import check_laws
@@ -27,10 +27,11 @@ def merged_laws(
         declared = equations.laws.get(name)
         state = declared.state if isinstance(declared, ExpressionLaw) else None
         closed = law(value, f"law at {name!r}", state)
-        if isinstance(closed, DryFriction) and (
-            port.gives != "effort" or not port.element.kind.resists
-        ):
-            raise StructureError(f"law at {name!r}: dry friction closes an R that gives an effort")
+        if isinstance(closed, DryFriction):
+            if not port.element.kind.resists:
+                raise StructureError(f"law at {name!r}: dry friction closes an R")
+            if port.gives == "flow":
+                check_slider(closed, f"law at {name!r}")
         merged[name] = closed
     matrix_rows = rows_of(equations.E)
     check_laws(merged, equations.signals, equations.ports, matrix_rows, equations.readings)

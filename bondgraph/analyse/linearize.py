@@ -14,11 +14,12 @@ from bondgraph.analyse.constrained import Rows, locked
 from bondgraph.analyse.linear_model import LinearModel
 from bondgraph.analyse.modes import ToldModes, held_rows, told_modes
 from bondgraph.analyse.slopes import operating_point, with_given
-from bondgraph.declare.laws import ExpressionLaw, Law
+from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, SingularStorageError
 from bondgraph.reduce.rates import resolved
 from bondgraph.reduce.record import Reading
+from bondgraph.reduce.structure import Port
 
 
 def linearize(
@@ -56,6 +57,7 @@ def linearize(
     told = told_modes(equations, merged, stuck, mode)
     closed = {name: law for name, law in merged.items() if name not in told.names}
     read = {name for law in closed.values() for name in law.free_symbols}
+    read |= {name for port in told.held for name in _level(merged.get(port.element.name), port)}
     shown = _shown(equations, closed, outputs)
     equations = equations.with_readings({*read, *shown, *equations.integrals.values()})
     outer = _outer(equations, closed, read, inputs, told)
@@ -73,7 +75,7 @@ def linearize(
     point = with_given(operating_point(at, known), by_input | told.zeros, moving)
     system = ClosedRows(equations, closed, outer, point, told.free)
     columns = [equations.inputs.index(port.given) for port in told.held]
-    rows = [system.put_in(system.signal(port.received)) for port in told.held]
+    rows = [system.put_in(system.received(port, merged)) for port in told.held]
     bound, tied = held_rows(system, rows, columns, told.held)
     A, balances = system.dynamics()
     ys = [system.put_in(system.signal(name)) for name in shown]
@@ -83,6 +85,13 @@ def linearize(
         model = locked(model, bound, tied, order, told.holding)
     left = [j for j in system.left if j not in columns]
     return _model(model, left, system.columns, tuple(shown))
+
+
+def _level(law: Law | None, port: Port) -> frozenset[sp.Symbol]:
+    """What the level reads of dry friction that gives a flow."""
+    return (
+        law.free_symbols if isinstance(law, DryFriction) and port.gives == "flow" else frozenset()
+    )
 
 
 def _least_first(equations: StateEquations, size: int) -> list[int]:

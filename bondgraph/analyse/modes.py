@@ -21,7 +21,10 @@ WORDS = {True: ("on", "off"), False: ("stick", "slip")}
 
 @dataclass(frozen=True)
 class ToldModes:
-    """``held``: the ports that receive zero; ``free``: the switches that give zero."""
+    """``held``: the ports that receive zero; ``free``: those let go, which give zero.
+
+    Dry friction that gives a flow is held where it slips: its effort is its level.
+    """
 
     held: tuple[Port, ...]
     free: tuple[Port, ...]
@@ -68,6 +71,13 @@ def told_modes(
             raise StructureError(f"{name!r} is in stuck and slips in mode; leave one of them out")
     sticking = [name for name, word in told.items() if word == "stick" and name not in names]
     held += stuck_ports(equations, sticking)
+    sliders = [
+        port for port in equations.ports
+        if port.gives == "flow" and isinstance(laws.get(port.element.name), DryFriction)
+    ]  # fmt: skip
+    resting = [port for port in sliders if port in held]
+    held = [port for port in held if port not in sliders]
+    held += [port for port in sliders if port not in resting]
     missing = [one.name for one in equations.switches if one.name not in told]
     if missing:
         listed = ", ".join(map(repr, missing))
@@ -77,7 +87,7 @@ def told_modes(
         )
     closed = [one.port for one in equations.switches if told[one.name] == one.held]
     free = [one.port for one in equations.switches if told[one.name] != one.held]
-    return ToldModes((*held, *closed), tuple(free))
+    return ToldModes((*held, *closed), (*free, *resting))
 
 
 def _checked(equations: StateEquations, mode: Any) -> dict[Hashable, str]:

@@ -23,8 +23,8 @@ TRIALS_PER_BOND = 20
 def assign_causality(graph: Any) -> CausalGraph:
     """Give every bond its causal stroke; storages get integral causality wherever that is possible.
 
-    Order: sources and ports of fixed causality; storages by ``priority``, then declaration; switches
-    and linear resistances; what is left. Accepts a declared or a validated graph.
+    Order: sources and ports of fixed causality; storages by ``priority``, then declaration; dry friction;
+    switches and linear resistances; what is left. Accepts a declared or a validated graph.
 
     Raises `CausalityError` when sources and fixed ports contradict each other, `AlgebraicLoopError`
     when the structure is singular under every causality. Both are genuine: a graph is refused only
@@ -81,7 +81,7 @@ def _preferences(strokes: StrokeSearch) -> tuple[list[int], dict[int, str]]:
             ranks[node] = (2, -element.priority, node)
         else:
             preferred[node] = element.switch.gives if element.switch else "effort"
-            ranks[node] = (3, 0, node)
+            ranks[node] = (3 if element.law else 4, 0, node)
     return sorted(ranks, key=ranks.__getitem__), preferred
 
 
@@ -175,7 +175,7 @@ def _switches_beside_dependent(strokes: StrokeSearch) -> bool:
         element.kind.stores and strokes.gives(node) != element.kind.gives
         for node, element in enumerate(elements)
     )
-    return dependent and any(element.kind.switches for element in elements)
+    return dependent and any(element.lets_go for element in elements)
 
 
 def _search_with(

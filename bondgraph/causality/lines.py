@@ -77,7 +77,7 @@ def is_independent(strokes: Strokes, node: int) -> bool:
     element = strokes.elements[node]
     if element.gives is not None:
         return not element.kind.detects
-    if element.kind.switches:
+    if element.lets_go:
         return True
     return element.kind.stores and strokes.gives(node) == (element.kind.gives)
 

@@ -24,7 +24,7 @@ from bondgraph.declare.attributes import (
 )
 from bondgraph.declare.elements import OTHER, Element
 from bondgraph.declare.kinds import Kind
-from bondgraph.declare.laws import ExpressionLaw, law
+from bondgraph.declare.laws import DryFriction, ExpressionLaw, law
 from bondgraph.errors import StructureError
 
 
@@ -161,6 +161,7 @@ def _passive(
     effort, flow = (variable(attributes, key, name) for key in ("effort", "flow"))
     closed = law_of(name, kind, attributes, gives)
     inverse = inverse_of(attributes, closed, flow if kind.gives == "flow" else effort, where)
+    free = inverse is not None or (isinstance(closed, DryFriction) and gives != "flow")
     return Element(
         name,
         kind,
@@ -169,7 +170,7 @@ def _passive(
         flow,
         law=closed,
         priority=priority_of(attributes, where),
-        gives=gives if inverse is None else None,
+        gives=None if free else gives,
         unit=unit,
         energy=energy_of(name, kind, attributes)[0] if given == ["energy"] else None,
         inverse=inverse,

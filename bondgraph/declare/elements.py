@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from bondgraph.declare.kinds import Kind
-from bondgraph.declare.laws import Law
+from bondgraph.declare.laws import DryFriction, Law
 
 Node = tuple[Hashable, dict[str, object]]
 """What networkx's ``add_nodes_from`` takes: a name and its attributes."""
@@ -64,6 +64,11 @@ class Element:
     def one_port(self) -> bool:
         """True for everything but transformers, gyrators and junctions."""
         return self.kind.one_port
+
+    @property
+    def lets_go(self) -> bool:
+        """Whether it is held or let go, as a switch or by dry friction, and so gives either variable."""
+        return self.kind.switches or isinstance(self.law, DryFriction)
 
     @property
     def constant(self) -> sp.Expr:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from bondgraph.algebra.expressions import expression
-from bondgraph.errors import ExpressionError
+from bondgraph.errors import ExpressionError, StructureError
 
 SLIP = sp.Symbol("slip")
 """The argument of a friction curve: the magnitude of the slip."""
@@ -36,7 +36,8 @@ class DryFriction:
 
     Slipping, the port gives ``level * curve(|y|) * sign(y)``, with ``y`` what it receives; sticking,
     ``y = 0`` and it gives whatever holds it, as long as that stays within ``breakaway * level``
-    (Deur, Hancock, Assadian 2008, eq. (17) and Fig. 8; Karnopp 1985).
+    (Deur, Hancock, Assadian 2008, eq. (17) and Fig. 8; Karnopp 1985). A port that gives its flow, as on a
+    spring, sticks while ``|y| <= level`` and slips at that level; it has no curve and no breakaway.
 
     ``level``: N m (or N, V, Pa), text, number or expression, not negative. ``curve``: an expression
     in ``slip``, normalised to 1 for plain Coulomb friction. ``breakaway``: the ratio at standstill, by
@@ -83,6 +84,20 @@ class DryFriction:
 
 
 Law = ExpressionLaw | DryFriction
+
+
+def check_slider(friction: DryFriction, where: str) -> None:
+    """Refuse a curve that changes, and a breakaway above it, where friction gives its flow.
+
+    What it is directly on rules its effort, and slips at once by whatever that lets go: only an inertia
+    between makes a fall of the level, or a rise with the slip, a matter of time.
+    """
+    if SLIP in friction.curve.free_symbols or not (friction.breakaway - friction.curve).is_zero:
+        raise StructureError(
+            f"{where}: dry friction that gives a flow (directly on a spring, or two in series) has one "
+            "level: a curve in slip or a breakaway above it needs an inertia between; of a rising curve put "
+            "the rise into a resistance beside it"
+        )
 
 
 def law(value: object, where: str, state: sp.Symbol | None = None) -> Law:

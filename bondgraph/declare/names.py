@@ -8,7 +8,7 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.elements import Element
-from bondgraph.declare.laws import ExpressionLaw, Law
+from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
 from bondgraph.errors import StructureError
 
 
@@ -31,6 +31,12 @@ def check_names(elements: Sequence[Element]) -> None:
 def _owned(element: Element) -> Iterable[sp.Symbol]:
     """The quantities that this element alone imposes or keeps: its input and its law's state."""
     own = [element.given] if element.given is not None else []
+    if (
+        isinstance(element.law, DryFriction)
+        and element.gives is None
+        and element.effort is not None
+    ):
+        own.append(element.effort)
     if element.switch is not None:
         own += [name for name in (element.effort, element.flow) if name is not None]
     if element.integral is not None:

@@ -13,6 +13,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.explaining.momenta import Momenta
 from bondgraph.explaining.records import Equation, Step, equation
 from bondgraph.reduce.sorting import Reduction, detects
+from bondgraph.reduce.structure import Port
 from bondgraph.reduce.switches import SwitchPort
 from bondgraph.show.sums import plain, rate, split
 
@@ -57,12 +58,23 @@ def laws_step(equations: StateEquations, signals: Sequence[Assignment]) -> Step:
         if isinstance(law, ExpressionLaw):
             lines.append(equation(port.given, law.expression, node=port.element.name))
         elif isinstance(law, DryFriction):
-            sentences.append(
-                f"{port.element.name}: dry friction, {port.given} opposes the slip {port.received} with "
-                f"at most {law.level} times its curve {law.curve}"
-            )
+            sentences.append(f"{port.element.name}: dry friction, {_rubbing(port, law)}")
     sentences += map(_switch, equations.switches)
     return Step("laws", _title_of_laws(equations), tuple(sentences), tuple(lines))
+
+
+def _rubbing(port: Port, law: DryFriction) -> str:
+    """What dry friction does, by what it gives."""
+    if port.gives == "flow":
+        level = law.level * law.curve
+        return (
+            f"{port.given} = 0 while {port.received} stays within {level} either way; slipping it keeps "
+            f"{port.received} there"
+        )
+    return (
+        f"{port.given} opposes the slip {port.received} with at most {law.level} times its curve "
+        f"{law.curve}"
+    )
 
 
 def _title_of_laws(equations: StateEquations) -> str:

@@ -27,9 +27,7 @@ def reduce_ports(structure: JunctionStructure) -> Reduction:
     )
     dependent = tuple(i for i, p in enumerate(ports) if is_storage(p) and not p.integral)
     resistive = tuple(
-        i
-        for i, port in enumerate(ports)
-        if port.element.kind.resists and port.element.gives is None
+        i for i, port in enumerate(ports) if port.element.kind.resists and not imposes(port)
     )
     imposed = tuple(i for i, port in enumerate(ports) if imposes(port) and not detects(port))
     inputs = tuple(dict.fromkeys(ports[i].given for i in imposed))

@@ -5,7 +5,7 @@ from collections.abc import Hashable, Mapping, Sequence
 import sympy as sp
 
 from bondgraph.algebra.exact import FixedRow
-from bondgraph.declare.laws import DryFriction, Law
+from bondgraph.declare.laws import DryFriction, Law, check_slider
 from bondgraph.errors import DependentSourceError, StructureError
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import Port, PortRow
@@ -49,15 +49,17 @@ def _check_friction(law: Law, port: Port, known: Mapping[sp.Symbol, PortRow]) ->
     """Refuse friction whose level, curve or breakaway is told by the effort that it gives itself."""
     if not isinstance(law, DryFriction):
         return
+    if port.gives == "flow":
+        check_slider(law, f"law at {port.element.name!r}")
     parts = (("level", law.level), ("curve", law.curve), ("breakaway", law.breakaway))
     for what, part in parts:
         for name in sorted(part.free_symbols, key=str):
             # A signal of one term, at the place of the effort, is the effort under another name.
             if name == port.given or (name in known and {*known[name]} == {*known[port.given]}):
                 raise StructureError(
-                    f"law at {port.element.name!r}: the {what} of dry friction uses {name}, the effort "
-                    "that this port gives itself; give the effort another name (effort=...), or what "
-                    f"the {what} uses"
+                    f"law at {port.element.name!r}: the {what} of dry friction uses {name}, the {port.gives} "
+                    f"that this port gives itself; give the {port.gives} another name "
+                    f"({port.gives}=...), or what the {what} uses"
                 )
 
 

@@ -12,6 +12,9 @@ from codegen.program.units import units
 from codegen.runs.steps import told_step
 from codegen.standalone.holding import HeldSet
 
+WAYS = ("BG_RUBS", "BG_ONE_SIDED", "BG_TOLD")
+"""What makes a port change over, by the names of C."""
+
 MOST_HOLDS = 4
 """Holding equations of all sets of so many friction ports are kept once they are found."""
 
@@ -75,7 +78,7 @@ def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:
         "LARGEST": largest,
         "LOOP": max([ports + coupled if program.joint else 0, *loops]),
         "FRICTION": ports,
-        "SWITCHES": len(program.switches),
+        "SWITCHES": sum(port.switch is not None for port in program.friction),
         "GUARDS": len(program.guards.results),
         "COUPLED": coupled,
         "HOLDS": 1 if program.varying or ports > MOST_HOLDS else 2**ports,
@@ -137,16 +140,13 @@ def program_tables(
     for name, numbers in tables:
         lines += integers(name, numbers)
     rows = [_switch(port) for port in friction]
-    lines += array("const bg_switch bg_switches[]", rows, "{0, 0, 0, 0}")
+    lines += array("const bg_switch bg_switches[]", rows, "{0, 0, 0, 0, 0}")
     return [*lines, "", *_layout(program)]
 
 
 def _switch(port: FrictionPort) -> str:
-    """What makes a port change over: its kind, whether it is on held, its side, its first condition."""
-    if port.switch is None:
-        return "{BG_RUBS, 0, 0, 0}"
-    kind = "BG_ONE_SIDED" if port.switch.side else "BG_TOLD"
-    return f"{{{kind}, {int(port.switch.on)}, {port.switch.side}, {max(port.switch.guard, 0)}}}"
+    kind, *parts = port.in_c
+    return f"{{{', '.join((WAYS[kind], *map(str, parts)))}}}"
 
 
 def _layout(program: Program) -> list[str]:

@@ -33,12 +33,9 @@ class Tables:
         self.record = engine.new("ex_model")
         self._modes: dict[int, Any] = {}
         self._magnitudes()
-        self.record.switched = bool(model.program.switches)
+        self.record.switched = model.program.switched
         for at, port in enumerate(model.program.friction):
-            told = port.switch
-            kind = 0 if told is None else 1 if told.side else 2
-            parts = (0, 0, 0) if told is None else (int(told.on), told.side, max(told.guard, 0))
-            self.record.switches[at] = (kind, *parts)
+            self.record.switches[at] = port.in_c
 
     def supply(self, number: int) -> None:
         """Work out a mode."""
@@ -122,7 +119,7 @@ class Tables:
         own = affine.rows(RATE)[:, : model.size]
         scale = scipy.linalg.matrix_balance(own, permute=False, separate=True)[1][0]
         view(self.engine, made.weight)[:] = 1 / scale
-        if model.program.switches:
+        if model.program.switched:
             self._fill_switches(made, mode, affine)
         if 0 in mode:
             held = model.hold(mode, model.constant)

@@ -34,7 +34,7 @@ class Variable:
     @property
     def integer(self) -> bool:
         """Friction modes and switches are whole numbers."""
-        return self.kind in ("FMU_MODE", "FMU_SWITCH")
+        return self.kind in ("FMU_MODE", "FMU_SWITCH", "FMU_SLIDES")
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,10 @@ class _Listing:
     def unknown(self) -> None:
         """Readings, outputs among them, and what laws and sources give."""
         program = self._program
+        slides = {port.reading for port in program.friction if port.slides}
         for at, symbol in enumerate(program.readings):
+            if at in slides:
+                continue
             shown = "output" if symbol in program.outputs else "local"
             place = self._places.get(symbol)
             if place is None:
@@ -123,7 +126,8 @@ class _Listing:
                 self._made(symbol.name, "FMU_READING", at, causality=shown)
         for at in sorted(self._starts.sources):
             self._named(program.external[at], "FMU_SOURCE", at)
-        for at, symbol in enumerate(program.inputs):
+        for at in program.shown_inputs:
+            symbol = program.inputs[at]
             if symbol not in self._places:
                 self._named(symbol, "FMU_GIVEN", at)
 
@@ -141,8 +145,10 @@ class _Listing:
             base = self.found[place].name
             self._made(f"der({base})", "FMU_RATE", at, derivative=place, unit=rate)
         for at, port in enumerate(program.friction):
-            if port.switch is None:
-                self._made(f"mode({port.name})", "FMU_MODE", at, variability="discrete")
+            if port.switch is None or port.slides:
+                kind = "FMU_SLIDES" if port.slides else "FMU_MODE"
+                if port.in_c[-1] >= 0:
+                    self._made(f"mode({port.name})", kind, at, variability="discrete")
             else:
                 self._made(str(port.name), "FMU_SWITCH", at, variability="discrete")
         for at in range(indicators):

@@ -116,7 +116,7 @@ def _decided(now: Occasion, s: Array) -> Decision:
 
 
 def _none_consistent(now: Occasion, refused: dict[Mode, str]) -> SimulationError:
-    if not now.model.program.switches:
+    if not now.model.program.switched:
         return SimulationError(next(iter(refused.values())))
     ports = now.model.program.friction
     told = []

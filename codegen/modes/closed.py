@@ -51,7 +51,9 @@ class ClosedModel:
         self, program: Program, equations: StateEquations, parameters: Mapping[str, object]
     ) -> None:
         exact = MappingProxyType(exact_parameters(parameters))
-        self.program, self.equations, self.parameters = program, equations, exact
+        self.program, self.equations, self.parameters = program, program.equations, exact
+        #: The equations as declared.
+        self.declared = equations
         check_gains(program, exact)
         self.friction_inputs = [port.input for port in program.friction]
         self.friction_readings = [port.reading for port in program.friction]
@@ -64,11 +66,11 @@ class ClosedModel:
         binding = Binding(program, exact)
         self._guards = binding.function(program.guards)
         self._coefficients = binding.function(program.coefficients)
-        self._constant = None if program.varying else numbers(program, equations, exact)
+        self._constant = None if program.varying else numbers(program, self.equations, exact)
         if program.varying:
-            check_values(equations, exact)
+            check_values(self.equations, exact)
         #: What friction ports receive, exact.
-        self.slips = slip_rows(program, equations, exact)
+        self.slips = slip_rows(program, self.equations, exact)
         self._form = formed(program, binding, self.numbers)
         self._friction = rubbing(program, binding, self._form, self.slips)
         self._maps: dict[Mode, AffineMap | None] = {}

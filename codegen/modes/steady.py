@@ -13,6 +13,7 @@ from codegen.modes.choose import Occasion, decide
 from codegen.modes.closed import ClosedModel
 from codegen.modes.trials import evaluated
 from codegen.numbers.arrays import Array
+from codegen.program.records import FrictionPort
 from codegen.standalone.switchings import ALL_WAYS, FEW, Broken, flipped
 from codegen.tuning import TUNING
 
@@ -39,8 +40,7 @@ def choices(model: ClosedModel, told: Mapping[Hashable, str] | None) -> Choices:
             )
     found = []
     for port in ports:
-        words = {"on": (port.switch.sign(True),), "off": (port.switch.sign(False),)} \
-            if port.switch is not None else {"stick": (0,), "slip": (1, -1)}  # fmt: skip
+        words = _words(port)
         word = asked.get(port.name)
         if port.name in asked and word not in words:
             one, other = words
@@ -48,6 +48,16 @@ def choices(model: ClosedModel, told: Mapping[Hashable, str] | None) -> Choices:
         both = (0, 1) if port.switch is not None else (0, 1, -1)
         found.append(words[word] if word is not None else both)
     return tuple(found)
+
+
+def _words(port: FrictionPort) -> dict[str, tuple[int, ...]]:
+    """The signs that a port may have, by the words of events, what it prefers first."""
+    if port.switch is None:
+        return {"stick": (0,), "slip": (1, -1)}
+    if port.slides:
+        # Told to slip, it does either way: which, what it receives tells.
+        return {"stick": (1,), "slip": (1, 0)}
+    return {"on": (port.switch.sign(True),), "off": (port.switch.sign(False),)}
 
 
 def steady_modes(
@@ -98,7 +108,7 @@ def _shown(model: ClosedModel, pieces: Sequence[Piece], start: Array) -> Mode:
     loose = tuple(1 for _ in model.switching)
     _, now = evaluated(model, 0.0, start, pieces, loose)
     slips = np.sign(np.round(now.y[model.friction_readings], 12)).astype(int).tolist()
-    if not model.program.switches:
+    if not model.program.switched:
         return tuple(slips)
     off = tuple(1 if one is None else one.sign(False) for one in model.switching)
     ahead = TUNING.look_ahead * TUNING.standing

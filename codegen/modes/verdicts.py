@@ -111,7 +111,7 @@ def look_at(
     """A mode at an instant, with what counts as zero there. Raises `SimulationError` if it is no mode."""
     now = model.at(t, s, pieces, mode)
     size = scales(model, now, t, peaks)
-    if model.program.switches:
+    if model.program.switched:
         size = holding(size, model, mode, now, peaks)
     if not model.program.guards.results:
         return Look(model, mode, now, size)

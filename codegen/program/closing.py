@@ -12,6 +12,7 @@ from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError
 from bondgraph.reduce.readings import depends_on_signals
+from codegen.program.sliding import Slider, sliders_of
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,8 @@ class Closing:
     coupled: tuple[sp.Symbol, ...]
     #: Whether friction efforts act back at once on friction, by way of slips, levels or other laws.
     joint: bool
+    #: Dry friction that gives a flow; what its halves give is among ``friction``.
+    sliders: tuple[Slider, ...] = ()
 
 
 def close_ports(
@@ -54,6 +57,7 @@ def close_ports(
     _check_assumptions(equations, by_port)
     read = {name for closed in by_port.values() for name in closed.free_symbols} | watched
     equations = equations.with_readings({*read, *equations.integrals.values()})
+    equations, sliders = sliders_of(equations, by_port)
     ports = {port.element.name: port for port in equations.ports}
     _check_parameters(equations, by_port, parameters)
     for name, port in ports.items():
@@ -68,6 +72,9 @@ def close_ports(
             raise StructureError(f"input {ports[name].given} is closed by two different laws")
     owner = {ports[name].given: name for name in by_port}
     received = {given: ports[name].received for given, name in owner.items()}
+    for slider in sliders:
+        _put_in_halves(slider, laws, owner, received)
+        switching |= {half.given for half in slider.halves}
     states = {
         closed.state: received[given]
         for given, closed in laws.items()
@@ -88,7 +95,23 @@ def close_ports(
         friction,
         coupled,
         joint,
+        sliders,
     )
+
+
+def _put_in_halves(
+    slider: Slider,
+    laws: dict[sp.Symbol, Law],
+    owner: dict[sp.Symbol, Hashable],
+    received: dict[sp.Symbol, sp.Symbol],
+) -> None:
+    """A law of each half and of the level, instead of the slider's own."""
+    port = slider.port
+    del laws[port.given], owner[port.given], received[port.given]
+    laws[slider.level], received[slider.level] = ExpressionLaw(slider.law), port.received
+    for half in slider.halves:
+        laws[half.given], received[half.given] = DryFriction(0), half.received
+    owner |= dict.fromkeys([slider.level, *(half.given for half in slider.halves)], slider.name)
 
 
 def _check_assumptions(equations: StateEquations, laws: Mapping[Hashable, Law]) -> None:

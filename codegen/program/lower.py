@@ -84,6 +84,7 @@ def lower(
         guards_affine=is_affine(guards, given),
         varying=bool(equations.varying),
         affine=_is_affine(closing, values, given),
+        equations=equations,
     )
     check_gains(program)
     return program

@@ -1,10 +1,11 @@
 """What a program is made of: straight-line code, patterns of matrices, groups of laws."""
 
 from collections.abc import Container, Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import sympy as sp
 
+from bondgraph.equations import StateEquations
 from codegen.standalone.switchings import Switching
 
 TEMPORARY = "c"
@@ -53,6 +54,8 @@ class FrictionPort:
 
     ``switch``: of an ideal switch, when it changes over; None where it is dry friction. ``moving``: the
     reading that tells how fast the slip changes by its factors, None where these are constant.
+    ``level``, ``slip``: of one way of friction that gives a flow (backwards follows forwards), the input
+    that is its level and the reading that is its whole slip.
     """
 
     name: Hashable
@@ -60,6 +63,22 @@ class FrictionPort:
     reading: int
     switch: Switching | None = None
     moving: int | None = None
+    level: int | None = None
+    slip: int | None = None
+
+    @property
+    def in_c(self) -> tuple[int, int, int, int, int]:
+        """The fields of its ``bg_switch``: kind, on while held?, side, first condition, way of slipping."""
+        one = self.switch
+        if one is None:
+            return 0, 0, 0, 0, 0
+        kind = 1 if one.side else 2
+        return kind, int(one.on), one.side, max(one.guard, 0), -one.side * one.slides
+
+    @property
+    def slides(self) -> bool:
+        """Whether it is one way in which dry friction slips that gives a flow."""
+        return self.switch is not None and self.switch.slides
 
 
 @dataclass(frozen=True)
@@ -110,6 +129,8 @@ class Program:
     varying: bool
     #: Whether each friction mode is an affine system with constant coefficients.
     affine: bool
+    #: The equations over these inputs, which know all of these readings.
+    equations: StateEquations = field(repr=False, compare=False)
 
     @property
     def blocks(self) -> tuple[Block, ...]:
@@ -126,12 +147,24 @@ class Program:
     def shown(self) -> tuple[int, ...]:
         """The readings that results show."""
         hidden = {port.moving for port in self.friction}
+        hidden |= {port.reading for port in self.friction if port.slides}
         return tuple(at for at in range(len(self.readings)) if at not in hidden)
+
+    @property
+    def shown_inputs(self) -> tuple[int, ...]:
+        """The inputs that results show: not the ways in which friction slips that gives a flow."""
+        hidden = {at for p in self.friction if p.slides for at in (p.input, p.level)}
+        return tuple(at for at in range(len(self.inputs)) if at not in hidden)
 
     @property
     def switches(self) -> tuple[FrictionPort, ...]:
         """The ports that are ideal switches."""
-        return tuple(port for port in self.friction if port.switch is not None)
+        return tuple(p for p in self.friction if p.switch is not None and not p.slides)
+
+    @property
+    def switched(self) -> bool:
+        """Whether any port is a switch, or slips one way as one."""
+        return any(port.switch is not None for port in self.friction)
 
     def before(self, on: Container[Hashable]) -> tuple[int, ...]:
         """The mode of each port before a run: these switches on, the others off, friction let go."""

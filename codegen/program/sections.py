@@ -10,6 +10,7 @@ from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from codegen.program.closing import Closing
 from codegen.program.records import FrictionPort, Group, Pattern, block
+from codegen.program.sliding import Slider, halves_of
 from codegen.standalone.switchings import Switching
 
 
@@ -82,31 +83,46 @@ def friction(
 ) -> tuple[tuple[FrictionPort, ...], list[sp.Expr]]:
     """Ports that are held or let go; level, breakaway level, curve and curve at rest of each in turn.
 
-    Those of switches, which have no limit and let go give nothing, are zero and one. ``moving``: of ports
+    Those of switches, which have no limit and let go give nothing, are zero and one; of friction that
+    gives a flow the limit is its level, so that it is seen not to be negative. ``moving``: of ports
     whose slips' factors move the reading that tells how fast, by the input that each gives.
     """
-    readings = list(closing.equations.readings)
+    readings, inputs = list(closing.equations.readings), closing.equations.inputs
     switching, _ = switches(closing)
     called = {port.given: port.element.switch for port in closing.equations.ports}
+    sliders = {half.given: one for one in closing.sliders for half in one.halves}
     ports: list[FrictionPort] = []
     values: list[sp.Expr] = []
     for name in closing.friction:
         law = closing.laws[name]
         if not isinstance(law, DryFriction):
             continue
-        received, switch = closing.received[name], called[name]
+        received, switch, slider = closing.received[name], called.get(name), sliders.get(name)
         ports.append(
             FrictionPort(
                 closing.port_names[name] if switch is None else switch.name,
-                closing.equations.inputs.index(name),
+                inputs.index(name),
                 readings.index(received),
                 switching.get(name),
                 readings.index(moving[name]) if name in moving else None,
+                None if slider is None else inputs.index(slider.level),
+                None if slider is None else readings.index(slider.port.given),
             )
         )
         curves = [law.curve.subs(SLIP, slip) for slip in (sp.Abs(received), 0)]
-        values += [law.level, law.breakaway * law.level, *curves]
+        limit = law.breakaway * law.level if slider is None else _checked_level(closing, slider)
+        values += [law.level, limit, *curves]
     return tuple(ports), values
+
+
+def _checked_level(closing: Closing, slider: Slider) -> sp.Expr:
+    """A slider's level, which must not be negative; zero where it is known only with what friction gives."""
+    equations, late = closing.equations, {*closing.friction, *closing.coupled}
+    columns = {equations.inputs.index(name) for name in late}
+    read = slider.whole.free_symbols
+    told = {*read, slider.level} & late
+    rows = [equations.readings[name].D for name in read & set(equations.readings)]
+    return sp.Integer(0) if told or any(columns & set(row) for row in rows) else slider.whole
 
 
 def switches(closing: Closing) -> tuple[dict[sp.Symbol, Switching], list[sp.Expr]]:
@@ -120,4 +136,6 @@ def switches(closing: Closing) -> tuple[dict[sp.Symbol, Switching], list[sp.Expr
         else:
             found[one.port.given] = Switching(on, 0, len(conditions))
             conditions += [one.on, one.off]
+    for half in halves_of(closing.sliders).values():
+        found[half.given] = Switching(True, -half.way, slides=True)
     return found, conditions

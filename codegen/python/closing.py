@@ -73,6 +73,8 @@ def simulate(time, initial, inputs, parameters=None, step=STEP, dead_band=1e-6{a
 
 _PLAIN = {"also": "", "given": "", "told": "", "what": "friction efforts"}
 
+_SLIDES = ", slides=True"
+
 _SWITCHED = {
     "also": ", initially_on=()",
     "given": ", initially_on",
@@ -88,8 +90,8 @@ _SWITCHED = {
 def needed(program: Program) -> list[str]:
     """The modules that a program's model works with, beside those that these import."""
     also = {
-        "deadband": bool(program.friction) and not program.switches,
-        "switched": bool(program.switches),
+        "deadband": bool(program.friction) and not program.switched,
+        "switched": program.switched,
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
     }
@@ -102,7 +104,7 @@ def closing(program: Program, held: Mapping[tuple[int, ...], HeldSet]) -> list[s
 
     ``held``: ranks of the sets of sticking ports that are not plain.
     """
-    names = "STATES, INPUTS, SHOWN, SWITCHES" if program.switches else "STATES, INPUTS, SHOWN"
+    names = "STATES, INPUTS, SHOWN, SWITCHES" if program.switched else "STATES, INPUTS, SHOWN"
     lines = [RULE, "# How this model is put together.", "", f"NAMES = Names({names})"]
     base, arguments = "FixedSteps", "form(self.parameters), NAMES"
     if program.friction:
@@ -110,14 +112,14 @@ def closing(program: Program, held: Mapping[tuple[int, ...], HeldSet]) -> list[s
         note = "Sets of sticking ports of which not each slip binds the states by itself: what holds them."
         rows = [f"    {ports}: HeldSet{astuple(one)}," for ports, one in held.items()]
         lines += [f"# {note}", *(["HELD = {", *rows, "}"] if rows else ["HELD = {}"])]
-    if program.switches:
+    if program.switched:
         base, arguments = "SwitchedSteps", f"{arguments}, switches(self.parameters)"
         lines += _switching(program)
     lines += ["", "", *_form(program)]
     lines += _friction(program) if program.friction else []
-    if program.switches:
+    if program.switched:
         lines += _SWITCHES.format(count=len(program.guards.results)).splitlines()
-    words = _SWITCHED if program.switches else _PLAIN
+    words = _SWITCHED if program.switched else _PLAIN
     return [*lines, *_MODEL.format(base=base, arguments=arguments, **words).splitlines()]
 
 
@@ -127,7 +129,7 @@ def _switching(program: Program) -> list[str]:
         "When ports change over that are ideal switches: on while held?; side; place of conditions."
     )
     rows = [
-        f"    {None if s is None else f'Switching({s.on}, {s.side}, {s.guard})'},"
+        f"    {None if s is None else f'Switching({s.on}, {s.side}, {s.guard}{_SLIDES * s.slides})'},"
         for s in (port.switch for port in program.friction)
     ]
     return ["", f"# {note}", "SWITCHING = (", *rows, ")"]

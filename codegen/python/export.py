@@ -129,7 +129,7 @@ def _functions(program: Program, names: Names) -> list[str]:
         rows = [f"{plain(str(port.name))}: {part}" for port in program.friction for part in what]
         doc = "For each friction port u = level * curve(|slip|) * sign(slip)."
         lines += values_function("friction_values", doc, program.friction_values, rows, names)
-    if program.switches:
+    if program.switched:
         rows = [f"{plain(str(p.name))}: {way}" for p in program.switches
                 if p.switch is not None and not p.switch.side for way in ("on", "off")]  # fmt: skip
         doc = "Conditions of switches: to turn on and to turn off in turn, each above zero."

@@ -19,7 +19,10 @@ def public(program: Program) -> list[str]:
 
 def places(program: Program) -> list[str]:
     """What the arrays hold, and where."""
-    efforts = [program.inputs[port.input] for port in program.friction]
+    efforts = [
+        program.inputs[p.input] if p.slip is None else program.readings[p.slip]
+        for p in program.friction
+    ]
     lines = [
         "# What the arrays x, u and y of the equations hold, and what a run shows beside its states."
     ]
@@ -47,7 +50,7 @@ def friction_tables(program: Program, slips: SlipRows) -> list[str]:
     """The friction ports: their names, and where they stand."""
     switches = names_tuple("SWITCHES", [str(port.name) for port in program.switches])
     return [
-        *(["", "# Ports that are ideal switches.", *switches] if program.switches else ()),
+        *(["", "# Ports that are ideal switches.", *switches] if program.switched else ()),
         "",
         "# Friction ports, the inputs they give, the slips they receive, what tells how the factors of",
         "# these move; is a resistance beside?",

@@ -30,10 +30,12 @@ def named_columns(
         (program.readings, found.y),
     )
     columns: dict[str, Array] = {}
-    shown = set(program.shown)
+    shown, given = set(program.shown), set(program.shown_inputs)
     for names, table in groups:
         for at, name in enumerate(names):
-            if names is program.readings and at not in shown:
+            if (names is program.readings and at not in shown) or (
+                names is program.inputs and at not in given
+            ):
                 continue
             columns.setdefault(name.name, read_only(table[:, at].copy()))
     _check_finite(times, columns)
@@ -63,7 +65,7 @@ def with_switches(
     """The columns, and one for each switch: 1 while it is on, 0 while it is off."""
     found = dict(columns)
     for at, port in enumerate(program.friction):
-        if port.switch is not None:
+        if port.switch is not None and not port.slides:
             on = [float(port.switch.word(mode[at]) == "on") for mode in modes]
             found[str(port.name)] = read_only(np.array(on))
     return MappingProxyType(found)

@@ -22,6 +22,7 @@ from codegen.runs.free import FreeLeg
 from codegen.runs.legs import Leg
 from codegen.runs.methods import EXACT
 from codegen.runs.track import Accumulating, Event, Settings, Track
+from codegen.standalone.switchings import way_of
 from codegen.tuning import TUNING
 
 
@@ -228,10 +229,15 @@ def _at_rest(model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mo
 def _note(model: ClosedModel, events: list[Event], t: float, old: Mode, new: Mode) -> None:
     """Events of ports whose mode is another: of switches, then what friction does about it."""
     rubbing: list[Event] = []
-    for port, before, after in zip(model.program.friction, old, new, strict=True):
+    for i, port in enumerate(model.program.friction):
+        before, after = old[i], new[i]
+        if port.slides:
+            # Which way it slips by the modes of both, told by the first.
+            ahead = port.in_c[-1] > 0
+            before, after = (way_of(mode, i) if ahead else 0 for mode in (old, new))
         if before == after:
             continue
-        if port.switch is not None:
+        if port.switch is not None and not port.slides:
             events.append(Event(t, port.name, port.switch.word(after)))
         else:
             kind = "stick" if after == 0 else ("slip" if before == 0 else "cross")

@@ -44,19 +44,25 @@ class SwitchedSteps(DeadBand):
     def mode_of(self, on: Collection[str]) -> Mode:
         """The mode in which these switches are on; friction takes no part."""
         every = zip(self.switches.names, self.switching, strict=True)
-        return tuple(1 if one is None else one.sign(name in on) for name, one in every)
+        return tuple(
+            1 if one is None or one.slides else one.sign(name in on) for name, one in every
+        )
 
     def shown(self, mode: Mode) -> list[float]:
         """For each switch 1 while it is on, 0 while it is off."""
-        words = [one.word(mode[i]) for i, one in enumerate(self.switching) if one is not None]
-        return [float(word == "on") for word in words]
+        named = [(i, one) for i, one in enumerate(self.switching) if one and not one.slides]
+        return [float(one.word(mode[i]) == "on") for i, one in named]
 
     def begin(self, at: Point, on: Collection[str], named: Collection[str]) -> Array:
         """The vector s with which a run begins, states that are not ``named`` completed.
 
         ``on``: the switches that are on at first, as far as conditions let them.
         """
-        known = [self.switches.names[i] for i in self.places]
+        known = [
+            name
+            for name, one in zip(self.switches.names, self.switching, strict=True)
+            if one and not one.slides
+        ]
         if unknown := [name for name in on if name not in known]:
             raise ValueError(f"no switch is called {unknown[0]!r}; there is {', '.join(known)}")
         now = self.any_of(at, (1,) * len(self.rubs))

@@ -25,15 +25,19 @@ class Switching:
 
     ``on``: whether it is on while it is held. ``side``: of a one-sided switch, which is let go
     while ``side * y >= 0`` and held while ``side * u <= 0``; 0: of one that is told by the two
-    guards from ``guard`` on, its conditions to turn on and off.
+    guards from ``guard`` on, its conditions to turn on and off. ``slides``: of one way in which dry
+    friction slips that gives a flow: held it slips.
     """
 
     on: bool
     side: int
     guard: int = -1
+    slides: bool = False
 
     def word(self, sign: int) -> str:
-        """What it is in a mode, held being 0: "on" or "off"."""
+        """What it is in a mode, held being 0: "on" or "off", of friction "slip" or "stick"."""
+        if self.slides:
+            return "slip" if sign == 0 else "stick"
         return "on" if self.on == (sign == 0) else "off"
 
     def condition(self, sign: int) -> int:
@@ -53,6 +57,11 @@ def flipped(mode: Mode, ports: Iterable[int]) -> Mode:
     """
     changed = set(ports)
     return tuple(1 - sign if i in changed else sign for i, sign in enumerate(mode))
+
+
+def way_of(mode: Mode, port: int) -> int:
+    """Which way friction slips that gives a flow, ``port`` being its way forwards; 0: it sticks."""
+    return (mode[port] == 0) - (mode[port + 1] == 0)
 
 
 def switchings(first: Mode, switches: list[int]) -> Generator[Mode, Broken, None]:

@@ -3,15 +3,28 @@
 
 #include <stddef.h>
 
-/* What a port has done, if it has; switches or friction alone. */
-static int happened(const bg_switch *with, int switched, int before, int now)
+/* Which way friction slips that gives a flow, by the modes of its ways; 0: it sticks. */
+static int slides(const int *mode)
 {
-    const int is_switch = with != NULL && with->kind != BG_RUBS;
-    if (now == before || is_switch != switched)
+    return (mode[0] == 0) - (mode[1] == 0);
+}
+
+static int rubbed(int before, int now)
+{
+    return now == before ? -1 : now == 0 ? BG_STICK : before == 0 ? BG_SLIP : BG_CROSS;
+}
+
+/* What a port has done, if it has; switches or friction alone. */
+static int happened(const bg_switch *with, int switched, const int *before, const int *now)
+{
+    const int is_switch = with != NULL && with->kind != BG_RUBS && !with->slides;
+    if (is_switch != switched || (with != NULL && with->slides < 0))
         return -1;
-    if (switched)
-        return with->on == (now == 0) ? BG_ON : BG_OFF;
-    return now == 0 ? BG_STICK : before == 0 ? BG_SLIP : BG_CROSS;
+    if (with != NULL && with->slides)
+        return rubbed(slides(before), slides(now));
+    if (!switched || *now == *before)
+        return switched ? -1 : rubbed(*before, *now);
+    return with->on == (*now == 0) ? BG_ON : BG_OFF;
 }
 
 int bg_note(bg_event *events, int *count, int capacity, double t, int ports,
@@ -20,7 +33,7 @@ int bg_note(bg_event *events, int *count, int capacity, double t, int ports,
     for (int switched = switches != NULL; switched >= 0; switched--)
         for (int i = 0; i < ports; i++) {
             const int kind =
-                happened(switches ? switches + i : NULL, switched, before[i], mode[i]);
+                happened(switches ? switches + i : NULL, switched, before + i, mode + i);
             if (kind < 0)
                 continue;
             if (*count >= capacity)

@@ -6,9 +6,10 @@
 enum bg_way { BG_RUBS, BG_ONE_SIDED, BG_TOLD };
 
 /* `on`: whether it is on while it is held. `side`: let go while side * y >= 0, held while side * u
- * <= 0. `guard`: the place of its condition to turn on, before that to turn off. */
+ * <= 0. `guard`: the place of its condition to turn on, before that to turn off. `slides`: 1 or -1
+ * for the ways in which friction slips that gives a flow, one after the other: held it slips. */
 typedef struct {
-    int kind, on, side, guard;
+    int kind, on, side, guard, slides;
 } bg_switch;
 
 /* The place of the condition that changes a switch over in its mode. */

@@ -101,8 +101,13 @@ BAD = {
         _mass(bg.R("p", "r", gives="flow"), bonds="j>p"), "'p': gives is for open ports",
     ),
     "unit": (_mass(m={"kind": "I", "value": "m", "unit": 1}), "'m': unit 1"),
-    "friction that gives flow": (
-        _mass(bg.R("p", law=bg.DryFriction("mu"), gives="flow"), bonds="j>p"), "'p', law.*effort",
+    "a curve that falls where friction gives its flow": (
+        _mass(bg.R("p", law=bg.DryFriction("mu", "1 + exp(-slip)"), gives="flow"), bonds="j>p"),
+        "'p', law: dry friction that gives a flow .* has one level.*needs an inertia between",
+    ),
+    "a breakaway where friction gives its flow": (
+        _mass(bg.R("p", law=bg.DryFriction("mu", 1, "3/2"), gives="flow"), bonds="j>p"),
+        "'p', law: dry friction that gives a flow .* has one level",
     ),
     "friction on a storage": (_mass(m={"kind": "I", "law": bg.DryFriction("mu")}), "'m', law.*p_m"),
     "law of another type": (_mass(bg.R("p", law=[1]), bonds="j>p"), r"'p', law: \[1\]"),

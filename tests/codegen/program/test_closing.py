@@ -94,9 +94,9 @@ REFUSED = [
     ({"a": None}, bg.ExpressionError, "law at 'a': None is neither a number"),
     ({"a": float("nan")}, bg.ExpressionError, "law at 'a': nan is not a finite number"),
     (
-        {"flowing": bg.DryFriction(1)},
+        {"flowing": bg.DryFriction(1, "1 + slip")},
         bg.StructureError,
-        "'flowing': dry friction .*gives an effort",
+        "law at 'flowing': dry friction that gives a flow .* has one level",
     ),
     ({"s": bg.DryFriction(1)}, bg.ExpressionError, "'s': a storage takes an expression in q_s"),
 ]
