@@ -43,7 +43,7 @@ from bondgraph.files.graphml import from_graphml, to_graphml
 from bondgraph.files.nodelink import from_json, to_json
 from bondgraph.reduce.junction import junction_structure
 from bondgraph.reduce.structure import JunctionStructure
-from bondgraph.reduce.switches import SwitchPort
+from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.show.latex import latex
 
 __all__ = [

@@ -13,7 +13,7 @@ from bondgraph.errors import StructureError
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.structure import Port, PortRow
-from bondgraph.reduce.switches import SwitchPort
+from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.show.display import equations_text
 from bondgraph.show.latex import notebook_latex
 

@@ -14,7 +14,7 @@ from bondgraph.explaining.momenta import Momenta
 from bondgraph.explaining.records import Equation, Step, equation
 from bondgraph.reduce.sorting import Reduction, detects
 from bondgraph.reduce.structure import Port
-from bondgraph.reduce.switches import SwitchPort
+from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.show.sums import plain, rate, split
 
 

@@ -7,7 +7,7 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.errors import ModelWarning
-from bondgraph.reduce.switches import SwitchPort
+from bondgraph.reduce.switch_port import SwitchPort
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.record.result import Result

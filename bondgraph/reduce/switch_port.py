@@ -1,0 +1,56 @@
+"""`SwitchPort`: a port that a switch holds or lets go, which of its ways is which, what changes it over."""
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+from typing import Literal
+
+import sympy as sp
+
+from bondgraph.declare.elements import Switch
+from bondgraph.reduce.structure import Port
+
+Guard = Literal["one-sided", "commanded", "general"]
+"""What changes a switch over: its own two sides, a signal from outside, or any expression."""
+
+
+@dataclass(frozen=True)
+class SwitchPort:
+    """A port that is let go, when it gives zero, or held, when it gives what keeps at zero what it receives.
+
+    ``guard``: "one-sided" if ``on`` is a positive multiple of the port's own effort and ``off`` of its own
+    flow reversed, or both with the other sign (a flow and an effort for a controlled 0-junction);
+    "commanded" if both hold time, parameters and open sources' inputs alone; else "general".
+
+    ``side``, of a one-sided port 1 or -1, else 0: let go, it receives ``side * received >= 0``; held, it
+    gives ``side * given <= 0``.
+    """
+
+    switch: Switch
+    port: Port
+    guard: Guard
+    side: int = 0
+
+    @property
+    def name(self) -> Hashable:
+        """The node: the Sw, or the controlled junction."""
+        return self.switch.name
+
+    @property
+    def on(self) -> sp.Expr:
+        """Off, it turns on as this rises above zero."""
+        return self.switch.on
+
+    @property
+    def off(self) -> sp.Expr:
+        """On, it turns off as this rises above zero."""
+        return self.switch.off
+
+    @property
+    def gives(self) -> str:
+        """What it gives in all of its modes, "effort" or "flow"."""
+        return self.port.gives
+
+    @property
+    def held(self) -> Literal["on", "off"]:
+        """The way in which it is held: "off" if it gives, in all modes, what it gives as zero while on."""
+        return "off" if self.port.gives == self.switch.gives else "on"
