@@ -38,6 +38,7 @@ class FixedSteps:
     def __init__(self, form: Form, names: Names, contact: Contact | None = None) -> None:
         self.form, self.names, self.contact, self.fastest = form, names, contact, Fastest()
         self.seen = np.zeros(form.states + len(form.law_rates))
+        self._latest: tuple[tuple[object, ...], Instant] | None = None
 
     def rhs(
         self, t: float, x: Values, u: Values = (), du: Values | None = None, mode: Chosen = None
@@ -68,9 +69,17 @@ class FixedSteps:
         return self.at(at, self.decided(at, None, TUNING.still) if mode is None else tuple(mode))
 
     def at(self, at: Point, mode: Mode) -> Instant:
-        """Every variable at one time: laws in turn, then friction as the mode says."""
-        with np.errstate(all="ignore"):
-            return evaluated(self.form, self.contact, at._replace(seen=self.seen), mode)
+        """Every variable at one time: laws in turn, then friction as the mode says.
+
+        The latest is kept: what decides a mode is a step's start as well, and what a run shows.
+        """
+        values = (one.tobytes() for one in (at.s, at.w, at.dw, self.seen))
+        what = (at.t, mode, *values)
+        if self._latest is None or self._latest[0] != what:
+            with np.errstate(all="ignore"):
+                now = evaluated(self.form, self.contact, at._replace(seen=self.seen), mode)
+            self._latest = what, now
+        return self._latest[1]
 
     def begin(self, at: Point, on: Collection[str], named: Collection[str]) -> Array:
         """The vector s with which a run begins; no port is a switch, or could be ``on``."""
