@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from threading import Lock
 from typing import Any, Protocol
 
@@ -19,6 +20,7 @@ from codegen.batch.located import LocatedLoop
 from codegen.batch.model import BatchModel, Flags, batch_model
 from codegen.batch.plan import Plan
 from codegen.engine.located import METHODS as LOCATED_METHODS
+from codegen.engine.status import Status
 from codegen.family import Family
 from codegen.inputs.signal import Signal
 from codegen.inputs.swept import Swept, settled
@@ -71,12 +73,22 @@ class Loop(Protocol):
         """
 
 
-class Batch:
-    """The loop for one sweep; calls may come from several threads."""
+FINAL = (Status.OK, Status.ENDLESS, Status.REFUSED)
+"""What a further loop would not end otherwise, as single runs are not tried again either."""
 
-    def __init__(self, asked: Asked, kept: Plan, model: BatchModel, loop: Loop) -> None:
+
+class Batch:
+    """The loop for one sweep; calls may come from several threads.
+
+    ``rest``: makes the loop for runs that this one cannot do.
+    """
+
+    def __init__(
+        self, asked: Asked, kept: Plan, model: BatchModel, loop: Loop,
+        rest: Callable[[], "Batch"] | None = None,
+    ) -> None:  # fmt: skip
         self.asked, self.plan, self.loop = asked, kept, loop
-        self._model, self._shared = model, None
+        self._model, self._shared, self._rest = model, None, None if rest is None else cache(rest)
         self._lock = Lock()
         self.statuses: Counter[int] = Counter()
 
@@ -93,7 +105,7 @@ class Batch:
         """As a call; and of each run the states that were completed, NaN where one was not."""
         table = np.asarray(rows, dtype=float).reshape(len(rows), len(self.asked.names))
         found = np.empty((len(table), self.plan.width))
-        done = np.zeros(len(table), dtype=bool)
+        ended = np.full(len(table), Status.REFUSED, dtype=np.intc)
         with self._lock:
             parameters, usable = self._parameters(table)
             states, settled = self._states(table)
@@ -105,11 +117,20 @@ class Batch:
             with self._lock:
                 kinds, counts = np.unique(status, return_counts=True)
                 self.statuses.update(dict(zip(kinds.tolist(), counts.tolist(), strict=True)))
-            found[indices], done[indices] = results, status == 0
+            found[indices], ended[indices] = results, status
             followed = (moved != 0) & (status == 0)[:, None]
             completed[indices] = np.where(followed, states[indices] + moved, np.nan)
         columns = self.plan.told(found, self._numbers(table))
-        return columns, np.flatnonzero(~done).tolist(), completed
+        more = np.flatnonzero(~np.isin(ended, FINAL))
+        if self._rest is not None and len(more):
+            with self._lock:
+                rest = self._rest()
+            others, left, completed[more] = rest.telling(table[more])
+            for column, other in zip(columns, others, strict=True):
+                column[more] = other
+            ended[more] = Status.OK
+            ended[more[left]] = Status.NOT_AFFINE
+        return columns, np.flatnonzero(ended).tolist(), completed
 
     def _numbers(self, table: Array) -> Mapping[str, Array]:
         """The parameters of each run by name."""
@@ -234,11 +255,14 @@ def _looped(asked: Asked, kept: Plan) -> Batch | None:
     family, method = asked.family, asked.settings.method
     model, time = batch_model(family), np.ascontiguousarray(asked.time)
     library = family.library
-    if library.affine and method in ("auto", EXACT):
-        return Batch(asked, kept, model, ExactLoop(model, time, kept))
-    if method in LOCATED_METHODS:
+
+    def located() -> Batch:
         return Batch(asked, kept, model, LocatedLoop(library, time, kept, asked.settings))
-    return None
+
+    if library.affine and method in ("auto", EXACT):
+        rest = located if method in LOCATED_METHODS else None
+        return Batch(asked, kept, model, ExactLoop(model, time, kept), rest)
+    return located() if method in LOCATED_METHODS else None
 
 
 def _can(family: Family, program: Program, names: Sequence[str]) -> bool:

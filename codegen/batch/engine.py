@@ -21,9 +21,6 @@ FILES = (
 CAPACITY = 256
 """Events of a run; one with more is done without the loop."""
 
-MOST_MODES = 27
-"""Of one run."""
-
 STRIDE = 8
 """Steps that are taken from one state."""
 
@@ -38,9 +35,9 @@ def batch_engine(model: Mapping[str, str], wanted: Sizes, flags: tuple[str, ...]
     library = compiled(files, flags)
     numbers = wanted.numbers
     text = engine_declarations(numbers)
-    shared = {"MODES": min(numbers["MODES"], MOST_MODES), "STRIDE": STRIDE, "SQUARES": SQUARES}
+    shared = {"STRIDE": STRIDE, "SQUARES": SQUARES}
     text += declarations("batch_measure.h", {}) + declarations("batch.h", shared, "BATCH")
-    for name in ("MODES", "ROW", "L"):
+    for name in ("MODES", "ROW", "L", "WORDS"):
         text = text.replace(f"[EX_{name}]", f"[{numbers[name]}]")
     ffi, opened = loaded(library, text)
     found = ffi.new("unsigned long[5]")
@@ -64,7 +61,7 @@ class Room:
 
     def __post_init__(self) -> None:
         ffi, numbers, signals = self.engine.ffi, self.engine.sizes.numbers, max(self.signals, 1)
-        readers = MOST_MODES * (signals + self.factors)
+        readers = numbers["MODES"] * (signals + self.factors)
         sizes = ffi.new("unsigned long[5]")
         self.engine.library.batch_sizes(sizes)
         _, model, table, of_signal, tables = sizes

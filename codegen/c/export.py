@@ -12,11 +12,11 @@ from codegen.c.rates import plain_rates, straight_rates
 from codegen.c.rhs import straight
 from codegen.c.runtime import runtime_file, runtime_names
 from codegen.c.scenario import scenario_text
-from codegen.c.tables import config, group_tables, name_tables, program_tables, structure_table
+from codegen.c.tables import config, group_tables, name_tables, program_tables, slip_tables
 from codegen.c.text import comment
 from codegen.model.doubts import warn_of_doubts
 from codegen.modes.closed import ClosedModel
-from codegen.ports.holds import held_sets
+from codegen.ports.holds import check_sets
 from codegen.program.layout import layout_text
 from codegen.program.records import Program
 from codegen.runs.start import start_of
@@ -98,8 +98,8 @@ def to_c(
     Which sticking ports are redundant is decided exactly, at these parameters; others at which that
     changes are refused when the model is run.
 
-    Raises what `simulator` raises; `StructureError` for more than eight friction ports; `ExpressionError` for
-    functions C lacks; `ParameterError` for a prefix that no name in C can begin with.
+    Raises what `simulator` raises; `ExpressionError` for functions C lacks; `ParameterError` for a prefix
+    that no name in C can begin with.
     """
     given = (main, initial, inputs, prefix, initially_on)
     closed, files = exported(equations, parameters, laws, name, *given)
@@ -150,6 +150,7 @@ def texts(
     headers = [text for file, text in runtime.items() if file.endswith(".h")]
     macros = renamed(prefix, external_symbols(headers))
     program, equations = closed.program, closed.equations
+    check_sets(program, closed.slips)
     ports, fast = range(len(program.friction)), straight(program)
     lines = [
         *_head(program, name, prefix),
@@ -157,7 +158,7 @@ def texts(
         "",
         *program_tables(program, defaults, [closed.coupled_directly(i) for i in ports], on),
         "",
-        *structure_table(held_sets(program, closed.slips).values(), program.coupled.inputs),
+        *slip_tables(closed.slips, len(program.states), program.coupled.inputs),
         *_functions(program),
         "",
         *group_tables(program),

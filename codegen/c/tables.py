@@ -10,13 +10,19 @@ from codegen.c.text import array, comment, doubles, integers, quoted, strings
 from codegen.program.records import FrictionPort, Group, Program
 from codegen.program.units import units
 from codegen.runs.steps import told_step
-from codegen.standalone.holding import HeldSet
+from codegen.standalone.ranks import SlipRows
 
 WAYS = ("BG_RUBS", "BG_ONE_SIDED", "BG_TOLD")
 """What makes a port change over, by the names of C."""
 
-MOST_HOLDS = 4
-"""Holding equations of all sets of so many friction ports are kept once they are found."""
+MOST_HOLDS = 16
+"""Holding equations of so many sets of friction ports are kept once they are found .."""
+
+FEW_HOLDS = 4
+""".. and of so many where they are large, or hold for an instant only."""
+
+LARGE = 16
+"""More ports than these have large ones."""
 
 
 def config(
@@ -78,10 +84,11 @@ def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:
         "LARGEST": largest,
         "LOOP": max([ports + coupled if program.joint else 0, *loops]),
         "FRICTION": ports,
+        "PORTS": max(ports, 1),
         "SWITCHES": sum(port.switch is not None for port in program.friction),
         "GUARDS": len(program.guards.results),
         "COUPLED": coupled,
-        "HOLDS": 1 if program.varying or ports > MOST_HOLDS else 2**ports,
+        "HOLDS": min(FEW_HOLDS if program.varying or ports > LARGE else MOST_HOLDS, 2**ports),
         "CONSTANTS": len(fast.constants) if fast else 0,
         "VARYING": int(program.varying),
         "AFFINE": int(program.affine),
@@ -159,16 +166,27 @@ def _layout(program: Program) -> list[str]:
     return [*lines, *array("const bg_pattern bg_layout[BG_MATRICES]", rows)]
 
 
-def structure_table(found: Iterable[HeldSet], coupled: Sequence[int]) -> list[str]:
-    """What holds each set of sticking ports, by its bits; ``coupled``: inputs of laws that friction moves."""
-    rows = []
-    for one in found:
-        moved = tuple(coupled.index(j) for j in one.moved)
-        parts = (moved, one.direct, one.direct_columns, one.null, one.kept, one.kept_columns)
-        listed = ", ".join(f"{{{', '.join(map(str, part)) or '0'}}}" for part in parts)
-        counts = (len(one.moved), len(one.direct), len(one.null), len(one.kept), int(one.ruled))
-        rows.append(f"{{{', '.join(map(str, counts))}, {listed}}}")
-    return array("const bg_structure bg_structures[]", rows)
+def slip_tables(slips: SlipRows, states: int, coupled: Sequence[int]) -> list[str]:
+    """What friction ports receive, in residues; ``coupled``: inputs of laws that friction moves."""
+    places, residues, begins = list[int](), list[str](), [0]
+    moved, moved_begins = list[int](), [0]
+    for F, D, laws in zip(slips.F, slips.D, slips.moved, strict=True):
+        row = {**F, **{states + j: entry for j, entry in D.items()}}
+        places += row
+        residues += (f"{entry}u" for entry in row.values())
+        begins.append(len(places))
+        moved += (coupled.index(j) for j in laws)
+        moved_begins.append(len(moved))
+    inverse = -pow(slips.prime, -1, 2**64) % 2**64
+    return [
+        *integers("bg_slip_begins", begins),
+        *integers("bg_slip_places", places),
+        *array("const unsigned long long bg_slip_residues[]", residues),
+        *integers("bg_moved_begins", moved_begins),
+        *integers("bg_moved", moved),
+        f"const unsigned long long bg_prime = {slips.prime}u;",
+        f"const unsigned long long bg_prime_inverse = {inverse}u;",
+    ]
 
 
 def group_tables(program: Program) -> list[str]:

@@ -20,7 +20,6 @@ from codegen.inputs.tables import SignalTable, signal_table
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
-from codegen.ports.holds import MOST_PORTS
 from codegen.program.layout import recorded
 from codegen.record.snapshots import Snapshots
 from codegen.runs.track import Event, Settings
@@ -108,7 +107,7 @@ class LocatedRuns:
         """Run and record, or why it could not go on; ``first``: the mode before, all let go unless told."""
         ffi, _ = self.library.opened
         rows = np.empty((len(times), self.width))
-        begin = np.array([*first, *[1] * MOST_PORTS], dtype=np.intc)
+        begin = np.array([*first, *[1] * max(len(self.model.switching), 1)], dtype=np.intc)
         start = np.append(states, 0.0)
         asked = ffi.new("bg_request *")
         asked.times, asked.states = _pointer(ffi, times), _pointer(ffi, start)

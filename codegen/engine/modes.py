@@ -1,12 +1,13 @@
 """A model's friction modes as the tables that the C engine steps by."""
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 import scipy
 
 from bondgraph.errors import SimulationError
-from codegen.engine.sizes import Engine, view
+from codegen.engine.sizes import DIGITS, Engine, view
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.modes.keeping import impacts_of, keeping
@@ -15,32 +16,58 @@ from codegen.ports.refusals import SlopeNeededError
 from codegen.program.affine import AffineMap
 from codegen.program.layout import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, SHOT, STATES
 
-
-def mode_of(number: int, ports: int) -> Mode:
-    """The mode of a number in base 3, the first port its lowest digit.
-
-    >>> mode_of(0, 2), mode_of(1, 2), mode_of(6, 2)
-    ((0, 0), (1, 0), (0, -1))
-    """
-    return tuple((0, 1, -1)[number // 3**i % 3] for i in range(ports))
+MOST_ROOM = 1 << 29
+"""Bytes that the modes of a model may take."""
 
 
 class Tables:
-    """The engine's record of a model; modes are worked out as runs ask for them."""
+    """The engine's record of a model; modes are worked out as runs ask for them.
+
+    ``known``: those that have been, in the order of the record.
+    """
 
     def __init__(self, engine: Engine, model: ClosedModel) -> None:
         self.engine, self.model = engine, model
         self.record = engine.new("ex_model")
-        self._modes: dict[int, Any] = {}
+        self.known: list[Mode] = []
+        self._made: list[Any] = []
+        words, first = engine.sizes.numbers["WORDS"], 32
+        self._keys = np.zeros((first, words), dtype=np.uint64)
+        self._places = np.zeros(first, dtype=np.uintp)
+        self._point()
+        self.failed: BaseException | None = None
+        with suppress(MemoryError):  # on machines that let no code be made, runs begin again
+            self._answer = engine.ffi.callback("int(void *, const int *)", self._asked)
+            self.record.supply = self._answer
         self._magnitudes()
         self.record.switched = model.program.switched
         for at, port in enumerate(model.program.friction):
+            self.record.own[at] = port.input
             self.record.switches[at] = port.in_c
 
-    def supply(self, number: int) -> None:
+    @property
+    def room(self) -> bool:
+        """Whether there is room for one more mode."""
+        return bool((len(self.known) + 1) * self.engine.ffi.sizeof("ex_mode") <= MOST_ROOM)
+
+    def _asked(self, _: Any, mode: Any) -> int:
+        """Work out the mode that a run has come to; 1 where that is not done."""
+        try:
+            if self.room:
+                self.supply(tuple(mode[i] for i in range(self.engine.sizes.K)))
+                return 0
+        except BaseException as error:  # noqa: BLE001 - C comes between here and who is to be told
+            self.failed = error
+        return 1
+
+    def mode_at(self, key: Any) -> Mode:
+        """The mode of a number with two bits for each port, the first port the lowest."""
+        ports = range(self.engine.sizes.K)
+        return tuple((0, 1, -1)[key.digits[i // DIGITS] >> i % DIGITS * 2 & 3] for i in ports)
+
+    def supply(self, mode: Mode) -> None:
         """Work out a mode."""
-        made = self.engine.new("ex_mode")
-        mode, inputs = mode_of(number, self.engine.sizes.K), len(self.model.program.external)
+        made, inputs = self.engine.new("ex_mode"), len(self.model.program.external)
         try:
             affine = self.model.affine_map(mode, inputs)
         except SlopeNeededError:
@@ -54,12 +81,31 @@ class Tables:
             slipping = self.model.affine_map(tuple(sign or 1 for sign in mode), inputs)
             if slipping is not None:
                 self._fill_shot(made, slipping)
-        self._modes[number] = made
-        self.record.modes[number] = made
+        self._join(made, mode)
+        self._made.append(made)
+        self._list(mode)
 
-    def sharpen(self, number: int) -> None:
-        """Work out the rates of a mode that nothing is watched in, with 32 digits."""
-        made, rates = self._modes[number], self.model.sharp_rates
+    def _list(self, mode: Mode) -> None:
+        """Tell C of one more mode."""
+        ffi, at = self.engine.ffi, len(self.known)
+        if at == len(self._keys):
+            self._keys = np.concatenate([self._keys, np.zeros_like(self._keys)])
+            self._places = np.concatenate([self._places, np.zeros_like(self._places)])
+            self._point()
+        for i, sign in enumerate(mode):
+            self._keys[at, i // DIGITS] |= np.uint64(sign % 3 << i % DIGITS * 2)
+        self._places[at] = int(ffi.cast("uintptr_t", self._made[at]))
+        self.known.append(mode)
+        self.record.count = len(self.known)
+
+    def _point(self) -> None:
+        ffi = self.engine.ffi
+        self.record.keys = ffi.cast("ex_key *", self._keys.ctypes.data)
+        self.record.modes = ffi.cast("ex_mode **", self._places.ctypes.data)
+
+    def sharpen(self) -> None:
+        """Work out the rates of the one mode of a model in which nothing is watched, with 32 digits."""
+        made, rates = self._made[0], self.model.sharp_rates
         if rates is not None:
             size = self.engine.sizes.numbers
             for field, part in ((made.rate, rates.hi), (made.rest, rates.lo)):
@@ -95,6 +141,19 @@ class Tables:
         for k, row in enumerate(rows):
             view(self.engine, made.ruling[k])[held] = row
         return len(rows) > 0
+
+    def _join(self, made: Any, mode: Mode) -> None:
+        """Mark ports alike that have part in what none of them rules alone."""
+        held = [i for i, sign in enumerate(mode) if sign == 0]
+        try:
+            share = self.model.hold(mode, self.model.constant).share if held else np.zeros((0, 0))
+        except SimulationError:
+            share = np.ones((1, len(held)))
+        for k, row in enumerate(share, 1):
+            ports = [held[c] for c in np.flatnonzero(row)]
+            before = {made.joined[i] for i in ports} - {0}
+            for i in {*ports, *(i for i in held if made.joined[i] in before)}:
+                made.joined[i] = k
 
     def _fill_shot(self, made: Any, affine: AffineMap) -> None:
         model, size = self.model, self.engine.sizes.numbers

@@ -10,14 +10,13 @@ from bondgraph.errors import SimulationError
 from codegen.engine.build import FLAGS, check_tools
 from codegen.engine.fallback import Stopped
 from codegen.engine.inputs import Packed, Segments, segments
-from codegen.engine.modes import Tables, mode_of
-from codegen.engine.sizes import MOST_PORTS, Engine, aligned, engine, sizes
+from codegen.engine.modes import Tables
+from codegen.engine.sizes import Engine, aligned, engine, sizes
 from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
-from codegen.ports.holds import MOST_PORTS as LARGEST
 from codegen.program.affine import is_affine
 from codegen.program.gains import written_out
 from codegen.program.records import Program
@@ -41,10 +40,11 @@ MEANINGS = {
     Status.WORK: "the search for an event has no end",
     Status.NOT_FINITE: "a number is not finite",
     Status.ENDLESS: "it would take too many steps to look for events in",
+    Status.MISSING: "it comes to more friction modes than there is room for",
 }
-"""What a run of the engine says beside `Status.MISSING` and `Status.BLUNT`, which ask for more."""
+"""What a run of the engine says beside `Status.BLUNT`, which asks for more."""
 
-LIMITS = frozenset({Status.NOT_AFFINE, Status.STIFF, Status.EVENTS, Status.WORK})
+LIMITS = frozenset({Status.NOT_AFFINE, Status.STIFF, Status.EVENTS, Status.WORK, Status.MISSING})
 """What is no fault of a model: C alone cannot go on."""
 
 
@@ -101,10 +101,13 @@ class Prepared:
         library, arguments = self.engine.library, self.arguments
         while True:
             status = Status(library.ex_run(*arguments))
-            if status == Status.MISSING:
-                self.tables.supply(self.task.where)
+            if (failed := self.tables.failed) is not None:
+                self.tables.failed = None
+                raise failed
+            if status == Status.MISSING and self.tables.room:
+                self.tables.supply(self.tables.mode_at(self.task.where))
             elif status == Status.BLUNT:
-                self.tables.sharpen(self.task.where)
+                self.tables.sharpen()
             elif status == Status.EVENTS:
                 self.capacity *= 8
                 self._room()
@@ -119,14 +122,13 @@ class Prepared:
     def track(self, model: ClosedModel) -> Track:
         """The record of the run."""
         names = [port.name for port in model.program.friction]
-        known = {n: mode_of(n, len(names)) for n in np.unique(self.modes).tolist()}
         events = [
             Event(event.time, names[event.port], KINDS[event.kind])
             for event in self.events[0 : self.task.count]
         ]
         vectors = self.rows[:, : model.size].copy()
         largest = np.abs(vectors).max(axis=0)
-        modes = [known[number] for number in self.modes.tolist()]
+        modes = [self.tables.known[place] for place in self.modes.tolist()]
         return Track(vectors, modes, largest, events, len(vectors))
 
     def _room(self) -> None:
@@ -175,7 +177,7 @@ class CRuns:
             np.ascontiguousarray(start, dtype=np.float64),
             aligned(len(times), tables.engine.sizes.numbers["ROW"]),
             np.empty(len(times), dtype=np.intc),
-            np.array([*first, *[1] * LARGEST], dtype=np.intc),
+            np.array([*first, *[1] * max(len(self.model.switching), 1)], dtype=np.intc),
             grid_of(times),
         )
 
@@ -191,8 +193,6 @@ def not_affine(program: Program) -> str | None:
     """Why a model is not affine in each friction mode; None if it is."""
     if not program.guards_affine:
         return "a condition of a switch is not affine"
-    if len(program.friction) > MOST_PORTS:
-        return f"{len(program.friction)} friction ports are more than {MOST_PORTS}"
     if program.affine:
         return None
     if program.varying:

@@ -15,8 +15,14 @@ from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.tuning import tuning_text
 
-MOST_PORTS = 6
-"""Friction ports; a mode's place in the table is one of three to this power."""
+MOST_MODES, FEW_MODES = 81, 27
+"""So many modes of a model are kept in C at a time; of one with more than .."""
+
+FEW_PORTS = 16
+""".. so many ports, whose modes are large."""
+
+DIGITS = 32
+"""Ports of which a word tells the mode, two bits for each."""
 
 ALIGNMENT = 64
 """Of arrays that the engine works on, in bytes; a power of two."""
@@ -39,20 +45,22 @@ class Sizes:
     @property
     def config(self) -> str:
         """The generated header."""
-        named = {**vars(self), "MODES": 3**self.K}
+        named = {**vars(self), "MODES": self.numbers["MODES"]}
         lines = ",\n".join(f"    EX_{name} = {value}" for name, value in named.items())
         guard = "#ifndef EXACT_SIZES_H\n#define EXACT_SIZES_H\n"
-        return f"/* The sizes of one model. */\n{guard}enum {{\n{lines}\n}};\n#endif\n"
+        ports = f"#ifndef BG_PORTS\n#define BG_PORTS {max(self.K, 1)}\n#endif\n"
+        return f"/* The sizes of one model. */\n{guard}{ports}enum {{\n{lines}\n}};\n#endif\n"
 
     @property
     def numbers(self) -> dict[str, int]:
         """Every size that declarations use."""
         ports = max(self.K, 1)
+        most = MOST_MODES if self.K <= FEW_PORTS else FEW_MODES
         row = -(-(self.N + self.G + 4 * self.K) // 4) * 4
         shot = -(-(self.X + self.U + 4 * ports + self.N) // 4) * 4
         return {
-            **vars(self), "MODES": 3**self.K, "PORTS": ports, "ROW": row, "SHOT": shot,
-            "L": self.N + 2 * self.W + 1,
+            **vars(self), "MODES": min(3**self.K, most), "PORTS": ports, "ROW": row,
+            "SHOT": shot, "WORDS": -(-ports // DIGITS), "L": self.N + 2 * self.W + 1,
         }  # fmt: skip
 
 

@@ -11,7 +11,7 @@ from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.layout import RATE
-from codegen.standalone.stability import stable_step
+from codegen.standalone.fastest import stable_step
 from codegen.tuning import TUNING
 
 ALL_SIGNS = 3

@@ -6,7 +6,7 @@ import numpy as np
 
 from codegen.model.hybrid import hybrid
 from codegen.model.instant import Binding
-from codegen.ports.slips import SlipRows, held_set
+from codegen.ports.slips import ExactSlips
 from codegen.program.records import Group, Program
 from codegen.standalone.evaluation import Form, Laws
 from codegen.standalone.friction import Friction, Ports
@@ -32,7 +32,7 @@ def formed(program: Program, binding: Binding, matrices: Callable[[Instant], Num
     )
 
 
-def rubbing(program: Program, binding: Binding, form: Form, slips: SlipRows) -> Friction:
+def rubbing(program: Program, binding: Binding, form: Form, slips: ExactSlips) -> Friction:
     """The friction ports of a program; ``slips``: what these receive, exact."""
     ports = Ports(
         names=[port.name for port in program.friction],
@@ -42,7 +42,7 @@ def rubbing(program: Program, binding: Binding, form: Form, slips: SlipRows) -> 
             [-1 if p.moving is None else p.moving for p in program.friction], dtype=int
         ),
         beside=[slips.coupled(port) for port in range(len(program.friction))],
-        held=lambda stuck: held_set(slips, stuck),
+        held=slips.held,
         values=binding.function(program.friction_values),
         exact=True,
     )

@@ -50,7 +50,7 @@ def _rate_of_factors(closing: Closing, motion: Motion, reading: Reading) -> Read
     for column, factor in sorted(reading.D.items()):
         name, part = equations.inputs[column], ReadingSum()
         motion.add_rate(part, factor, name)
-        # What a port gives at once would multiply rates that it changes itself; `SlipRows.bent` has these.
+        # What a port gives at once would multiply rates that it changes itself; `ExactSlips.bent` has these.
         if name not in answering or not (part.H or part.K):
             result.add(part.whole(), sp.Integer(1))
     return result.whole()

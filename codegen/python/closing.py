@@ -1,12 +1,10 @@
 """The end of generated Python: the formulas put together with what is the same for every model."""
 
-from collections.abc import Mapping
-from dataclasses import astuple
-
 from codegen.program.records import Group, Program
 from codegen.python.blocks import law_names
+from codegen.python.tables import slip_rows
 from codegen.python.text import RULE, listing, quoted
-from codegen.standalone.holding import HeldSet
+from codegen.standalone.ranks import SlipRows
 
 _FORM = '''def form(parameters):
     """The formulas with these parameters, and where everything stands."""
@@ -33,7 +31,7 @@ def friction(parameters):
         readings=FRICTION_READINGS,
         moving=FRICTION_MOVING,
         beside=BESIDE,
-        held=lambda stuck: HELD.get(stuck) or plain_set(len(stuck)),
+        held=lambda stuck: {held},
         values=BlockFormula(friction_values, parameters, 4 * len(FRICTION)),
         exact=parameters == PARAMETERS,
     )'''
@@ -87,36 +85,38 @@ _SWITCHED = {
 }
 
 
-def needed(program: Program) -> list[str]:
-    """The modules that a program's model works with, beside those that these import."""
+def needed(program: Program, slips: SlipRows | None) -> list[str]:
+    """The modules that a program's model works with, beside those that these import.
+
+    ``slips``: what ports receive; None where every set's slips bind the states, each by itself.
+    """
     also = {
         "deadband": bool(program.friction) and not program.switched,
         "switched": program.switched,
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
+        "ranks": slips is not None,
     }
     names = ["formulas", "running", *(name for name, wanted in also.items() if wanted)]
     return [f"codegen.standalone.{name}" for name in names]
 
 
-def closing(program: Program, held: Mapping[tuple[int, ...], HeldSet]) -> list[str]:
+def closing(program: Program, slips: SlipRows | None) -> list[str]:
     """Functions that bind formulas and tables to the rest, the class `Model`, and `simulate`.
 
-    ``held``: ranks of the sets of sticking ports that are not plain.
+    ``slips``: as `needed` takes them.
     """
     names = "STATES, INPUTS, SHOWN, SWITCHES" if program.switched else "STATES, INPUTS, SHOWN"
     lines = [RULE, "# How this model is put together.", "", f"NAMES = Names({names})"]
     base, arguments = "FixedSteps", "form(self.parameters), NAMES"
     if program.friction:
         base, arguments = "DeadBand", "NAMES, friction(self.parameters)"
-        note = "Sets of sticking ports of which not each slip binds the states by itself: what holds them."
-        rows = [f"    {ports}: HeldSet{astuple(one)}," for ports, one in held.items()]
-        lines += [f"# {note}", *(["HELD = {", *rows, "}"] if rows else ["HELD = {}"])]
+        lines += [] if slips is None else slip_rows(slips)
     if program.switched:
         base, arguments = "SwitchedSteps", f"{arguments}, switches(self.parameters)"
         lines += _switching(program)
     lines += ["", "", *_form(program)]
-    lines += _friction(program) if program.friction else []
+    lines += _friction(program, slips) if program.friction else []
     if program.switched:
         lines += _SWITCHES.format(count=len(program.guards.results)).splitlines()
     words = _SWITCHED if program.switched else _PLAIN
@@ -150,8 +150,9 @@ def _group(opening: str, name: str, group: Group, closing: str, indent: int) -> 
     return listing(opening, [*parts, f"{list(group.readings)}", f"[{ports}]"], closing, indent)
 
 
-def _friction(program: Program) -> list[str]:
-    lines = _FRICTION.splitlines()
+def _friction(program: Program, slips: SlipRows | None) -> list[str]:
+    held = "plain_set(len(stuck))" if slips is None else "held_set(SLIPS, stuck)"
+    lines = _FRICTION.format(held=held).splitlines()
     if not program.joint:
         return [*lines, "    return Friction(ports, form(parameters))"]
     coupled = _group("coupled = Laws(", "coupled_laws", program.coupled, ")", 4)

@@ -6,7 +6,7 @@ from typing import Any
 
 from bondgraph.equations import StateEquations
 from codegen.model.doubts import warn_of_doubts
-from codegen.ports.holds import unlike_plain
+from codegen.ports.holds import all_plain, check_sets
 from codegen.program.records import Program
 from codegen.program.units import units
 from codegen.python.blocks import (
@@ -64,8 +64,7 @@ def to_python(
     What holds sticking ports is decided for the parameters given; the module raises an `ArithmeticError` that
     names the ports with others at which other ones are redundant, and as `simulator` does.
 
-    Raises what `simulator` raises; `StructureError`, naming the ports, for more of them that share loads or
-    lie beside resistances than a table takes; `ExpressionError` for functions Python lacks.
+    Raises what `simulator` raises; `ExpressionError` for functions Python lacks.
     """
     start = start_of(equations, parameters, laws, initial, inputs)
     closed = start.closed
@@ -73,7 +72,9 @@ def to_python(
     warn_of_doubts(program, equations, exact)
     names = names_of(program)
     used = {symbol.name: float(exact[symbol.name]) for symbol in program.parameters}
-    imports, fixed = written_out(needed(program))
+    check_sets(program, closed.slips)
+    slips = None if all_plain(program, closed.slips) else closed.slips
+    imports, fixed = written_out(needed(program, slips))
     lines = [
         *_head(program, equations, name, imports),
         *("", *table("PARAMETERS", used)),
@@ -84,7 +85,7 @@ def to_python(
         *_functions(program, names),
     ]
     same = [RULE, "# What follows is the same for every model.", "", "", fixed]
-    tail = closing(program, unlike_plain(program, closed.slips))
+    tail = closing(program, slips)
     return "\n".join([*lines, "", "", *same, "", "", *tail]) + "\n"
 
 

@@ -1,12 +1,12 @@
 """The constants at the head of generated Python: names, places in arrays, friction ports, steps."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from codegen.ports.slips import SlipRows
 from codegen.program.records import Program
 from codegen.python.text import listing, names_tuple
 from codegen.runs.steps import round_step, told_step
+from codegen.standalone.ranks import SlipRows
 from codegen.tuning import TUNING
 
 
@@ -62,6 +62,22 @@ def friction_tables(program: Program, slips: SlipRows) -> list[str]:
         ),
         *names_tuple("BESIDE", [slips.coupled(port) for port in range(len(program.friction))]),
     ]
+
+
+def slip_rows(slips: SlipRows) -> list[str]:
+    """What the ports receive, from which the ranks of what holds them are worked out."""
+    note = "What ports receive, F x + D u, in residues modulo a prime; what they give, and laws these move."
+    lines = [f"# {note}", "SLIPS = SlipRows("]
+    for name, rows in (("F", slips.F), ("D", slips.D)):
+        body = [line for row in rows for line in listing("{", _entries(row), "},", 8)]
+        lines += [f"    {name}=(", *body, "    ),"]
+    lines += listing("own=[", map(str, slips.own), "],", 4)
+    lines += listing("moved=[", (str(tuple(one)) for one in slips.moved), "],", 4)
+    return [*lines, f"    prime={slips.prime},", ")"]
+
+
+def _entries(row: Mapping[int, int]) -> list[str]:
+    return [f"{column}: {value}" for column, value in row.items()]
 
 
 def step_settings(longest: float) -> list[str]:

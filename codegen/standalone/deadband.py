@@ -12,6 +12,9 @@ from codegen.standalone.instant import Instant
 from codegen.standalone.stepping import Chosen, FixedSteps, Names
 from codegen.tuning import TUNING
 
+ENUMERATED = 8
+"""Of so many ports near rest all ways of sticking and slipping are tried."""
+
 
 class DeadBand(FixedSteps):
     """A model in fixed steps whose friction ports stick inside a dead band."""
@@ -24,6 +27,8 @@ class DeadBand(FixedSteps):
         self.rubs = np.ones(len(self.slips), dtype=bool)
         #: What slips may change by in a step, twice.
         self.turning = np.zeros(len(self.slips))
+        #: Slips in parts of what counts as being at rest.
+        self.part = np.zeros(len(self.slips))
 
     def decided(self, at: Point, previous: Chosen, dead_band: float, h: float = 0.0) -> Mode:
         """Which ports stick (0) and which way the others slip (+1, -1)."""
@@ -49,6 +54,7 @@ class DeadBand(FixedSteps):
             self.turning = 2 * h * np.abs(slip_rates(now, self.slips, self.moving))
             near |= (slips * previous < 0) & (np.abs(slips) <= self.turning)
         near &= self.rubs
+        self.part = np.abs(slips) / (self.least(now, dead_band) + self.turning + TUNING.tiny)
         for i in np.flatnonzero(near):
             mode[i] = 0
         for _ in range(4 * int(near.sum())):
@@ -99,7 +105,14 @@ class DeadBand(FixedSteps):
     def searched(
         self, at: Point, rest: Sequence[int], near: Array, dead_band: float, reason: Exception
     ) -> Mode:
-        """The first mode of the ports near rest that contradicts nothing, most sticking first."""
+        """The first mode of the ports near rest that contradicts nothing, most sticking first.
+
+        Of many those that slip most are tried in all ways, and the others stick.
+        """
+        most = np.argsort(-np.where(near, self.part, -1.0), kind="stable")[:ENUMERATED]
+        tried, rest = np.zeros(len(near), dtype=bool), np.where(near, 0, rest).tolist()
+        tried[most] = True
+        near = near & tried
         choices = product((0, 1, -1), repeat=int(near.sum()))
         for choice in sorted(choices, key=lambda signs: -signs.count(0)):
             mode = list(rest)

@@ -49,6 +49,7 @@ class Friction:
     def __init__(self, ports: Ports, form: Form, *coupled: Laws) -> None:
         self.ports, self.form = ports, form
         self._holds: dict[Mode, Hold] = {}
+        self._ranks: dict[tuple[int, ...], HeldSet] = {}
         self._laws = (form.known, *form.laws, *coupled)
         self._differentiable = {*form.given, *form.known.inputs, *ports.inputs}
 
@@ -70,9 +71,13 @@ class Friction:
 
     def _hold(self, stuck: list[int], numbers: Numbers) -> Hold:
         ports, names = self.ports, ", ".join(repr(self.ports.names[i]) for i in stuck)
-        held, places = ports.held(tuple(stuck)), (ports.inputs, ports.readings, ports.moving)
+        places = (ports.inputs, ports.readings, ports.moving)
+        if (chosen := tuple(stuck)) not in self._ranks:
+            self._ranks[chosen] = ports.held(chosen)
         try:
-            found = hold(held, stuck, *places, numbers, self.form.varying, ports.exact)
+            found = hold(
+                self._ranks[chosen], stuck, *places, numbers, self.form.varying, ports.exact
+            )
         except HoldError:
             raise HoldError(
                 f"with these parameters other ports of {names} are redundant than with those for "

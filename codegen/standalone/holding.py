@@ -132,7 +132,11 @@ def hold(
     except np.linalg.LinAlgError:
         raise HoldError from None
     if not exact:
-        _check(((null, answers), (share, seen)), (answers[direct], seen[kept] * scales(numbers.A)))
+        sizes = np.abs(answers), np.abs(null) @ np.abs(F)
+        _check(
+            ((null, answers, sizes[0]), (share, seen, sizes[1])),
+            (answers[direct], seen[kept] * scales(numbers.A)),
+        )
     slip_x, slip_u, share = seen[kept], null[kept] @ D, share @ null
     by_x, by_u, by_rates = (null[kept] @ matrix for matrix in moved)
     U = np.vstack([D[direct], slip_x @ numbers.Q + by_u])
@@ -155,16 +159,19 @@ def hold(
     )
 
 
-def _check(dependent: Iterable[tuple[Array, Array]], independent: Iterable[Array]) -> None:
-    """Refuse combinations of rows that are not zero, and rows that are not independent."""
-    for sums, matrix in dependent:
-        left, terms = np.abs(sums @ matrix), np.abs(sums) @ np.abs(matrix)
+def _check(dependent: Iterable[tuple[Array, Array, Array]], independent: Iterable[Array]) -> None:
+    """Refuse combinations of rows that are not zero, and rows that are not independent.
+
+    Third of what depends stands how large the terms are that make up the rows.
+    """
+    for sums, matrix, sizes in dependent:
+        left, terms = np.abs(sums @ matrix), np.abs(sums) @ sizes
         if (left > TUNING.consistent * terms).any():
             raise HoldError
     for rows in independent:
         lengths = np.linalg.norm(rows, axis=1, keepdims=True)
-        sizes = np.linalg.svd(rows / np.where(lengths > 0, lengths, 1.0), compute_uv=False)
-        if len(sizes) < len(rows) or (sizes <= TUNING.nothing).any():
+        left = np.linalg.svd(rows / np.where(lengths > 0, lengths, 1.0), compute_uv=False)
+        if len(left) < len(rows) or (left <= TUNING.nothing).any():
             raise HoldError
 
 

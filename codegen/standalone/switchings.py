@@ -16,7 +16,10 @@ FEW = 2
 """So many changes at once, of more switches."""
 
 TURNS = 50
-"""So often for each switch the first that contradicts changes over, before all ways are tried."""
+"""So often for each switch those that contradict change over, before all ways are tried .."""
+
+MOST_TURNS = 1000
+""".. and in all; the same for the first that contradicts."""
 
 
 @dataclass(frozen=True)
@@ -73,23 +76,19 @@ def switchings(first: Mode, switches: list[int]) -> Generator[Mode, Broken, None
     away.
     """
     seen: set[Mode] = set()
-    mode, broken = first, frozenset[int]()
-    while mode not in seen:
-        seen.add(mode)
-        broken = yield mode
-        if not broken:
-            break
-        mode, last = flipped(mode, broken), mode
-    if broken:
-        mode = flipped(last, [min(broken)])
-        for _ in range(TURNS * len(switches)):
+    mode, last, broken = first, first, frozenset[int]()
+    for every in (True, False):
+        for _ in range(min(TURNS * len(switches), MOST_TURNS) or 1):
             if mode in seen:
                 break
             seen.add(mode)
             broken = yield mode
             if not broken:
                 break
-            mode = flipped(mode, [min(broken)])
+            mode, last = flipped(mode, broken if every else [min(broken)]), mode
+        if not broken:
+            break
+        mode = flipped(last, [min(broken)])
     most = len(switches) if len(switches) <= ALL_WAYS else FEW
     for count in range(1, most + 1):
         for changed in combinations(switches, count):

@@ -36,31 +36,31 @@ static int start_of(const batch_room *room, const ex_inputs *inputs, const doubl
     return status ? BG_REFUSED : BG_OK;
 }
 
-/* Binds parameters. The modes that the run before needed are worked out at once; a status. */
+/* Binds parameters; a status. */
 static int bind(batch_room *room, const double *parameters)
 {
     batch_instance *const own = room->model;
     ex_model *const record = &room->record;
-    const int expected = room->made;
-    int likely[BATCH_MODES];
-    memcpy(likely, room->number, sizeof likely);
-    room->made = 0;
     if (batch_model_begin(own, parameters))
         return BG_REFUSED;
     memset(record, 0, sizeof *record);
+    record->keys = room->keys;
+    record->modes = room->known;
+    record->used = room->used;
+    record->supply = batch_supply;
+    record->self = room;
     bg_measure(&own->m.numbers, &(bg_magnitudes){record->F[0], record->D[0], record->FP[0],
                                                  record->FQ[0], record->P[0], record->Q[0],
                                                  record->inertia});
     memcpy(record->coupled, bg_beside, sizeof(int) * EX_K);
+    memcpy(record->own, bg_friction_inputs, sizeof(int) * EX_K);
     record->switched = BG_SWITCHES > 0;
     memcpy(record->switches, bg_switches, sizeof *bg_switches * EX_K);
     ex_forget(room->context);
-    for (int k = 0; k < expected; k++)
-        batch_supply(room, likely[k]);
     return BG_OK;
 }
 
-/* One run, modes supplied as it asks for them, which begins it again; a status. */
+/* One run, modes worked out as it asks for them; a status. */
 static int run(batch_room *room, const ex_inputs *inputs, const double *states, double *results,
                double *moved)
 {
@@ -73,16 +73,11 @@ static int run(batch_room *room, const ex_inputs *inputs, const double *states, 
     int status = start_of(room, inputs, states, first, start, moved);
     if (status)
         return status;
-    status = BG_MISSING;
-    while (status == BG_MISSING) {
-        for (int k = 0; k < room->job->products; k++)
-            room->totals[k] = 0.0;
-        status = ex_run_by(room->context, &room->record, inputs, &task, batch_advance, room);
-        if (status == BG_MISSING && batch_supply(room, task.where))
-            return BG_NOT_AFFINE;
-    }
+    for (int k = 0; k < room->job->products; k++)
+        room->totals[k] = 0.0;
+    status = ex_run_by(room->context, &room->record, inputs, &task, batch_advance, room);
     if (status)
-        return status;
+        return status == BG_MISSING ? BG_NOT_AFFINE : status;
     batch_sample_last(room->context, room);
     return batch_reduce(room->job, room->values, room->pitch, room->totals, task.events, task.count,
                         results)

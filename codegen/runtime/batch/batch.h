@@ -11,7 +11,6 @@
 #include "batch_measure.h"
 
 enum {
-    BATCH_MODES = EX_MODES < 27 ? EX_MODES : 27,
     BATCH_STRIDE = 8, /* so many steps are taken from one state */
     BATCH_SQUARES = 4
 };
@@ -28,12 +27,12 @@ typedef struct {
 
 typedef double batch_lanes[BATCH_STRIDE];
 
-/* Where runs are done, one at a time. The caller gives what is pointed to: `readers` for BATCH_MODES
+/* Where runs are done, one at a time. The caller gives what is pointed to: `readers` for EX_MODES
  * times the signals, over (s, w, w', 1); `tables` as `batch_sizes` tells; `values` for the signals
  * times `pitch`, which is BATCH_STRIDE more than the samples; `levels` for the
  * signals; `constants` for 4 EX_K and the signals; `totals` for the products; and `squares` for
  * BATCH_SQUARES times (EX_Z + 1)^2, if there are products. Readers are of signals and factors.
- * `number`: the `made` modes of the latest run. */
+ * The modes that were asked for last are kept: the record points to `known`, `keys` and `used`. */
 typedef struct {
     ex_context *context;
     void *model;
@@ -42,9 +41,12 @@ typedef struct {
     double (*readers)[EX_L];
     double *tables, *values, *levels, *totals, *squares;
     batch_lanes *constants;
-    int capacity, pitch, made, number[BATCH_MODES], place[EX_MODES];
+    int capacity, pitch;
     ex_model record;
-    ex_mode mode[BATCH_MODES];
+    unsigned used[EX_MODES];
+    ex_key keys[EX_MODES];
+    const ex_mode *known[EX_MODES];
+    ex_mode mode[EX_MODES];
 } batch_room;
 
 /* The sizes of a room and an instance of the model, in bytes; those of a table, in doubles, without

@@ -28,9 +28,9 @@ static int look_closely(ex_context *c, ex_place *p, batch_leaps *l, double *row)
     for (int j = 0; j < EX_Z; j++)
         p->z[j] = l->origin[j] + l->beyond[j];
     const int status = ex_series(c, p->t + (double)l->done * e->step, e->step, p->z, &end, &p->ports);
-    if (p->ports)
+    if (!bg_is_empty(&p->ports))
         p->stop = end;
-    if (status || p->ports)
+    if (status || !bg_is_empty(&p->ports))
         return status;
     for (int j = 0; j < EX_Z; j++)
         l->beyond[j] = p->z[j] - l->origin[j];
@@ -53,14 +53,14 @@ static int leap_over(void *self, ex_context *c, ex_place *p, int count, double h
     batch_leaps l = {.room = c->caller, .stretch = &c->stretch, .table = to->table};
     int status = BG_OK;
     batch_begin_leaps(&l, p->z, count * parts);
-    while (!status && !p->ports && l.done < l.total) {
+    while (!status && bg_is_empty(&p->ports) && l.done < l.total) {
         batch_leap(&l, p->base);
         if (l.done < l.total)
             status = look_closely(c, p, &l, to->row);
     }
     const int until = p->at + (int)(l.done / parts);
     p->at = until < p->last ? until : p->last;
-    if (status || p->ports)
+    if (status || !bg_is_empty(&p->ports))
         return status;
     for (int j = 0; j < EX_Z; j++)
         p->z[j] = to->row[j] = l.origin[j] + l.beyond[j];

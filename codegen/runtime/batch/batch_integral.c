@@ -91,11 +91,11 @@ static void twice(double (*P)[WIDE], double (*added)[WIDE], double (*E)[WIDE], d
 /* A row over y in the present stretch: a factor, or 1. */
 static void row_of(const ex_context *c, const batch_room *room, int factor, double *row)
 {
-    const int place = room->place[ex_number(c->run.mode)];
+    const ex_mode *const mode = c->stretch.entry->mode;
     memset(row, 0, sizeof(double) * WIDE);
     row[ONE] = 1.0;
     if (factor >= 0)
-        row[ONE] = batch_over_state(c, batch_readers(room, place)[room->job->signals + factor], row);
+        row[ONE] = batch_over_state(c, batch_readers(room, mode)[room->job->signals + factor], row);
 }
 
 static double between(const double *one, const double (*P)[WIDE], const double *other)

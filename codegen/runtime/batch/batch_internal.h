@@ -29,8 +29,9 @@ typedef struct {
     long long done, total;
 } batch_leaps;
 
-/* batch_mode.c: the engine's record of one of a model's modes; a status. */
-int batch_supply(batch_room *room, int number);
+/* batch_mode.c: works out the engine's record of a mode, in place of that which was asked for longest
+ * ago where there is no more room; a status. */
+int batch_supply(void *room, const int *mode);
 
 /* batch_signal.c: signals in the present stretch as rows over its state, with their constant parts;
  * one sample of all, of a stretch's state, and of the state at the end of a run. */
@@ -39,9 +40,9 @@ void batch_sample(const batch_room *room, const batch_table *table, const double
 void batch_sample_last(ex_context *c, const batch_room *room);
 
 /* Where the readers of a mode begin: rows of signals and factors over (s, w, w', 1). */
-static inline double (*batch_readers(const batch_room *room, int place))[EX_L]
+static inline double (*batch_readers(const batch_room *room, const ex_mode *mode))[EX_L]
 {
-    return room->readers + place * (room->job->signals + room->job->factors);
+    return room->readers + (mode - room->mode) * (room->job->signals + room->job->factors);
 }
 
 /* batch_signal.c: a row over the state of the present stretch; its constant part. */

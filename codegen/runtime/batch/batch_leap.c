@@ -106,10 +106,10 @@ static inline void reach(batch_lanes *restrict lane, const double *restrict cons
 }
 
 /* Whether a step is certain: all Bernstein coefficients of its triggers are above the slack. */
-static int is_certain(const trail *at, unsigned caps, const double *slack, int r)
+static int is_certain(const trail *at, const int *caps, const double *slack, int r)
 {
     for (int i = 0; i < EX_T; i++) {
-        const int cap = caps >> i & 1u, third = EX_T + i;
+        const int cap = caps[i], third = EX_T + i;
         const double begin = r ? at->then[i][r - 1] : at->now[i], end = at->then[i][r];
         const double leaves = r ? at->then[third][r - 1] : at->now[third];
         const double inner = cap ? end : bg_lesser(begin + leaves, end - at->then[third][r]);
@@ -123,13 +123,13 @@ static int is_certain(const trail *at, unsigned caps, const double *slack, int r
  * a third of its change; only otherwise steps are looked at one by one. */
 static inline int how_certain(batch_leaps *l, trail *at, const double *slack)
 {
-    const unsigned caps = l->stretch->entry->caps;
+    const int *const caps = l->stretch->entry->cap;
     double least[STRIDE], first = DBL_MAX;
     int sure = 0;
     for (int r = 0; r < STRIDE; r++)
         least[r] = DBL_MAX;
     for (int i = 0; i < EX_T; i++) {
-        const int cap = caps >> i & 1u, third = EX_T + i;
+        const int cap = caps[i], third = EX_T + i;
         reach(l->table.lane[i], l->room->constants[i], l->beyond, at->then[i]);
         if (!cap)
             reach(l->table.lane[third], l->room->constants[third], l->beyond, at->then[third]);

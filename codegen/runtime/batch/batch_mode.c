@@ -144,8 +144,8 @@ static void find_fastest(batch_room *room, int at)
 {
     ex_mode *const made = room->mode + at;
     double own[EX_N][EX_N];
-    for (int k = 0; k < at; k++) {
-        int same = 1;
+    for (int k = 0; k < room->record.count; k++) {
+        int same = k != at;
         for (int j = 0; j < EX_N && same; j++)
             same = memcmp(made->shot[j] + EX_AT_RATE, room->mode[k].shot[j] + EX_AT_RATE,
                           sizeof own[j]) == 0;
@@ -165,9 +165,26 @@ static void find_fastest(batch_room *room, int at)
     made->fastest = spectral_radius(own);
 }
 
+/* Ports with part in what none of them rules alone. */
+static void join(ex_mode *made, const bg_hold *held)
+{
+    for (int r = 0; r < held->share_count; r++)
+        for (int c = 0; c < held->count; c++) {
+            int *const joined = made->joined + held->ports[c];
+            if (held->share[r * held->count + c] == 0.0)
+                continue;
+            const int before = *joined;
+            *joined = r + 1;
+            for (int i = 0; before && i < EX_K; i++)
+                if (made->joined[i] == before)
+                    made->joined[i] = r + 1;
+        }
+}
+
 /* The slips that sticking takes from the states, and what only inputs rule of the others. */
 static void fill_held(ex_mode *made, const bg_hold *held)
 {
+    join(made, held);
     for (int k = 0; k < held->kept; k++)
         for (int i = 0; i < N; i++)
             made->take_away[k][i] = held->take_away[i * held->kept + k];
@@ -267,33 +284,41 @@ static void fill_readers(const batch_job *job, const double *map, double (*reade
         }
 }
 
-int batch_supply(batch_room *room, int number)
+/* The next place, or that of the mode that was asked for longest ago. */
+static int place_for(batch_room *room)
 {
-    static const int signs[3] = {0, 1, -1};
-    double map[BG_MAP_ROWS * BG_MAP_COLUMNS];
-    int mode[EX_PORTS] = {0}, digits = number;
+    const unsigned looks = room->context->looks;
+    int oldest = 0;
+    if (room->record.count < EX_MODES)
+        return room->record.count++;
+    for (int k = 1; k < EX_MODES; k++)
+        if (looks - room->used[k] > looks - room->used[oldest])
+            oldest = k;
+    return oldest;
+}
+
+int batch_supply(void *self, const int *mode)
+{
+    batch_room *const room = self;
     batch_instance *const own = room->model;
     bg_hold *held = NULL;
-    if (room->made >= BATCH_MODES)
-        return BG_NOT_AFFINE;
-    for (int i = 0; i < EX_K; i++, digits /= 3)
-        mode[i] = signs[digits % 3];
-    const enum batch_found found = batch_model_mode(own, mode, map, &held);
+    const enum batch_found found = batch_model_mode(own, mode, &held);
     if (found == BATCH_MODE_REFUSED)
         return BG_NOT_AFFINE;
-    const int at = room->made++;
-    memset(room->mode + at, 0, sizeof room->mode[at]);
+    const int at = place_for(room);
+    ex_mode *const made = room->mode + at;
+    memset(made, 0, sizeof *made);
     if (found != BATCH_MODE_NONE)
-        fill(room->mode + at, map, &own->m.numbers, held);
+        fill(made, own->map, &own->m.numbers, held);
     if (found == BATCH_MODE_WHOLE && BG_SWITCHES)
-        fill_switches(room->mode + at, map, &own->m, mode);
-    room->mode[at].none = found == BATCH_MODE_NONE;
-    room->mode[at].supported = found == BATCH_MODE_WHOLE;
+        fill_switches(made, own->map, &own->m, mode);
+    made->none = found == BATCH_MODE_NONE;
+    made->supported = found == BATCH_MODE_WHOLE;
     find_fastest(room, at);
     if (found == BATCH_MODE_WHOLE)
-        fill_readers(room->job, map, batch_readers(room, at));
-    room->record.modes[number] = room->mode + at;
-    room->place[number] = at;
-    room->number[at] = number;
+        fill_readers(room->job, own->map, batch_readers(room, made));
+    room->known[at] = made;
+    room->keys[at] = room->context->where;
+    room->used[at] = room->context->looks;
     return BG_OK;
 }

@@ -166,21 +166,18 @@ static void flatten(batch_map *map, double *matrix)
 
 /* Redundant ports share a load, and that is not affine; but what rules their slips does not depend
  * on what they give. */
-static enum batch_found slips_alone(batch_instance *own, const int *mode, double *map)
+static enum batch_found slips_alone(batch_instance *own, const int *mode)
 {
-    batch_map parts;
     int slipping[BG_ROOM(K)] = {0};
     for (int i = 0; i < K; i++)
         slipping[i] = mode[i] ? mode[i] : 1;
-    combine(own, slipping, NULL, &parts);
-    flatten(&parts, map);
+    combine(own, slipping, NULL, &own->parts);
+    flatten(&own->parts, own->map);
     return BATCH_MODE_SLIPS;
 }
 
-enum batch_found batch_model_mode(batch_instance *own, const int *mode, double *map,
-                                  bg_hold **held)
+enum batch_found batch_model_mode(batch_instance *own, const int *mode, bg_hold **held)
 {
-    batch_map parts;
     int sticking = 0, status = BG_AFFINE ? BG_OK : BG_NOT_AFFINE;
     for (int i = 0; i < K; i++)
         sticking |= mode[i] == 0;
@@ -195,8 +192,8 @@ enum batch_found batch_model_mode(batch_instance *own, const int *mode, double *
     if (status != BG_OK || (shares && (*held)->ruled == 0))
         return BATCH_MODE_REFUSED;
     if (shares)
-        return slips_alone(own, mode, map);
-    combine(own, mode, *held, &parts);
-    flatten(&parts, map);
+        return slips_alone(own, mode);
+    combine(own, mode, *held, &own->parts);
+    flatten(&own->parts, own->map);
     return BATCH_MODE_WHOLE;
 }

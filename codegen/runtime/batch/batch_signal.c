@@ -3,12 +3,6 @@
 
 #include <string.h>
 
-static const double (*readers_of(const ex_context *c, const batch_room *room))[EX_L]
-{
-    const int place = room->place[ex_number(c->run.mode)];
-    return (const double(*)[EX_L])batch_readers(room, place);
-}
-
 double batch_over_state(const ex_context *c, const double *reader, double *row)
 {
     const ex_inputs *const inputs = c->inputs;
@@ -33,7 +27,7 @@ double batch_over_state(const ex_context *c, const double *reader, double *row)
 
 void batch_show(const ex_context *c, const batch_room *room, const batch_table *table)
 {
-    const double(*const readers)[EX_L] = readers_of(c, room);
+    double(*const readers)[EX_L] = batch_readers(room, c->stretch.entry->mode);
     for (int s = 0; s < room->job->signals; s++)
         room->levels[s] = batch_over_state(c, readers[s], table->row[BATCH_OWN + s]);
 }
@@ -50,8 +44,10 @@ void batch_sample(const batch_room *room, const batch_table *table, const double
 
 void batch_sample_last(ex_context *c, const batch_room *room)
 {
-    const double(*const readers)[EX_L] = readers_of(c, room);
+    const ex_mode *mode;
     double v[EX_L];
+    ex_find(c, c->run.mode, &mode);
+    double(*const readers)[EX_L] = batch_readers(room, mode);
     ex_vector(c, c->run.at.t, c->s, v);
     for (int s = 0; s < room->job->signals; s++) {
         double sum = 0.0;

@@ -42,7 +42,7 @@ static void own_rows(const ex_entry *e, double (*row)[EX_Z])
             for (int l = 0; l < EX_Z; l++)
                 change += e->trigger[l][i] * e->M[j][l];
             row[i][j] = e->trigger[j][i];
-            row[EX_T + i][j] = e->caps >> i & 1u ? 0.0 : e->step / 3.0 * change;
+            row[EX_T + i][j] = e->cap[i] ? 0.0 : e->step / 3.0 * change;
         }
 }
 
@@ -54,7 +54,7 @@ void batch_prepare(ex_context *c, const batch_room *room, const batch_table *tab
         ex_multiply(table->power[i - 1], table->power[i - 1], table->power[i]);
     own_rows(e, table->row);
     for (int i = 0; i < BATCH_OWN + room->job->signals; i++)
-        if (i < EX_T || i >= BATCH_OWN || !(e->caps >> (i - EX_T) & 1u))
+        if (i < EX_T || i >= BATCH_OWN || !e->cap[i - EX_T])
             spread(table->row[i], table->power, table->lane[i]);
     if (EX_K)
         ex_bound(c, e, table->power[0]);

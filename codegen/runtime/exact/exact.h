@@ -2,10 +2,9 @@
  *
  * The sizes come from config.h, which is generated:
  *   EX_N integrated states s         EX_X states x        EX_U inputs u of the equations
- *   EX_W external inputs w           EX_K friction ports  EX_MODES three to the power of EX_K
- *   EX_G slots of the inputs' generator
- * All but EX_K are at least 1. A mode's number has a digit of base 3 for each port, the first port
- * the lowest: 0 sticks, 1 slips forwards, 2 backwards. What is of exact steps alone begins with ex_.
+ *   EX_W external inputs w           EX_K friction ports  EX_MODES that are kept at a time, at most
+ *   EX_G slots of the inputs' generator                   three to the power of EX_K
+ * All but EX_K are at least 1. What is of exact steps alone begins with ex_.
  *
  * Nothing is allocated and nothing is global: the caller owns a context for each run at a time. */
 #ifndef BG_EXACT_H
@@ -17,6 +16,8 @@
 
 enum {
     EX_PORTS = EX_K > 0 ? EX_K : 1,
+    EX_DIGITS = 32,         /* of a word */
+    EX_WORDS = (EX_PORTS + EX_DIGITS - 1) / EX_DIGITS,
     EX_Z = EX_N + EX_G,     /* state of a stretch: s and the slots of the generator */
     EX_T = 2 * EX_K,        /* triggers: two for each port */
     EX_TRIGGERS = 2 * EX_PORTS,
@@ -37,6 +38,12 @@ enum {
     EX_ALIGNMENT = 32       /* of a context in bytes; rows are read faster if they have it, too */
 };
 
+/* A mode as a number of two bits for each port, the first port the lowest: 0 sticks, 1 slips
+ * forwards, 2 backwards. */
+typedef struct {
+    unsigned long long digits[EX_WORDS];
+} ex_key;
+
 /* One friction mode: affine maps over (s, w, w', 1), by columns. One that is not affine may have no
  * more than slips, their rates and caps, to tell whether what inputs rule of them lets it be;
  * `none`: nothing holds its ports. */
@@ -44,6 +51,7 @@ typedef struct {
     int supported, held;           /* whether it is affine; slips that sticking takes from x */
     int none, ruled;
     double ruling[EX_PORTS][EX_PORTS]; /* combinations of slips, by rows, that must be zero */
+    int joined[EX_PORTS];          /* alike, not 0: ports with part in what none rules alone */
     double fastest;                /* the largest rate of s by itself */
     double weight[EX_N];           /* M is balanced in the sum of weight times magnitude */
     double shot[EX_L][EX_SHOT];    /* x, u, then of the ports: slips, efforts, caps, and how fast
@@ -61,12 +69,20 @@ typedef struct {
     double rate[EX_L][EX_N], rest[EX_L][EX_N]; /* .. the rates of s as pairs, without friction */
 } ex_mode;
 
-/* Magnitudes from which rounding is told, rows of the ports by columns of states and inputs. */
+/* The `count` modes that have been worked out; `supply`: works out one more, or is NULL where the
+ * caller does; `used`: when each was asked for last, or NULL. Magnitudes from which rounding is told,
+ * rows of the ports by columns of states and inputs. */
 typedef struct {
-    const ex_mode *modes[EX_MODES]; /* NULL where a mode has not been worked out */
+    int count;
+    const ex_key *keys;
+    const ex_mode *const *modes;
+    unsigned *used;
+    int (*supply)(void *self, const int *mode);
+    void *self;
     double F[EX_X][EX_PORTS], D[EX_U][EX_PORTS], FP[EX_X][EX_PORTS], FQ[EX_U][EX_PORTS];
     double P[EX_X][EX_X], Q[EX_U][EX_X], inertia[EX_PORTS];
     int coupled[EX_PORTS];          /* whether the slip depends at once on friction */
+    int own[EX_PORTS];              /* the input that each port gives */
     int switched;                   /* whether any port is a switch */
     bg_switch switches[EX_PORTS];
 } ex_model;
@@ -96,10 +112,11 @@ typedef struct {
     double grid;
     const double *start;              /* s at the first */
     double (*rows)[EX_ROW];           /* out: s in the first EX_N columns */
-    int *modes;                       /* out: each sample's mode */
-    const int *first;                 /* BG_MOST_PORTS modes before the run; NULL: all let go */
+    int *modes;                       /* out: each sample's mode, by its place in the model's */
+    const int *first;                 /* the mode before the run; NULL: all let go */
     bg_event *events;                 /* out */
-    int count, where;                 /* events; the mode that an error is about */
+    int count;                        /* of events */
+    ex_key where;                     /* the mode that an error is about */
     double time;                      /* where the run ended */
 } ex_task;
 

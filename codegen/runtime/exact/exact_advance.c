@@ -42,7 +42,7 @@ static int record(void *self, ex_context *c, ex_place *p)
     double *row = c->task->rows[p->at];
     memcpy(row, p->z, sizeof p->z);
     ex_fill(&c->stretch, row);
-    c->task->modes[p->at] = ex_number(c->run.mode);
+    c->task->modes[p->at] = c->stretch.entry->place;
     p->base = p->at++;
     return ex_check_levels(c, p->t, row);
 }
@@ -89,7 +89,7 @@ static int doubtful(ex_context *c, ex_place *p, long long done, double *next)
     const ex_entry *e = c->stretch.entry;
     double end;
     const int status = ex_series(c, p->t + (double)done * e->step, e->step, p->z, &end, &p->ports);
-    if (status || p->ports) {
+    if (status || !bg_is_empty(&p->ports)) {
         p->stop = end;
         return status;
     }
@@ -116,7 +116,7 @@ static int steps(ex_context *c, ex_place *p, int count, long long *done)
         memcpy(p->z, rows[sure], sizeof p->z);
         if (sure < ahead) {
             const int status = doubtful(c, p, *done, rows[++sure]);
-            if (status || p->ports)
+            if (status || !bg_is_empty(&p->ports))
                 return status;
             if (parts > 1 && ++*done % parts == 0)
                 memcpy(c->task->rows[p->base + *done / parts], rows[sure], sizeof rows[sure]);
@@ -139,10 +139,10 @@ static int leap_on(void *self, ex_context *c, ex_place *p, int count, double h)
     }
     long long done;
     const int status = steps(c, p, count, &done), made = (int)(done / c->stretch.entry->parts);
-    const int number = ex_number(c->run.mode), until = p->at + made;
+    const int until = p->at + made;
     for (; p->at < until && p->at < p->last; p->at++)
-        c->task->modes[p->at] = number;
-    if (status || p->ports)
+        c->task->modes[p->at] = c->stretch.entry->place;
+    if (status || !bg_is_empty(&p->ports))
         return status;
     p->base = p->at - 1;
     p->t = until > p->last ? p->stop : c->task->times[p->base];
@@ -156,9 +156,9 @@ static int step_on(ex_context *c, ex_place *p, const ex_recorder *to)
     const double next = sample ? c->task->times[p->at] : p->stop;
     double end;
     const int status = ex_series(c, p->t, next - p->t, p->z, &end, &p->ports);
-    if (p->ports)
+    if (!bg_is_empty(&p->ports))
         p->stop = end;
-    if (status || p->ports)
+    if (status || !bg_is_empty(&p->ports))
         return status;
     p->t = next;
     p->base = -1;
@@ -171,7 +171,7 @@ void ex_set_out(const ex_context *c, ex_place *p, double stop)
     p->stop = stop;
     p->at = c->next;
     p->base = -1;
-    p->ports = 0;
+    memset(&p->ports, 0, sizeof p->ports);
     p->last = first_not_before(c->task, c->next, stop);
     memcpy(p->z, c->s, sizeof c->s);
     ex_slots(c->inputs, c->run.segment, c->run.at.t, p->z + EX_N);
@@ -182,7 +182,7 @@ static double back_to_sample(const ex_context *c, ex_place *p)
 {
     int switched = 0;
     for (int i = 0; i < EX_K; i++)
-        switched |= (p->ports >> i & 1u) && ex_switches(c, i);
+        switched |= bg_has(&p->ports, i) && ex_switches(c, i);
     if (!switched || p->at <= c->next)
         return p->stop;
     const double last = c->task->times[p->at - 1], begin = c->run.at.t;
@@ -199,7 +199,7 @@ void ex_arrive(ex_context *c, ex_place *p)
     memcpy(c->s, p->z, sizeof c->s);
     c->run.at.t = t;
     for (int i = 0; i < EX_K; i++)
-        c->run.at.touched[i] = p->ports >> i & 1u;
+        c->run.at.touched[i] = bg_has(&p->ports, i);
 }
 
 int ex_advance_by(ex_context *c, double stop, const ex_recorder *to)
@@ -207,7 +207,7 @@ int ex_advance_by(ex_context *c, double stop, const ex_recorder *to)
     ex_place p;
     int status = BG_OK;
     ex_set_out(c, &p, stop);
-    while (!status && !p.ports && (p.t < stop || p.at < p.last)) {
+    while (!status && bg_is_empty(&p.ports) && (p.t < stop || p.at < p.last)) {
         double h = 0.0;
         const int count = p.base >= 0 ? alike(c, &p, &h) : 0;
         if (count >= EX_STRIDE && armed(c, to->row ? to->row : c->task->rows[p.base]))

@@ -26,7 +26,7 @@ static void first_leap(ex_entry *e, double (*E)[EX_Z])
     for (int j = 0; j < EX_Z; j++) {
         memcpy(e->leap[0][j], E[j], sizeof E[j]);
         for (int i = 0; i < EX_T; i++) {
-            const int watched = !(e->caps >> i & 1u);
+            const int watched = !e->cap[i];
             e->leap[0][j][EX_Z + i] = ends[j][i];
             e->leap[0][j][EX_Z + EX_T + i] = watched ? e->step / 3.0 * change[j][i] : 0.0;
         }

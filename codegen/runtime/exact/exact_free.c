@@ -44,7 +44,7 @@ int ex_free(ex_context *c, double stop)
         if (!sample)
             break;
         memcpy(c->task->rows[p.at], p.z, sizeof p.z);
-        c->task->modes[p.at] = ex_number(c->run.mode);
+        c->task->modes[p.at] = c->stretch.entry->place;
     }
     ex_arrive(c, &p);
     return BG_OK;

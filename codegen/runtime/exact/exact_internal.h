@@ -23,9 +23,10 @@ enum {
 /* A mode with a generator, z' = M z + .., and its exponentials for one step. By columns. */
 typedef struct {
     const ex_mode *mode;
-    int number;
+    ex_key key;
+    int place;                          /* of the mode in the model's */
     long long parts;
-    unsigned caps;                      /* a bit for each trigger that is only a cap */
+    int cap[EX_TRIGGERS];               /* whether a trigger is only a cap */
     ex_chains chains;
     double norm;                        /* of M, in a sum weighted by `weight` */
     double h, step;                     /* between samples, and its part that is a step */
@@ -65,7 +66,7 @@ typedef double ex_shot[EX_SHOT];
 typedef struct {
     double t, stop, z[EX_Z];
     int at, last, base;
-    unsigned ports;
+    bg_set ports;
 } ex_place;
 
 /* Goes on to `stop` or the first event, in a stretch that has begun. A status. */
@@ -77,7 +78,10 @@ struct ex_context {
     ex_task *task;
     ex_advancing *advance;
     void *caller;                       /* for `advance` */
-    int clock, where, next;             /* the latest mode; the next sample */
+    int clock, next;                    /* the next sample */
+    ex_key where;                       /* the latest mode .. */
+    int place;                          /* .. and its place in the model's */
+    unsigned looks;
     double s[EX_N];
     int known, known_segment;           /* whether `given` holds, for `known_time` */
     double known_time, given[2 * EX_W];
@@ -102,9 +106,9 @@ void ex_given(const ex_inputs *inputs, int segment, const double *g, double *w, 
 /* The magnitudes of the terms that make up w, with what rounding of t adds. */
 void ex_input_sizes(const ex_inputs *inputs, int segment, double t, double *w);
 
-/* exact_modes.c: everything at one instant in a mode; a status. */
-int ex_number(const int *mode);
-int ex_find(ex_context *c, int number, const ex_mode **found);
+/* exact_modes.c: a mode, valid until others are looked for; everything at one instant in it; a status. */
+int ex_is_same(const ex_key *one, const ex_key *other);
+int ex_find(ex_context *c, const int *mode, const ex_mode **found);
 int ex_rests(const ex_mode *mode, int port);
 void ex_vector(ex_context *c, double t, const double *s, double *v);
 int ex_look(ex_context *c, double t, const double *s, const ex_mode *mode, double *shot);
@@ -150,9 +154,8 @@ void ex_multiply(double (*left)[EX_Z], double (*right)[EX_Z], double (*restrict 
 int ex_first_fall(const double *p, double begin, double *root);
 double ex_value(const double *p, double tau);
 
-/* exact_series.c: from t by `length`, z in place; *port is a bit for each port whose event ended it
- * at *end. */
-int ex_series(ex_context *c, double t, double length, double *z, double *end, unsigned *ports);
+/* exact_series.c: from t by `length`, z in place; *ports are those whose event ended it at *end. */
+int ex_series(ex_context *c, double t, double length, double *z, double *end, bg_set *ports);
 
 /* exact_leap.c: steps from rows[0]; how many are certain to be without an event. */
 int ex_leap(const ex_stretch *stretch, int count, double (*rows)[EX_ROW]);

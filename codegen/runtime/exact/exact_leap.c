@@ -20,7 +20,7 @@ void ex_fill(const ex_stretch *stretch, double *row)
         for (int i = 0; i < EX_Z; i++)
             rate[i] += e->M[j][i] * row[j];
     for (int i = 0; i < EX_T; i++) {
-        const int watched = !(e->caps >> i & 1u);
+        const int watched = !e->cap[i];
         double value = stretch->level[i], change = 0.0;
         for (int j = 0; j < EX_Z; j++) {
             value += e->trigger[j][i] * row[j];
@@ -48,7 +48,7 @@ void ex_uncertainty(const ex_stretch *stretch, const double *row, double *slack)
         double sum = 0.0;
         for (int j = 0; j < EX_Z; j++)
             sum += e->fourth[j][i] * rate[j];
-        slack[i] = e->caps >> i & 1u ? -DBL_MIN : sum;
+        slack[i] = e->cap[i] ? -DBL_MIN : sum;
     }
 }
 

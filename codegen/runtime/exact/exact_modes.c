@@ -3,21 +3,53 @@
 
 #include <float.h>
 #include <math.h>
+#include <stddef.h>
 
-int ex_number(const int *mode)
+static ex_key key_of(const int *mode)
 {
-    int number = 0;
-    for (int i = EX_K - 1; i >= 0; i--)
-        number = 3 * number + (mode[i] == 0 ? 0 : mode[i] > 0 ? 1 : 2);
-    return number;
+    ex_key key = {{0}};
+    for (int i = 0; i < EX_K; i++) {
+        const unsigned long long digit = mode[i] == 0 ? 0 : mode[i] > 0 ? 1 : 2;
+        key.digits[i / EX_DIGITS] |= digit << i % EX_DIGITS * 2;
+    }
+    return key;
 }
 
-int ex_find(ex_context *c, int number, const ex_mode **found)
+int ex_is_same(const ex_key *one, const ex_key *other)
 {
-    c->where = number;
-    *found = c->model->modes[number];
-    if (*found == 0)
+    unsigned long long differ = 0;
+    for (int k = 0; k < EX_WORDS; k++)
+        differ |= one->digits[k] ^ other->digits[k];
+    return differ == 0;
+}
+
+/* The place of a mode among those that are known; -1: it is none of them. */
+static int known_place(const ex_context *c, const ex_key *key)
+{
+    const ex_model *const m = c->model;
+    if (c->place < m->count && ex_is_same(m->keys + c->place, key))
+        return c->place;
+    for (int k = 0; k < m->count; k++)
+        if (ex_is_same(m->keys + k, key))
+            return k;
+    return -1;
+}
+
+int ex_find(ex_context *c, const int *mode, const ex_mode **found)
+{
+    const ex_model *const m = c->model;
+    const ex_key key = key_of(mode);
+    int at = known_place(c, &key);
+    c->where = key;
+    *found = NULL;
+    if (at < 0 && m->supply && m->supply(m->self, mode) == BG_OK)
+        at = known_place(c, &key);
+    if (at < 0)
         return BG_MISSING;
+    c->place = at;
+    if (m->used)
+        m->used[at] = ++c->looks;
+    *found = m->modes[at];
     return (*found)->supported ? BG_OK : BG_NOT_AFFINE;
 }
 

@@ -15,7 +15,8 @@ void ex_sizes(unsigned long *sizes)
 
 void ex_forget(ex_context *c)
 {
-    c->clock = 0;
+    c->clock = c->place = 0;
+    memset(&c->where, 0, sizeof c->where);
     memset(c->used, 0, sizeof c->used);
     c->ladder.known = 0;
 }
@@ -25,7 +26,7 @@ static int look(void *context, double t, const double *s, const int *mode)
 {
     ex_context *const c = context;
     const ex_mode *found;
-    const int status = ex_find(c, ex_number(mode), &found);
+    const int status = ex_find(c, mode, &found);
     if (status == BG_NOT_AFFINE && found->none)
         return BG_NO_HOLD;
     if (status && !(status == BG_NOT_AFFINE && found->ruled))
@@ -36,8 +37,9 @@ static int look(void *context, double t, const double *s, const int *mode)
 static void tell(void *context, const int *mode, const bg_instant *at, bg_port *ports,
                  bg_ruling *ruling)
 {
-    const ex_context *const c = context;
-    const ex_mode *const found = c->model->modes[ex_number(mode)];
+    ex_context *const c = context;
+    const ex_mode *found;
+    ex_find(c, mode, &found);
     if (at)
         ex_round(c, c->shot, at->t, ports);
     else
@@ -48,20 +50,34 @@ static void tell(void *context, const int *mode, const bg_instant *at, bg_port *
         ex_keep(c, found, c->seen, ports);
     if (!ruling)
         return;
-    ruling->unknown = found->supported ? BG_OK : BG_NOT_AFFINE;
-    ruling->count = found->ruled;
-    ruling->kept = found->held;
-    for (int k = 0; k < found->held; k++)
-        memcpy(ruling->mix[k], found->mix[k], sizeof found->mix[k]);
-    for (int k = 0; k < found->ruled; k++)
-        memcpy(ruling->rows[k], found->ruling[k], sizeof found->ruling[k]);
+    *ruling = (bg_ruling){.width = EX_PORTS, .count = found->ruled, .kept = found->held,
+                          .unknown = found->supported ? BG_OK : BG_NOT_AFFINE,
+                          .rows = found->ruling[0], .mix = found->mix[0]};
+}
+
+static int couple(void *context, const int *mode, bg_set *touched)
+{
+    ex_context *const c = context;
+    const ex_model *const m = c->model;
+    const ex_mode *found;
+    const int status = ex_find(c, mode, &found);
+    if (status == BG_MISSING || found->none)
+        return status;
+    for (int i = 0; i < EX_K; i++)
+        for (int j = 0; j < EX_K; j++)
+            if (mode[i] == 0 && mode[j] == 0
+                && (m->FQ[m->own[j]][i] != 0.0 || m->D[m->own[j]][i] != 0.0
+                    || (found->joined[i] && found->joined[i] == found->joined[j])))
+                bg_add(touched + i, j);
+    return BG_OK;
 }
 
 /* States, and the terms that make up inputs. */
 static void see(void *context, const int *slipping)
 {
     ex_context *const c = context;
-    const ex_mode *const mode = c->model->modes[ex_number(slipping)];
+    const ex_mode *mode;
+    ex_find(c, slipping, &mode);
     double v[EX_L], terms[EX_U] = {0};
     ex_vector(c, c->run.at.t, c->s, v);
     for (int j = 0; j < EX_L; j++) {
@@ -79,7 +95,7 @@ static int fastest(void *context, double *fastest)
 {
     ex_context *const c = context;
     const ex_mode *mode;
-    const int status = ex_find(c, ex_number(c->run.mode), &mode);
+    const int status = ex_find(c, c->run.mode, &mode);
     if (status == BG_OK)
         *fastest = bg_greater(mode->fastest, c->inputs->fastest[c->run.segment]);
     return status;
@@ -91,7 +107,7 @@ static int rest(void *context)
     ex_context *const c = context;
     const ex_mode *mode;
     double v[EX_L];
-    const int status = ex_find(c, ex_number(c->run.mode), &mode);
+    const int status = ex_find(c, c->run.mode, &mode);
     if (status || mode->held == 0)
         return status;
     ex_vector(c, c->run.at.t, c->s, v);
@@ -116,7 +132,8 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
               ex_advancing *how, void *caller)
 {
     const bg_sight sight = {c, EX_N, EX_K, model->switched ? model->switches : NULL, model->coupled,
-                            c->shot + EX_AT_RATE, c->point, c->struck, look, tell, ex_strike};
+                            c->shot + EX_AT_RATE, c->point, c->struck, look, tell, ex_strike,
+                            couple};
     const bg_engine engine = {sight, c, see, fastest, rest, advance};
     c->model = model;
     c->inputs = inputs;
@@ -128,7 +145,6 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
     c->run.breaks = inputs->breaks;
     c->run.events = task->events;
     c->run.capacity = task->capacity;
-    task->where = -1;
     memcpy(c->s, task->start, sizeof c->s);
     memset(&c->peaks, 0, sizeof c->peaks);
     bg_set_out(&c->run, task->times[0], task->times[task->samples - 1], c->s, task->first);
@@ -147,9 +163,11 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
 int ex_run(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task)
 {
     const int status = ex_run_by(c, model, inputs, task, ex_advance, 0);
+    const ex_mode *last;
     if (status == BG_OK) {
         memcpy(task->rows[task->samples - 1], c->s, sizeof c->s);
-        task->modes[task->samples - 1] = ex_number(c->run.mode);
+        ex_find(c, c->run.mode, &last);
+        task->modes[task->samples - 1] = c->place;
     }
     return status;
 }

@@ -2,6 +2,7 @@
 #include "exact_internal.h"
 
 #include <math.h>
+#include <string.h>
 
 /* next = factor (M term + constant), in two sums that don't wait for each other */
 static inline void differentiate(const ex_entry *e, const double *restrict term,
@@ -109,11 +110,11 @@ static int fall(ex_context *c, int trigger, double elapsed, double step, double 
 }
 
 /* The first event of a step that has been expanded, in all ports that have it. */
-static int event(ex_context *c, double t, double step, double *tau, unsigned *ports)
+static int event(ex_context *c, double t, double step, double *tau, bg_set *ports)
 {
     double roots[EX_PORTS];
     *tau = 2.0;
-    *ports = 0;
+    memset(ports, 0, sizeof *ports);
     for (int i = 0; i < EX_K; i++) {
         const int triggers = ex_single(c, c->stretch.entry->mode, i) ? 1 : 2;
         roots[i] = 2.0;
@@ -130,14 +131,14 @@ static int event(ex_context *c, double t, double step, double *tau, unsigned *po
     const double near = *tau + BG_TOGETHER * bg_greater(1.0, t / step);
     for (int i = 0; i < EX_K; i++)
         if (*tau <= 1.0 && roots[i] <= bg_lesser(near, 1.5))
-            *ports |= 1u << i;
+            bg_add(ports, i);
     return BG_OK;
 }
 
-int ex_series(ex_context *c, double t, double length, double *z, double *end, unsigned *ports)
+int ex_series(ex_context *c, double t, double length, double *z, double *end, bg_set *ports)
 {
     const double parts = bg_greater(ceil(c->stretch.entry->norm * length), 1.0);
-    *ports = 0;
+    memset(ports, 0, sizeof *ports);
     *end = t + length;
     if (length <= 0.0)
         return BG_OK;
@@ -149,7 +150,7 @@ int ex_series(ex_context *c, double t, double length, double *z, double *end, un
         const int status = event(c, from, step, &tau, ports);
         if (status)
             return status;
-        if (*ports) {
+        if (!bg_is_empty(ports)) {
             state(c, tau, z);
             *end = from + tau * step;
             return BG_OK;

@@ -65,7 +65,7 @@ static int find_way(ex_context *c, const int *mode, int loose, const ex_mode **f
     int other[BG_MOST_PORTS] = {0};
     for (int i = 0; i < EX_K; i++)
         other[i] = loose || !ex_switches(c, i) ? 1 : mode[i];
-    const int status = ex_find(c, ex_number(other), found);
+    const int status = ex_find(c, other, found);
     return status == BG_NOT_AFFINE && (*found)->none ? BG_NO_HOLD : status;
 }
 

@@ -103,9 +103,9 @@ static void assemble(ex_context *c, ex_entry *e)
             e->M[j][i] = shot[EX_AT_RATE + i];
         triggers(c, e->mode, shot, j < EX_N ? e->mode->stay[j] : keeping[j - EX_N], e->trigger[j]);
     }
-    e->caps = 0;
+    memset(e->cap, 0, sizeof e->cap);
     for (int i = 0; i < EX_K; i++)
-        e->caps |= ex_single(c, e->mode, i) ? 2u << 2 * i : 0u;
+        e->cap[2 * i + 1] = ex_single(c, e->mode, i);
     balance(e);
     e->h = e->step = 0.0;
 }
@@ -115,7 +115,7 @@ static int entry(ex_context *c, ex_entry **found)
 {
     const ex_chains *chains = c->inputs->structures + c->inputs->chains[c->run.segment];
     const ex_mode *mode;
-    const int number = ex_number(c->run.mode), status = ex_find(c, number, &mode);
+    const int status = ex_find(c, c->run.mode, &mode);
     int oldest = 0;
     if (status)
         return status;
@@ -126,10 +126,12 @@ static int entry(ex_context *c, ex_entry **found)
     c->clock++;
     for (int i = 0; i < EX_ENTRIES; i++) {
         ex_entry *e = c->entries + i;
-        if (c->used[i] && e->number == number
+        if (c->used[i] && ex_is_same(&e->key, &c->where)
             && (e->chains.count == chains->count
                 && memcmp(&e->chains, chains, sizeof *chains) == 0)) {
             c->used[i] = c->clock;
+            e->mode = mode;
+            e->place = c->place;
             *found = e;
             return BG_OK;
         }
@@ -139,7 +141,8 @@ static int entry(ex_context *c, ex_entry **found)
     *found = c->entries + oldest;
     c->used[oldest] = c->clock;
     (*found)->mode = mode;
-    (*found)->number = number;
+    (*found)->key = c->where;
+    (*found)->place = c->place;
     (*found)->chains = *chains;
     assemble(c, *found);
     return isfinite((*found)->norm) ? BG_OK : BG_NOT_FINITE;

@@ -30,18 +30,6 @@ typedef struct {
     bg_block *values;
 } bg_group;
 
-/* Ranks of one set of sticking ports, exact: `direct` rows of D, over the set and the coupled laws
- * that it moves, are independent in `direct_columns`; of the combinations that D leaves free (one
- * for each of `null`, positions of the other ports), those of positions `kept` are independent in
- * the states `kept_columns`; `ruled`: whether other inputs rule one that is not. */
-typedef struct {
-    int moved, direct, null, kept, ruled;
-    int moved_laws[BG_ROOM(BG_COUPLED)];
-    int direct_rows[BG_ROOM(BG_FRICTION)], direct_columns[BG_ROOM(BG_FRICTION)];
-    int null_rows[BG_ROOM(BG_FRICTION)];
-    int kept_rows[BG_ROOM(BG_FRICTION)], kept_columns[BG_ROOM(BG_FRICTION)];
-} bg_structure;
-
 /* As fmin, fmax and the sign, but no number where an argument is none. */
 static inline double bg_min(double a, double b)
 {
@@ -61,7 +49,10 @@ static inline double bg_sign(double a)
 /* Generated. */
 extern const bg_pattern bg_layout[BG_MATRICES];
 extern const bg_group bg_known, bg_groups[], bg_coupled;
-extern const bg_structure bg_structures[];
+/* The slips F x + D u of friction ports as residues: port k has those from bg_slip_begins[k] on, at
+ * places among states, then inputs; the laws that it moves, by their order among the coupled. */
+extern const int bg_slip_begins[], bg_slip_places[], bg_moved_begins[], bg_moved[];
+extern const unsigned long long bg_slip_residues[], bg_prime, bg_prime_inverse; /* -1/p mod 2^64 */
 extern const int bg_law_rates[], bg_friction_inputs[], bg_friction_readings[];
 extern const int bg_outside_inputs[], bg_differentiable[], bg_output_readings[], bg_beside[];
 extern const int bg_moving[]; /* readings of how fast slips change by their factors; -1: none */
@@ -88,9 +79,12 @@ int bg_assemble(bg_model *m);
 void bg_inverse_entries(bg_model *m, int count, const int *rows, const int *columns, double *out);
 void bg_solve_storages(const bg_numbers *a, int columns, double *right);
 
+/* port_rank.c: the ranks of a set of `count` ports. */
+void bg_rank(bg_model *m, int count, const int *ports, bg_structure *structure);
+
 /* port_independent.c: combinations of slips; whether redundant ports share a load; how far what
  * other inputs rule of slips is from leaving zero. */
-int bg_independent(const bg_model *m, const bg_structure *s, bg_hold *held, double *null);
+int bg_independent(const bg_model *m, bg_hold *held, double *null);
 int bg_shares(const bg_hold *held);
 double bg_room(const bg_hold *held, int port, const bg_snapshot *shot, const double *near);
 

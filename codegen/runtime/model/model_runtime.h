@@ -8,6 +8,7 @@
 
 #include "config.h"
 #include "layout.h"
+#include "port_set.h"
 #include "run_status.h"
 
 /* Arrays of a length that may be zero have room for one. */
@@ -17,7 +18,9 @@
 enum {
     /* The integrated vector s: states less what driven dependent storages add, then law states. */
     BG_SIZE = BG_ROOM(BG_STATES + BG_LAW_STATES),
-    BG_MAP_COLUMNS = BG_SIZE + 2 * BG_EXTERNAL + 1
+    BG_MAP_COLUMNS = BG_SIZE + 2 * BG_EXTERNAL + 1,
+    /* What ranks are found over: what friction and the laws that it moves give; states; inputs. */
+    BG_RANKED = BG_FRICTION + BG_COUPLED + BG_STATES + BG_INPUTS
 };
 
 /* Where each part of an instant begins, BG_AT_x and so on, one after the other. */
@@ -53,12 +56,27 @@ typedef struct {
     int pivots[BG_ROOM(BG_STATES)];
 } bg_numbers;
 
-/* The holding equations X x + U u + V u' = 0 of one set of sticking ports (bits of `stuck`).
+/* Ranks of one set of sticking ports, exact: `direct` rows of D, over the set and the coupled laws
+ * that it moves, are independent in `direct_columns`; of the combinations that D leaves free (one
+ * for each of `null`, positions of the other ports), those of positions `kept` are independent in
+ * the states `kept_columns`; `ruled`: whether other inputs rule one that is not. */
+typedef struct {
+    int moved, direct, null, kept, ruled;
+    int moved_laws[BG_ROOM(BG_COUPLED)];
+    int direct_rows[BG_ROOM(BG_FRICTION)], direct_columns[BG_ROOM(BG_FRICTION)];
+    int null_rows[BG_ROOM(BG_FRICTION)];
+    int kept_rows[BG_ROOM(BG_FRICTION)], kept_columns[BG_ROOM(BG_FRICTION)];
+} bg_structure;
+
+/* The holding equations X x + U u + V u' = 0 of one set of sticking ports, `stuck`, where `used`
+ * tells when they were asked for; `ready`: whether there are some at the present numbers.
  * Of `count` ports, the slips of `kept` combinations are states' and kept zero by taking away;
  * those of the first `ruled` rows of `share` are other inputs' and must be zero. */
 typedef struct {
-    unsigned stuck;
+    bg_set stuck;
+    unsigned used;
     int ready, count, kept, share_count, ruled, ports[BG_ROOM(BG_FRICTION)];
+    bg_structure ranks;
     double X[BG_TABLE(BG_FRICTION, BG_STATES)];
     double U[BG_TABLE(BG_FRICTION, BG_INPUTS)], V[BG_TABLE(BG_FRICTION, BG_INPUTS)];
     double inverse[BG_TABLE(BG_FRICTION, BG_FRICTION)], share[BG_TABLE(BG_FRICTION, BG_FRICTION)];
@@ -78,8 +96,10 @@ typedef struct {
     double given[3][BG_ROOM(BG_EXTERNAL)], rates[3][BG_ROOM(BG_EXTERNAL)];
     double origin[BG_MAP_ROWS], external[2][BG_ROOM(BG_EXTERNAL)];
     double turning[BG_ROOM(BG_FRICTION)]; /* what slips may change by in a step, twice */
+    double part[BG_ROOM(BG_FRICTION)];    /* slips of what counts as being at rest */
     double loop[BG_ROOM(BG_LOOP)][6], slopes[BG_TABLE(BG_LOOP, BG_LOOP)];
     int pivots[BG_ROOM(BG_LOOP)];
+    unsigned long long residues[BG_TABLE(BG_FRICTION, BG_RANKED)];
     bg_values sizes;
 } bg_work;
 
@@ -105,6 +125,7 @@ typedef struct {
     double du[BG_ROOM(BG_INPUTS)], caps[BG_ROOM(BG_FRICTION)], constants[BG_ROOM(BG_CONSTANTS)];
     bg_numbers numbers;
     bg_hold holds[BG_HOLDS];
+    unsigned asked; /* how often for what holds ports */
     bg_snapshot shot;
     bg_work work;
 } bg_model;

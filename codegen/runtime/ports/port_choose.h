@@ -4,11 +4,10 @@
 #define BG_PORT_CHOOSE_H
 
 #include "config.h"
+#include "port_set.h"
 #include "port_switch.h"
 #include "run_status.h"
 #include "tuning.h"
-
-enum { BG_MOST_PORTS = 8 };
 
 /* What an instant is to a port: none of its own, its event, or an event that may be long past, as
  * whoever steps the model finds it no better. */
@@ -20,15 +19,15 @@ typedef struct {
     double slip, effort, cap, push, stay, near_slip, near_effort, near_push, near_stay;
 } bg_port;
 
-/* Combinations of slips, by rows over all ports, that only inputs rule and not what the ports of a
- * mode give: those that stick hold only while all are zero. `unknown`: the status of a mode of
- * which no more is known than whether they are. */
+/* Combinations of the slips of `width` ports, those of `ports` (NULL: the first), by rows. `count`
+ * rows that only inputs rule and not what the ports of a mode give: those that stick hold only
+ * while all are zero; `kept` of the mix, that the ports stop: friction does not do so at once.
+ * `unknown`: the status of a mode of which no more is known than the rows. Valid until the next
+ * look. */
 typedef struct {
-    int count, unknown;
-    double rows[BG_MOST_PORTS][BG_MOST_PORTS];
-    /* so many combinations that the ports stop: friction does not do so at once */
-    int kept;
-    double mix[BG_MOST_PORTS][BG_MOST_PORTS];
+    int width, count, kept, unknown;
+    const int *ports;
+    const double *rows, *mix;
 } bg_ruling;
 
 /* An instant: the shortest time constant there, and the inputs' next breakpoint. */
@@ -44,7 +43,9 @@ typedef struct {
  * is and, unless `at` is NULL, what counts as zero there; and unless that is NULL of the ruling,
  * which comes with no rows. `strike` puts s, which is that of `at` before, to what it is once the
  * switches of a mode hold: 1 in `shocks` where the impulse goes with the switch's mode, -1 where
- * against it, else 0; *struck: whether there is one. */
+ * against it, else 0; *struck: whether there is one. `couple` tells of each port that is held in a
+ * mode which ports it touches: those that its effort moves at once or accelerates, and those with
+ * which it has part in what none of them rules alone; its status tells that this is not known. */
 typedef struct {
     void *self;
     int size, ports;
@@ -57,6 +58,7 @@ typedef struct {
                  bg_ruling *ruling);
     int (*strike)(void *self, const bg_instant *at, const int *mode, double *s, int *shocks,
                   int *struck);
+    int (*couple)(void *self, const int *mode, bg_set *touched);
 } bg_sight;
 
 /* From the mode so far to the one just after the instant: 0 sticks or is held, 1 slips forwards or
@@ -67,11 +69,15 @@ typedef struct {
 int bg_choose(const bg_sight *sight, const bg_instant *at, int *mode);
 
 /* What to try where a mode cannot be evaluated, by number: slipping as it does, the same backwards
- * where it sticks, the mode, the ways of slipping, all stuck; 0 where there are no more. */
+ * where it sticks, the mode, of few ports the ways of slipping, all stuck; 0 where there are no
+ * more. */
 int bg_try(int ports, int number, const int *mode, int *tried);
 
 /* Looks at a mode that can be: that of `mode`, or if `slipping` one that slips as it does; else any
  * other way of slipping, or all stuck. A status: that of the first if there is none. */
 int bg_evaluated(const bg_sight *sight, const bg_instant *at, int slipping, int *mode);
+
+/* Whether a status says nothing about the mode: it is a refusal, or asks for something. */
+int bg_ends_search(int status);
 
 #endif

@@ -5,27 +5,64 @@
 #include "port_choose.h"
 
 /* `s`: that of the instant, or what it is after an impact, if it is `struck`; `shocks`: the signs
- * of its impulses. `undecided`: the `count` friction ports that may stick, by bits in `open`. `why`
- * there is no mode: as none could be looked at so far, or as those are not consistent. */
+ * of its impulses. `open`: the friction ports that may stick. `why` there is no mode: as none could
+ * be looked at so far, or as those are not consistent. */
 typedef struct {
     const bg_sight *sight;
     const bg_instant *at;
     double *s;
     const int *before;
-    int shocks[BG_MOST_PORTS], struck;
-    int forward[BG_MOST_PORTS], undecided[BG_MOST_PORTS], count, why;
-    unsigned open;
+    int shocks[BG_MOST_PORTS], struck, why;
+    bg_set open, switches;
 } bg_choice;
 
 /* What is found of a mode: whether it holds, or else whether friction or which switches contradict
- * it. */
+ * it; `turned`: which friction ports do, of which those that are held go `up` by what they give. */
 typedef struct {
     int holds, rubbing;
-    unsigned broken;
+    bg_set broken, turned, up;
 } bg_finding;
+
+/* Friction ports that touch one another, and the way that was tried last: by number, of those in
+ * which so many stick and so many that were not touched change; of a large block, after how many
+ * turns. */
+typedef struct {
+    int count, stick, change, number, turns;
+    const int *ports;
+} bg_port_block;
+
+enum {
+    BG_FEW_OPEN = 4,   /* so many ports are tried together whether or not they touch */
+    BG_ENUMERATED = 8, /* of a block of so many ports all ways are tried; else ports turn */
+    BG_BLOCK_TURNS = 20, /* so often for each port */
+    BG_BLOCK_WAYS = BG_PORTS > BG_ENUMERATED ? BG_BLOCK_TURNS * BG_PORTS : 1
+};
+
+/* The ways of large blocks that have been tried. */
+typedef struct {
+    int count;
+    struct {
+        const int *block;
+        bg_set held, back;
+    } ways[BG_BLOCK_WAYS];
+} bg_tried;
+
+/* port_verdict.c: what contradicts a mode, of the ports asked; a status that ends the search. */
+int bg_find(bg_choice *choice, const int *mode, const bg_set *asked, bg_finding *found);
+
+/* port_block.c: puts the first way of a block in a mode; the next, after what was found of that: 0
+ * if there is none. Those that stick most come first, then those that change least; in a large
+ * block ports that contradict turn. */
+void bg_begin_block(const bg_choice *choice, bg_port_block *block, int *mode);
+int bg_next_way(const bg_choice *choice, bg_port_block *block, bg_tried *tried,
+                const bg_finding *found, int *mode);
+
+/* Sorts the ports that may stick by the blocks they are in, and tells how many blocks there are;
+ * few ports are one. A status that ends the search. */
+int bg_partition(const bg_choice *choice, int count, int *ports, bg_port_block *found, int *blocks);
 
 /* port_choose.c: the first consistent mode with the switches of `mode`, if one holds; else switches
  * that would have to change over. A status that ends the search. */
-int bg_choose_rubbing(bg_choice *choice, int *mode, int *holds, unsigned *broken);
+int bg_choose_rubbing(bg_choice *choice, int *mode, int *holds, bg_set *broken);
 
 #endif

@@ -1,11 +1,13 @@
 /* What holds ports that stick: linear equations for their efforts. */
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "model_internal.h"
 
-static void copy_direct(const bg_model *m, const bg_structure *s, bg_hold *held)
+static void copy_direct(const bg_model *m, bg_hold *held)
 {
+    const bg_structure *const s = &held->ranks;
     for (int r = 0; r < s->direct; r++) {
         const int row = bg_friction_readings[held->ports[s->direct_rows[r]]];
         memcpy(held->X + r * N, m->numbers.F + row * N, sizeof(double) * N);
@@ -32,8 +34,9 @@ static void add_moving(const bg_numbers *a, double factor, int port, bg_hold *he
 }
 
 /* The rows that rule the states: N^T y_s' = 0. */
-static void rule_states(const bg_model *m, const bg_structure *s, const double *null, bg_hold *held)
+static void rule_states(const bg_model *m, const double *null, bg_hold *held)
 {
+    const bg_structure *const s = &held->ranks;
     const bg_numbers *const a = &m->numbers;
     for (int k = 0; k < s->kept; k++) {
         const double *combined = null + s->kept_rows[k] * held->count;
@@ -59,8 +62,9 @@ static void rule_states(const bg_model *m, const bg_structure *s, const double *
     }
 }
 
-static int invert_system(const bg_structure *s, bg_hold *held)
+static int invert_system(bg_hold *held)
 {
+    const bg_structure *const s = &held->ranks;
     double system[PORTS * PORTS];
     int pivots[PORTS];
     const int count = held->count, ruled = s->direct + s->kept;
@@ -96,49 +100,68 @@ static int find_take_away(bg_model *m, bg_hold *held)
 }
 
 /* Refuses to stick where the slope of a law that the system rules would be needed. */
-static int check_slopes(const bg_structure *s, const bg_hold *held)
+static int check_slopes(const bg_hold *held)
 {
-    for (int r = 0; r < s->direct + s->kept; r++)
+    for (int r = 0; r < held->ranks.direct + held->ranks.kept; r++)
         for (int j = 0; j < M; j++)
             if (fabs(held->V[r * M + j]) > BG_NOTHING_HELD && !bg_differentiable[j])
                 return BG_NEEDS_SLOPE;
     return BG_OK;
 }
 
-static int build(bg_model *m, const bg_structure *s, bg_hold *held)
+static int build(bg_model *m, bg_hold *held)
 {
+    const bg_structure *const s = &held->ranks;
     double null[PORTS * PORTS];
-    if (!bg_independent(m, s, held, null))
+    memset(held->X, 0, sizeof *held - offsetof(bg_hold, X));
+    held->share_count = 0;
+    if (!bg_independent(m, held, null))
         return BG_STRUCTURE;
     held->kept = s->kept;
     held->ruled = s->ruled ? held->share_count : 0;
-    copy_direct(m, s, held);
-    rule_states(m, s, null, held);
+    copy_direct(m, held);
+    rule_states(m, null, held);
     /* Where laws answer as well, all are searched for together. */
-    if ((s->moved == 0 && !invert_system(s, held)) || !find_take_away(m, held))
+    if ((s->moved == 0 && !invert_system(held)) || !find_take_away(m, held))
         return BG_NO_HOLD;
-    return check_slopes(s, held);
+    return check_slopes(held);
+}
+
+/* Where a set is kept, or that which was not asked for for longest. */
+static bg_hold *place_of(bg_model *m, const bg_set *stuck)
+{
+    bg_hold *oldest = m->holds;
+    for (int k = 0; k < BG_HOLDS; k++) {
+        bg_hold *const one = m->holds + k;
+        if (one->used && bg_is_same(&one->stuck, stuck))
+            return one;
+        if (m->asked - one->used > m->asked - oldest->used)
+            oldest = one;
+    }
+    oldest->used = 0;
+    return oldest;
 }
 
 /* The holding equations of the ports that stick in a mode, from before if they still hold. */
 int bg_hold_of(bg_model *m, const int *mode, bg_hold **found)
 {
-    unsigned stuck = 0;
-    bg_hold *held;
-    int status;
-    for (int i = 0; i < K; i++)
-        if (mode[i] == 0)
-            stuck |= 1u << i;
-    held = &m->holds[stuck % BG_HOLDS];
+    const bg_set stuck = bg_held_in(K, mode);
+    bg_hold *const held = place_of(m, &stuck);
+    const int known = held->used != 0;
     *found = held;
-    if (held->ready && held->stuck == stuck)
+    m->asked += m->asked + 1 ? 1 : 2; /* 0 is that of an empty place */
+    held->used = m->asked;
+    if (known && held->ready)
         return BG_OK;
-    memset(held, 0, sizeof *held);
-    held->stuck = stuck;
-    for (int i = 0; i < K; i++)
-        if (stuck >> i & 1u)
-            held->ports[held->count++] = i;
-    status = build(m, &bg_structures[stuck], held);
+    if (!known) {
+        held->stuck = stuck;
+        held->count = 0;
+        for (int i = 0; i < K; i++)
+            if (mode[i] == 0)
+                held->ports[held->count++] = i;
+        bg_rank(m, held->count, held->ports, &held->ranks);
+    }
+    const int status = build(m, held);
     held->ready = status == BG_OK;
     return status;
 }

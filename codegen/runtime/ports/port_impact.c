@@ -7,9 +7,9 @@
 
 /* The right null space of D_ss over the ports' own inputs, a direction in each row of `free`: so
  * many. Where a law would have to answer with an impulse of its own there is no such direction. */
-static int free_directions(const bg_model *m, const bg_structure *s, const bg_hold *held,
-                           double *free)
+static int free_directions(const bg_model *m, const bg_hold *held, double *free)
 {
+    const bg_structure *const s = &held->ranks;
     double system[PORTS * PORTS];
     int pivots[PORTS], count = 0;
     const int columns = held->count;
@@ -103,7 +103,7 @@ int bg_impulses(bg_model *m, const int *mode, bg_hold **held, double *impulses)
     if (status != BG_OK)
         return status;
     const bg_hold *const h = *held;
-    const int count = free_directions(m, &bg_structures[h->stuck], h, free);
+    const int count = free_directions(m, h, free);
     slips_by(m, h, free, count, moved);
     memset(impulses, 0, sizeof(double) * (size_t)(h->kept * K));
     for (int k = 0; k < h->kept; k++) {

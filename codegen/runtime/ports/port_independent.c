@@ -1,6 +1,5 @@
 /* Which slips of a set of sticking ports are independent, and the combinations that are not. Which
- * rows that is was decided exactly when the model was generated; here only numbers are solved for.
- */
+ * rows that is has been decided exactly; here only numbers are solved for. */
 #include <math.h>
 #include <string.h>
 
@@ -8,9 +7,10 @@
 
 #define ANSWERING BG_TABLE(BG_FRICTION, BG_FRICTION + BG_COUPLED)
 
-/* factors[j]: row `row` of a as a combination of `count` independent rows; 0 unless it is one. */
-static int combination(int columns, const double *a, int count, const int *rows,
-                       const int *pivot_columns, int row, double *factors)
+/* factors[j]: row `row` of a as a combination of `count` independent rows; 0 unless it is one.
+ * `sizes`: of the terms that make up the entries. */
+static int combination(int columns, const double *a, const double *sizes, int count,
+                       const int *rows, const int *pivot_columns, int row, double *factors)
 {
     double system[PORTS * PORTS];
     int pivots[PORTS];
@@ -23,10 +23,10 @@ static int combination(int columns, const double *a, int count, const int *rows,
         return 0;
     bg_solve(count, system, pivots, 1, factors);
     for (int c = 0; c < columns; c++) {
-        double left = a[row * columns + c], size = fabs(left);
+        double left = a[row * columns + c], size = fabs(sizes[row * columns + c]);
         for (int j = 0; j < count; j++) {
             left -= factors[j] * a[rows[j] * columns + c];
-            size += fabs(factors[j] * a[rows[j] * columns + c]);
+            size += fabs(factors[j] * sizes[rows[j] * columns + c]);
         }
         if (fabs(left) > BG_CONSISTENT * size)
             return 0;
@@ -41,8 +41,8 @@ static int null_rows(const bg_structure *s, int count, const double *D, double *
     double factors[PORTS];
     memset(null, 0, sizeof(double) * PORTS * PORTS);
     for (int r = 0; r < s->null; r++) {
-        if (!combination(columns, D, s->direct, s->direct_rows, s->direct_columns, s->null_rows[r],
-                         factors))
+        if (!combination(columns, D, D, s->direct, s->direct_rows, s->direct_columns,
+                         s->null_rows[r], factors))
             return 0;
         null[r * count + s->null_rows[r]] = 1.0;
         for (int j = 0; j < s->direct; j++)
@@ -52,7 +52,8 @@ static int null_rows(const bg_structure *s, int count, const double *D, double *
 }
 
 /* held->share: combinations that the states do not see either. */
-static int share_rows(const bg_structure *s, const double *null, const double *seen, bg_hold *held)
+static int share_rows(const bg_structure *s, const double *null, const double *seen,
+                      const double *sizes, bg_hold *held)
 {
     double factors[PORTS];
     const int count = held->count;
@@ -63,7 +64,7 @@ static int share_rows(const bg_structure *s, const double *null, const double *s
             kept |= s->kept_rows[j] == r;
         if (kept)
             continue;
-        if (!combination(N, seen, s->kept, s->kept_rows, s->kept_columns, r, factors))
+        if (!combination(N, seen, sizes, s->kept, s->kept_rows, s->kept_columns, r, factors))
             return 0;
         for (int c = 0; c < count; c++) {
             row[c] = null[r * count + c];
@@ -76,8 +77,9 @@ static int share_rows(const bg_structure *s, const double *null, const double *s
 }
 
 /* D of the slips of a set over what answers at once: its own efforts, and the laws they move. */
-static void answering(const bg_model *m, const bg_structure *s, const bg_hold *held, double *D)
+static void answering(const bg_model *m, const bg_hold *held, double *D)
 {
+    const bg_structure *const s = &held->ranks;
     const int count = held->count;
     for (int i = 0; i < count; i++) {
         const double *row = m->numbers.slip_D + held->ports[i] * (K + BG_COUPLED);
@@ -90,22 +92,26 @@ static void answering(const bg_model *m, const bg_structure *s, const bg_hold *h
 
 /* In `null` combinations of slips that efforts do not change at once, in held->share those that
  * the states do not see either; 0 where the numbers have other ranks. */
-int bg_independent(const bg_model *m, const bg_structure *s, bg_hold *held, double *null)
+int bg_independent(const bg_model *m, bg_hold *held, double *null)
 {
+    const bg_structure *const s = &held->ranks;
     double D[ANSWERING];
-    double *const seen = held->take_away; /* not in use yet */
+    double *const seen = held->take_away, *const sizes = held->slip_x; /* not in use yet */
     const int count = held->count;
-    answering(m, s, held, D);
+    answering(m, held, D);
     if (!null_rows(s, count, D, null))
         return 0;
     for (int r = 0; r < s->null; r++)
         for (int c = 0; c < count; c++)
-            for (int j = 0; j < N; j++)
-                seen[r * N + j] +=
-                    null[r * count + c] * m->numbers.slip_F[held->ports[c] * N + j];
-    if (!share_rows(s, null, seen, held))
+            for (int j = 0; j < N; j++) {
+                const double term = null[r * count + c] * m->numbers.slip_F[held->ports[c] * N + j];
+                seen[r * N + j] += term;
+                sizes[r * N + j] += fabs(term);
+            }
+    if (!share_rows(s, null, seen, sizes, held))
         return 0;
     memset(held->take_away, 0, sizeof held->take_away);
+    memset(held->slip_x, 0, sizeof held->slip_x);
     return 1;
 }
 

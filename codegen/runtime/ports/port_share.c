@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "model_internal.h"
+#include "port_ways.h"
 
 /* Directions over all ports, by rows, and what each port can hold. */
 typedef struct {
@@ -88,20 +89,6 @@ static int weigh(const directions *d, const int *ports, double *weights)
     return 1;
 }
 
-/* The next choice of `size` among `total`, in order; 0 after the last. */
-static int next_choice(int size, int total, int *chosen)
-{
-    int at = size - 1;
-    while (at >= 0 && chosen[at] == total - size + at)
-        at--;
-    if (at < 0)
-        return 0;
-    chosen[at]++;
-    for (int i = at + 1; i < size; i++)
-        chosen[i] = chosen[i - 1] + 1;
-    return 1;
-}
-
 /* Of the ports that move, the weights of the load with the highest fraction; that fraction with
  * the load's sign. */
 static double most_loaded(const directions *d, int moved, const int *ports, const double *efforts,
@@ -126,7 +113,7 @@ static double most_loaded(const directions *d, int moved, const int *ports, cons
             result = load / most;
             memcpy(worst, weights, sizeof weights);
         }
-    } while (next_choice(d->free + 1, moved, chosen));
+    } while (bg_next_choice(d->free + 1, moved, chosen));
     return result;
 }
 

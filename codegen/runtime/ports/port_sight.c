@@ -81,14 +81,8 @@ static void rule(bg_model *m, const int *mode, bg_ruling *ruling)
         sticking |= mode[i] == 0;
     if (!sticking || bg_hold_of(m, mode, &held) != BG_OK)
         return;
-    ruling->count = held->ruled;
-    ruling->kept = held->kept;
-    for (int k = 0; k < held->kept; k++)
-        for (int c = 0; c < held->count; c++)
-            ruling->mix[k][held->ports[c]] = held->mix[k * held->count + c];
-    for (int r = 0; r < held->ruled; r++)
-        for (int c = 0; c < held->count; c++)
-            ruling->rows[r][held->ports[c]] = held->share[r * held->count + c];
+    *ruling = (bg_ruling){.width = held->count, .count = held->ruled, .kept = held->kept,
+                          .ports = held->ports, .rows = held->share, .mix = held->mix};
 }
 
 static void tell_ports(void *view, const int *mode, const bg_instant *at, bg_port *ports,
@@ -106,10 +100,32 @@ static void tell_ports(void *view, const int *mode, const bg_instant *at, bg_por
         rule(v->model, mode, ruling);
 }
 
+static int couple_ports(void *view, const int *mode, bg_set *touched)
+{
+    bg_view *const v = view;
+    bg_hold *held = NULL;
+    const int status = BG_JOINT ? BG_NO_SOLUTION : bg_hold_of(v->model, mode, &held);
+    if (status != BG_OK)
+        return status;
+    for (int c = 0; c < held->count; c++)
+        for (int d = 0; d < held->count; d++) {
+            const int i = held->ports[c], j = held->ports[d];
+            const int at = bg_friction_inputs[j] * K + i;
+            int joined = v->FQ[at] != 0.0 || v->D[at] != 0.0;
+            for (int r = 0; r < held->share_count; r++)
+                joined |= held->share[r * held->count + c] != 0.0
+                    && held->share[r * held->count + d] != 0.0;
+            if (joined)
+                bg_add(touched + i, j);
+        }
+    return BG_OK;
+}
+
 bg_sight bg_view_sight(bg_view *v)
 {
     return (bg_sight){v, BG_SIZE, K, BG_SWITCHES ? bg_switches : NULL, bg_beside, v->shot.rate,
-                      v->point, v->struck, bg_view_look, tell_ports, bg_view_strike};
+                      v->point, v->struck, bg_view_look, tell_ports, bg_view_strike,
+                      couple_ports};
 }
 
 /* A term is the effect of a small relative change of a state. */

@@ -78,7 +78,7 @@ static void find_slack(step_search *c, double *slack)
         slack[i] = bg_largest(M, m->shot.u);
         any |= m->mode[i] == 0;
     }
-    if (!any || bg_hold_of(m, m->mode, &held) != BG_OK || bg_structures[held->stuck].moved)
+    if (!any || bg_hold_of(m, m->mode, &held) != BG_OK || held->ranks.moved)
         return;
     bg_effort_terms(held, m->shot.x, m->shot.u, m->shot.du, terms);
     for (int i = 0; i < held->count; i++)
@@ -86,21 +86,23 @@ static void find_slack(step_search *c, double *slack)
 }
 
 /* Switches whose conditions change them over: above zero, or at zero and above it in the step. */
-static unsigned sent(step_search *c, const double *ways)
+static bg_set sent(step_search *c, const double *ways)
 {
     bg_model *const m = c->m;
     double told[BG_ROOM(BG_GUARDS)] = {0}, near[BG_ROOM(BG_GUARDS)] = {0};
-    unsigned found = 0, tied = 0;
+    bg_set found = {{0}}, tied = {{0}};
     bg_guards(&m->now, told);
     bg_told_terms(m, near);
     for (int i = 0; i < K; i++) {
         const int at = bg_condition(bg_switches + i, m->mode[i]);
         if (bg_switches[i].kind != BG_TOLD || ways[i] != 0.0)
             continue;
-        found |= (unsigned)(told[at] > BG_STEP_ROUNDING * near[at]) << i;
-        tied |= (unsigned)(fabs(told[at]) <= BG_STEP_ROUNDING * near[at]) << i;
+        if (told[at] > BG_STEP_ROUNDING * near[at])
+            bg_add(&found, i);
+        else if (fabs(told[at]) <= BG_STEP_ROUNDING * near[at])
+            bg_add(&tied, i);
     }
-    if (!tied)
+    if (bg_is_empty(&tied))
         return found;
     for (int i = 0; i < BG_SIZE; i++)
         m->work.point[i] = c->s[i] + c->at.h * m->shot.rate[i];
@@ -111,26 +113,31 @@ static unsigned sent(step_search *c, const double *ways)
     bg_guards(&m->now, told);
     for (int i = 0; i < K; i++) {
         const int at = bg_condition(bg_switches + i, m->mode[i]);
-        if (tied >> i & 1u)
-            found |= (unsigned)(told[at] > BG_STEP_ROUNDING * near[at]) << i;
+        if (bg_has(&tied, i) && told[at] > BG_STEP_ROUNDING * near[at])
+            bg_add(&found, i);
     }
     return found;
 }
 
 /* The switches that change over at once: by impulse, value or rate, whichever decides. */
-static unsigned contrary(step_search *c, const double *ways)
+static bg_set contrary(step_search *c, const double *ways)
 {
     double slack[PORTS];
-    unsigned found = 0;
+    bg_set found = {{0}};
     find_slack(c, slack);
     for (int i = 0; i < K; i++) {
         const int sided = bg_switches[i].kind == BG_ONE_SIDED && ways[i] == 0.0;
-        found |= (unsigned)(ways[i] < 0.0 || (sided && turns_over(c, i, slack[i]))) << i;
+        if (ways[i] < 0.0 || (sided && turns_over(c, i, slack[i])))
+            bg_add(&found, i);
     }
-    return BG_GUARDS ? found | sent(c, ways) : found;
+    if (BG_GUARDS) {
+        const bg_set more = sent(c, ways); /* others, as these have no sides or impulses */
+        found = bg_turned(found, &more);
+    }
+    return found;
 }
 
-static int try_in_step(void *self, unsigned held, int *holds, unsigned *broken)
+static int try_in_step(void *self, const bg_set *held, int *holds, bg_set *broken)
 {
     step_search *const c = self;
     bg_model *const m = c->m;
@@ -139,10 +146,10 @@ static int try_in_step(void *self, unsigned held, int *holds, unsigned *broken)
     memcpy(c->s, c->begun, sizeof c->begun);
     for (int i = 0; i < K; i++) {
         const int is_switch = bg_switches[i].kind != BG_RUBS;
-        m->mode[i] = is_switch ? !(held >> i & 1u) : c->at.before[i];
+        m->mode[i] = is_switch ? !bg_has(held, i) : c->at.before[i];
         rubbing |= !is_switch;
     }
-    if (held)
+    if (!bg_is_empty(held))
         status = strike(c, m->mode, ways);
     if (status == BG_OK && rubbing)
         status = bg_stick(m, &c->at);
@@ -153,21 +160,22 @@ static int try_in_step(void *self, unsigned held, int *holds, unsigned *broken)
         return status == BG_NEEDS_SLOPE || status == BG_STRUCTURE ? status : BG_OK;
     }
     *broken = contrary(c, ways);
-    *holds = *broken == 0;
+    *holds = bg_is_empty(broken);
     return BG_OK;
 }
 
 /* Where some ports are switches; a step that has no mode leaves all as it was. */
 static int search_ways(step_search *c, const int *before)
 {
-    unsigned switches = 0, first = 0;
+    bg_set switches = {{0}}, first = {{0}};
     int holds;
     for (int i = 0; i < K; i++)
         if (bg_switches[i].kind != BG_RUBS) {
-            switches |= 1u << i;
-            first |= (unsigned)(before[i] == 0) << i;
+            bg_add(&switches, i);
+            if (before[i] == 0)
+                bg_add(&first, i);
         }
-    const int status = bg_try_ways(K, switches, first, try_in_step, c, &holds);
+    const int status = bg_try_ways(K, &switches, first, try_in_step, c, &holds);
     if (status == BG_OK && holds)
         return BG_OK;
     memcpy(c->s, c->begun, sizeof c->begun);

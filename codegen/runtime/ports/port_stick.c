@@ -1,10 +1,12 @@
 /* Which friction ports stick in a step: Karnopp's dead band, in at most 4 evaluations for each port
- * near rest; where that comes to what is no mode, all modes of these ports. */
+ * near rest; where that comes to what is no mode, all modes of those eight that slip most. */
 #include <math.h>
 #include <string.h>
 
 #include "model_internal.h"
 #include "port_choose.h"
+
+enum { ENUMERATED = 8 };
 
 static int sticks(const int *mode)
 {
@@ -44,6 +46,8 @@ static int first_guess(bg_model *m, const bg_start *at, int *near)
         /* An input that steps may turn a slip round too; what a step can't reach slips on. */
         m->work.turning[i] = at->started ? 2 * at->h * fabs(rate) : 0.0;
         near[i] |= slip * at->before[i] < 0 && fabs(slip) <= m->work.turning[i];
+        m->work.part[i] =
+            fabs(slip) / (least_slip(m, i, around) + m->work.turning[i] + BG_TINY);
         m->mode[i] = near[i] ? 0 : slip > 0 ? 1 : -1;
         count += near[i];
     }
@@ -165,11 +169,28 @@ static int numbered(bg_model *m, const int *near, const int *rest, int number)
     return sticking;
 }
 
+/* Of the ports near rest those that slip most, as many as all ways are tried of; others stick. */
+static void leave_most(bg_model *m, int *near)
+{
+    int count = 0;
+    for (int i = 0; i < K; i++)
+        count += near[i];
+    for (; count > ENUMERATED; count--) {
+        int least = -1;
+        for (int i = 0; i < K; i++)
+            if (near[i] && (least < 0 || m->work.part[i] < m->work.part[least]))
+                least = i;
+        near[least] = 0;
+        m->mode[least] = 0;
+    }
+}
+
 /* The first mode that contradicts nothing, those in which most ports stick first: where one change
  * at a time has come to what is no mode, for a reason that is told if there is none. */
-static int search_all(bg_model *m, const bg_start *at, const int *near, int reason)
+static int search_all(bg_model *m, const bg_start *at, int *near, int reason)
 {
     int rest[PORTS] = {0}, kept[PORTS] = {0}, count = 0, total = 1;
+    leave_most(m, near);
     memcpy(rest, m->mode, sizeof m->mode);
     for (int i = 0; i < K; i++) {
         count += near[i];

@@ -16,34 +16,33 @@ double bg_stay(const bg_switch *s, int sign, double slip, double effort, const d
     return sign ? s->side * slip : -s->side * effort;
 }
 
-/* A search among the ways of the switches: those held are bits. `mode`: what is found. */
+/* A search among the ways of the switches. `mode`: what is found. */
 typedef struct {
     bg_choice choice;
     const int *before;
-    unsigned switches;
+    bg_set switches;
     int *mode;
 } bg_search;
 
 /* Tries one way: the switches that contradict it go to *broken; *holds with its mode. */
-static int try_way(void *self, unsigned held, int *holds, unsigned *broken)
+static int try_way(void *self, const bg_set *held, int *holds, bg_set *broken)
 {
     bg_search *const search = self;
     bg_choice *const choice = &search->choice;
     const bg_sight *const c = choice->sight;
     int tried[BG_MOST_PORTS];
     for (int i = 0; i < c->ports; i++)
-        tried[i] = search->switches >> i & 1u ? !(held >> i & 1u) : search->before[i];
+        tried[i] = bg_has(&search->switches, i) ? !bg_has(held, i) : search->before[i];
     memset(choice->shocks, 0, sizeof choice->shocks);
     choice->s = c->struck;
     memcpy(choice->s, choice->at->s, sizeof(double) * (size_t)c->size);
     choice->struck = 0;
     int status = BG_OK;
-    if (held)
+    if (!bg_is_empty(held))
         status = c->strike(c->self, choice->at, tried, choice->s, choice->shocks, &choice->struck);
     if (status) {
         choice->why = choice->why ? choice->why : status;
-        return status == BG_NEEDS_SLOPE || status == BG_STRUCTURE || status >= BG_MISSING ? status
-                                                                                           : BG_OK;
+        return status != BG_NOT_AFFINE && bg_ends_search(status) ? status : BG_OK;
     }
     status = bg_choose_rubbing(choice, tried, holds, broken);
     for (int i = 0; i < c->ports && *holds; i++)
@@ -55,21 +54,22 @@ static int try_way(void *self, unsigned held, int *holds, unsigned *broken)
 static int choose_switched(bg_search *search, int *holds)
 {
     const bg_sight *const c = search->choice.sight;
-    unsigned first = 0;
+    bg_set first = {{0}};
     for (int i = 0; i < c->ports; i++) {
         if (c->switches[i].kind == BG_RUBS)
             continue;
-        search->switches |= 1u << i;
-        first |= (unsigned)(search->mode[i] == 0) << i;
+        bg_add(&search->switches, i);
+        if (search->mode[i] == 0)
+            bg_add(&first, i);
     }
-    return bg_try_ways(c->ports, search->switches, first, try_way, search, holds);
+    return bg_try_ways(c->ports, &search->switches, first, try_way, search, holds);
 }
 
 /* The first consistent mode, at most one impact later: *struck. */
 static int choose_once(const bg_sight *c, const bg_instant *at, int *mode, int *struck)
 {
     int before[BG_MOST_PORTS], holds = 0;
-    unsigned broken;
+    bg_set broken;
     bg_search search = {
         .choice = {.sight = c, .at = at, .s = at->s}, .before = before, .mode = mode};
     memcpy(before, mode, sizeof(int) * (size_t)c->ports);

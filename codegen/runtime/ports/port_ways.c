@@ -1,88 +1,114 @@
-/* The ways of switches in turn; at most as many as there are. */
+/* The ways of switches in turn; as codegen/standalone/switchings.py. */
 #include "port_ways.h"
 
-#include "port_choose.h"
+enum {
+    ALL_WAYS = 12,  /* with more switches, further ways are those of few changes only */
+    FEW = 2,
+    TURNS = 50,     /* so often for each switch .. */
+    MOST_TURNS = 1000, /* .. and in all */
+    SEEN = BG_PORTS < 10 ? 1 << BG_PORTS : 2 * MOST_TURNS
+};
 
-enum { WAYS = 1 << BG_MOST_PORTS, TURNS = 50 };
-
+/* `seen`: the ways that have been tried, but for those of few changes. */
 typedef struct {
-    int ports;
-    unsigned switches;
+    int count, turns, known;
+    int switches[BG_MOST_PORTS];
     bg_way attempt;
     void *self;
-    unsigned char seen[WAYS];
+    bg_set seen[SEEN];
 } way_search;
 
-static int try_one(way_search *s, unsigned held, int *holds, unsigned *broken)
+static int was_seen(const way_search *s, const bg_set *held)
 {
-    s->seen[held] = 1;
+    for (int k = 0; k < s->known; k++)
+        if (bg_is_same(s->seen + k, held))
+            return 1;
+    return 0;
+}
+
+static int try_one(way_search *s, const bg_set *held, int *holds, bg_set *broken)
+{
     *holds = 0;
-    *broken = 0;
+    *broken = (bg_set){{0}};
     return s->attempt(s->self, held, holds, broken);
 }
 
-/* All that contradict change over until that has been tried, then the first of them (Murty). */
-static int follow(way_search *s, unsigned held, int *holds)
+/* Switches that contradict change over, all or the first of them, until a way has been tried. */
+static int follow(way_search *s, int all, bg_set *last, bg_set *held, bg_set *broken, int *holds)
 {
-    unsigned broken = 0, last = held;
-    int status = 0;
-    while (!s->seen[held]) {
-        status = try_one(s, held, holds, &broken);
-        if (status || *holds || broken == 0)
+    for (int k = 0; k < s->turns && !was_seen(s, held); k++) {
+        const int status = try_one(s, held, holds, broken);
+        s->seen[s->known++] = *held;
+        if (status || *holds || bg_is_empty(broken))
             return status;
-        last = held;
-        held ^= broken;
+        *last = *held;
+        const bg_set first = bg_only(bg_first_of(broken));
+        *held = bg_turned(*held, all ? broken : &first);
     }
-    held = last ^ (broken & (~broken + 1u));
-    for (int k = 0; k < TURNS * s->ports && !s->seen[held]; k++) {
-        status = try_one(s, held, holds, &broken);
-        if (status || *holds || broken == 0)
-            return status;
-        held ^= broken & (~broken + 1u);
-    }
-    return status;
+    return 0;
 }
 
-/* How many of the switches differ in `change`, whose highest bit is the first of them; those, as
- * bits of the ports. */
-static int changes(const way_search *s, unsigned change, int count, unsigned *ports)
+/* All that contradict, then the first of them (Murty). */
+static int follow_both(way_search *s, bg_set held, int *holds)
 {
-    int changed = 0, at = count;
-    *ports = 0;
-    for (int i = 0; i < s->ports; i++)
-        if (s->switches >> i & 1u) {
-            at--;
-            if (change >> at & 1u) {
-                *ports |= 1u << i;
-                changed++;
-            }
-        }
-    return changed;
+    bg_set broken = {{0}}, last = held;
+    const int status = follow(s, 1, &last, &held, &broken, holds);
+    if (status || *holds || bg_is_empty(&broken))
+        return status;
+    const bg_set first = bg_only(bg_first_of(&broken));
+    held = bg_turned(last, &first);
+    return follow(s, 0, &last, &held, &broken, holds);
+}
+
+int bg_next_choice(int size, int total, int *chosen)
+{
+    int at = size - 1;
+    while (at >= 0 && chosen[at] == total - size + at)
+        at--;
+    if (at < 0)
+        return 0;
+    chosen[at]++;
+    for (int i = at + 1; i < size; i++)
+        chosen[i] = chosen[i - 1] + 1;
+    return 1;
 }
 
 /* All ways, by how many switches differ from the first. */
-static int try_all(way_search *s, unsigned first, int *holds)
+static int try_all(way_search *s, const bg_set *first, int *holds)
 {
-    int count = 0, status = 0;
-    for (int i = 0; i < s->ports; i++)
-        count += (s->switches >> i & 1u) != 0;
-    for (int changed = 1; changed <= count; changed++)
-        for (unsigned change = 1u << count; change-- > 0;) {
-            unsigned ports, broken;
-            if (changes(s, change, count, &ports) != changed || s->seen[first ^ ports])
+    const int most = s->count <= ALL_WAYS ? s->count : FEW;
+    int chosen[BG_MOST_PORTS];
+    for (int changed = 1; changed <= most; changed++) {
+        for (int k = 0; k < changed; k++)
+            chosen[k] = k;
+        do {
+            bg_set held = *first, broken;
+            for (int k = 0; k < changed; k++) {
+                const bg_set one = bg_only(s->switches[chosen[k]]);
+                held = bg_turned(held, &one);
+            }
+            if (was_seen(s, &held))
                 continue;
-            status = try_one(s, first ^ ports, holds, &broken);
+            const int status = try_one(s, &held, holds, &broken);
             if (status || *holds)
                 return status;
-        }
-    return status;
+        } while (bg_next_choice(changed, s->count, chosen));
+    }
+    return 0;
 }
 
-int bg_try_ways(int ports, unsigned switches, unsigned first, bg_way attempt, void *self,
+int bg_try_ways(int ports, const bg_set *switches, bg_set first, bg_way attempt, void *self,
                 int *holds)
 {
-    way_search s = {.ports = ports, .switches = switches, .attempt = attempt, .self = self};
+    way_search s;
+    s.count = s.known = 0;
+    s.attempt = attempt;
+    s.self = self;
+    for (int i = 0; i < ports; i++)
+        if (bg_has(switches, i))
+            s.switches[s.count++] = i;
+    s.turns = TURNS * s.count < MOST_TURNS ? TURNS * s.count : MOST_TURNS;
     *holds = 0;
-    const int status = follow(&s, first, holds);
-    return status || *holds ? status : try_all(&s, first, holds);
+    const int status = follow_both(&s, first, holds);
+    return status || *holds ? status : try_all(&s, &first, holds);
 }

@@ -14,8 +14,9 @@ from codegen.batch import plan
 from codegen.c.runtime import FOLDERS, runtime_file, runtime_names
 from codegen.engine import located, runs, sizes
 from codegen.engine.status import Status
-from codegen.ports import holds
+from codegen.modes import blocks
 from codegen.program.lower import lower
+from codegen.standalone import deadband, friction, switchings
 
 FILES = ("main.c", *(name for folder in FOLDERS for name in runtime_names(folder)))
 
@@ -147,13 +148,15 @@ def _constant(header: str, name: str) -> str:
 
 
 def test_sizes_are_those_of_c() -> None:
-    assert int(_constant("port_choose.h", "BG_MOST_PORTS")) == holds.MOST_PORTS
-    # A table of three to this power is all that the exact engine has room for.
-    assert sizes.MOST_PORTS <= holds.MOST_PORTS
     assert int(_constant("batch.h", "BATCH_STRIDE")) == batch_engine.STRIDE
     assert int(_constant("batch.h", "BATCH_SQUARES")) == batch_engine.SQUARES
-    limit = batch_engine.MOST_MODES
-    assert _constant("batch.h", "BATCH_MODES") == f"EX_MODES < {limit} ? EX_MODES : {limit}"
+    assert int(_constant("exact.h", "EX_DIGITS")) == sizes.DIGITS
+    assert int(_constant("port_choosing.h", "BG_ENUMERATED")) == blocks.ENUMERATED
+    assert int(_constant("port_choosing.h", "BG_BLOCK_TURNS")) == blocks.TURNS
+    assert int(_constant("port_stick.c", "ENUMERATED")) == deadband.ENUMERATED
+    assert int(_constant("port_choose.c", "MOST_SLIPPING")) == friction.MOST_SLIPPING
+    for name in ("ALL_WAYS", "FEW", "TURNS", "MOST_TURNS"):
+        assert int(_constant("port_ways.c", name)) == getattr(switchings, name)
     assert sizes.ALIGNMENT % int(_constant("exact.h", "EX_ALIGNMENT")) == 0
 
 

@@ -11,7 +11,6 @@ from references.build import bond_graph
 
 import bondgraph as bg
 from codegen import to_c
-from codegen.ports.holds import MOST_PORTS
 from codegen.program.printing import printed
 from differentials.model import model
 
@@ -152,16 +151,7 @@ def test_parameters_that_change_what_is_redundant_are_refused(tmp_path: Path) ->
     assert "singular" in none.message(none.status)
 
 
-def test_more_friction_ports_than_a_table_can_have_are_refused_by_name() -> None:
-    ports = [bg.R(f"b{k}", law=bg.DryFriction(1)) for k in range(MOST_PORTS + 1)]
-    graph = bond_graph(
-        [bg.One("n"), bg.I("m", 1), *ports], "n>m " + " ".join(f"n>{p[0]}" for p in ports)
-    )
-    with pytest.raises(bg.StructureError, match=r"'b0', .*'b8' are 9 friction ports.* at most 8"):
-        to_c(bg.derive(graph), {})
-
-
-@pytest.mark.parametrize("count", [3, 4, MOST_PORTS])
+@pytest.mark.parametrize("count", [3, 4, 12])
 def test_several_redundant_ports_share_as_fairly_as_can_be(count: int, tmp_path: Path) -> None:
     """All on one shaft: the same fraction of each one's breakaway effort."""
     ports = [bg.R(f"b{k}", law=bg.DryFriction(k + 1)) for k in range(count)]
