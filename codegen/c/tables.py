@@ -7,6 +7,7 @@ import sympy as sp
 from bondgraph.equations import StateEquations
 from codegen.c.rhs import Straight
 from codegen.c.text import array, comment, doubles, integers, quoted, strings
+from codegen.modes.stability import modes_told
 from codegen.program.records import FrictionPort, Group, Program
 from codegen.program.units import units
 from codegen.runs.steps import told_step
@@ -39,19 +40,19 @@ def config(
     lines = [*comment(f"Sizes of {name}; written by bondgraph-toolkit."), "#ifndef BG_CONFIG_H"]
     lines += ["#define BG_CONFIG_H", ""]
     lines += [f"#define BG_{key} {value}" for key, value in _sizes(program, fast).items()]
-    lines += ["", *_steps(longest)]
+    lines += ["", *_steps(longest, len(program.friction))]
     lines += ["", *macros] if macros else []
     return "\n".join([*lines, "", "#endif", ""])
 
 
-def _steps(longest: float | None) -> list[str]:
+def _steps(longest: float | None, ports: int) -> list[str]:
     """What there is to say of fixed steps."""
     told = []
     if longest is not None:
         told = [
             *comment(
                 "The longest step [s] that is stable at the default start, parameters and inputs, in "
-                "every friction mode; 1e300 if nothing bounds it."
+                f"{modes_told(ports)}; 1e300 if nothing bounds it."
             ),
             f"#define BG_LONGEST_STEP {told_step(longest)!r}",
             "",

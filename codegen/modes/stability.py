@@ -15,13 +15,18 @@ from codegen.standalone.fastest import stable_step
 from codegen.tuning import TUNING
 
 ALL_SIGNS = 3
-"""Up to so many friction ports every mode is looked at; of more, every set that sticks."""
+"""Up to so many friction ports every mode is looked at; of more, every set that sticks .."""
+
+ALL_SETS = 8
+""".. and of more than these the sets of all and none, and those with one port more or less."""
 
 
 def longest_stable_step(
     model: ClosedModel, t: float, s: Array, given: Array, slopes: Array
 ) -> float:
     """The longest step [s] that is stable in every friction mode at an instant; inf without a bound.
+
+    Of more than eight ports in those modes in which at most one or all but one at least are held.
 
     ``given``, ``slopes``: the external inputs and their rates. Modes that cannot be evaluated there, and
     slopes that a jump of the rates makes infinite, bound nothing.
@@ -32,8 +37,21 @@ def longest_stable_step(
     return min((step for J in found for step in _steps(J)), default=math.inf)
 
 
+def modes_told(ports: int) -> str:
+    """In which modes `longest_stable_step` looks, of so many ports."""
+    if ports <= ALL_SETS:
+        return "every friction mode"
+    return "friction modes in which at most one port or all but one are held"
+
+
 def _modes(ports: int) -> Iterator[Mode]:
-    return product((0, 1, -1) if ports <= ALL_SIGNS else (0, 1), repeat=ports)
+    if ports <= ALL_SETS:
+        yield from product((0, 1, -1) if ports <= ALL_SIGNS else (0, 1), repeat=ports)
+        return
+    for most in (1, 0):
+        yield (most,) * ports
+        for other in range(ports):
+            yield tuple(1 - most if i == other else most for i in range(ports))
 
 
 def _steps(jacobian: Array | None) -> Iterable[float]:

@@ -81,7 +81,7 @@ def to_python(
         *("", *public(program)),
         *("", *places(program)),
         *(friction_tables(program, closed.slips) if program.friction else ()),
-        *step_settings(start.longest),
+        *step_settings(start.longest, len(program.friction)),
         *_functions(program, names),
     ]
     same = [RULE, "# What follows is the same for every model.", "", "", fixed]

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from codegen.modes.stability import modes_told
 from codegen.program.records import Program
 from codegen.python.text import listing, names_tuple
 from codegen.runs.steps import round_step, told_step
@@ -80,12 +81,12 @@ def _entries(row: Mapping[int, int]) -> list[str]:
     return [f"{column}: {value}" for column, value in row.items()]
 
 
-def step_settings(longest: float) -> list[str]:
+def step_settings(longest: float, ports: int) -> list[str]:
     """What there is to say of fixed steps; ``longest``: the longest stable one at the start [s]."""
     usual = round_step(min(TUNING.usual_step, longest / 2))
     return [
         "",
-        "# The longest step [s] that is stable at the start, in every friction mode; the usual one.",
+        f"# The longest step [s] that is stable at the start, in {modes_told(ports)}; the usual one.",
         f"LONGEST_STEP = {told_step(longest)!r}",
         f"STEP = {usual!r}",
     ]

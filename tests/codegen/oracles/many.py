@@ -53,19 +53,22 @@ def chain(count: int) -> Many:
 
 
 def stack(count: int) -> Many:
-    """Blocks in a row, each rubs on the next and the last on the ground: all ports touch one another."""
-    nodes, bonds = [bg.Se("push", "P"), bg.R("ground", law=bg.DryFriction(1.0))], ["push>v0"]
+    """Blocks in a row, each pushed, that rub on the next and the last on the ground: all ports touch."""
+    nodes, bonds = [bg.R("ground", law=bg.DryFriction(1.0))], [f"v{count - 1}>ground"]
     for k in range(count):
-        nodes += [bg.One(f"v{k}"), bg.I(f"m{k}", 1 + 0.01 * k, flow=f"w{k}")]
-        bonds += [f"v{k}>m{k}"]
+        nodes += [
+            bg.Se(f"p{k}", f"P{k}"),
+            bg.One(f"v{k}"),
+            bg.I(f"m{k}", 1 + 0.01 * k, flow=f"w{k}"),
+        ]
+        bonds += [f"p{k}>v{k}>m{k}"]
     for k in range(count - 1):
-        law = bg.DryFriction(1 + 0.5 * (count - k))
+        law = bg.DryFriction(1 + 0.1 * (count - k))
         nodes += [bg.Zero(f"z{k}"), bg.R(f"b{k}", law=law)]
         bonds += [f"v{k}>z{k}>v{k + 1}", f"z{k}>b{k}"]
-    bonds += [f"v{count - 1}>ground"]
-    push = Sine(1.2 * count, 1.0)
+    inputs = {f"P{k}": Sine(3.0, 1 + 0.1 * k, 2.0 * k) for k in range(count)}
     shown = tuple(f"w{k}" for k in range(count))
-    return Many(bond_graph(nodes, " ".join(bonds)), {"P": push}, np.linspace(0, 3, 61), shown)
+    return Many(bond_graph(nodes, " ".join(bonds)), inputs, np.linspace(0, 3, 61), shown)
 
 
 def bridge(phases: int) -> Many:

@@ -1,0 +1,154 @@
+"""Many ports that are held or let go: no table of sets or modes limits them, on any route."""
+
+import subprocess
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from oracles.c_model import compiled, written
+from oracles.exported import loaded
+from oracles.many import Many, bridge, chain, gearbox, stack
+
+import bondgraph as bg
+from codegen import Family, Result, Swept, event_count, samples, simulator, to_c, to_python
+from codegen.batch.exact import ExactLoop
+from codegen.standalone.ranks import SlipRows, held_set
+from codegen.sweeps.job import Job, batch_of
+
+
+def _run(case: Many, backend: str, method: str = "auto") -> Result:
+    """A run, in C without a word that numpy has done it."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return simulator(bg.derive(case.graph), {}, backend=backend).run(
+            case.times, {}, case.inputs, method
+        )
+
+
+def _agree(case: Many, found: Result, expected: Result, tolerance: float) -> None:
+    assert [(e.port, e.kind) for e in found.events] == [(e.port, e.kind) for e in expected.events]
+    for name in case.shown:
+        range_ = np.ptp(expected[name]) + 1e-9
+        assert np.abs(found[name] - expected[name]).max() <= tolerance * range_, name
+
+
+def test_a_chain_of_forty_blocks_steps_exactly_in_c_as_in_numpy() -> None:
+    case = chain(40)
+    expected = _run(case, "numpy")
+    assert len(expected.events) > 40
+    _agree(case, _run(case, "c"), expected, 1e-9)
+
+
+@pytest.mark.parametrize("case", [bridge(12), gearbox()], ids=["24 diodes", "12 clutches"])
+def test_a_bridge_and_a_gearbox_are_located_in_c_as_in_numpy(case: Many) -> None:
+    """Ports that share a load make modes that are not affine: events are located then."""
+    expected = _run(case, "numpy")
+    assert len(expected.events) > 60
+    _agree(case, _run(case, "c"), expected, 1e-8)
+
+
+def test_blocks_that_all_touch_are_pivoted_the_same_way_in_c() -> None:
+    """Twelve ports in one block, more than are enumerated."""
+    case = stack(12)
+    expected = _run(case, "numpy")
+    assert len({event.port for event in expected.events}) == 12
+    _agree(case, _run(case, "c"), expected, 1e-9)
+
+
+def test_currents_and_voltages_of_a_bridge_are_those_of_diodes() -> None:
+    """Each diode either carries or blocks, and at every node currents add up to zero."""
+    case = bridge(12)
+    found = _run(case, "c")
+    upper, lower = ([f"{side}{k}" for k in range(12)] for side in "ul")
+    for name in (*upper, *lower):
+        current, voltage = found[f"f_{name}"], found[f"e_{name}"]
+        assert current.min() >= -1e-9
+        assert voltage.max() <= 1e-9
+        assert np.abs(current * voltage).max() <= 1e-9
+    for side in (upper, lower):
+        assert sum(found[f"f_{name}"] for name in side) == pytest.approx(found["i"], abs=1e-9)
+    assert found["i"].max() > 8
+    # Of what a coil carries a resistance of 50 to the star's middle takes its part, as its node is driven.
+    for k in range(12):
+        into = found[f"i{k}"] - found[f"f_u{k}"] + found[f"f_l{k}"]
+        assert np.abs(into).max() < 10.0 / 50 + 1e-9
+
+
+def test_a_sweep_of_a_chain_is_run_in_c() -> None:
+    case = chain(12)
+    family = Family(bg.derive(case.graph), {}, backend="c")
+    measures = {"w0": samples("w0"), "slips": event_count("b3", "slip")}
+    inputs = {"P": Swept("size", case.inputs["P"])}
+    loop = batch_of(Job(family, ("size",), case.times, measures, None, inputs))
+    assert loop is not None
+    assert isinstance(loop.loop, ExactLoop)
+    (speeds, counts), left = loop([[0.9], [1.0]])
+    assert left == []
+    expected = _run(case, "numpy")
+    assert np.abs(speeds[1] - expected["w0"]).max() <= 1e-9 * np.ptp(expected["w0"])
+    assert counts[1] == sum(e.port == "b3" and e.kind == "slip" for e in expected.events)
+
+
+def test_runs_that_exact_steps_cannot_do_are_located_in_the_same_sweep() -> None:
+    case = gearbox()
+    family = Family(bg.derive(case.graph), {}, backend="c")
+    inputs = {**case.inputs, "T": Swept("size", case.inputs["T"])}
+    job = Job(family, ("size",), case.times, {"w": samples("w_a")}, None, inputs)
+    loop = batch_of(job)
+    assert loop is not None
+    (speeds,), left = loop([[1.0]])
+    assert left == []
+    expected = _run(case, "numpy")
+    assert np.abs(speeds[0] - expected["w_a"]).max() <= 1e-8 * np.ptp(expected["w_a"])
+
+
+def test_exports_of_a_gearbox_step_alike_and_locate_its_events(tmp_path: Path) -> None:
+    """Python and C in the same fixed steps; C as the simulator where events are located."""
+    case = gearbox()
+    equations, expected = bg.derive(case.graph), _run(case, "numpy")
+    step, end = 5e-3, 1.5
+    times = np.arange(0, end + step / 2, 10 * step)
+    module = loaded(to_python(equations, {}, inputs=case.inputs))
+    stepped = module.simulate(times, {}, dict(case.inputs), step=step)
+    sources = written(tmp_path, to_c(equations, {}, main=True, inputs=case.inputs))
+    program = str(compiled(tmp_path, sources, "-O1"))
+    fixed = _columns([program, repr(end), repr(step)])
+    located = _columns([program, "4", "0.05", "located"])
+    for name in case.shown:
+        size = np.ptp(stepped[name])
+        at_times = np.interp(times, fixed["t"], fixed[name])
+        assert np.abs(at_times - stepped[name]).max() <= 1e-9 * size, name
+        error = np.interp(case.times, located["t"], located[name]) - expected[name]
+        assert np.abs(error).max() <= 1e-8 * np.ptp(expected[name]), name
+
+
+def _columns(command: list[str]) -> dict[str, np.ndarray]:
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    head, *lines = done.stdout.splitlines()
+    values = np.array([[float(one) for one in line.split(",")] for line in lines])
+    return dict(zip(head.split(","), values.T, strict=True))
+
+
+def test_ranks_are_those_of_the_numbers() -> None:
+    """Rows of small integers; singular values tell their ranks as well."""
+    rng = np.random.default_rng(7)
+    for _ in range(30):
+        ports, states, inputs = 6, 4, 9
+        F = rng.integers(-1, 2, (ports, states)) * rng.integers(0, 2, (ports, 1))
+        D = np.zeros((ports, inputs), dtype=int)
+        D[:, :ports] = np.diag(rng.integers(0, 2, ports))
+        D[:, ports:] = rng.integers(-1, 2, (ports, inputs - ports))
+        F[-1], D[-1] = F[0] + F[1], D[0] + D[1]
+        prime = 2**61 - 1
+        rows = [
+            [{j: int(v) % prime for j, v in enumerate(row) if v} for row in matrix]
+            for matrix in (F, D)
+        ]
+        held = held_set(SlipRows(rows[0], rows[1], range(ports), [()] * ports, prime), range(ports))
+        square = D[:, :ports]
+        assert len(held.direct) == np.linalg.matrix_rank(square)
+        both = np.linalg.matrix_rank(np.hstack([square, F]))
+        whole = np.linalg.matrix_rank(np.hstack([square, F, D]))
+        assert len(held.direct) + len(held.kept) == both
+        assert held.ruled == (whole > both)
