@@ -78,6 +78,8 @@ def _slopes(
         affine = model.affine_map(mode, len(given))
         if affine is not None:
             return affine.rows(RATE)[:, : len(s)]
+        if model.program.affine and len(mode) > ALL_SETS:
+            return None  # redundant ports share, which moves nothing: fewer of them bound as much
         with np.errstate(all="ignore"):
             base = rates(s)
             jacobian = np.column_stack([_slope(rates, s, base, j) for j in range(len(s))])

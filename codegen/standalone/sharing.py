@@ -8,11 +8,15 @@ directions are left.
 """
 
 from itertools import combinations
+from math import comb
 
 import numpy as np
 
-from codegen.standalone.arrays import Array, Places
+from codegen.standalone.arrays import Array, EvaluationError, Places
 from codegen.tuning import TUNING
+
+MOST_WAYS = 20_000
+"""So many choices of ports that may carry a load together are looked at."""
 
 
 def fair_share(efforts: Array, share: Array, caps: Array) -> Array:
@@ -44,6 +48,10 @@ def fair_share(efforts: Array, share: Array, caps: Array) -> Array:
 def _settled(efforts: Array, share: Array, caps: Array) -> tuple[Places, Array]:
     """The ports of the circuit of highest fraction, and that fraction with each port's sign."""
     free, count = share.shape
+    if comb(count, free + 1) > MOST_WAYS:
+        raise EvaluationError(
+            f"{count} ports that hold would share loads in more ways than are looked at; let some go"
+        )
     chosen = np.array(list(combinations(range(count), free + 1)), dtype=int)
     if count == free:
         return np.arange(count), np.zeros(count)

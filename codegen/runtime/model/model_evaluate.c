@@ -112,7 +112,8 @@ static int rub_jointly(bg_model *m, const int *mode, bg_hold *held, int checked)
         efforts[r] = m->now.u[columns[r]];
         caps[r] = m->caps[held->ports[r]];
     }
-    bg_fair_share(held, caps, efforts);
+    if (!bg_fair_share(held, caps, efforts))
+        return BG_NO_HOLD;
     for (int r = 0; r < held->count; r++)
         efforts[r] -= m->now.u[columns[r]];
     bg_give(m, held->count, columns, efforts);

@@ -182,9 +182,7 @@ int bg_holding_efforts(bg_model *m, const bg_hold *held, double *efforts)
     bg_multiply_add(held->count, held->count, held->inverse, right, efforts);
     if (!bg_finite(held->count, efforts))
         return BG_NOT_FINITE;
-    if (held->share_count > 0)
-        bg_fair_share(held, caps, efforts);
-    return BG_OK;
+    return held->share_count == 0 || bg_fair_share(held, caps, efforts) ? BG_OK : BG_NO_HOLD;
 }
 
 void bg_effort_terms(const bg_hold *held, const double *x, const double *u, const double *du,

@@ -11,6 +11,8 @@
 #include "model_internal.h"
 #include "port_ways.h"
 
+enum { MOST_WAYS = 20000 }; /* of ports that may carry a load together */
+
 /* Directions over all ports, by rows, and what each port can hold. */
 typedef struct {
     int free, count;
@@ -132,12 +134,24 @@ static int moving(const directions *d, int *ports)
     return count;
 }
 
-/* Settles the ports of one load at its fraction, and leaves the directions that move none. */
-static void settle_load(directions *d, double *efforts)
+/* Whether there are more choices of `size` among `total` than are looked at. */
+static int too_many(int size, int total)
+{
+    double choices = 1.0;
+    for (int k = 0; k < size; k++)
+        choices *= (double)(total - k) / (k + 1);
+    return choices > MOST_WAYS + 0.5;
+}
+
+/* Settles the ports of one load at its fraction, and leaves the directions that move none; 0 where
+ * there are too many ways. */
+static int settle_load(directions *d, double *efforts)
 {
     double weights[PORTS] = {0}, fraction = 0.0;
     int ports[PORTS], pivots[PORTS], size = 0, rank;
     const int moved = moving(d, ports);
+    if (too_many(d->free + 1, moved))
+        return 0;
     if (moved > d->free) {
         fraction = most_loaded(d, moved, ports, efforts, weights);
         for (int i = 0; i < moved; i++)
@@ -155,13 +169,14 @@ static void settle_load(directions *d, double *efforts)
     }
     d->free = rank > 0 ? d->free - rank : 0;
     memmove(d->rows, d->rows + rank * d->count, sizeof(double) * (size_t)(d->free * d->count));
+    return 1;
 }
 
-void bg_fair_share(const bg_hold *held, const double *caps, double *efforts)
+int bg_fair_share(const bg_hold *held, const double *caps, double *efforts)
 {
     directions d;
     if (BG_FRICTION < 2)
-        return;
+        return 1;
     const double least = BG_LEAST_CAP * bg_largest(held->count, efforts) + BG_TINY;
     d.free = held->share_count;
     d.count = held->count;
@@ -169,5 +184,7 @@ void bg_fair_share(const bg_hold *held, const double *caps, double *efforts)
     for (int i = 0; i < d.count; i++)
         d.caps[i] = fmax(caps[i], least);
     while (d.free > 0)
-        settle_load(&d, efforts);
+        if (!settle_load(&d, efforts))
+            return 0;
+    return 1;
 }
