@@ -7,8 +7,8 @@ the highest such fraction reaches it. Once its ports are settled the others shar
 directions are left.
 """
 
+import math
 from itertools import combinations
-from math import comb
 
 import numpy as np
 
@@ -48,9 +48,9 @@ def fair_share(efforts: Array, share: Array, caps: Array) -> Array:
 def _settled(efforts: Array, share: Array, caps: Array) -> tuple[Places, Array]:
     """The ports of the circuit of highest fraction, and that fraction with each port's sign."""
     free, count = share.shape
-    if comb(count, free + 1) > MOST_WAYS:
+    if math.comb(count, free + 1) > MOST_WAYS:
         raise EvaluationError(
-            f"{count} ports that hold would share loads in more ways than are looked at; let some go"
+            f"{count} ports that hold would share loads in too many ways to look at"
         )
     chosen = np.array(list(combinations(range(count), free + 1)), dtype=int)
     if count == free:
