@@ -15,6 +15,7 @@
 #define BG_LARGEST 1
 #define BG_LOOP 0
 #define BG_FRICTION 1
+#define BG_PORTS 1
 #define BG_SWITCHES 0
 #define BG_GUARDS 0
 #define BG_COUPLED 0

@@ -82,9 +82,13 @@ const bg_pattern bg_layout[BG_MATRICES] = {
         columns_K}
 };
 
-const bg_structure bg_structures[] = {
-    {0, 0, 0, 0, 0, {0}, {0}, {0}, {0}, {0}, {0}}, {0, 0, 1, 1, 0, {0}, {0}, {0}, {0}, {0}, {0}}
-};
+const int bg_slip_begins[] = {0, 2};
+const int bg_slip_places[] = {0, 1};
+const unsigned long long bg_slip_residues[] = {1152920373028383961u, 1152920373028383960u};
+const int bg_moved_begins[] = {0, 0};
+const int bg_moved[] = {0};
+const unsigned long long bg_prime = 2305840746056767921u;
+const unsigned long long bg_prime_inverse = 2899849368476528815u;
 
 /* Nonzero entries of A, J, B, E, F, D, H, K: 22 operations. */
 void bg_coefficients(const bg_values *v, double *out)
