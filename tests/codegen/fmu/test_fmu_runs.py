@@ -5,8 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles.called import Unit
+from oracles.many import chain
 from oracles.units import Case, belt, divider, duffing, figure_11, ran
 
+import bondgraph as bg
 from codegen import Result, simulator
 
 CASES = {"fig11": figure_11, "duffing": duffing, "belt": belt, "divider": divider}
@@ -93,3 +95,16 @@ def test_co_simulation_converges_with_its_internal_step(
     # Events are found at the end of a step: the first order, unless nothing happens.
     assert errors[1] < 0.3 * errors[0] or errors[0] < 1e-9
     assert errors[2] < 5e-4
+
+
+def test_a_chain_of_nine_blocks_with_friction_runs_as_a_unit(tmp_path: Path) -> None:
+    """More ports than a table of sets would take: exchanged, and by its own located steps."""
+    many = chain(9)
+    case = Case(bg.derive(many.graph), {}, None, {}, many.inputs, 1.0)
+    path, expected = case.written(tmp_path / "chain.fmu", "3.0"), case.run(101)
+    assert len(expected.events) > 8
+    for kind, reached in (("CoSimulation", 1e-8), ("ModelExchange", 5e-6)):
+        found, _ = ran(path, kind, case, expected.states, 101)
+        for name in many.shown[:4]:
+            most = np.abs(expected[name]).max()
+            assert np.abs(found[name] - expected[name]).max() <= reached * most, (kind, name)

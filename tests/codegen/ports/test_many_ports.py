@@ -152,3 +152,14 @@ def test_ranks_are_those_of_the_numbers() -> None:
         whole = np.linalg.matrix_rank(np.hstack([square, F, D]))
         assert len(held.direct) + len(held.kept) == both
         assert held.ruled == (whole > both)
+
+
+def test_the_longest_stable_step_of_many_ports_is_of_those_that_bind_most() -> None:
+    """A chain is fastest with all blocks let go, near ``w**2 = 4 k/m``: to hold some only takes modes away."""
+    case = chain(9)
+    text = to_c(bg.derive(case.graph), {}, main=True)["config.h"]
+    told = float(text.split("#define BG_LONGEST_STEP ")[1].split()[0])
+    masses, stiffness = 1 + 0.01 * np.arange(9), 50.0
+    springs = np.diff(np.eye(9), axis=0)
+    rates = np.linalg.eigvalsh(stiffness * springs.T @ springs / np.sqrt(np.outer(masses, masses)))
+    assert told == pytest.approx(2 * np.sqrt(2) / np.sqrt(rates.max()), rel=1e-5)
