@@ -155,7 +155,7 @@ def test_ranks_are_those_of_the_numbers() -> None:
 
 
 def test_the_longest_stable_step_of_many_ports_is_of_those_that_bind_most() -> None:
-    """A chain is fastest with all blocks let go, near ``w**2 = 4 k/m``: to hold some only takes modes away."""
+    """A chain is fastest with all blocks let go, near ``w**2 = 4 k/m``: holding slows it."""
     case = chain(9)
     text = to_c(bg.derive(case.graph), {}, main=True)["config.h"]
     told = float(text.split("#define BG_LONGEST_STEP ")[1].split()[0])
