@@ -16,7 +16,8 @@ FILES = (
     "codegen/batch/test_*.py", "codegen/c/test_c_*.py", "codegen/engine/test_build.py",
     "codegen/engine/test_c_backend.py", "codegen/engine/test_engine_bounds.py",
     "codegen/engine/test_located.py", "codegen/engine/test_memory.py", "codegen/fmu/test_*.py",
-    "codegen/program/test_awkward_names.py", "differentials/test_agreement.py",
+    "codegen/ports/test_many_ports.py", "codegen/program/test_awkward_names.py",
+    "differentials/test_agreement.py",
     "docs/test_commands.py", "test_notebooks.py",
 )  # fmt: skip
 """Below `tests`."""
