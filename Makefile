@@ -6,7 +6,7 @@ MINUTES ?= 30
 JOBS ?= 2
 READY := $(VENV)/ready
 
-.PHONY: demo test check lint types unit quick soak docs bench bench-agreement bench-peers bench-speed clean help
+.PHONY: demo test check lint types unit quick soak docs routes bench bench-agreement bench-peers bench-speed clean help
 
 help:
 	@echo "make demo   derive and simulate differentials; tables and pictures in out/"
@@ -14,6 +14,7 @@ help:
 	@echo "make check  what of that needs no compiler and no more than a few seconds"
 	@echo "make soak MINUTES=30  random families beyond what every test run takes; totals in tests/soak/README.md"
 	@echo "make docs   README's guides and the API as pages in site/"
+	@echo "make routes the table of every kind of port by every route, docs/routes.md"
 	@echo "make bench  how time and memory to derive grow with the size of a graph"
 	@echo "make bench-speed  how fast and how exact runs are: generated C, numpy, scipy and SUNDIALS beside C by hand"
 	@echo "make bench-agreement  how far simulators, exported Python and C, and FMUs agree"
@@ -52,6 +53,9 @@ soak: $(READY)
 
 docs: $(READY)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
+
+routes: $(READY)
+	PYTHONPATH=tests:tests/codegen $(BIN)/python -m oracles.routes
 
 bench: $(READY)
 	$(BIN)/python benchmarks/derivation.py

@@ -194,6 +194,7 @@ FAMILIES = (
     Family("switches-swept", "codegen/batch/test_batch_switches.py", 0, 1),
     Family("flat", "codegen/numbers/test_roots.py", 0, 1),
     Family("agreements", "differentials/test_agreement.py", 0, 1),
+    Family("routes", "codegen/test_routes.py", 0, 1),
     Family("platforms", "codegen/fmu/test_fmu_platforms.py", 0, 1),
     Family(
         "scenarios",

@@ -1,0 +1,233 @@
+"""Dry friction in its forms, each with a run that is known by hand."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from references.build import bond_graph
+from scipy.special import ellipk
+
+import bondgraph as bg
+from oracles.routes.kind import Array, Kind, stepwise
+
+F, V0, A = 4.0, 0.5, 6.0
+STOPS, GOES = (F - np.sqrt(F**2 - 2 * V0 * A)) / A, F / A
+RAMP = {"P": f"ramp(0, {A})"}
+
+
+def _braked(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+    """v' = -F + A t from v_0 on until it is gone; from F/A on again."""
+    v = stepwise(t, (0, lambda s: V0 - F * s + A * s**2 / 2), (STOPS, lambda s: 0 * s),
+                 (GOES, lambda s: A * s**2 / 2))  # fmt: skip
+    return {"v": v}
+
+
+def _block(law: bg.DryFriction, *more: tuple, bonds: str = ""):
+    nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"),
+             bg.R("rub", effort="f", flow="slip_v", law=law), *more]  # fmt: skip
+    return bond_graph(nodes, f"push>n>m n>rub {bonds}")
+
+
+def coulomb() -> Kind:
+    return Kind(
+        "dry friction", _block(bg.DryFriction("N")), {"m": 1.0, "N": F}, RAMP, _braked, 1.0, {"v": V0},
+        at=0.4, mode={"rub": "stick"}, rest={"inputs": {"P": 2.0}},
+    )  # fmt: skip
+
+
+def level_of_input() -> Kind:
+    """v' = -N(t) = -3 t: at rest after sqrt(2 v_0/3)."""
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        return {"v": np.maximum(1.0 - 1.5 * t**2, 0) * (t < (1 / 1.5) ** 0.5)}
+
+    return Kind(
+        "its level an input", _block(bg.DryFriction("N")), {"m": 1.0}, {"P": "0", "N": "ramp(0, 3)"},
+        known, 1.0, {"v": 1.0}, at=0.4, mode={"rub": "slip"}, rest={"inputs": {"P": 1.0, "N": 2.0}},
+    )  # fmt: skip
+
+
+def breakaway() -> Kind:
+    """Level 4, breakaway 6: it goes at 6 = 9 t, with v' = 9 t - 4."""
+    t0 = 6 / 9
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        return {"v": stepwise(t, (t0, lambda s: 2 * s + 4.5 * s**2))}
+
+    return Kind(
+        "breakaway above its level", _block(bg.DryFriction("N", breakaway=1.5)), {"m": 1.0, "N": 4.0},
+        {"P": "ramp(0, 9)"}, known, 1.0, at=0.4, mode={"rub": "stick"}, rest={"inputs": {"P": 5.0}},
+    )  # fmt: skip
+
+
+def stribeck() -> Kind:
+    """m v' = a - b exp(-v/w) has v = w log((b + (a - b) exp(a t/(m w)))/a)."""
+    a, b, w = 6.0 - 4.0, 1.2, 0.1
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        return {"v": w * np.log((b + (a - b) * np.exp(a * t / w)) / a)}
+
+    law = bg.DryFriction("N", curve="1 + 0.3*exp(-slip/0.1)")
+    return Kind(
+        "a Stribeck curve", _block(law), {"m": 1.0, "N": 4.0}, {"P": "6"}, known, 1.0,
+        at=0.1, mode={"rub": "slip"}, rest={"inputs": {"P": 5.0}},
+    )  # fmt: skip
+
+
+def asymmetric() -> Kind:
+    """(1 + v/4) N whichever way it slips: v' = P + N + N v/4 until it turns, v' = P - N - N v/4 then."""
+    n, p, v0 = 2.0, 5.0, -1.4
+    up, down = 4 * (p + n) / n, 4 * (p - n) / n
+    turns = np.log(up / (up + v0)) * 4 / n
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        return {
+            "v": stepwise(t, (0, lambda s: -up + (v0 + up) * np.exp(n / 4 * s)),
+                          (turns, lambda s: down * (1 - np.exp(-n / 4 * s))))}  # fmt: skip
+
+    return Kind(
+        "another level each way", _block(bg.DryFriction("N", curve="1 + slip_v/4")),
+        {"m": 1.0, "N": n}, {"P": f"{p}"}, known, 1.0, {"v": v0}, at=0.6, mode={"rub": "slip"},
+        rest={"inputs": {"P": 1.0}},
+    )  # fmt: skip
+
+
+_STORE = (bg.Zero("z"), bg.C("store", "C", effort="s"), bg.R("leak", "R"))
+
+
+def level_of_state() -> Kind:
+    """A level mu s, s = s_0 exp(-t/T): it goes at T log(mu s_0/P)."""
+    mu, s0, tau, p = 0.5, 8.0, 0.5, 2.0
+    goes = tau * np.log(mu * s0 / p)
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        return {
+            "s": s0 * np.exp(-t / tau),
+            "v": stepwise(t, (goes, lambda s: p * s - p * tau * (1 - np.exp(-s / tau)))),
+        }
+
+    return Kind(
+        "its level a state", _block(bg.DryFriction("mu*abs(s)"), *_STORE, bonds="z>store z>leak"),
+        {"m": 1.0, "mu": mu, "C": 0.25, "R": 2.0}, {"P": f"{p}"}, known, 1.0, {"s": s0},
+        at=0.6, mode={"rub": "slip"}, rest={"inputs": {"P": 0.0}},
+    )  # fmt: skip
+
+
+def curve_of_state() -> Kind:
+    """A curve 1 + s: v' = P - N - N s_0 exp(-t/T)."""
+    n, s0, tau, p = 2.0, 1.0, 0.5, 6.0
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        return {
+            "v": (p - n) * t - n * s0 * tau * (1 - np.exp(-t / tau)),
+        }
+
+    return Kind(
+        "its curve of a state", _block(bg.DryFriction("N", curve="1 + s"), *_STORE, bonds="z>store z>leak"),
+        {"m": 1.0, "N": n, "C": 0.25, "R": 2.0}, {"P": f"{p}"}, known, 1.0, {"s": s0},
+        at=0.6, mode={"rub": "slip"}, rest={"inputs": {"P": 1.0}},
+    )  # fmt: skip
+
+
+def ruled_by_load() -> Kind:
+    """A level mu times the pull that the friction leaves: m v' = P/(1 + mu) - b v."""
+    nodes = [bg.Se("push", "P"), bg.One("a"), bg.R("rub", law=bg.DryFriction("mu*abs(pull)")),
+             bg.Zero("rope", effort="pull"), bg.One("n"), bg.I("m", "m", flow="v"),
+             bg.R("b", "b")]  # fmt: skip
+    mu, b, p = 0.6, 2.0, 5.0
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        return {"v": p / (1 + mu) / b * (1 - np.exp(-b * t))}
+
+    return Kind(
+        "its level the load that it leaves", bond_graph(nodes, "push>a>rub a>rope>n>m n>b"),
+        {"m": 1.0, "mu": mu, "b": b}, {"P": f"{p}"}, known, 1.0, at=0.6, mode={"rub": "slip"},
+        rest={"inputs": {"P": p}, "initial": {"v": 1.0}},
+    )  # fmt: skip
+
+
+def on_a_spring() -> Kind:
+    """An imposed speed, 1 then -1, over a spring k and a slider N in series: the force stays within N."""
+    return _jenkins(
+        "directly on a spring", [bg.R("rub", law=bg.DryFriction("N"))], "z>rub", {"N": 2.0}
+    )
+
+
+def in_series() -> Kind:
+    """The same with a second slider beside it, of a greater level: it never slips."""
+    rubs = [
+        bg.R("rub", law=bg.DryFriction("N")),
+        bg.R("firm", flow="creep", law=bg.DryFriction("M")),
+    ]
+    return _jenkins("two in series on a spring", rubs, "z>rub z>firm", {"N": 2.0, "M": 3.0})
+
+
+def _jenkins(name: str, rubs: list, bonds: str, numbers: dict[str, float]) -> Kind:
+    k, n = 10.0, 2.0
+    nodes = [bg.Sf("drive", "w"), bg.Zero("z", effort="force"), bg.C("k", "1/k", effort="s"), *rubs]
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        return {"s": np.where(t < 0.5, np.minimum(k * t, n), np.maximum(n - k * (t - 0.5), -n))}
+
+    mode = {rub[0]: "stick" for rub in rubs} | {"rub": "slip"}
+    return Kind(
+        name, bond_graph(nodes, f"drive>z>k {bonds}"), {"k": k, **numbers}, {"w": "step(0.5, -1, 1)"},
+        known, 0.99, at=0.35, mode=mode, rest={"inputs": {"w": 0.0}},
+    )  # fmt: skip
+
+
+def together() -> Kind:
+    """Two on one slip: at rest they share the load, which nothing else tells apart."""
+    graph = _block(bg.DryFriction("N"), bg.R("two", law=bg.DryFriction("M")), bonds="n>two")
+    return Kind(
+        "two on one slip", graph, {"m": 1.0, "N": 3.0, "M": 1.0}, RAMP, _braked, 1.0, {"v": V0},
+        at=0.1, mode={"rub": "slip", "two": "slip"}, rest={"inputs": {"P": 2.0}},
+    )  # fmt: skip
+
+
+def chain() -> Kind:
+    """Seven blocks alike, springs between them, each pushed: no spring is ever loaded."""
+    nodes, bonds = [], []
+    for i in range(7):
+        nodes += [bg.Se(f"push{i}", "P"), bg.One(f"n{i}"), bg.I(f"m{i}", "m", flow=f"v{i}"),
+                  bg.R(f"rub{i}", law=bg.DryFriction("N"))]  # fmt: skip
+        bonds += [f"push{i}>n{i}>m{i} n{i}>rub{i}"]
+    for i in range(6):
+        nodes += [bg.Zero(f"z{i}"), bg.C(f"k{i}", "1/k", effort=f"s{i}")]
+        bonds += [f"n{i}>z{i}>n{i + 1} z{i}>k{i}"]
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        return {f"v{i}": _braked(t, run)["v"] for i in range(7)}
+
+    return Kind(
+        "seven in a chain", bond_graph(nodes, " ".join(bonds)), {"m": 1.0, "N": F, "k": 50.0}, RAMP,
+        known, 1.0, {f"v{i}": V0 for i in range(7)}, at=0.1,
+        mode={f"rub{i}": "slip" for i in range(7)}, rest={"inputs": {"P": 2.0}},
+    )  # fmt: skip
+
+
+def behind_moving_ratio() -> Kind:
+    """A crank that a slider brakes: J w^2/2 + N r (1 - cos theta) stays, until it rests.
+
+    That is at 60 degrees, after K(1/4).
+    """
+    nodes = [bg.Se("drive", "P"), bg.One("shaft"), bg.I("J", "J", flow="w"),
+             bg.Df("angle", integrate="theta"), bg.TF("yoke", "r*sin(theta)"), bg.One("slider"),
+             bg.R("rub", law=bg.DryFriction("N"))]  # fmt: skip
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        theta = run["theta"]
+        rests = t > ellipk(0.25)
+        left = np.sqrt(np.maximum(2 * np.cos(theta) - 1, 0))
+        return {"w": np.where(rests, 0, left), "theta": np.where(rests, np.pi / 3, theta)}
+
+    return Kind(
+        "behind a moving ratio", bond_graph(nodes, "drive>shaft>J shaft>angle shaft>yoke>slider>rub"),
+        {"J": 1.0, "r": 0.5, "N": 2.0}, {"P": "0"}, known, 2.5, {"w": 1.0, "theta": 0.0},
+        at=0.5, mode={"rub": "slip"}, rest={"inputs": {"P": 0.2}, "initial": {"theta": 1.0}},
+    )  # fmt: skip
+
+
+FRICTION = (
+    coulomb, level_of_input, breakaway, stribeck, asymmetric, level_of_state, curve_of_state,
+    ruled_by_load, on_a_spring, in_series, together, chain, behind_moving_ratio,
+)  # fmt: skip

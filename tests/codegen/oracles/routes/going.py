@@ -1,0 +1,257 @@
+"""The routes: each goes one way with a kind and checks what comes of it.
+
+A route that is refused raises a `BondGraphError`, one that goes wrong an `AssertionError`.
+"""
+
+import csv
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from types import MappingProxyType
+
+import numpy as np
+import sympy as sp
+from click.testing import CliRunner
+
+import bondgraph as bg
+import codegen
+from differentials.commands.app import app
+from oracles.exported import loaded
+from oracles.routes.bench import EXACT, FEW, LOCATED, MANY, UNIT, Bench, same, stepped
+from oracles.units import sampled, simulated
+
+Route = Callable[[Bench], None]
+
+
+def explain(bench: Bench) -> None:
+    """Every state, every switch and every law is told."""
+    kind = bench.kind
+    text = str(bg.explain(kind.graph))
+    told = [*map(str, kind.equations.states), *kind.switches, *map(str, kind.equations.laws)]
+    assert [name for name in told if name not in text] == []
+
+
+def explicit(bench: Bench) -> None:
+    """The rates, at what the run gives at one instant, are those of the run about it."""
+    kind, rates = bench.kind, bg.explicit(bench.kind.equations)
+    h = 1e-4 * kind.end
+    run = codegen.simulator(kind.equations, kind.numbers).run(
+        [0.0, kind.at - h, kind.at, kind.at + h], kind.initial, kind.signals, initially_on=kind.on
+    )
+    numbers = {sp.Symbol(name): value for name, value in kind.numbers.items()}
+    for state, rate in rates.items():
+        found = rate.subs(numbers).subs(sp.Symbol("t"), kind.at)
+        moving = {name: name.name.removeprefix("d_") for name in found.free_symbols}
+        values = {name: _value(run, name.name, source, h) for name, source in moving.items()}
+        slope = (run[str(state)][3] - run[str(state)][1]) / (2 * h)
+        scale = max(abs(slope), np.abs(bench.run[str(state)]).max() / kind.end)
+        assert abs(float(found.subs(values)) - slope) < 1e-3 * scale, f"the rate of {state}"
+
+
+def _value(run: codegen.Result, name: str, source: str, h: float) -> float:
+    """A signal in the middle, or of ``d_...`` its slope."""
+    values = run[source]
+    return float(values[2] if name == source else (values[3] - values[1]) / (2 * h))
+
+
+def latex(bench: Bench) -> None:
+    """Every matrix has its place, every symbol stands in it."""
+    text = bg.latex(bench.kind.equations)
+    letters = [sp.latex(name) for name in bench.kind.equations.states]
+    assert [one for one in letters if one not in text] == []
+
+
+def drawing(bench: Bench) -> None:
+    """Every node is drawn, a switch as one, every bond with its stroke."""
+    switches = bench.kind.switches
+    drawn = bg.drawing(bench.kind.graph)
+    drawn.save(bench.folder / "kind.svg")
+    assert {node.name for node in drawn.scene.nodes} >= {*bench.kind.graph}
+    assert all(bond.stroke for bond in drawn.scene.bonds)
+    assert drawn.text().count("Sw: ") == len(switches)
+
+
+def json(bench: Bench) -> None:
+    same(bg.from_json(bg.to_json(bench.kind.graph)), bench.kind.graph)
+
+
+def graphml(bench: Bench) -> None:
+    same(bg.from_graphml(bg.to_graphml(bench.kind.graph)), bench.kind.graph)
+
+
+def commands(bench: Bench) -> None:
+    """``simulate`` of a file, its table read again."""
+    kind, table = bench.kind, bench.folder / "run.csv"
+    words = ["simulate", str(bench.file), "-o", str(table), "--until", f"{kind.end!r}"]
+    words += ["--sample", f"{kind.end / 50!r}"]
+    for switch, given in (
+        ("--set", kind.numbers),
+        ("--initial", kind.initial),
+        ("--input", kind.inputs),
+    ):
+        words += [word for name, value in given.items() for word in (switch, f"{name}={value}")]
+    words += [word for name in kind.on for word in ("--on", name)]
+    done = CliRunner().invoke(app, words)
+    if done.exit_code:
+        raise bg.BondGraphError(done.stderr.strip())
+    with table.open(encoding="utf-8") as file:
+        head, *rows = csv.reader(file)
+    bench.check(dict(zip(head, np.array(rows, dtype=float).T, strict=True)), EXACT)
+
+
+def numpy(bench: Bench) -> None:
+    bench.check(bench.run, EXACT)
+
+
+def c_exact(bench: Bench) -> None:
+    _in_c(bench, "exact", EXACT)
+
+
+def c_located(bench: Bench) -> None:
+    _in_c(bench, "DOP853", LOCATED)
+
+
+def _in_c(bench: Bench, method: str, within: float) -> None:
+    kind = bench.kind
+    with _in_c_alone():
+        run = bench.compiled.run(
+            kind.times(), kind.initial, kind.signals, method, initially_on=kind.on
+        )
+    assert run.backend == "c"
+    bench.check(run, within)
+    assert [(e.port, e.kind) for e in run.events] == [(e.port, e.kind) for e in bench.run.events]
+
+
+@contextmanager
+def _in_c_alone() -> Iterator[None]:
+    """What numpy would do for C is a refusal."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", codegen.BackendWarning)
+            yield
+    except codegen.BackendWarning as told:
+        raise bg.SimulationError(str(told)) from None
+
+
+def sweep_numpy(bench: Bench) -> None:
+    _swept(bench, "numpy", EXACT)
+
+
+def sweep_c(bench: Bench) -> None:
+    """By the loop in C."""
+    with _in_c_alone():
+        _swept(bench, "c", LOCATED)
+
+
+def _swept(bench: Bench, backend: str, within: float) -> None:
+    """Two runs: the kind's own, and one with another first number, against that by itself."""
+    kind, (name, value) = bench.kind, next(iter(bench.kind.numbers.items()))
+    family = codegen.Family(kind.equations, kind.numbers, backend=backend)
+    state = next(iter(kind.known(kind.times(), bench.run)))
+    measures = {"all": codegen.samples(state), "last": codegen.final(state)}
+    found = codegen.sweep(
+        family, {name: [value, 1.01 * value]}, kind.times(), measures, kind.initial, kind.signals,
+        workers=0, progress=False, initially_on=kind.on,
+    )  # fmt: skip
+    if found.failed:
+        raise bg.SimulationError(found.failed[0].message)
+    other = codegen.simulator(kind.equations, {**kind.numbers, name: 1.01 * value}).run(
+        kind.times(), kind.initial, kind.signals, initially_on=kind.on
+    )
+    for row, run in zip(found["all"], (bench.run, other), strict=True):
+        assert np.abs(row - run[state]).max() <= within * np.ptp(run[state])
+    assert found["last"].tolist() == found["all"][:, -1].tolist()
+
+
+def to_python(bench: Bench) -> None:
+    """Fixed steps, as a real-time target takes them."""
+    kind = bench.kind
+    module = loaded(codegen.to_python(kind.equations, kind.numbers, name="kind"))
+    on = {"initially_on": list(kind.on)} if kind.switches else {}
+    run = module.simulate(kind.times(), kind.initial, kind.signals, step=kind.end / FEW, **on)
+    bench.check(run, stepped(FEW), aside=1.5 * kind.end / FEW)
+
+
+def to_c_stepped(bench: Bench) -> None:
+    """The same in C."""
+    end = bench.kind.end
+    bench.check(bench.printed(f"step={end / MANY!r}"), stepped(MANY), aside=1.5 * end / MANY)
+
+
+def to_c_located(bench: Bench) -> None:
+    bench.check(bench.printed("located"), LOCATED)
+
+
+def _fmu(version: str, how: str) -> Route:
+    def route(bench: Bench) -> None:
+        kind, (path, case) = bench.kind, bench.unit(version)
+        names = [*map(str, bench.run.states), *kind.switches]
+        found = sampled(simulated(path, how, case, names, 51), case, 51)
+        # An importer reads of an event what is before or after it.
+        bench.check(found, UNIT, aside=1e-7 * kind.end)
+
+    return route
+
+
+def linearize(bench: Bench) -> None:
+    """In the mode of the run: along it, rates change as the linear model says."""
+    kind = bench.kind
+    h = 1e-3 * kind.end
+    run = codegen.simulator(kind.equations, kind.numbers).run(
+        [0.0, *(kind.at + h * np.arange(-2, 3))], kind.initial, kind.signals, initially_on=kind.on
+    )
+    given = {*map(str, kind.equations.inputs)}
+    outside = [name for name in kind.inputs if name not in given]
+    # What a switch gives or receives, its mode tells, and the run but to rounding.
+    told = {
+        str(name) for one in kind.equations.switches for name in (one.port.given, one.port.received)
+    }
+    names = {*map(str, kind.equations.signals), *run.states, *outside} - told
+    read = {*map(str, set().union(*(law.free_symbols for law in kind.equations.laws.values())))}
+    point = {name: float(run[name][3]) for name in names} | {"t": kind.at}
+    model = bg.linearize(
+        kind.equations, at=point, mode=kind.mode, inputs=[name for name in outside if name in read]
+    )
+    numbers = {sp.Symbol(name): value for name, value in kind.numbers.items()}
+    sizes = len(model.states), len(model.inputs)
+    A, J, B = (
+        np.array(getattr(model, one).subs(numbers), dtype=float).reshape(sizes[0], size)
+        for one, size in zip("AJB", (sizes[0], *sizes), strict=True)
+    )
+    x = np.array([run[str(name)] for name in model.states]).reshape(sizes[0], 6)
+    u = np.array([run[str(name)] for name in model.inputs]).reshape(sizes[1], 6)
+    change = A @ (x[:, 5] - 2 * x[:, 3] + x[:, 1]) / (4 * h * h)
+    expected = (J @ (x[:, 4] - x[:, 2]) + B @ (u[:, 4] - u[:, 2])) / (2 * h)
+    scale = (
+        np.abs(A) @ np.abs(x[:, 1:]).max(axis=1) / kind.end**2
+        + np.abs(J) @ np.ptp(x[:, 1:], axis=1) / h
+    )
+    assert (np.abs(change - expected) <= 2e-2 * scale + 1e-9).all(), (change, expected)
+
+
+def trim(bench: Bench) -> None:
+    """A steady state, from which a run does not move."""
+    kind = bench.kind
+    rest = kind.rest or {}
+    ready = codegen.simulator(kind.equations, kind.numbers)
+    point = codegen.trim(ready, rest.get("inputs"), rest.get("initial"))
+    start = {name: point[name] for name in ready.states}
+    run = ready.run([0.0, 0.01 * kind.end], start, rest.get("inputs"), initially_on=kind.on)
+    for name in ready.states:
+        assert abs(run[name][-1] - start[name]) < 1e-6 * (1 + abs(start[name])), name
+
+
+ROUTES: Mapping[str, Route] = MappingProxyType(
+    {
+        "explain": explain, "explicit": explicit, "latex": latex, "drawing": drawing, "JSON": json,
+        "GraphML": graphml, "numpy": numpy, "linearize": linearize, "trim": trim,
+        "sweep": sweep_numpy, "command line": commands, "to_python": to_python, "C, exact": c_exact,
+        "C, located": c_located, "sweep in C": sweep_c, "to_c, fixed steps": to_c_stepped,
+        "to_c, located": to_c_located, "FMI 2 ME": _fmu("2.0", "ModelExchange"),
+        "FMI 2 CS": _fmu("2.0", "CoSimulation"), "FMI 3 ME": _fmu("3.0", "ModelExchange"),
+        "FMI 3 CS": _fmu("3.0", "CoSimulation"),
+    }
+)  # fmt: skip
+"""By the heads of their columns, those that need a compiler last."""
+
+COMPILED = tuple(ROUTES)[tuple(ROUTES).index("C, exact") :]

@@ -1,0 +1,7 @@
+"""All kinds, in the order of the table."""
+
+from oracles.routes.friction import FRICTION
+from oracles.routes.plain import PLAIN
+from oracles.routes.switches import SWITCHES
+
+KINDS = {make.__name__: make for make in (*FRICTION, *SWITCHES, *PLAIN)}

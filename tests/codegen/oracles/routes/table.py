@@ -1,0 +1,44 @@
+"""What the table says of each cell: that the route goes, or why it is refused."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Kinds that routes refuse. ``says``: a pattern of the message; ``genuine``: for good, else not yet."""
+
+    kinds: tuple[str, ...]
+    routes: tuple[str, ...]
+    genuine: bool
+    reason: str
+    says: str
+
+
+REFUSALS = (
+    Refusal(
+        ("stribeck", "asymmetric", "level_of_state", "curve_of_state", "ruled_by_load",
+         "behind_moving_ratio", "nonlinear_resistance", "nonlinear_storage", "crank"),
+        ("C, exact",), True,
+        "Matrix exponentials need rates that are affine in each mode, and here a law or a ratio bends them. "
+        "`method=\"auto\"`, which users take, locates events with step control instead.",
+        "not affine",
+    ),
+    Refusal(
+        ("together", "bridge"), ("C, exact",), False,
+        "Exact steps in C take no mode in which redundant ports share what they hold (two brakes at rest, "
+        "four diodes without a current); it is located.",
+        "not affine|not one affine map",
+    ),
+)  # fmt: skip
+
+
+def _cells() -> Mapping[tuple[str, str], Refusal]:
+    return MappingProxyType(
+        {(kind, route): one for one in REFUSALS for kind in one.kinds for route in one.routes}
+    )
+
+
+REFUSED = _cells()
+"""By kind and route; all others go."""
