@@ -264,7 +264,7 @@ def _looked_at(
         if not contrary and (tied or len(look.ruled[0])):
             then = _moment_later(now, s, look)
             wrong = ruled_out_later(look, then)
-            contrary = [i for i in tied if look.later_verdict(i, then) < 0]
+            contrary = [i for i in tied if look.later_verdict(i, then, now.ahead) < 0]
     except SlopeNeededError:
         raise
     except SimulationError as error:

@@ -62,23 +62,34 @@ class Look:
             return _sign(sign * self.rates[port], self.size.acceleration[port])
         return _sign(sign * self.slip(port), self.size.slip[port])
 
-    def later_verdict(self, port: int, then: "Look") -> int:
-        """A tie decided a little later: still holding to rounding, or really moving off."""
+    def later_verdict(self, port: int, then: "Look", ahead: float) -> int:
+        """A tie decided a little later [s]: still holding to rounding, or really moving off."""
         sign = self.mode[port]
         if self.model.switching[port] is not None:
             (value, least), (after, _) = self.stays(port), then.stays(port)
             return -1 if after - value < -TUNING.seen * least else 1
         if sign == 0:
             return 1 if then.margin(port) >= -self.size.effort[port] else -1
-        if self.model.coupled_directly(port):
-            moved = sign * (then.slip(port) - self.slip(port))
-            if abs(moved) > TUNING.seen * self.size.slip[port]:
-                return 1 if moved > 0 else -1
-            if pushed := _sign(sign * self.rates[port], self.size.acceleration[port]):
-                return pushed
+        if self.model.coupled_directly(port) and (heads := self._heading(port, then, ahead)):
+            return sign * heads
         rounding = TUNING.moving * self.size.acceleration[port]
         moving = sign * then.rates[port] > rounding
         return 1 if moving or sign * then.slip(port) > self.size.slip[port] else -1
+
+    def _heading(self, port: int, then: "Look", ahead: float) -> int:
+        """Which way the slip of a coupled port goes: 1, -1, or 0 where neither shows.
+
+        Its rate tells unless it is not the whole rate: where another port holds, what that gives may
+        change a slip in time, too.
+        """
+        moved, near = then.slip(port) - self.slip(port), float(self.size.slip[port])
+        least = TUNING.seen * near
+        told = 0.5 * (self.rates[port] + then.rates[port]) * ahead
+        if abs(moved) > least:
+            return _sign(moved, 0.0)
+        if abs(told - moved) > least:
+            return _sign(moved, TUNING.moving * near)
+        return _sign(float(self.rates[port]), float(self.size.acceleration[port]))
 
     @cached_property
     def rates(self) -> Array:

@@ -238,7 +238,7 @@ FAMILIES = (
     Family(
         "mixed-ports",
         "codegen/switched/test_mixed_ports.py::test_random_networks",
-        2,
+        1,
         1_000,
         1,
     ),

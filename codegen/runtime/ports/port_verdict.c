@@ -25,17 +25,28 @@ static int verdict(const bg_port *port, int coupled, int sign)
     return sure || coupled ? sure : sign_of(sign * port->push, port->near_push);
 }
 
+/* Which way the slip of a coupled port goes: 1, -1, or 0 where neither shows. Its rate tells unless it
+ * is not the whole rate: where another port holds, what that gives may change a slip in time, too. */
+static int heading(const bg_port *later, const bg_port *now, double ahead)
+{
+    const double moved = later->slip - now->slip, least = BG_SEEN * now->near_slip;
+    const double told = 0.5 * (now->push + later->push) * ahead;
+    if (fabs(moved) > least)
+        return sign_of(moved, 0.0);
+    if (fabs(told - moved) > least)
+        return sign_of(moved, BG_MOVING * now->near_slip);
+    return sign_of(now->push, now->near_push);
+}
+
 /* A tie decided a little later: still holding to rounding, or really moving off. */
-static int late_verdict(const bg_port *later, const bg_port *now, int coupled, int sign)
+static int late_verdict(const bg_port *later, const bg_port *now, int coupled, int sign,
+                        double ahead)
 {
     if (sign == 0)
         return later->cap - fabs(later->effort) >= -now->near_effort;
-    if (coupled) {
-        const int moved = sign_of(sign * (later->slip - now->slip), BG_SEEN * now->near_slip);
-        const int pushed = sign_of(sign * now->push, now->near_push);
-        if (moved || pushed)
-            return (moved ? moved : pushed) > 0;
-    }
+    const int heads = coupled ? sign * heading(later, now, ahead) : 0;
+    if (heads)
+        return heads > 0;
     return sign * later->push > BG_MOVING * now->near_push || sign * later->slip > now->near_slip;
 }
 
@@ -87,9 +98,9 @@ static int is_torn(const bg_ruling *ruling, const bg_port *now, const int *touch
 }
 
 /* Looks a moment later, by one midpoint step from the instant that was looked at in the mode. */
-static int look_later(const bg_sight *sight, const bg_instant *at, const double *s, const int *mode)
+static int look_later(const bg_sight *sight, const bg_instant *at, double ahead, const double *s,
+                      const int *mode)
 {
-    const double ahead = bg_look_ahead(at->time, at->t, at->following);
     for (int i = 0; i < sight->size; i++)
         sight->point[i] = s[i] + 0.5 * ahead * sight->rate[i];
     const int status = sight->look(sight->self, at->t + 0.5 * ahead, sight->point, mode);
@@ -121,7 +132,8 @@ static int late(const bg_choice *choice, const int *mode, const bg_port *now, co
     const bg_sight *const c = choice->sight;
     bg_port later[BG_MOST_PORTS];
     bg_ruling ruling = {0};
-    const int status = look_later(c, choice->at, choice->s, mode);
+    const double ahead = bg_look_ahead(choice->at->time, choice->at->t, choice->at->following);
+    const int status = look_later(c, choice->at, ahead, choice->s, mode);
     found->holds = status == BG_OK;
     if (status)
         return bg_ends_search(status) ? status : BG_OK;
@@ -135,7 +147,7 @@ static int late(const bg_choice *choice, const int *mode, const bg_port *now, co
         if (!bg_has(tied, i))
             continue;
         const int goes = rubs(c, i)
-            ? late_verdict(later + i, now + i, c->coupled[i], mode[i])
+            ? late_verdict(later + i, now + i, c->coupled[i], mode[i], ahead)
             : later[i].stay - now[i].stay >= -BG_SEEN * now[i].near_stay;
         if (!goes)
             contradict(c, i, now, found);

@@ -36,7 +36,7 @@ def complaints(found: Found, result: Result, span: float = 3.0) -> list[str]:
         wrong.append(f"events at {far}")
     size = max((np.abs(column).max() for column in expected.values()), default=0.0)
     for name, values in expected.items():
-        if (off := np.abs(result[name] - values).max()) > 1e-6 * size:
+        if (off := np.abs(result[name] - values).max()) > 1e-6 * size + 1e-12:
             wrong.append(f"{name}: off by {off:.3g}")
     return wrong
 

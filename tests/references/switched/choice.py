@@ -68,7 +68,20 @@ class Choice:
             few = len(self._free) <= ENUMERATED
             what = "no mode is consistent" if few else "no consistent mode was found"
             raise RuntimeError(f"{what}: {self._told(old, y)}")
-        return self._resting(found, y)
+        return self._resting(self._latched(old, found, y), y)
+
+    def _latched(self, old: Mode, mode: Mode, y: Array) -> Mode:
+        """The same with whatever a voltage or a current turns as it was, as far as that lets it."""
+        kinds = [b.kind for b in self.ports]
+        turned = [k for k, kind in enumerate(kinds) if kind == "G" and mode[k] != old[k]]
+        for count in range(len(turned), 0, -1):
+            for some in combinations(turned, count):
+                new = mode
+                for k in some:
+                    new = self._but(new, self.ports[k].name, old[k])
+                if self._against(new, y) is None:
+                    return new
+        return mode
 
     def loose(self, mode: Mode, y: Array) -> set[str]:
         """Ports that might as well be in another mode from now on, all of their chain being zero."""
