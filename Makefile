@@ -17,7 +17,7 @@ help:
 	@echo "make routes the table of every kind of port by every route, docs/routes.md"
 	@echo "make bench  how time and memory to derive grow with the size of a graph"
 	@echo "make bench-speed  how fast and how exact runs are: generated C, numpy, scipy and SUNDIALS beside C by hand"
-	@echo "make bench-agreement  how far simulators, exported Python and C, and FMUs agree"
+	@echo "make bench-agreement  how far simulators, exported Python and C, FMUs, and tools of others agree"
 	@echo "make bench-peers  the same graphs with other packages, each in an environment of its own"
 	@echo "make clean  remove the environment and what was generated"
 
@@ -70,6 +70,7 @@ bench-speed: $(READY)
 
 bench-agreement: $(READY)
 	$(BIN)/python benchmarks/agreement.py
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/confirm.py
 
 bench-peers: $(READY)
 	$(BIN)/python benchmarks/peers.py
