@@ -26,6 +26,7 @@ from codegen.model.sources import source_signals
 from codegen.modes.choose import Occasion, decide
 from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks
+from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array, is_finite, is_number, read_only
 from codegen.program.lower import lower
 from codegen.program.records import Program
@@ -103,9 +104,10 @@ class Simulator:
         on = checked_modes(self.switches, initially_on)
         slipping, peaks = self.closed.program.before(on), Peaks.none(self.closed)
         with np.errstate(all="ignore"):
-            peaks.see(self.closed, t, s, pieces, slipping)
+            here = Sight(self.closed, t, s, pieces)
+            peaks.see(here, slipping)
             ahead = TUNING.look_ahead * TUNING.standing
-            mode, s, _ = decide(Occasion(self.closed, t, pieces, slipping, ahead, peaks), s)
+            mode, s, *_ = decide(Occasion(self.closed, t, pieces, slipping, ahead, peaks), here)
             now = self.closed.at(t, s, pieces, mode)
         n = len(self.closed.program.states)
         rate = now.rate[: len(self.states)].copy()
@@ -122,6 +124,7 @@ class Simulator:
         rtol: float = TUNING.rtol,
         atol: float = TUNING.atol,
         initially_on: Iterable[Hashable] = (),
+        events: bool = True,
     ) -> Result:
         """Integrate over the given times [s] and sample every signal at them.
 
@@ -132,14 +135,17 @@ class Simulator:
         ``initially_on``: the switches that are on at first, as far as their conditions let them; each
         switch is a column of the result, 1 or 0. States that are not named then follow what these hold:
         the result's ``completed`` has them, and a `ModelWarning` tells. One tells, too, of a switch that
-        stays on while its command rests at zero.
+        stays on while its command rests at zero. ``events``: whether the result keeps what happened; without,
+        a run of any length takes no more memory than its samples and inputs.
 
         What backend "c" cannot go on with is run by numpy, and a `BackendWarning` tells why.
 
         Raises `SignalError` for unusable arguments, `SimulationError` if the run can't go on,
         `MissingExtraError` for what the method needs.
         """
-        done = self.run_telling(tell, time, initial, inputs, method, rtol, atol, initially_on)
+        done = self.run_telling(
+            tell, time, initial, inputs, method, rtol, atol, initially_on, events
+        )
         tell_completed(done.completed)
         tell_resting(self.closed, done)
         return done
@@ -154,6 +160,7 @@ class Simulator:
         rtol: float = TUNING.rtol,
         atol: float = TUNING.atol,
         initially_on: Iterable[Hashable] = (),
+        events: bool = True,
     ) -> Result:
         """As `run`; ``tell`` is called where numpy runs what C was asked to.
 
@@ -175,12 +182,12 @@ class Simulator:
             pieces = [signal.piece(begin) for signal in signals]
             begun = beginning(self.closed, begin, start, pieces, on, {str(n) for n in initial})
             states = states + begun.moved
-            found = self._in_c(times, states, begun.s, signals, settings, begun.mode)
+            found = self._in_c(times, states, begun.s, signals, settings, begun.mode, events)
             if not isinstance(found, Recorded):
                 stopped = found
                 if stopped is not None and stopped.limit:
                     tell(stopped)
-                found = self._in_numpy(times, begun, signals, settings)
+                found = self._in_numpy(times, begun, signals, settings, events)
                 if stopped is not None and not stopped.limit:
                     tell(stopped)
             columns, observer = named_columns(self.closed, times, found.shots)
@@ -207,21 +214,23 @@ class Simulator:
         return Ledger(self.closed.declared, tuple(name.name for name in names), run.again)
 
     def _in_numpy(
-        self, times: Array, begun: Beginning, signals: Sequence[Signal], settings: Settings
-    ) -> Recorded:
-        run = run_hybrid(self.closed, times, begun.s, signals, settings, first=begun.mode)
+        self, times: Array, begun: Beginning, signals: Sequence[Signal], settings: Settings,
+        events: bool,
+    ) -> Recorded:  # fmt: skip
+        model = self.closed
+        run = run_hybrid(model, times, begun.s, signals, settings, first=begun.mode, keeping=events)
         return self._recorded(times, signals, run.track, "numpy")
 
     def _in_c(
         self, times: Array, states: Array, start: Array, signals: Sequence[Signal],
-        settings: Settings, first: Mode,
+        settings: Settings, first: Mode, events: bool,
     ) -> Recorded | Stopped | None:  # fmt: skip
         """The run in C, or why it cannot go on there; None where it was not asked for."""
         if self.located is None:
             return None
         stopped = Stopped(f"C has no method {settings.method!r}", limit=settings.method != EXACT)
         if self.engine is not None and settings.method in ("auto", EXACT):
-            found = self.engine.run(times, start, signals, first)
+            found = self.engine.run(times, start, signals, first, events)
             if found.track is not None:
                 return self._recorded(times, signals, found.track, "c")
             stopped = found.stopped
@@ -230,13 +239,14 @@ class Simulator:
                 return stopped
         if settings.method not in LOCATED_METHODS:
             return stopped
-        return self.located.run(times, states, signals, settings, first)
+        return self.located.run(times, states, signals, settings, first, events)
 
     def _recorded(
         self, times: Array, signals: Sequence[Signal], track: Track, backend: str
     ) -> Recorded:
         shots = snapshots(self.closed.within(track), times, signals, track)
-        return Recorded(tuple(track.events), shots, backend, tuple(track.modes))
+        events = tuple(track.events) if track.keeping else ()
+        return Recorded(events, shots, backend, tuple(track.modes))
 
     def steady(
         self, inputs: Mapping[str, float], initial: Mapping[str, float]

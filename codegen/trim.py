@@ -9,6 +9,7 @@ from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.modes.steady import choices, steady_modes
+from codegen.modes.trials import Sight
 from codegen.modes.verdicts import look_at
 from codegen.numbers.arrays import Array
 from codegen.simulate import Simulator
@@ -90,7 +91,7 @@ def _switched(model: ClosedModel, pieces: Sequence[Piece], mode: Mode, s: Array)
     """The switches that would change over."""
     if not model.program.switched:
         return frozenset()
-    look = look_at(model, 0.0, s, pieces, mode)
+    look = look_at(Sight(model, 0.0, s, pieces), mode)
     ports = range(len(mode))
     return frozenset(i for i in ports if model.switching[i] is not None and look.verdict(i) < 0)
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from bondgraph.errors import SimulationError
 from codegen.c.runtime import runtime_file
 from codegen.engine.build import FLAGS, compiled, loaded
+from codegen.engine.runs import NO_END
 from codegen.engine.sizes import Engine, Sizes, aligned, declarations, engine_declarations, sources
 
 FILES = (
@@ -47,6 +48,11 @@ def batch_engine(model: Mapping[str, str], wanted: Sizes, flags: tuple[str, ...]
     return Engine(wanted, ffi, opened)
 
 
+def room_for_events(eventful: bool) -> int:
+    """How many events a run may have; where no measure asks for them, they are not kept."""
+    return CAPACITY if eventful else NO_END
+
+
 @dataclass
 class Room:
     """Where one thread does its runs; keeps all that the record points to."""
@@ -56,6 +62,8 @@ class Room:
     signals: int
     factors: int
     products: int
+    #: Whether a measure asks for events.
+    eventful: bool
     record: Any = field(init=False)
     kept: list[Any] = field(init=False, default_factory=list)
 
@@ -68,8 +76,11 @@ class Room:
         self.record = self.engine.new("batch_room")
         context, self.record.context = self.engine.context()
         self.kept.append(context)
-        self.record.capacity, self.record.pitch = CAPACITY, self.samples + STRIDE
-        events = ffi.new("bg_event[]", CAPACITY)
+        self.record.capacity, self.record.pitch = (
+            room_for_events(self.eventful),
+            self.samples + STRIDE,
+        )
+        events = ffi.new("bg_event[]", CAPACITY) if self.eventful else ffi.NULL
         self.kept.append(events)
         self.record.events = events
         for name, kind, array in (

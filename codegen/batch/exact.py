@@ -72,7 +72,7 @@ class ExactLoop:
     def _rooms_of(self, engine: Engine) -> Rooms[Room]:
         kept = self._plan
         sizes = len(kept.rows), len(kept.factors), len(kept.products)
-        make = partial(Room, engine, kept.samples, *sizes)
+        make = partial(Room, engine, kept.samples, *sizes, kept.eventful)
         return self._rooms.setdefault(engine.sizes.G, Rooms(make))
 
     def _segments(self, signals: Sequence[Signal]) -> Segments:

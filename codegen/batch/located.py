@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codegen.batch.call import Rooms, job_record, outcome_of
-from codegen.batch.engine import CAPACITY
+from codegen.batch.engine import CAPACITY, room_for_events
 from codegen.batch.plan import Plan
 from codegen.engine.located import METHODS, LocatedLibrary, packed_signals
 from codegen.engine.sizes import aligned
@@ -45,7 +45,7 @@ class _Room:
         instance, run = map(aligned, library.sizes)
         values, events = (
             aligned(max(len(kept.rows), 1), kept.samples),
-            ffi.new("bg_event[]", CAPACITY),
+            ffi.new("bg_event[]", CAPACITY) if kept.eventful else ffi.NULL,
         )
         totals = aligned(len(kept.products) + 1)
         self._kept = [instance, run, values, totals, events]
@@ -53,7 +53,7 @@ class _Room:
         self.record.model = ffi.cast("bg_model *", instance.ctypes.data)
         self.record.run = ffi.cast("bg_located *", run.ctypes.data)
         self.record.values = ffi.cast("double *", values.ctypes.data)
-        self.record.events, self.record.capacity = events, CAPACITY
+        self.record.events, self.record.capacity = events, room_for_events(kept.eventful)
         self.record.method = METHODS.index(settings.method)
         self.record.rtol, self.record.atol = settings.rtol, settings.atol
 

@@ -60,6 +60,11 @@ class Plan:
     first: tuple[int, ...] = ()
     named: tuple[int, ...] = ()
 
+    @property
+    def eventful(self) -> bool:
+        """Whether a measure asks for events."""
+        return any(entry.what >= EVENTS for entry in self.entries)
+
     def told(self, found: Array, numbers: Numbers) -> tuple[Array, ...]:
         """The measures, from a row of results for each run."""
         return tuple(column(found, numbers) for column in self.columns)

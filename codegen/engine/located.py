@@ -12,7 +12,7 @@ from codegen.c.export import CALLING, texts
 from codegen.c.runtime import runtime_file
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
 from codegen.engine.fallback import Stopped
-from codegen.engine.runs import KINDS, not_affine
+from codegen.engine.runs import KINDS, NO_END, not_affine
 from codegen.engine.sizes import aligned, declarations
 from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
@@ -102,9 +102,12 @@ class LocatedRuns:
 
     def run(
         self, times: Array, states: Array, signals: Sequence[Signal], settings: Settings,
-        first: Mode = (),
+        first: Mode = (), keeping: bool = True,
     ) -> Recorded | Stopped:  # fmt: skip
-        """Run and record, or why it could not go on; ``first``: the mode before, all let go unless told."""
+        """Run and record, or why it could not go on; ``first``: the mode before, all let go unless told.
+
+        ``keeping``: whether events are kept.
+        """
         ffi, _ = self.library.opened
         rows = np.empty((len(times), self.width))
         begin = np.array([*first, *[1] * max(len(self.model.switching), 1)], dtype=np.intc)
@@ -114,7 +117,8 @@ class LocatedRuns:
         asked.samples, asked.method = len(times), METHODS.index(settings.method)
         asked.rtol, asked.atol = settings.rtol, settings.atol
         asked.first = _pointer(ffi, begin, "int *")
-        events = self._called(asked, rows, signal_table(signals, float(times[0]), float(times[-1])))
+        table = signal_table(signals, float(times[0]), float(times[-1]))
+        events = self._called(asked, rows, table, keeping)
         if isinstance(events, Stopped):
             return events
         if not np.isfinite(rows).all():
@@ -123,27 +127,30 @@ class LocatedRuns:
         told = tuple(tuple(mode) for mode in modes.astype(int).tolist())
         return Recorded(events, Snapshots(*parts), "c", told)
 
-    def _called(self, asked: Any, rows: Array, table: SignalTable) -> tuple[Event, ...] | Stopped:
+    def _called(
+        self, asked: Any, rows: Array, table: SignalTable, keeping: bool
+    ) -> tuple[Event, ...] | Stopped:
         """Call C, with more room for events if it asks for it; its events if the run is whole."""
         ffi, library = self.library.opened
         inputs, kept = packed_signals(ffi, table)
         instance, run = self._rooms
         status, room = int(Status.EVENTS), FEW
         while status == Status.EVENTS and room <= MANY:
-            events = ffi.new("bg_event[]", room)
-            asked.events, asked.capacity = events, room
+            events = ffi.new("bg_event[]", room) if keeping else ffi.NULL
+            asked.events, asked.capacity = events, room if keeping else NO_END
             status = library.bg_rows_run(
                 ffi.cast("bg_located *", run.ctypes.data),
                 ffi.cast("bg_model *", instance.ctypes.data),
                 _pointer(ffi, self._parameters), inputs, asked, _pointer(ffi, rows),
             )  # fmt: skip
-            room *= 16
+            room *= 16 if keeping else MANY
         del kept
         if status != 0:
             reason = ffi.string(library.bg_model_message(status)).decode()
             return Stopped(reason, float(asked.time), status == Status.EVENTS)
         names = [port.name for port in self.model.program.friction]
-        return tuple(Event(e.time, names[e.port], KINDS[e.kind]) for e in events[0 : asked.count])
+        told = events[0 : asked.count] if keeping else ()
+        return tuple(Event(e.time, names[e.port], KINDS[e.kind]) for e in told)
 
     @cached_property
     def _rooms(self) -> tuple[Array, Array]:

@@ -28,6 +28,9 @@ KINDS = ("stick", "slip", "cross", "on", "off")
 CAPACITY = 256
 """Events there is room for at first."""
 
+NO_END = 2**31 - 1
+"""Events that happen without being kept."""
+
 
 MEANINGS = {
     Status.NOT_AFFINE: "a friction mode is not one affine map",
@@ -81,6 +84,8 @@ class Prepared:
     first: Array
     grid: float
     capacity: int = CAPACITY
+    #: Whether events are kept.
+    keeping: bool = True
     events: Any = field(init=False)
     task: Any = field(init=False)
 
@@ -122,16 +127,17 @@ class Prepared:
     def track(self, model: ClosedModel) -> Track:
         """The record of the run."""
         names = [port.name for port in model.program.friction]
-        events = [
-            Event(event.time, names[event.port], KINDS[event.kind])
-            for event in self.events[0 : self.task.count]
-        ]
+        told = self.events[0 : self.task.count] if self.keeping else ()
+        events = [Event(event.time, names[event.port], KINDS[event.kind]) for event in told]
         vectors = self.rows[:, : model.size].copy()
         largest = np.abs(vectors).max(axis=0)
         modes = [self.tables.known[place] for place in self.modes.tolist()]
-        return Track(vectors, modes, largest, events, len(vectors))
+        return Track(vectors, modes, largest, events, len(vectors), keeping=self.keeping)
 
     def _room(self) -> None:
+        if not self.keeping:
+            self.task.events, self.task.capacity = self.engine.ffi.NULL, NO_END
+            return
         try:
             self.events = self.engine.ffi.new("bg_event[]", self.capacity)
         except (MemoryError, OverflowError):
@@ -151,20 +157,22 @@ class CRuns:
         self._ready: dict[int, tuple[Tables, tuple[Array, Any]]] = {}
 
     def run(
-        self, times: Array, start: Array, signals: Sequence[Signal], first: Mode = ()
-    ) -> Outcome:
+        self, times: Array, start: Array, signals: Sequence[Signal], first: Mode = (),
+        keeping: bool = True,
+    ) -> Outcome:  # fmt: skip
         """Run and record; the status tells why there is no track, if there is none.
 
-        ``first``: the mode before the run, all let go unless told.
+        ``first``: the mode before the run, all let go unless told. ``keeping``: whether events are kept.
         """
-        prepared = self.prepare(times, start, signals, first)
+        prepared = self.prepare(times, start, signals, first, keeping)
         status = prepared.call()
         track = prepared.track(self.model) if status == Status.OK else None
         return Outcome(status, prepared.task.time, track)
 
     def prepare(
-        self, times: Array, start: Array, signals: Sequence[Signal], first: Mode = ()
-    ) -> Prepared:
+        self, times: Array, start: Array, signals: Sequence[Signal], first: Mode = (),
+        keeping: bool = True,
+    ) -> Prepared:  # fmt: skip
         """Everything that a run needs."""
         made = segments(signals, float(times[0]), float(times[-1]))
         tables, context = self._tables(made)
@@ -179,6 +187,7 @@ class CRuns:
             np.empty(len(times), dtype=np.intc),
             np.array([*first, *[1] * max(len(self.model.switching), 1)], dtype=np.intc),
             grid_of(times),
+            keeping=keeping,
         )
 
     def _tables(self, made: Segments) -> tuple[Tables, tuple[Array, Any]]:

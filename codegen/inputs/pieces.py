@@ -40,7 +40,7 @@ class Piece:
             if rate:
                 value *= cmath.exp(rate * tau) if rate.imag else math.exp(rate.real * tau)
             total += value.real
-        if total and abs(total) <= self._suspect and abs(total) <= self._rounding(np.array(t)):
+        if total and abs(total) <= self._suspect and abs(total) <= self._rounding_at(t):
             return 0.0
         return total
 
@@ -69,6 +69,20 @@ class Piece:
         sizes = [abs(c) for _, polynomial in self.terms for c in polynomial]
         return TUNING.cancelled * max(sizes, default=0.0)
 
+    def _rounding_at(self, t: float) -> float:
+        """What rounding leaves of terms that cancel, at one time."""
+        tau, size, slope = abs(t - self.start), 0.0, 0.0
+        for rate, polynomial in self.terms:
+            own = rising = 0.0
+            for coefficient in reversed(polynomial):
+                rising = rising * tau + own
+                own = own * tau + abs(coefficient)
+            real = complex(rate).real
+            grown = math.exp(real * (t - self.start)) if real else 1.0
+            size, slope = size + own * grown, slope + (rising + abs(rate) * own) * grown
+        late = (abs(t) + abs(self.start)) / 8
+        return TUNING.zero_value * (size + late * slope)
+
     def _rounding(self, times: Array) -> Array:
         """What rounding leaves of terms that cancel, at their times."""
         tau = np.abs(times - self.start)
@@ -89,7 +103,7 @@ class Piece:
         slopes = tuple((rate, _slope(rate, poly)) for rate, poly in self.terms)
         return Piece(self.start, slopes, self.pace)
 
-    @property
+    @cached_property
     def fastest(self) -> float:
         """The largest magnitude of a rate [1/s]."""
         return max(self.pace, *(abs(rate) for rate, _ in self.terms), 0.0)

@@ -1,7 +1,7 @@
 """Everything about a closed model at one instant."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -19,8 +19,7 @@ class Run(Protocol):
     largest: Array
 
 
-@dataclass(frozen=True)
-class Snapshot:
+class Snapshot(NamedTuple):
     """Everything at one instant: states x and z, inputs, their rates, readings, the rate of s.
 
     ``caps``: the breakaway effort of each friction port. ``external``: the external inputs.

@@ -48,27 +48,32 @@ def blocks_of(model: ClosedModel, numbers: Numbers, ports: list[int]) -> list[li
     return [[ports[k] for k in np.flatnonzero(label == block)] for block in range(count)]
 
 
+Way = Mapping[int, int]
+"""How the ports of a block stick and slip, by port."""
+
+
 def ways_to_rub(
-    mode: Mode, previous: Mode, block: Sequence[int], touched: frozenset[int]
-) -> Generator[Mode, Mapping[int, int], None]:
-    """The modes to try, those that stick most first, then those that change least.
+    previous: Mode, block: Sequence[int], touched: frozenset[int]
+) -> Generator[Way, Way, None]:
+    """The ways of a block to try, those that stick most first, then those that change least.
 
     After each is sent where ports that contradict it would go: a large block follows that.
     """
     if len(block) <= ENUMERATED:
         for choice in _choices(previous, block, touched):
-            yield _with(mode, dict(zip(block, choice, strict=True)))
+            yield dict(zip(block, choice, strict=True))
         return
-    seen: set[Mode] = set()
-    mode = _with(mode, dict.fromkeys(block, 0))
+    seen: set[tuple[int, ...]] = set()
+    way = dict.fromkeys(block, 0)
     for _ in range(TURNS * len(block)):
-        seen.add(mode)
-        turned = {i: sign for i, sign in (yield mode).items() if i in block}
+        seen.add(tuple(way.values()))
+        turned = {i: sign for i, sign in (yield way).items() if i in way}
         if not turned:
             return
-        all_at_once = _with(mode, turned)
-        mode = all_at_once if all_at_once not in seen else _with(mode, dict([min(turned.items())]))
-        if mode in seen:
+        all_at_once = way | turned
+        again = tuple(all_at_once.values()) in seen
+        way = way | dict([min(turned.items())]) if again else all_at_once
+        if tuple(way.values()) in seen:
             return
 
 
@@ -83,10 +88,10 @@ def _choices(
     return sorted(product(*((0, previous[i] or 1, -(previous[i] or 1)) for i in block)), key=rank)
 
 
-def _with(mode: Mode, changes: Mapping[int, int]) -> Mode:
-    return tuple(changes.get(i, sign) for i, sign in enumerate(mode))
-
-
-def turned_to(mode: Mode, other: Mode, block: Sequence[int]) -> Mode:
-    """The mode with the ports of a block as in another one."""
-    return _with(mode, {i: other[i] for i in block})
+def turned_to(mode: Mode, *ways: Way) -> Mode:
+    """The mode with ports going these ways."""
+    changed = list(mode)
+    for way in ways:
+        for i, sign in way.items():
+            changed[i] = sign
+    return tuple(changed)

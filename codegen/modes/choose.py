@@ -1,7 +1,6 @@
 """Which ports hold and which are let go, and which way these slip: one consistent mode at one instant."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -12,9 +11,11 @@ from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Impact, Mode, Snapshot
 from codegen.modes.blocks import blocks_of, slipping_as, turned_to, ways_to_rub
 from codegen.modes.closed import ClosedModel
+from codegen.modes.glances import Glances
 from codegen.modes.impact import impact, pushed
 from codegen.modes.rounding import Peaks, scales
-from codegen.modes.trials import evaluated
+from codegen.modes.timed import told
+from codegen.modes.trials import Sight
 from codegen.modes.verdicts import Look, look_at, ruled_out, ruled_out_later, torn
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
@@ -24,8 +25,7 @@ from codegen.tuning import TUNING
 NONE: Broken = frozenset()
 
 
-@dataclass(frozen=True)
-class Occasion:
+class Occasion(NamedTuple):
     """An instant at which a mode is to be decided.
 
     ``loose``: friction ports that stick if they are at rest and can. ``touched``: ports whose event it
@@ -40,6 +40,12 @@ class Occasion:
     peaks: Peaks | None = None
     loose: frozenset[int] = frozenset()
     touched: frozenset[int] = frozenset()
+    #: What a first look at affine modes needs.
+    glances: Glances | None = None
+
+    def seen(self, s: Array) -> Sight:
+        """The model at this instant with another integrated vector."""
+        return Sight(self.model, self.t, s, self.pieces)
 
 
 class Decision(NamedTuple):
@@ -48,6 +54,8 @@ class Decision(NamedTuple):
     mode: Mode
     s: Array
     impacts: tuple[Impact, ...]
+    #: Whether all that could change it is far from doing so.
+    clear: bool = False
 
 
 class _Refusal(NamedTuple):
@@ -73,8 +81,8 @@ MOST_TOLD = 30
 """So many modes that were tried are told."""
 
 
-def decide(now: Occasion, s: Array) -> Decision:
-    """The mode just after an instant, of the integrated vector s before it.
+def decide(now: Occasion, here: Sight) -> Decision:
+    """The mode just after an instant, of what is seen there with the integrated vector before it.
 
     Every loose port at rest sticks if it can, else slips the way it is pushed; other ports slip the way
     their slip shows. Where several modes are consistent, ports not touched keep their state, and so do all
@@ -86,32 +94,37 @@ def decide(now: Occasion, s: Array) -> Decision:
     Raises `SimulationError`, with the numbers, if no mode is consistent.
     """
     if not now.previous:
-        return Decision((), s, ())
-    found = _decided(now, s)
+        return Decision((), here.s, ())
+    previous, known = told(now.model, now.t, now.pieces, now.previous, now.ahead, now.touched)
+    now = now._replace(previous=previous)
+    free = [i for i in now.model.switches if i not in known]
+    found = _decided(now, here, free)
     impacts = found.impacts
     for _ in range(TUNING.impacts if impacts else 0):
-        found = _decided(replace(now, previous=found.mode, touched=frozenset()), found.s)
+        now = now._replace(previous=found.mode, touched=frozenset())
+        found = _decided(now, now.seen(found.s), free)
         if not found.impacts:
             break
         impacts += found.impacts
-    return Decision(found.mode, found.s, impacts)
+    return found._replace(impacts=impacts)
 
 
-def _decided(now: Occasion, s: Array) -> Decision:
-    """The first consistent mode, at most one impact later."""
-    switching = now.model.switching
-    switches = [i for i, switch in enumerate(switching) if switch is not None]
+def _decided(now: Occasion, here: Sight, switches: list[int]) -> Decision:
+    """The first consistent mode, at most one impact later; time alone has told the other switches."""
     refused: dict[Mode, str] = {}
     tries = switchings(now.previous, switches)
     mode = next(tries)
     while True:
-        found = _tried(now, s, mode)
+        found = _glanced(now, here, mode, switches) or _tried(now, here, mode, switches)
         if isinstance(found, Decision):
             return found
         refused[mode] = found.reason
         try:
             mode = tries.send(found.broken)
         except StopIteration:
+            if now.glances is not None or len(switches) < len(now.model.switches):
+                # Why not is told by a closer look, at what time alone tells, too.
+                return _decided(now._replace(glances=None), here, now.model.switches)
             raise _none_consistent(now, refused) from None
 
 
@@ -132,30 +145,43 @@ def _none_consistent(now: Occasion, refused: dict[Mode, str]) -> SimulationError
     )
 
 
-def _tried(now: Occasion, before: Array, switched: Mode) -> Decision | _Refusal:
-    """The first consistent mode with the switches as in this one."""
+def _glanced(
+    now: Occasion, here: Sight, mode: Mode, switches: list[int]
+) -> Decision | _Refusal | None:
+    """What the first look at a mode tells; None where it takes a closer one."""
+    if now.glances is None or now.peaks is None:
+        return None
+    seen = now.glances.seen(here, mode, switches, now.peaks)
+    if seen is None:
+        return None
+    if seen.real and not seen.broken:
+        return Decision(mode, here.s, (), clear=True)
+    return _Refusal("", seen.broken)
+
+
+def _tried(now: Occasion, here: Sight, switched: Mode, switches: list[int]) -> Decision | _Refusal:
+    """The first consistent mode with the switches as in this one; those listed may contradict it."""
     model = now.model
     try:
-        jump = impact(model, now.t, before, now.pieces, switched, now.peaks)
-        s = before if jump is None else jump.s
-        _, shot = evaluated(model, now.t, s, now.pieces, switched)
+        jump = impact(here, switched, now.peaks)
+        here = here if jump is None else now.seen(jump.s)
+        _, shot = here.evaluated(switched)
     except SlopeNeededError:
         raise
     except SimulationError as error:
         return _Refusal(str(error), NONE)
-    undecided = _undecided(now, shot)
-    switches = [i for i, switch in enumerate(model.switching) if switch is not None]
+    undecided = _undecided(now, shot) if model.rubbing else []
     mode = slipping_as(model, shot, switched)
     blocks = blocks_of(model, shot.numbers, undecided)
     if len(blocks) > 1:
-        found = _in_blocks(now, s, mode, blocks)
+        found = _in_blocks(now, here, mode, blocks)
         if isinstance(found, _Refusal):
             return found
         mode, blocks = found, [[]]
-    found = _in_block(now, s, mode, blocks[0], [*undecided, *switches], jump)
+    found = _in_block(now, here, mode, blocks[0], [*undecided, *switches], jump)
     if isinstance(found, _Refusal):
         return found
-    return Decision(found, s, () if jump is None else (jump,))
+    return Decision(found, here.s, () if jump is None else (jump,))
 
 
 def _undecided(now: Occasion, shot: Snapshot) -> list[int]:
@@ -171,41 +197,40 @@ def _undecided(now: Occasion, shot: Snapshot) -> list[int]:
     ]
 
 
-def _in_blocks(now: Occasion, s: Array, mode: Mode, blocks: list[list[int]]) -> Mode | _Refusal:
+def _in_blocks(now: Occasion, here: Sight, mode: Mode, blocks: list[list[int]]) -> Mode | _Refusal:
     """The first way of each block; where some ports depend on others only as they hold, of all at once."""
-    found = _side_by_side(now, s, mode, blocks)
+    found = _side_by_side(now, here, mode, blocks)
     if found is None:
-        found = _one_by_one(now, s, mode, blocks)
+        found = _one_by_one(now, here, mode, blocks)
     if found is None:
         every = sorted(i for block in blocks for i in block)
-        return _in_block(now, s, mode, every, every, None)
+        return _in_block(now, here, mode, every, every, None)
     return found
 
 
-def _side_by_side(now: Occasion, s: Array, mode: Mode, blocks: list[list[int]]) -> Mode | None:
+def _side_by_side(now: Occasion, here: Sight, mode: Mode, blocks: list[list[int]]) -> Mode | None:
     """The first way of each block, all looked at together: at an instant none touches another."""
-    tries = [ways_to_rub(mode, now.previous, block, now.touched) for block in blocks]
-    for block, tried in zip(blocks, tries, strict=True):
-        mode = turned_to(mode, next(tried), block)
+    tries = [ways_to_rub(now.previous, block, now.touched) for block in blocks]
+    mode = turned_to(mode, *(next(tried) for tried in tries))
+    own = {i: tried for block, tried in zip(blocks, tries, strict=True) for i in block}
     every = [i for block in blocks for i in block]
     while True:
-        found = _looked_at(now, s, mode, every, None)
+        found = _looked_at(now, here, mode, every, None)
         if found.reason is None:
             return mode
         if not found.turned:
             return None
-        for block, tried in zip(blocks, tries, strict=True):
-            turned = {i: sign for i, sign in found.turned.items() if i in block}
-            try:
-                mode = turned_to(mode, tried.send(turned), block) if turned else mode
-            except StopIteration:
-                return None
+        turned = {tried: found.turned for i in found.turned if (tried := own[i])}
+        try:
+            mode = turned_to(mode, *[tried.send(way) for tried, way in turned.items()])
+        except StopIteration:
+            return None
 
 
-def _one_by_one(now: Occasion, s: Array, mode: Mode, blocks: list[list[int]]) -> Mode | None:
+def _one_by_one(now: Occasion, here: Sight, mode: Mode, blocks: list[list[int]]) -> Mode | None:
     """The first way of each block after those before it, where a whole way cannot be looked at."""
     for block in blocks:
-        told = _in_block(now, s, mode, block, block, None)
+        told = _in_block(now, here, mode, block, block, None)
         if isinstance(told, _Refusal):
             return None
         mode = told
@@ -213,47 +238,47 @@ def _one_by_one(now: Occasion, s: Array, mode: Mode, blocks: list[list[int]]) ->
 
 
 def _in_block(
-    now: Occasion, s: Array, mode: Mode, block: list[int], asked: list[int], jump: Impact | None
+    now: Occasion, here: Sight, mode: Mode, block: list[int], asked: list[int], jump: Impact | None
 ) -> Mode | _Refusal:
     """The first way of sticking and slipping in a block that contradicts none of the ports asked."""
-    told: dict[Mode, _Finding] = {}
-    tries = ways_to_rub(mode, now.previous, block, now.touched)
-    candidate = next(tries)
+    tried: dict[Mode, _Finding] = {}
+    tries = ways_to_rub(now.previous, block, now.touched)
+    candidate = turned_to(mode, next(tries))
     while True:
-        found = _looked_at(now, s, candidate, asked, jump)
+        found = _looked_at(now, here, candidate, asked, jump)
         if found.reason is None:
             return candidate
-        told[candidate] = found
+        tried[candidate] = found
         try:
-            candidate = tries.send(found.turned)
+            candidate = turned_to(mode, tries.send(found.turned))
         except StopIteration:
-            return _refused(now, s, told)
+            return _refused(here, tried)
 
 
-def _refused(now: Occasion, s: Array, told: dict[Mode, _Finding]) -> _Refusal:
+def _refused(here: Sight, told: dict[Mode, _Finding]) -> _Refusal:
     """Why no way is consistent; with it the switches that contradict the first that friction lets be."""
     broken = next((found.broken for found in told.values() if found.broken), NONE)
     reasons = {str(found.reason) for found in told.values()}
     if len(told) == 1 or (len(reasons) == 1 and all(found.none for found in told.values())):
         return _Refusal(reasons.pop(), broken)
-    names = ", ".join(repr(p.name) for p in now.model.program.friction if p.switch is None)
+    names = ", ".join(repr(p.name) for p in here.model.program.friction if p.switch is None)
     listed = "; ".join(f"{mode}: {found.reason}" for mode, found in list(told.items())[:MOST_TOLD])
     first = next(iter(told))
-    slips = evaluated(now.model, now.t, s, now.pieces, first)[1].y[now.model.friction_readings]
+    slips = here.evaluated(first)[1].y[here.model.friction_readings]
     return _Refusal(
-        f"at t = {now.t:.9g} no way of sticking and slipping at {names} is consistent "
+        f"at t = {here.t:.9g} no way of sticking and slipping at {names} is consistent "
         f"(slips {slips.tolist()}); tried {listed}",
         broken,
     )
 
 
 def _looked_at(
-    now: Occasion, s: Array, mode: Mode, asked: Sequence[int], jump: Impact | None
+    now: Occasion, here: Sight, mode: Mode, asked: Sequence[int], jump: Impact | None
 ) -> _Finding:
     """What contradicts a mode, of the ports asked."""
     model = now.model
     try:
-        look = look_at(model, now.t, s, now.pieces, mode, now.peaks)
+        look = look_at(here, mode, now.peaks)
         wrong = ruled_out(look) or torn(look)
         if wrong is not None:
             return _Finding(wrong)
@@ -262,7 +287,7 @@ def _looked_at(
         contrary = [i for i, sure in verdicts.items() if sure < 0]
         tied = [i for i, sure in verdicts.items() if sure == 0]
         if not contrary and (tied or len(look.ruled[0])):
-            then = _moment_later(now, s, look)
+            then = _moment_later(now, look)
             wrong = ruled_out_later(look, then)
             contrary = [i for i in tied if look.later_verdict(i, then, now.ahead) < 0]
     except SlopeNeededError:
@@ -283,12 +308,10 @@ def _turned(look: Look, ports: Sequence[int]) -> dict[int, int]:
     return {i: 0 if look.mode[i] else 1 if efforts[i] > 0 else -1 for i in ports}
 
 
-def _moment_later(now: Occasion, s: Array, look: Look) -> Look:
+def _moment_later(now: Occasion, look: Look) -> Look:
     """The same mode a little later, with what counts as zero now."""
-    model = now.model
-    later = a_moment_later(model, now.t, s, now.pieces, look.mode, now.ahead)
-    guards = model.guards(now.t + now.ahead, later) if len(look.guards) else look.guards
-    return Look(model, look.mode, later, look.size, guards, look.near)
+    later = a_moment_later(look.here, look.mode, now.ahead)
+    return Look(look.here, look.mode, now.t + now.ahead, later, look.size, now.peaks)
 
 
 def _contradiction(look: Look, port: int) -> str:
@@ -301,10 +324,9 @@ def _contradiction(look: Look, port: int) -> str:
     return f"{name!r} would need {effort:.6g} of at most {look.now.caps[port]:.6g} to stick"
 
 
-def a_moment_later(
-    model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode, ahead: float
-) -> Snapshot:
+def a_moment_later(here: Sight, mode: Mode, ahead: float) -> Snapshot:
     """The model a little later in a mode, by one midpoint step."""
-    half = s + 0.5 * ahead * model.at(t, s, pieces, mode).rate
+    model, t, s, pieces = here.model, here.t, here.s, here.pieces
+    half = s + 0.5 * ahead * here.at(mode).rate
     moved = s + ahead * model.at(t + 0.5 * ahead, half, pieces, mode).rate
     return model.at(t + ahead, moved, pieces, mode)

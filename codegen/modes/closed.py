@@ -15,24 +15,27 @@ import numpy as np
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
+from codegen.model.affine_modes import LetGo, in_mode, let_go
 from codegen.model.instant import Binding
+from codegen.model.moves import Moves, moves
 from codegen.model.numbers import assembled, check_values, exact_parameters, numbers
 from codegen.model.sharp import NotAffineError, sharp_rates
 from codegen.model.snapshot import Mode, Run, Snapshot
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, read_only
+from codegen.numbers.latest import Latest, room_for
 from codegen.numbers.pairs import Pair, pair
 from codegen.ports.forming import formed, rubbing
 from codegen.ports.refusals import refusals
 from codegen.ports.slips import slip_rows
 from codegen.program.affine import AffineMap, check_finite, probed
+from codegen.program.driven import opposed_ports, timed_ports
 from codegen.program.gains import check_gains
 from codegen.program.layout import (
     CAPS,
     INPUTS,
     RATE,
-    RATES_OF_INPUTS,
     READINGS,
-    STATES,
+    widths,
 )
 from codegen.program.records import Program
 from codegen.standalone.evaluation import Point, evaluated, vector
@@ -60,9 +63,17 @@ class ClosedModel:
         self.moving = np.array(
             [-1 if port.moving is None else port.moving for port in program.friction], dtype=int
         )
+        #: Whether slips have factors that move.
+        self.bent = bool((self.moving >= 0).any())
         self.law_rates = np.array(program.law_rates, dtype=np.intp)
         #: Of each port that is a switch when it changes over, None of the others.
         self.switching = [port.switch for port in program.friction]
+        #: The places of switches; of those that time alone drives, of these of those that go either way by
+        #: one condition; and whether there is friction beside.
+        self.switches = [i for i, switch in enumerate(self.switching) if switch is not None]
+        self.timed = timed_ports(program)
+        self.opposed = opposed_ports(program, self.timed)
+        self.rubbing = len(self.switches) < len(program.friction)
         binding = Binding(program, exact)
         self._guards = binding.function(program.guards)
         self._coefficients = binding.function(program.coefficients)
@@ -73,10 +84,11 @@ class ClosedModel:
         self.slips = slip_rows(program, self.equations, exact)
         self._form = formed(program, binding, self.numbers)
         self._friction = rubbing(program, binding, self._form, self.slips)
-        self._maps: dict[Mode, AffineMap | None] = {}
-        self._guard_maps: dict[Mode, Array] = {}
-        self._base: AffineMap | None = None
-        self._pushing: tuple[Array, Array, Array] | None = None
+        rows = sum(widths(program))
+        self._maps = Latest[Mode, AffineMap | None](room_for(rows * self.size))
+        self._guard_maps = Latest[Mode, Array]()
+        self._bases: dict[int, LetGo] = {}
+        self._moves: tuple[Numbers, Moves] | None = None
         self._run: Run | None = None
         #: The latest time, pieces, external inputs and rates: an instant is looked at many times.
         self._latest: tuple[float, tuple[Piece, ...], Array, Array] = (np.nan, (), NONE, NONE)
@@ -133,10 +145,10 @@ class ClosedModel:
             affine = self.affine_map(mode, len(w))
             if affine is not None:
                 x, z, u, du, y, rate, caps = affine(s, w, dw)
-                if mode and min(caps) < 0:
+                if affine.limited and caps.min() < 0:
                     most = s if self._run is None else np.maximum(np.abs(s), self._run.largest)
                     caps = without_rounding(caps, affine.terms(CAPS, most, w, dw))
-                if not mode or min(caps) >= 0:
+                if not affine.limited or caps.min() >= 0:
                     return Snapshot(x, z, u, du, y, rate, caps, w, self.constant)
         return self.evaluate(t, s, w, dw, mode)
 
@@ -165,44 +177,53 @@ class ClosedModel:
             )
         return values
 
-    def pushing(self, numbers: Numbers) -> tuple[Array, Array, Array]:
-        """Magnitudes of how states and inputs change slips, and of how each port's own effort does."""
-        if self._pushing is None or numbers is not self._constant:
-            F, D = numbers.F[self.friction_readings], numbers.D[self.friction_readings]
-            by_inputs = np.abs(F @ numbers.Q)
-            own = np.arange(len(F)), self.friction_inputs
-            inertia = by_inputs[own] + np.abs(D[own])
-            self._pushing = np.abs(F @ numbers.P), by_inputs, inertia
-        return self._pushing
+    @cached_property
+    def timed_guards(self) -> Array:
+        """The conditions of switches over [w, 1], as far as these rule them."""
+        program, zeros = self.program, np.zeros
+
+        def point(w: Array) -> list[Array]:
+            x, z, u, du, y = (zeros(size) for size in widths(program)[: READINGS + 1])
+            u[program.given], still = w[: len(program.given)], zeros(len(w))
+            return [self._guards(Instant(0.0, x, z, u, du, y, w, still, still))]
+
+        return probed(point, len(program.external), 0).matrix
+
+    def moves(self, numbers: Numbers) -> Moves:
+        """How slips change, with the matrices of an instant."""
+        if self._moves is None or numbers is not self._moves[0]:
+            found = moves(numbers, self.friction_readings, self.friction_inputs)
+            self._moves = numbers, found
+        return self._moves[1]
 
     def guard_rows(self, mode: Mode, inputs: int) -> Array | None:
         """The conditions of switches in a mode as rows over [s, w, w', 1]; None where they are not affine."""
         affine = self.affine_map(mode, inputs)
         if affine is None or not self.program.guards_affine:
             return None
-        if mode not in self._guard_maps:
-            size = self.size
+        size = self.size
+        if not self.program.guards.results:
+            return np.zeros((0, size + 2 * inputs + 1))
 
-            def point(v: Array) -> list[Array]:
-                s, w, dw = np.split(v, [size, size + inputs])
-                x, z, u, du, y, rate, caps = affine(s, w, dw)
-                now = Snapshot(x, z, u, du, y, rate, caps, w, self.constant)
-                return [self._guards(now.instant(0.0))]
+        def point(v: Array) -> list[Array]:
+            s, w, dw = np.split(v, [size, size + inputs])
+            x, z, u, du, y, rate, caps = affine(s, w, dw)
+            now = Snapshot(x, z, u, du, y, rate, caps, w, self.constant)
+            return [self._guards(now.instant(0.0))]
 
-            self._guard_maps[mode] = probed(point, size + 2 * inputs, 0).matrix
-        return self._guard_maps[mode]
+        return self._guard_maps.of(mode, lambda: probed(point, size + 2 * inputs, 0).matrix)
 
     def given(self, t: float, pieces: Sequence[Piece]) -> tuple[Array, Array]:
-        """The external inputs, and their rates where anything asks for them."""
+        """The external inputs, and their rates where anything asks for them; read-only."""
         latest = self._latest
         if latest[0] == t and len(latest[1]) == len(pieces) and all(map(is_, latest[1], pieces)):
-            return latest[2].copy(), latest[3].copy()
+            return latest[2], latest[3]
         w = np.array([piece(t) for piece in pieces])
         dw = np.zeros(len(w))
         if self.program.rated:
             dw = np.array([piece.derivative(t) for piece in pieces])
-        self._latest = t, tuple(pieces), w, dw
-        return w.copy(), dw.copy()
+        self._latest = t, tuple(pieces), read_only(w), read_only(dw)
+        return w, dw
 
     def rates(self, pieces: Sequence[Piece], mode: Mode) -> Callable[[float, Array], Array]:
         """The rate of s in a mode as a function of t and s; quicker than `at`, which gives all else too."""
@@ -231,10 +252,12 @@ class ClosedModel:
         """An affine mode's matrix; None for other models, and where redundant ports share a load."""
         if not self.program.affine:
             return None
-        if mode not in self._maps:
+
+        def made() -> AffineMap | None:
             redundant = 0 in mode and self.hold(mode, self.constant).shares
-            self._maps[mode] = None if redundant else self._affine_map(mode, inputs)
-        return self._maps[mode]
+            return None if redundant else self._affine_map(mode, inputs)
+
+        return self._maps.of(mode, made)
 
     @cached_property
     def sharp_rates(self) -> Pair | None:
@@ -248,26 +271,10 @@ class ClosedModel:
             return pair(affine.rows(RATE))
 
     def _affine_map(self, mode: Mode, inputs: int) -> AffineMap:
-        if self._base is None:
-            self._base = self._probed(inputs)
-        base, numbers, ports = self._base, self.constant, self.friction_inputs
-        matrix = base.matrix.copy()
-        parts = AffineMap(base.sizes, matrix, RATE)
-        x, u, du = (parts.rows(part) for part in (STATES, INPUTS, RATES_OF_INPUTS))
-        u[ports] *= np.array(mode, dtype=float)[:, None]
-        hold = self.hold(mode, numbers) if 0 in mode else None
-        if hold is not None:
-            right = hold.X @ x + hold.U @ u + hold.V @ du
-            u[hold.inputs] = -hold.inverse[:, : len(right)] @ right
-        rates, n = parts.rows(RATE), len(x)
-        parts.rows(READINGS)[:] = numbers.F @ x + numbers.D @ u + numbers.G @ du
-        rates[:n] = numbers.P @ x + numbers.Q @ u
-        rates[n : n + len(self.program.law_rates)] = parts.rows(READINGS)[
-            list(self.program.law_rates)
-        ]
-        if hold is not None:
-            rates[:n] += hold.correction(rates[:n], du)
-        return parts
+        if inputs not in self._bases:
+            self._bases[inputs] = let_go(self._probed(inputs), self.constant, self.friction_inputs)
+        hold = self.hold(mode, self.constant) if 0 in mode else None
+        return in_mode(self._bases[inputs], mode, hold, self.program.law_rates)
 
     def _probed(self, inputs: int) -> AffineMap:
         """The map where all ports slip forwards; what laws give does not depend on friction."""

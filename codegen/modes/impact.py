@@ -5,41 +5,36 @@ combinations N with ``N^T D_SS = 0``, rules the states: ``x+ = x- + A^-1 B_S p``
 and ``D_SS p = 0``. Friction takes no part: what it gives is finite.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Impact, Mode
-from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks, scales
-from codegen.modes.trials import evaluated
+from codegen.modes.trials import Sight
 from codegen.modes.verdicts import Look
-from codegen.numbers.arrays import Array
 from codegen.standalone.striking import shocks, struck
 from codegen.tuning import TUNING
 
 
-def impact(
-    model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode,
-    peaks: Peaks | None = None,
-) -> Impact | None:  # fmt: skip
+def impact(here: Sight, mode: Mode, peaks: Peaks | None = None) -> Impact | None:
     """What the switches that a mode holds do to the states; None where nothing has to jump."""
+    model = here.model
     held = tuple(
         sign if switch is not None else 1
         for sign, switch in zip(mode, model.switching, strict=True)
     )
     if 0 not in held:
         return None
-    slipping, now = evaluated(model, t, s, pieces, tuple(1 for _ in mode))
+    slipping, now = here.evaluated((1,) * len(mode))
     hold = model.hold(held, now.numbers)
-    slips = hold.slips(now.instant(t))
-    near = np.abs(hold.mix) @ scales(model, now, t, peaks).slip[hold.ports]
+    if not len(hold.mix):
+        return None
+    slips = hold.slips(now.x, now.u)
+    near = np.abs(hold.mix) @ scales(model, now, here.t, peaks).slip[hold.ports]
     if (np.abs(slips) <= TUNING.wide * near).all():
         return None
     strike = struck(hold, now.numbers, slips)
-    after = s + strike.gained(len(s), model.law_rates)
-    later = model.at(t, after, pieces, slipping)
+    after = here.s + strike.gained(len(here.s), model.law_rates)
+    later = model.at(here.t, after, here.pieces, slipping)
     # An impulse works on the mean of what its port receives before and after.
     mean = 0.5 * (now.y + later.y)[model.friction_readings]
     return Impact(after, strike, float(strike.given[model.friction_inputs] @ mean))

@@ -1,6 +1,6 @@
 """What keeps switches as they are; of affine modes that and their impacts as tables."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -75,7 +75,7 @@ def _guards_pushed(model: ClosedModel, given: Array, received: Array) -> Array:
     x, z = np.zeros(len(program.states)), np.zeros(len(program.law_states))
     u, w = np.zeros(len(program.inputs)), np.zeros(len(program.external))
     still = Snapshot(x, z, u, u, np.zeros(len(received)), w, w, w, model.constant)
-    moved = replace(still, u=given, y=received)
+    moved = still._replace(u=given, y=received)
     return np.asarray(model.guards(0.0, moved) - model.guards(0.0, still), dtype=float)
 
 

@@ -8,13 +8,17 @@ import numpy as np
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.trials import evaluated
+from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
-from codegen.program.layout import INPUTS
-from codegen.standalone.friction import slip_rates as rates_of_slips
+from codegen.program.affine import ONE
+from codegen.program.layout import INPUTS, STATES
+from codegen.standalone.friction import moved_on
 from codegen.standalone.levels import terms_of
 from codegen.standalone.striking import effort_terms
 from codegen.tuning import TUNING
+
+TINY = float(np.finfo(float).tiny)
+"""No number that counts as zero is zero itself."""
 
 
 def input_terms(
@@ -27,10 +31,8 @@ def input_terms(
     """
     affine = model.affine_map(mode, len(pieces))
     if affine is not None:
-        w = np.array([piece(t) for piece in pieces])
-        matrix = affine.rows(INPUTS)
-        ones = np.concatenate((np.abs(s), np.abs(w), np.zeros(len(w)), (1.0,)))
-        return np.asarray(np.abs(matrix) @ ones, dtype=float)
+        w, dw = model.given(t, pieces)
+        return affine.terms(INPUTS, s, w, np.zeros_like(dw))
     return terms_of(lambda at: model.at(t, at, pieces, mode).u, s, np.abs(s), np.flatnonzero(s))
 
 
@@ -41,22 +43,43 @@ class Peaks:
     ``time`` [s] is the shortest time constant: forces that cancel leave slips of their rounding times it.
     """
 
-    x: Array
-    u: Array
+    #: Of states and inputs, one after the other.
+    both: Array
+    states: int
     time: float = 0.0
 
     @classmethod
     def none(cls, model: ClosedModel) -> "Peaks":
         """Nothing seen yet."""
-        return cls(np.zeros(len(model.program.states)), np.zeros(len(model.program.inputs)))
+        states = len(model.program.states)
+        return cls(np.zeros(states + len(model.program.inputs)), states)
 
-    def see(
-        self, model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode
-    ) -> None:
+    @property
+    def x(self) -> Array:
+        """Of states."""
+        return self.both[: self.states]
+
+    @property
+    def u(self) -> Array:
+        """Of inputs."""
+        return self.both[self.states :]
+
+    def see(self, here: Sight, mode: Mode) -> None:
         """Take an instant into account, friction slipping in the given directions or forwards."""
-        slipping, now = evaluated(model, t, s, pieces, mode)
-        self.x = np.maximum(self.x, np.abs(now.x))
-        self.u = np.maximum(self.u, input_terms(model, t, s, pieces, slipping))
+        model, slipping = here.model, tuple(sign or 1 for sign in mode)
+        affine = model.affine_map(slipping, len(here.pieces))
+        if affine is not None and not affine.limited:
+            x = affine.rows(STATES) @ here.vector
+        else:
+            slipping, now = here.evaluated(mode)
+            x = now.x
+        terms = input_terms(model, here.t, here.s, here.pieces, slipping)
+        self.both = np.maximum(self.both, np.concatenate((np.abs(x), terms)))
+
+    def sizes(self, now: Snapshot) -> Array:
+        """The largest magnitudes of states and inputs, one after the other, with an instant's own."""
+        found: Array = np.maximum(np.abs(np.concatenate((now.x, now.u))), self.both)
+        return found
 
 
 @dataclass(frozen=True)
@@ -70,22 +93,18 @@ class Scales:
 
 def scales(model: ClosedModel, now: Snapshot, t: float = 0.0, peaks: Peaks | None = None) -> Scales:
     """The rounding to be expected, from the magnitude of the terms that cancel, and of the time's."""
-    readings, numbers = model.friction_readings, now.numbers
-    peaks = peaks or Peaks.none(model)
-    x, u = np.maximum(np.abs(now.x), peaks.x), np.maximum(np.abs(now.u), peaks.u)
+    peaks, count = peaks or Peaks.none(model), len(model.switching)
+    sizes, n, by = peaks.sizes(now), len(now.x), model.moves(now.numbers)
     late = TUNING.late * np.spacing(abs(t)) * np.abs(slip_rates(model, now))
-    slip = np.abs(numbers.F[readings]) @ x + np.abs(numbers.D[readings]) @ u
+    terms = by.terms @ sizes
     # At rest states are rounding themselves: of what moves them within a time constant.
-    x = np.maximum(x, peaks.time * (np.abs(numbers.P) @ x + np.abs(numbers.Q) @ u))
-    by_states, by_inputs, inertia = model.pushing(numbers)
-    moved = by_states @ x + by_inputs @ u
+    np.maximum(sizes[:n], peaks.time * terms[count:], out=sizes[:n])
+    moved = by.pushes @ sizes
     efforts = np.abs(now.u[model.friction_inputs]) + now.caps
-    driven = np.divide(moved, inertia, out=np.zeros_like(moved), where=inertia > 0)
-    tiny = np.finfo(float).tiny
     return Scales(
-        TUNING.rounding * (slip + moved * peaks.time) + late + tiny,
-        TUNING.rounding * (efforts + driven) + tiny,
-        TUNING.rounding * TUNING.pushes * moved + tiny,
+        TUNING.rounding * (terms[:count] + moved * peaks.time) + late + TINY,
+        TUNING.rounding * (efforts + moved * by.mobility) + TINY,
+        TUNING.rounding * TUNING.pushes * moved + TINY,
     )
 
 
@@ -108,31 +127,35 @@ def holding(
 
 def slip_rates(model: ClosedModel, now: Snapshot) -> Array:
     """How fast each friction port's slip changes, inputs that cannot be differentiated held."""
-    rows = np.array(model.friction_readings, dtype=int)
-    return rates_of_slips(now.instant(0.0), rows, model.moving)
+    by = model.moves(now.numbers)
+    rates = by.slips @ np.concatenate((now.x, now.u))
+    if by.by_rates is not None:
+        rates += by.by_rates @ now.du
+    if model.bent:
+        rates += moved_on(now.instant(0.0), model.moving)
+    return np.asarray(rates, dtype=float)
 
 
-def guard_rounding(
-    model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode, peaks: Peaks | None
-) -> Array:
+def guard_rounding(here: Sight, mode: Mode, peaks: Peaks | None) -> Array:
     """Below these the guards count as zero, from the magnitude of the terms that make them up.
 
     At rest a state is rounding itself: of what moves it within a time constant.
     """
+    model, t, s, pieces = here.model, here.t, here.s, here.pieces
     peaks = peaks or Peaks.none(model)
-    now, n = model.at(t, s, pieces, mode), len(peaks.x)
+    now, n = here.at(mode), len(peaks.x)
     w, dw = model.given(t, pieces)
-    moving = np.abs(now.numbers.P) @ np.abs(now.x) + np.abs(now.numbers.Q) @ np.abs(now.u)
+    by = model.moves(now.numbers).terms[len(mode) :]
+    moving = by @ np.abs(np.concatenate((now.x, now.u)))
     sizes = np.abs(s)
     sizes[:n] = np.maximum(sizes[:n], np.maximum(peaks.x, peaks.time * moving))
 
     rows = model.guard_rows(mode, len(w))
     if rows is not None:
-        ones = np.concatenate((sizes, np.abs(w), np.abs(dw), (1.0,)))
-        moved = np.concatenate((now.rate, _rates_of(pieces, t), np.zeros(len(w)), (0.0,)))
+        ones = np.concatenate((sizes, np.abs(w), np.abs(dw), ONE))
+        moved = np.concatenate((now.rate, _rates_of(pieces, t), np.zeros(len(w) + 1)))
         late = 16 * np.spacing(abs(t)) * np.abs(rows @ moved)
-        found = TUNING.rounding * (np.abs(rows) @ ones) + late + np.finfo(float).tiny
-        return np.asarray(found, dtype=float)
+        return np.asarray(TUNING.rounding * (np.abs(rows) @ ones) + late + TINY, dtype=float)
 
     def by_state(at: Array) -> Array:
         return model.guards(t, model.at(t, at, pieces, mode))
@@ -142,15 +165,16 @@ def guard_rounding(
 
     terms = terms_of(by_state, s, sizes, np.flatnonzero(sizes)) - np.abs(model.guards(t, now))
     terms += terms_of(by_input, w, np.abs(w), np.flatnonzero(w))
-    late = 16 * np.spacing(abs(t)) * _slopes(model, t, s, pieces, mode)
-    return np.asarray(TUNING.rounding * terms + late + np.finfo(float).tiny, dtype=float)
+    late = 16 * np.spacing(abs(t)) * _slopes(here, mode)
+    return np.asarray(TUNING.rounding * terms + late + TINY, dtype=float)
 
 
-def _slopes(model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode) -> Array:
+def _slopes(here: Sight, mode: Mode) -> Array:
     """How fast the guards change, by a difference over a moment."""
-    now = model.at(t, s, pieces, mode)
+    model, t, pieces, now = here.model, here.t, here.pieces, here.at(mode)
     moment = TUNING.guard_moment * max(abs(t), TUNING.guard_floor)
-    later = model.guards(t + moment, model.at(t + moment, s + moment * now.rate, pieces, mode))
+    moved = here.s + moment * now.rate
+    later = model.guards(t + moment, model.at(t + moment, moved, pieces, mode))
     return np.asarray(np.nan_to_num(np.abs(later - model.guards(t, now)) / moment), dtype=float)
 
 

@@ -11,7 +11,7 @@ from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
 from codegen.modes.choose import Occasion, decide
 from codegen.modes.closed import ClosedModel
-from codegen.modes.trials import evaluated
+from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
 from codegen.program.records import FrictionPort
 from codegen.standalone.switchings import ALL_WAYS, FEW, Broken, flipped
@@ -106,7 +106,8 @@ def _as_allowed(mode: Mode, allowed: Choices) -> Mode:
 def _shown(model: ClosedModel, pieces: Sequence[Piece], start: Array) -> Mode:
     """How switches are at the start, and which way its slips go."""
     loose = tuple(1 for _ in model.switching)
-    _, now = evaluated(model, 0.0, start, pieces, loose)
+    seen = Sight(model, 0.0, start, pieces)
+    _, now = seen.evaluated(loose)
     slips = np.sign(np.round(now.y[model.friction_readings], 12)).astype(int).tolist()
     if not model.program.switched:
         return tuple(slips)
@@ -114,7 +115,7 @@ def _shown(model: ClosedModel, pieces: Sequence[Piece], start: Array) -> Mode:
     ahead = TUNING.look_ahead * TUNING.standing
     # Where the start has no consistent mode, another point may.
     with suppress(SimulationError):
-        off, _, _ = decide(Occasion(model, 0.0, pieces, off, ahead), start)
+        off, *_ = decide(Occasion(model, 0.0, pieces, off, ahead), seen)
     return tuple(
         slip if switch is None else sign
         for slip, switch, sign in zip(slips, model.switching, off, strict=True)

@@ -1,7 +1,10 @@
 """Friction modes on trial: a mode in which the laws have no solution is none, and another is looked at."""
 
 from collections.abc import Sequence
+from functools import cached_property
 from itertools import chain
+
+import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
@@ -9,29 +12,41 @@ from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
+from codegen.program.affine import ONE
 from codegen.standalone.friction import ways
 
 
-def evaluated(
-    model: ClosedModel,
-    t: float,
-    s: Array,
-    pieces: Sequence[Piece],
-    mode: Mode,
-    slipping: bool = True,
-) -> tuple[Mode, Snapshot]:
-    """The model with friction slipping as in ``mode``, ports that stick forwards; if need be, otherwise.
+class Sight:
+    """A model at one time with one integrated vector, which must not change; modes are looked at once."""
 
-    ``slipping``: unless it is set, the mode itself comes first.
-    A level that grows with what the port gives (a self-locking gear) may have no solution one way.
-    Raises the `SimulationError` of the first try if no mode can be evaluated.
-    """
-    refused: SimulationError | None = None
-    for tried in ways(mode) if slipping else chain((mode,), ways(mode)):
-        try:
-            return tried, model.at(t, s, pieces, tried)
-        except SlopeNeededError:
-            raise
-        except SimulationError as error:
-            refused = refused or error
-    raise refused or SimulationError("there is no mode")
+    def __init__(self, model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece]) -> None:
+        self.model, self.t, self.s, self.pieces = model, t, s, pieces
+        self._shots: dict[Mode, Snapshot] = {}
+
+    @cached_property
+    def vector(self) -> Array:
+        """What affine modes are maps of: the integrated vector, inputs, their rates, and 1."""
+        return np.concatenate((self.s, *self.model.given(self.t, self.pieces), ONE))
+
+    def at(self, mode: Mode) -> Snapshot:
+        """Everything in a mode; raises `SimulationError` where there are no values."""
+        if mode not in self._shots:
+            self._shots[mode] = self.model.at(self.t, self.s, self.pieces, mode)
+        return self._shots[mode]
+
+    def evaluated(self, mode: Mode, slipping: bool = True) -> tuple[Mode, Snapshot]:
+        """The model with friction slipping as in ``mode``, ports that stick forwards; if need be, otherwise.
+
+        ``slipping``: unless it is set, the mode itself comes first.
+        A level that grows with what the port gives (a self-locking gear) may have no solution one way.
+        Raises the `SimulationError` of the first try if no mode can be evaluated.
+        """
+        refused: SimulationError | None = None
+        for tried in ways(mode) if slipping else chain((mode,), ways(mode)):
+            try:
+                return tried, self.at(tried)
+            except SlopeNeededError:
+                raise
+            except SimulationError as error:
+                refused = refused or error
+        raise refused or SimulationError("there is no mode")

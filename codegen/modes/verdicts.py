@@ -1,39 +1,48 @@
 """Whether a port goes with a mode, and whether what only sources rule lets a set of ports hold."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.keeping import kept_by
+from codegen.modes.keeping import GUARDS, SLIPS, kept_by
 from codegen.modes.rounding import Peaks, Scales, guard_rounding, holding, scales, slip_rates
+from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING
 
 NOTHING: Array = np.zeros(0)
 
-
-def _nothing() -> Array:
-    return NOTHING
+NONE: Array = np.zeros((0, 0))
 
 
 @dataclass(frozen=True)
 class Look:
-    """A mode at an instant, with what counts as zero there.
+    """A mode at an instant t, with what counts as zero there: as it is seen from ``here``."""
 
-    ``guards``: conditions of switches, and ``near`` below what they count as zero.
-    """
-
-    model: ClosedModel
+    here: Sight
     mode: Mode
+    t: float
     now: Snapshot
     size: Scales
-    guards: Array = field(default_factory=_nothing)
-    near: Array = field(default_factory=_nothing)
+    peaks: Peaks | None
+
+    @property
+    def model(self) -> ClosedModel:
+        """What is looked at."""
+        return self.here.model
+
+    @cached_property
+    def guards(self) -> Array:
+        """The conditions of switches."""
+        return self.model.guards(self.t, self.now)
+
+    @cached_property
+    def near(self) -> Array:
+        """Below these the conditions count as zero."""
+        return guard_rounding(self.here, self.mode, self.peaks)
 
     def slip(self, port: int) -> float:
         """The port's slip."""
@@ -43,19 +52,27 @@ class Look:
         """How far what the port gives is below its breakaway effort."""
         return float(self.now.caps[port] - abs(self.now.u[self.model.friction_inputs[port]]))
 
-    def stays(self, port: int) -> tuple[float, float]:
-        """How far a switch is from changing over, and below what that counts as zero."""
+    def stays(self, port: int) -> float:
+        """How far a switch is from changing over."""
         part, at, sign = kept_by(self.model, self.mode, port)
-        slips = self.now.y[self.model.friction_readings]
-        efforts = self.now.u[self.model.friction_inputs]
-        value = sign * (slips, efforts, self.guards)[part][at]
-        return float(value), float((self.size.slip, self.size.effort, self.near)[part][at])
+        if part == GUARDS:
+            return sign * float(self.guards[at])
+        if part == SLIPS:
+            return sign * self.slip(at)
+        return sign * float(self.now.u[self.model.friction_inputs[at]])
+
+    def least(self, port: int) -> float:
+        """Below this that counts as zero."""
+        part, at, _ = kept_by(self.model, self.mode, port)
+        if part == GUARDS:
+            return float(self.near[at])
+        return float((self.size.slip if part == SLIPS else self.size.effort)[at])
 
     def verdict(self, port: int) -> int:
         """1: the port goes with the mode; -1: it contradicts it; 0: a tie."""
         sign = self.mode[port]
         if self.model.switching[port] is not None:
-            return _sign(*self.stays(port))
+            return _sign(self.stays(port), self.least(port))
         if sign == 0:
             return _sign(self.margin(port), self.size.effort[port])
         if not self.model.coupled_directly(port):
@@ -66,8 +83,8 @@ class Look:
         """A tie decided a little later [s]: still holding to rounding, or really moving off."""
         sign = self.mode[port]
         if self.model.switching[port] is not None:
-            (value, least), (after, _) = self.stays(port), then.stays(port)
-            return -1 if after - value < -TUNING.seen * least else 1
+            fallen = self.stays(port) - then.stays(port)
+            return -1 if fallen > TUNING.seen * self.least(port) else 1
         if sign == 0:
             return 1 if then.margin(port) >= -self.size.effort[port] else -1
         if self.model.coupled_directly(port) and (heads := self._heading(port, then, ahead)):
@@ -99,10 +116,13 @@ class Look:
     @cached_property
     def ruling(self) -> Array:
         """Combinations of the ports' slips, by rows, that must be zero as only other inputs rule them."""
-        held = [i for i, sign in enumerate(self.mode) if sign == 0]
-        found = self.model.hold(self.mode, self.now.numbers).ruled if held else np.zeros((0, 0))
+        found = NONE
+        if 0 in self.mode:
+            held = self.model.hold(self.mode, self.now.numbers)
+            found = held.ruled
         rows = np.zeros((len(found), len(self.mode)))
-        rows[:, held] = found
+        if len(found):
+            rows[:, held.ports] = found
         return rows
 
     @cached_property
@@ -115,19 +135,13 @@ class Look:
         return slips, rows @ self.rates, size @ self.size.slip, size @ self.size.acceleration
 
 
-def look_at(
-    model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode,
-    peaks: Peaks | None = None,
-) -> Look:  # fmt: skip
+def look_at(here: Sight, mode: Mode, peaks: Peaks | None = None) -> Look:
     """A mode at an instant, with what counts as zero there. Raises `SimulationError` if it is no mode."""
-    now = model.at(t, s, pieces, mode)
-    size = scales(model, now, t, peaks)
-    if model.program.switched:
+    now, model = here.at(mode), here.model
+    size = scales(model, now, here.t, peaks)
+    if model.switches:
         size = holding(size, model, mode, now, peaks)
-    if not model.program.guards.results:
-        return Look(model, mode, now, size)
-    near = guard_rounding(model, t, s, pieces, mode, peaks)
-    return Look(model, mode, now, size, model.guards(t, now), near)
+    return Look(here, mode, here.t, now, size, peaks)
 
 
 def limits_of(look: Look) -> Array:
@@ -136,7 +150,7 @@ def limits_of(look: Look) -> Array:
     limits = np.where(np.array(mode, dtype=int) == 0, size.effort, size.slip)
     for i, switch in enumerate(look.model.switching):
         if switch is not None:
-            limits[i] = look.stays(i)[1]
+            limits[i] = look.least(i)
     return limits
 
 
@@ -163,7 +177,9 @@ def torn(look: Look) -> str | None:
     if 0 not in look.mode:
         return None
     held = look.model.hold(look.mode, look.now.numbers)
-    slips = held.slips(look.now.instant(0.0))
+    if not len(held.mix):
+        return None
+    slips = held.slips(look.now.x, look.now.u)
     least = TUNING.wide * np.abs(held.mix) @ look.size.slip[held.ports]
     for k in np.flatnonzero(np.abs(slips) > least).tolist():
         ports = held.ports[np.flatnonzero(held.mix[k])]

@@ -4,12 +4,19 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 
 import numpy as np
+import scipy
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.errors import SimulationError
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, read_only
+from codegen.program.layout import CAPS
 from codegen.tuning import TUNING
+
+LARGE = 64
+"""Larger systems are not asked for all of their rates."""
+
+ONE = read_only(np.ones(1))
 
 
 def is_affine(expressions: Iterable[sp.Expr], parameters: set[str]) -> bool:
@@ -55,11 +62,17 @@ class AffineMap:
         self.sizes, self.matrix, self._rate = tuple(sizes), matrix, rate
         ends = np.cumsum(sizes).tolist()
         self.parts = [slice(end - size, end) for end, size in zip(ends, sizes, strict=True)]
+        self._magnitudes: dict[int, Array] = {}
 
     def __call__(self, *vectors: Array) -> list[Array]:
         """The parts at one point."""
-        values = self.matrix @ np.concatenate((*vectors, (1.0,)))
+        values = self.matrix @ np.concatenate((*vectors, ONE))
         return [values[part] for part in self.parts]
+
+    @cached_property
+    def limited(self) -> bool:
+        """Whether a port has a friction level, which may fall below zero."""
+        return bool(self.rows(CAPS).any())
 
     @cached_property
     def spectrum(self) -> tuple[complex, ...]:
@@ -68,19 +81,30 @@ class AffineMap:
         found: tuple[complex, ...] = tuple(np.linalg.eigvals(rate[:, : len(rate)]).tolist())
         return found
 
-    @property
+    @cached_property
     def fastest(self) -> float:
-        """The largest rate [1/s] of s by itself."""
+        """The largest rate [1/s] of s by itself; of a large system a bound on it."""
+        rate = self.rows(self._rate)
+        if len(rate) > LARGE:
+            return balanced_norm(rate[:, : len(rate)])
         return max((abs(rate) for rate in self.spectrum), default=0.0)
 
     def terms(self, part: int, *vectors: Array) -> Array:
         """The sums of the magnitudes of the terms that make a part up."""
-        found: Array = np.abs(self.rows(part)) @ np.abs(np.concatenate((*vectors, (1.0,))))
+        if part not in self._magnitudes:
+            self._magnitudes[part] = np.abs(self.rows(part))
+        found: Array = self._magnitudes[part] @ np.abs(np.concatenate((*vectors, ONE)))
         return found
 
     def rows(self, part: int) -> Array:
         """The rows of one part."""
         return self.matrix[self.parts[part]]
+
+
+def balanced_norm(M: Array) -> float:
+    """A bound on |M|, and so on its rates, in a norm in which M is balanced."""
+    balanced = scipy.linalg.matrix_balance(M, permute=False)[0]
+    return float(min(np.linalg.norm(balanced, 1), np.linalg.norm(balanced, np.inf)))
 
 
 def probed(point: Callable[[Array], list[Array]], length: int, rate: int) -> AffineMap:

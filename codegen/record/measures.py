@@ -135,6 +135,9 @@ def _balance(result: Result) -> float:
     return left / audit.turned_over if audit.turned_over > 0 else left
 
 
+EVENTFUL = frozenset[Callable[..., float | Array]]({_first_event, _event_count})
+"""Those that events are kept for."""
+
 READY: Mapping[Callable[..., float | Array], str] = MappingProxyType(
     {
         _peak: "peak", _largest: "largest", _smallest: "smallest", _final: "final",

@@ -12,7 +12,7 @@ from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.modes.keeping import kept_by
-from codegen.modes.trials import evaluated
+from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
 from codegen.standalone.striking import completing
 from codegen.tuning import TUNING
@@ -43,14 +43,14 @@ def beginning(
     mode: Mode = model.program.before(on)
     if not model.program.switches:
         return Beginning(s, mode, NOTHING, still)
-    _, now = evaluated(model, t, s, pieces, tuple(1 for _ in mode))
+    _, now = Sight(model, t, s, pieces).evaluated((1,) * len(mode))
     mode = _as_told(model, model.guards(t, now), mode)
     if 0 not in mode:
         return Beginning(s, mode, NOTHING, still)
     states = [name.name for name in model.program.states]
     free = [j for j, name in enumerate(states) if name not in named]
     hold = model.hold(mode, now.numbers)
-    slips = hold.slips(now.instant(t))
+    slips = hold.slips(now.x, now.u)
     terms = np.abs(hold.slip_x) @ np.abs(now.x) + np.abs(hold.slip_u) @ np.abs(now.u)
     if not len(free) or (np.abs(slips) <= TUNING.rounding * terms).all():
         return Beginning(s, mode, NOTHING, still)

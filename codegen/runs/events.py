@@ -11,6 +11,7 @@ from codegen.modes.closed import ClosedModel
 from codegen.modes.keeping import kept_by
 from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks
+from codegen.modes.trials import Sight
 from codegen.modes.verdicts import limits_of, look_at, room
 from codegen.numbers.arrays import Array
 from codegen.program.layout import CAPS, INPUTS, READINGS
@@ -47,7 +48,7 @@ class Watch:
             affine.rows(READINGS)[model.friction_readings],
             affine.rows(CAPS),
         )  # fmt: skip
-        self._look = look_at(model, t, s, pieces, mode, peaks)
+        self._look = look_at(Sight(model, t, s, pieces), mode, peaks)
         self._switching = [i for i, switch in enumerate(model.switching) if switch is not None]
         self._limits = limits_of(self._look)
         self._armed = [False] * len(self._limits)
@@ -116,6 +117,10 @@ class Watch:
             margins = np.minimum(margins, rest * room(self._look, slips))
         found = np.where(signs == 0, margins, signs * slips)
         for i in self._switching:
+            if i in self._model.timed:
+                # Its instants are known before.
+                found[:, i] = np.inf
+                continue
             part, at, sign = kept_by(self._model, self._mode, i)
             found[:, i] = sign * (slips, efforts, guards)[part][:, at]
         return found

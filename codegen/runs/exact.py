@@ -1,23 +1,22 @@
 """Exact legs: where a friction mode is affine and inputs have linear generators, ``z' = M z`` is stepped
 by matrix exponentials, and its events are roots of power series that no step can hide."""
 
-from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 
 from bondgraph.errors import SimulationError
-from codegen.inputs.generators import generator
-from codegen.inputs.pieces import Piece
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.model.snapshot import Mode
-from codegen.modes.closed import ClosedModel
 from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks
-from codegen.modes.verdicts import limits_of, look_at
+from codegen.modes.trials import Sight
+from codegen.modes.verdicts import Look, limits_of, look_at
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
+from codegen.runs.stretches import Stretches
 from codegen.runs.track import Ended, Track
-from codegen.runs.watched import FewSteps, Steps, lasting, series, taylor, watched
+from codegen.runs.watched import FewSteps, Steps, lasting, series, stride
 from codegen.standalone.levels import without_rounding
 from codegen.tuning import TUNING
 
@@ -35,27 +34,28 @@ class ExactLeg:
     """A stretch in one affine mode, from t with the integrated vector s."""
 
     def __init__(
-        self,
-        model: ClosedModel,
-        affine: AffineMap,
-        pieces: Sequence[Piece],
-        mode: Mode,
-        t: float,
-        s: Array,
-        peaks: Peaks,
-    ) -> None:
-        made = generator(pieces, t)
-        self._n, self._mode, self._t = len(s), mode, t
-        self._model, self._pieces = model, pieces
-        look = look_at(model, t, s, pieces, mode, peaks)
-        ruled, limits = look.ruling.any(axis=0), limits_of(look)
-        limits = np.where(ruled, look.size.slip, limits)
-        rest = np.where(ruled, TUNING.left * look.size.slip, np.inf)
-        self._system = watched(model, affine, made, mode, len(s), rest)
-        self._z = np.concatenate([s, made.start])
+        self, here: Sight, mode: Mode, affine: AffineMap, stretches: Stretches, peaks: Peaks,
+        clear: bool,
+    ) -> None:  # fmt: skip
+        """The stretch that begins ``here``; ``clear``: all that is watched begins far above zero."""
+        self._here, self._peaks = here, peaks
+        self._n, self._mode, self._t = len(here.s), mode, here.t
+        self._model, self._pieces = here.model, here.pieces
+        rest = None if clear else _rest(look_at(here, mode, peaks))
+        self._system, inputs = stretches.system(affine, mode, here.pieces, here.t, rest)
+        self._z = np.concatenate([here.s, inputs])
         self._blind = moment(peaks.time)
-        self._limits = limits[list(self._system.ports)] if mode else np.zeros(0)
-        self._armed = np.zeros(len(self._limits), dtype=bool)
+        # What begins well above zero need not rise first.
+        self._armed = np.ones(len(self._system.ports), dtype=bool)
+        if not clear:
+            self._armed = self._system.triggers @ self._z >= self._limits
+
+    @cached_property
+    def _limits(self) -> Array:
+        """Below these what is watched counts as zero where the stretch begins."""
+        look = look_at(self._here, self._mode, self._peaks)
+        limits = np.where(look.ruling.any(axis=0), look.size.slip, limits_of(look))
+        return np.asarray(limits[list(self._system.ports)], dtype=float)
 
     def steps(self, stop: float) -> float:
         """How many steps the stretch takes, of ``|M| h <= 1`` each."""
@@ -91,6 +91,12 @@ class ExactLeg:
             return self._run_ragged(stop, np.maximum(points[:-1], t), track)
         at = 0
         while at < len(points):
+            if lengths[at] <= 2 * np.spacing(points[at]):
+                # No more than the rounding of time.
+                if at < len(points) - 1:
+                    self._record(track, z[None], points[at : at + 1])
+                at, t = at + 1, float(points[at])
+                continue
             count = _alike(lengths, at)
             h = float(lengths[at]) if count == 1 else float(points[at + count - 1] - t) / count
             ended, z = self._steps(t, z, h, count, track, last)
@@ -105,7 +111,7 @@ class ExactLeg:
         count = max(1, int(np.ceil(system.norm * (stop - t))))
         step = (stop - t) / count
         inside = series(system.M, np.eye(len(self._z)), step)
-        steps, until = Steps(system.M, step, self._z, system.triggers), t
+        steps, until = Steps(system.M, stride(system.M, system.triggers, step), self._z), t
         for begin in range(0, count, BLOCK):
             states = steps.take(min(BLOCK, count - begin))
             start = t + begin * step
@@ -116,21 +122,18 @@ class ExactLeg:
             self._record(track, _between(states, inside, (now - start) / step), now)
             if found is not None:
                 whole, tau, ports = found
-                return until, self._inside(states[whole], tau * step), ports
+                return until, steps.inside(whole, tau)[: self._n], ports
         self._record(
             track, states[-1:].repeat(np.count_nonzero(times >= until), axis=0), np.zeros(0)
         )
         return stop, states[-1, : self._n], frozenset()
 
-    def _inside(self, z: Array, length: float) -> Array:
-        """s a part of a step later."""
-        later: Array = taylor(self._system.M, z, length)[::-1].sum(axis=0)
-        return later[: self._n]
-
     def _record(self, track: Track, rows: Array, times: Array) -> None:
         """Samples; where a friction level is below zero, let the model refuse it with its time."""
-        caps = rows @ self._system.caps.T
-        if (caps < 0).any():
+        if not len(rows):
+            return
+        caps = rows @ self._system.caps.T if self._system.limited else rows[:, :0]
+        if caps.min(initial=0.0) < 0:
             sizes = np.abs(rows)
             sizes[:, : self._n] = np.maximum(sizes[:, : self._n], track.largest)
             caps = without_rounding(caps, sizes @ np.abs(self._system.caps.T))
@@ -148,9 +151,13 @@ class ExactLeg:
         """``count`` steps of h from t, at whose ends samples are up to ``last``: what ended them, and z."""
         parts = max(1, int(np.ceil(self._system.norm * h)))
         step = h / parts
-        few = count * parts < FEW * len(z)
-        make, block = (FewSteps, FEW_BLOCK) if few else (Steps, BLOCK)
-        steps = make(self._system.M, step, z, self._system.triggers)
+        few, system = count * parts < FEW * len(z), self._system
+        taken = system.stride(step, 2 * float(np.spacing(abs(t + h * count))), few)
+        steps: Steps | FewSteps
+        if taken is None:
+            steps, block = FewSteps(system.M, step, z, system.triggers), FEW_BLOCK
+        else:
+            steps, block = Steps(system.M, taken, z), BLOCK
         for begin in range(0, count * parts, block):
             states = steps.take(min(block, count * parts - begin))
             found = None
@@ -166,7 +173,7 @@ class ExactLeg:
             )
             if found is not None:
                 whole, tau, ports = found
-                end = self._inside(states[whole], tau * step)
+                end = steps.inside(whole, tau)[: self._n]
                 return (t + (begin + whole + tau) * step, end, ports), z
         return None, states[-1]
 
@@ -174,9 +181,11 @@ class ExactLeg:
         self, powers: Array, t: float, step: float
     ) -> tuple[int, float, frozenset[int]] | None:
         """Step, place in it and ports of the first event among steps, by their triggers' series."""
-        if not len(self._limits):
+        if not len(self._armed):
             return None
         least = (powers @ to_bernstein(TUNING.degree).T).min(axis=2)
+        if least.min() > 0 and self._armed.all():
+            return None
         suspects = (least <= 0) | ~self._armed
         at = 0
         while at < len(powers):
@@ -221,6 +230,12 @@ class ExactLeg:
         return root
 
 
+def _rest(look: Look) -> Array | None:
+    """What sticking ports' slips must stay below where only sources rule them; None if there are none."""
+    ruled = look.ruling.any(axis=0)
+    return np.where(ruled, TUNING.left * look.size.slip, np.inf) if ruled.any() else None
+
+
 def _between(states: Array, series: Array, places: Array) -> Array:
     """z inside steps that begin at ``states``: at 3.25 a quarter into the fourth."""
     whole = np.minimum(places.astype(int), len(states) - 2)
@@ -233,10 +248,14 @@ def _between(states: Array, series: Array, places: Array) -> Array:
 
 def _kinds(lengths: Array) -> int:
     """How many stretches of equal lengths there are."""
+    if len(lengths) == 1:
+        return 1
     return 1 + int(np.count_nonzero(np.abs(np.diff(lengths)) > TUNING.alike * lengths[1:]))
 
 
 def _alike(lengths: Array, at: int) -> int:
     """How many steps from here on have the same length, but for the rounding of their ends."""
+    if at == len(lengths) - 1:
+        return 1
     near = np.abs(lengths[at:] - lengths[at]) <= TUNING.alike * lengths[at]
     return int(np.argmin(near)) if not near.all() else len(near)

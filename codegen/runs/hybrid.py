@@ -13,15 +13,18 @@ from codegen.inputs.signal import Signal
 from codegen.model.snapshot import Impact, Mode
 from codegen.modes.choose import Occasion, decide
 from codegen.modes.closed import ClosedModel
+from codegen.modes.glances import Glances
 from codegen.modes.pace import hardly_apart, look_ahead, time_constant
 from codegen.modes.rounding import Peaks, scales
-from codegen.modes.trials import evaluated
+from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
+from codegen.runs.clock import NONE, Clock
 from codegen.runs.exact import ExactLeg
 from codegen.runs.free import FreeLeg
 from codegen.runs.legs import Leg
 from codegen.runs.methods import EXACT
-from codegen.runs.track import Accumulating, Event, Settings, Track
+from codegen.runs.stretches import Stretches
+from codegen.runs.track import LATEST, Accumulating, Event, Settings, Track
 from codegen.standalone.switchings import way_of
 from codegen.tuning import TUNING
 
@@ -43,14 +46,16 @@ def run_hybrid(
     settings: Settings,
     tally: Accumulating | None = None,
     first: Mode | None = None,
+    keeping: bool = True,
 ) -> Stretch:
     """Integrate over ``times`` [s], recording the vector at each of them.
 
     At a breakpoint or an event a sample shows the instant just after. ``tally``: what is integrated on
     the way. ``first``: how switches are before the run begins, friction as it likes; all let go unless told.
+    ``keeping``: whether events are kept; without them nothing grows with the length of a run but its samples.
     """
     course = _Course(model, times, start, signals, settings, first)
-    course.track.tally = tally
+    course.track.tally, course.track.keeping = tally, keeping
     if tally is not None:
         tally.within(course.track)
     while course.unfinished:
@@ -76,11 +81,12 @@ class _Course:
         self.track = Track(np.zeros((len(times), model.size)), [], np.abs(start))
         self._model, self._times, self._signals = model.within(self.track), times, signals
         self._settings, self._origin = settings, begin
-        points = {b for signal in signals for b in signal.breakpoints if begin < b <= self.end}
-        self._breaks = sorted(points)
+        self._clock, self._stretches = Clock(self._model), Stretches(self._model)
+        self._glances = Glances(self._model) if self._model.switches else None
+        self._clear = False
         self._touched = frozenset[int]()
         self._settled: float | None = None
-        self._before: list[Piece] | None = None
+        self._before: Sequence[Piece] | None = None
         self._peaks, self._rounds = Peaks.none(model), deque[float](maxlen=TUNING.stalled)
 
     @property
@@ -88,6 +94,11 @@ class _Course:
         """Whether there is anything left to decide or to integrate."""
         undecided = self.t != self._settled
         return undecided or self.t < self.end or bool(self._touched)
+
+    @property
+    def _following(self) -> float:
+        """The next breakpoint of an input [s]."""
+        return min((signal.following(self.t) for signal in self._signals), default=math.inf)
 
     @property
     def _pieces(self) -> list[Piece]:
@@ -102,56 +113,70 @@ class _Course:
     def settle(self) -> None:
         """Decide the mode just after t, and bring ports that hold to rest."""
         model, t, pieces, peaks = self._model, self.t, self._pieces, self._peaks
-        peaks.see(model, t, self.s, pieces, self.mode)
+        here = Sight(model, t, self.s, pieces)
+        peaks.see(here, self.mode)
         if self.mode:
-            mode, _ = evaluated(model, t, self.s, pieces, self.mode, slipping=False)
+            mode = self.mode
+            if not self._plain(mode):
+                mode, _ = here.evaluated(mode, slipping=False)
             fastest = self._leg(pieces, mode).fastest(t, self.s)
             peaks.time = time_constant(fastest, t - self._origin)
-        following = min((signal.following(t) for signal in self._signals), default=math.inf)
-        ahead = look_ahead(peaks.time, t, following)
+        ahead = look_ahead(peaks.time, t, self._following)
         if t >= self.end and self._settled is not None:
             # The search may have missed an event at the very end by a rounding.
-            self._touched |= _still(model, t, self.s, pieces, self.mode, self._slipping, peaks)
+            self._touched |= _still(here, self.mode, self._slipping, peaks)
         # A breakpoint may set the slips anew, so sticking ports are decided again with the others.
         loose = self._touched | {i for i, sign in enumerate(self.mode) if sign == 0}
-        occasion = Occasion(model, t, pieces, self.mode, ahead, peaks, loose, self._touched)
-        new, after, impacts = decide(occasion, self.s)
+        occasion = Occasion(
+            model, t, pieces, self.mode, ahead, peaks, loose, self._touched, self._glances
+        )
+        new, after, impacts, self._clear = decide(occasion, here)
         if self._settled is not None:
-            _note(model, self.track.events, t, self.mode, new)
+            self.track.note(_changes(model, t, self.mode, new))
         if self._settled is not None and self._touched:
             _check_progress(self._rounds, t, hardly_apart(peaks.time), self.track.events)
-        self._come_to_rest(pieces, new, after, impacts)
+        if after is not here.s:
+            here = Sight(model, t, after, pieces)
+        self._come_to_rest(here, new, impacts)
         self.mode, self._touched, self._settled = new, frozenset(), t
+        self._here = here if self.s is here.s else Sight(model, t, self.s, pieces)
 
-    def _come_to_rest(
-        self, pieces: list[Piece], mode: Mode, struck: Array, impacts: Sequence[Impact]
-    ) -> None:
-        before, tally = self.s, self.track.tally
-        self.s = _at_rest(self._model, self.t, struck, pieces, mode)
+    def _plain(self, mode: Mode) -> bool:
+        """Whether a mode surely has values."""
+        try:
+            affine = self._model.affine_map(mode, len(self._signals))
+        except SimulationError:
+            return False
+        return affine is not None and not affine.limited
+
+    def _come_to_rest(self, here: Sight, mode: Mode, impacts: Sequence[Impact]) -> None:
+        before, tally, pieces = self.s, self.track.tally, here.pieces
+        self.s = _at_rest(here, mode)
         # What happens before the first sample is not of the run.
         if tally is not None and self._before is not None:
             tally.step(self.t, self._before, pieces, before, mode)
             for impact in impacts:
                 tally.impact(self.t, pieces, mode, before, impact)
                 before = impact.s
-            tally.rest(self.t, pieces, mode, struck, self.s)
+            tally.rest(self.t, pieces, mode, here.s, self.s)
         self._before = pieces
 
     def advance(self) -> None:
         """Integrate to the next breakpoint or event."""
-        pieces = self._pieces
-        stop = next((b for b in self._breaks if b > self.t), self.end)
+        pieces, stop = self._pieces, min(self._following, self.end)
+        instant, timed = self._clock.following(self.t, pieces, self.mode, stop)
+        stop = min(stop, instant)
         exact = self._exact(pieces, stop)
         if exact is not None:
             begin, s, first = self.t, self.s, self.track.recorded
             self.t, self.s, ended = exact.run(stop, self._times, self.track)
-            self._touched = ended
+            self._touched = ended or (timed if self.t == instant else NONE)
             self._back_to_sample(begin)
             self._integrate(pieces, begin, s, first)
         else:
             begin, leg = self.t, self._leg(pieces, self.mode)
             self.t, self.s, ended = leg.run(self.t, self.s, stop, self._times, self.track)
-            self._touched = ended
+            self._touched = ended or (timed if self.t == instant else NONE)
             self._back_to_sample(begin)
 
     def _back_to_sample(self, begin: float) -> None:
@@ -182,7 +207,7 @@ class _Course:
             return None
         affine = model.affine_map(self.mode, len(pieces))
         if affine is not None and model.program.guards_affine:
-            leg = ExactLeg(model, affine, pieces, self.mode, self.t, self.s, self._peaks)
+            leg = ExactLeg(self._here, self.mode, affine, self._stretches, self._peaks, self._clear)
             if not self.mode and leg.steps(stop) > TUNING.rounded and model.sharp_rates is not None:
                 return FreeLeg(model.sharp_rates, pieces, self.t, self.s)
             return leg if leg.quick(stop, method == EXACT) else None
@@ -196,38 +221,35 @@ class _Course:
         return None
 
 
-def _still(
-    model: ClosedModel,
-    t: float,
-    s: Array,
-    pieces: Sequence[Piece],
-    mode: Mode,
-    ports: frozenset[int],
-    peaks: Peaks,
-) -> frozenset[int]:
+def _still(here: Sight, mode: Mode, ports: frozenset[int], peaks: Peaks) -> frozenset[int]:
     """Those of the ports that are at rest, or close enough for it to be the event's own rounding."""
     if not ports:
         return frozenset()
-    _, now = evaluated(model, t, s, pieces, mode)
+    _, now = here.evaluated(mode)
+    model = here.model
     slips = np.abs(now.y[model.friction_readings])
-    limits = TUNING.wide * scales(model, now, t, peaks).slip
+    limits = TUNING.wide * scales(model, now, here.t, peaks).slip
     return frozenset(i for i in ports if slips[i] <= limits[i] or model.coupled_directly(i))
 
 
-def _at_rest(model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode) -> Array:
+def _at_rest(here: Sight, mode: Mode) -> Array:
     """Remove what slip is left at sticking ports, along ``A^-1 F^T``: no energy but the slip's own."""
     if all(mode):
-        return s
-    now = model.at(t, s, pieces, mode)
+        return here.s
+    model = here.model
+    if not model.program.varying and not len(model.hold(mode, model.constant).mix):
+        return here.s
+    now = here.at(mode)
     held = model.hold(mode, now.numbers)
-    n = len(model.program.states)
-    s = s.copy()
-    s[:n] += held.take_away @ held.slips(now.instant(t))
+    n = len(here.model.program.states)
+    s = here.s.copy()
+    s[:n] += held.take_away @ held.slips(now.x, now.u)
     return s
 
 
-def _note(model: ClosedModel, events: list[Event], t: float, old: Mode, new: Mode) -> None:
+def _changes(model: ClosedModel, t: float, old: Mode, new: Mode) -> list[Event]:
     """Events of ports whose mode is another: of switches, then what friction does about it."""
+    events: list[Event] = []
     rubbing: list[Event] = []
     for i, port in enumerate(model.program.friction):
         before, after = old[i], new[i]
@@ -242,14 +264,14 @@ def _note(model: ClosedModel, events: list[Event], t: float, old: Mode, new: Mod
         else:
             kind = "stick" if after == 0 else ("slip" if before == 0 else "cross")
             rubbing.append(Event(t, port.name, kind))
-    events += rubbing
+    return events + rubbing
 
 
 def _check_progress(rounds: deque[float], t: float, least: float, events: list[Event]) -> None:
     """Refuse to go on when too many of the latest legs end in an event within ``least`` [s]."""
     rounds.append(t)
     if len(rounds) == TUNING.stalled and t - rounds[0] < least:
-        latest = ", ".join(f"{e.kind} {e.port!r} at {e.time:.12g}" for e in events[-4:])
+        latest = ", ".join(f"{e.kind} {e.port!r} at {e.time:.12g}" for e in events[-LATEST:])
         raise SimulationError(
             f"{TUNING.stalled} events within {least:.3g} s of t = {t:.12g}: the run makes no progress "
             f"(latest: {latest or 'none that changed a mode'})"

@@ -30,6 +30,10 @@ Ended = tuple[float, Array, frozenset[int]]
 """How a stretch ended: time, integrated vector, and the ports whose event it was."""
 
 
+LATEST = 4
+"""So many events are told where a run makes no progress."""
+
+
 class Accumulating(Protocol):
     """What is integrated with a run, such as work; see `codegen.energy.tally.Tally`."""
 
@@ -80,6 +84,14 @@ class Track:
     events: list[Event] = field(default_factory=list)
     recorded: int = 0
     tally: Accumulating | None = None
+    #: Whether all events are kept, or only the latest few.
+    keeping: bool = True
+
+    def note(self, events: Sequence[Event]) -> None:
+        """What has happened."""
+        self.events += events
+        if not self.keeping:
+            del self.events[:-LATEST]
 
     def see(self, vectors: Array) -> None:
         """Take the magnitudes of some vectors, the rows, into account."""

@@ -140,7 +140,7 @@ class DeadBand(FixedSteps):
             return at.s
         now = self.at(at, mode)
         hold, moved = self.friction.hold(mode, now.numbers), at.s.copy()
-        moved[: self.form.states] += hold.take_away @ hold.slips(now)
+        moved[: self.form.states] += hold.take_away @ hold.slips(now.x, now.u)
         return moved
 
     def turned(self, now: Instant, mode: Mode) -> bool:

@@ -36,6 +36,9 @@ class Ports:
     exact: bool
 
 
+MOST_KEPT = 64
+"""Sets of sticking ports whose holding equations are kept."""
+
 MOST_SLIPPING = 10
 """Up to so many ports all ways of slipping are tried where laws have no solution one way."""
 
@@ -48,7 +51,7 @@ class Friction:
 
     def __init__(self, ports: Ports, form: Form, *coupled: Laws) -> None:
         self.ports, self.form = ports, form
-        self._holds: dict[Mode, Hold] = {}
+        self._holds: dict[tuple[int, ...], Hold] = {}
         self._ranks: dict[tuple[int, ...], HeldSet] = {}
         self._laws = (form.known, *form.laws, *coupled)
         self._differentiable = {*form.given, *form.known.inputs, *ports.inputs}
@@ -65,14 +68,21 @@ class Friction:
 
     def hold(self, mode: Mode, numbers: Numbers) -> Hold:
         """The holding equations of a mode's sticking ports, with the matrices of an instant."""
-        if mode not in self._holds or self.form.varying:
-            self._holds[mode] = self._hold(np.flatnonzero(np.equal(mode, 0)).tolist(), numbers)
-        return self._holds[mode]
+        stuck = tuple(i for i, sign in enumerate(mode) if sign == 0)
+        if stuck in self._holds and not self.form.varying:
+            return self._holds[stuck]
+        found = self._hold(list(stuck), numbers)
+        if len(self._holds) >= MOST_KEPT:
+            del self._holds[next(iter(self._holds))]
+        self._holds[stuck] = found
+        return found
 
     def _hold(self, stuck: list[int], numbers: Numbers) -> Hold:
         ports, names = self.ports, ", ".join(repr(self.ports.names[i]) for i in stuck)
         places = (ports.inputs, ports.readings, ports.moving)
         if (chosen := tuple(stuck)) not in self._ranks:
+            if len(self._ranks) >= MOST_KEPT:
+                del self._ranks[next(iter(self._ranks))]
             self._ranks[chosen] = ports.held(chosen)
         try:
             found = hold(

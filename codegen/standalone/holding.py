@@ -9,6 +9,7 @@ a combination of slips, a source or a law, the ports stick only while it is zero
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -80,6 +81,12 @@ class Hold:
         """Whether redundant ports share a load; one that nothing can load gives nothing."""
         return bool(np.count_nonzero(self.share.any(axis=0)) > len(self.share))
 
+    @cached_property
+    def magnitudes(self) -> tuple[Array, Array, Array, Array]:
+        """Those of X, U, V and of what takes these to efforts."""
+        inverse = self.inverse[:, : len(self.X)]
+        return np.abs(self.X), np.abs(self.U), np.abs(self.V), np.abs(inverse)
+
     def efforts(self, now: Instant) -> Array:
         """The holding efforts; u must be zero at the sticking ports. Redundant ports share."""
         known = self.rule(now)
@@ -92,9 +99,9 @@ class Hold:
         """What has to vanish while the ports hold."""
         return np.asarray(self.X @ now.x + self.U @ now.u + self.V @ now.du, dtype=float)
 
-    def slips(self, now: Instant) -> Array:
+    def slips(self, x: Array, u: Array) -> Array:
         """The slips that constrain the states."""
-        return np.asarray(self.slip_x @ now.x + self.slip_u @ now.u, dtype=float)
+        return np.asarray(self.slip_x @ x + self.slip_u @ u, dtype=float)
 
     def correction(self, rate: Array, du: Array) -> Array:
         """What must be added to the rates of x, or by rounding slips that stick would drift."""

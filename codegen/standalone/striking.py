@@ -49,7 +49,7 @@ def completing(held: Hold, now: Instant, free: Sequence[int]) -> Array:
     """What free states must gain to stop the slips; of them what is heavy by itself moves least."""
     rows = held.slip_x[:, free]
     way = rows.T / np.abs(np.diag(now.numbers.A))[free, None]
-    slips = held.slips(now)
+    slips = held.slips(now.x, now.u)
     return np.asarray(-way @ np.linalg.lstsq(rows @ way, slips, rcond=TUNING.nothing)[0], float)
 
 
@@ -57,9 +57,9 @@ def effort_terms(held: Hold, x: Array, u: Array, du: Array) -> Array:
     """For each holding effort the magnitudes of what it follows from; zero where laws share it."""
     if not held.inverse.size:
         return np.zeros(len(held.ports))
-    terms = np.abs(held.X) @ np.abs(x) + np.abs(held.U) @ np.abs(u)
-    terms += np.abs(held.V) @ np.abs(du)
-    return np.asarray(np.abs(held.inverse[:, : len(terms)]) @ terms, dtype=float)
+    X, U, V, inverse = held.magnitudes
+    terms = X @ np.abs(x) + U @ np.abs(u) + V @ np.abs(du)
+    return np.asarray(inverse @ terms, dtype=float)
 
 
 def shocks(

@@ -161,7 +161,7 @@ class SwitchedSteps(DeadBand):
             # What was held drifts by the step's own error, which is no impulse.
             drift = TUNING.step_drift * h * self.rate_terms(now)
             near += np.where(np.equal(previous, 0), drift, 0.0)
-        slips = hold.slips(now)
+        slips = hold.slips(now.x, now.u)
         if (np.abs(slips) <= np.abs(hold.mix) @ near[hold.ports]).all():
             return at.s, [0] * len(held)
         found = struck(hold, now.numbers, slips)

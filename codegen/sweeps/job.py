@@ -20,6 +20,7 @@ from codegen.family import Family
 from codegen.inputs.swept import settled
 from codegen.numbers.arrays import Array
 from codegen.packing import packed
+from codegen.record.measures import EVENTFUL, READY, Measure
 from codegen.record.result import Result
 from codegen.runs.track import Settings
 from codegen.simulate import Simulator
@@ -137,8 +138,15 @@ class Job:
         # Times differ from run to run; the reason is what is counted.
         return runner.run_telling(
             lambda stopped: fallen.append(stopped.reason),
-            self.time, initial, inputs, **self._settings,
+            self.time, initial, inputs, events=self._eventful, **self._settings,
         )  # fmt: skip
+
+    @property
+    def _eventful(self) -> bool:
+        """Whether a measure may ask for events."""
+        ready = (isinstance(m, Measure) and m.function in READY for m in self.measures.values())
+        asking = (getattr(m, "function", None) in EVENTFUL for m in self.measures.values())
+        return not all(ready) or any(asking)
 
     @property
     def _settings(self) -> dict[str, Any]:

@@ -53,13 +53,14 @@ class SwitchedSimulator:
         method: str = "auto",
         rtol: float = TUNING.rtol,
         atol: float = TUNING.atol,
+        events: bool = True,
     ) -> Result:
         """Integrate over the given times [s]; see `Simulator.run`."""
         # Not by its `run`, so that warnings are told of who calls this.
         given = named_numbers({} if initial is None else initial, self.states)
         told = over_states(self.simulator.closed, given)
         done = self.simulator.run_telling(
-            tell, time, told, inputs, method, rtol, atol, initially_on
+            tell, time, told, inputs, method, rtol, atol, initially_on, events
         )
         tell_completed(done.completed)
         tell_resting(self.simulator.closed, done)

@@ -14,6 +14,7 @@ from codegen import Simulator
 from codegen.inputs.pieces import Piece
 from codegen.modes.choose import Occasion, decide
 from codegen.modes.rounding import Peaks
+from codegen.modes.trials import Sight
 from codegen.tuning import TUNING
 from differentials.model import Model, model
 from oracles.models import belt, clutches, oscillator, stacked_blocks
@@ -166,9 +167,10 @@ def instant(ready: Simulator, t: float, x: np.ndarray, u: np.ndarray, du: np.nda
     s, slipping = ready.vector(t, x, u), tuple(1 for _ in program.friction)
     peaks = Peaks.none(closed)
     with np.errstate(all="ignore"):
-        peaks.see(closed, t, s, pieces, slipping)
+        here = Sight(closed, t, s, pieces)
+        peaks.see(here, slipping)
         ahead = 1e-3 * TUNING.look_ahead
-        mode, s, _ = decide(Occasion(closed, t, pieces, slipping, ahead, peaks), s)
+        mode, s, *_ = decide(Occasion(closed, t, pieces, slipping, ahead, peaks), here)
         now = closed.evaluate(t, s, u, du, mode)
     rate = now.rate[: len(x)].copy()
     if not program.varying:

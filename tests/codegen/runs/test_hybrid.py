@@ -16,7 +16,7 @@ BLOCK = simulator(bg.derive(block()), {"m": 2.0, "F_c": 3.0})
 def test_a_run_that_makes_no_progress_ends(monkeypatch: pytest.MonkeyPatch, push: float) -> None:
     """Told to slip against its push for ever, the port would fall back to zero again and again."""
     told = (-int(np.sign(push)),)
-    monkeypatch.setattr(hybrid, "decide", lambda _, s: Decision(told, s, ()))
+    monkeypatch.setattr(hybrid, "decide", lambda _, here: Decision(told, here.s, ()))
     with pytest.raises(bg.SimulationError, match=r"the run makes no progress"):
         BLOCK.run([0.0, 1.0], inputs={"P": push})
 

@@ -1,0 +1,60 @@
+"""Affine maps of friction modes, from that of one mode: only what ports give differs, and what it moves."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from codegen.model.snapshot import Mode
+from codegen.numbers.arrays import Array
+from codegen.numbers.thin import product, thin
+from codegen.program.affine import AffineMap
+from codegen.program.layout import INPUTS, RATE, RATES_OF_INPUTS, READINGS, STATES
+from codegen.standalone.holding import Hold
+from codegen.standalone.matrices import Numbers
+
+
+@dataclass(frozen=True)
+class LetGo:
+    """The map of a mode in which ports give nothing, and what they give slipping forwards.
+
+    ``rub``: rows of that. ``shown``, ``pushed``: what readings and rates of states gain per unit of it.
+    """
+
+    base: AffineMap
+    ports: Sequence[int]
+    rub: Array
+    shown: Any
+    pushed: Any
+
+
+def let_go(forwards: AffineMap, numbers: Numbers, ports: Sequence[int]) -> LetGo:
+    """The same from the map in which all ports slip forwards."""
+    base = AffineMap(forwards.sizes, forwards.matrix.copy(), RATE)
+    x, u, du = (base.rows(part) for part in (STATES, INPUTS, RATES_OF_INPUTS))
+    rub = u[ports].copy()
+    u[ports] = 0.0
+    base.rows(READINGS)[:] = numbers.F @ x + numbers.D @ u + numbers.G @ du
+    base.rows(RATE)[: len(x)] = numbers.P @ x + numbers.Q @ u
+    return LetGo(base, ports, rub, thin(numbers.D[:, ports]), thin(numbers.Q[:, ports]))
+
+
+def in_mode(known: LetGo, mode: Mode, hold: Hold | None, law_rates: Sequence[int]) -> AffineMap:
+    """The map of a mode; ``hold``: what holds its sticking ports; ``law_rates``: of states of laws, in y."""
+    base, ports = known.base, known.ports
+    parts = AffineMap(base.sizes, base.matrix.copy(), RATE)
+    x, u, du = (parts.rows(part) for part in (STATES, INPUTS, RATES_OF_INPUTS))
+    u[ports] = known.rub * np.array(mode, dtype=float)[:, None]
+    if hold is not None:
+        right = product(hold.X, x) + product(hold.U, u) + product(hold.V, du)
+        u[hold.inputs] = -product(hold.inverse[:, : len(right)], right)
+    readings, rates, n = parts.rows(READINGS), parts.rows(RATE), len(x)
+    given = u[ports]
+    readings += known.shown @ given
+    rates[:n] += known.pushed @ given
+    rates[n : n + len(law_rates)] = readings[list(law_rates)]
+    if hold is not None:
+        left = product(hold.slip_x, rates[:n]) + product(hold.fixed, du)
+        rates[:n] += product(hold.take_away, left)
+    return parts
