@@ -66,6 +66,7 @@ bench: $(READY)
 bench-speed: $(READY)
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/speed.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/sweeps.py
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/switchings.py
 	$(BIN)/python benchmarks/rhs.py
 
 bench-agreement: $(READY)
