@@ -30,7 +30,7 @@ WHAT = """
 | numpy, sweep, command line, C exact | the known run, to 1e-7 of its range |
 | C located, sweep in C, to_c located | to 1e-6, without a run that numpy does for C |
 | FMI ME, CS | to 1e-5, in FMPy, by CVODE and at the samples' steps |
-| to_python, to_c fixed steps | to 40 over their number (2,500 and 20,000), but for samples beside an event |
+| to_python, to_c fixed steps | to 60 over their number (2,500 and 20,000), but for samples beside an event |
 """
 
 

@@ -26,9 +26,9 @@ REFUSALS = (
         "not affine",
     ),
     Refusal(
-        ("together", "bridge"), ("C, exact",), False,
-        "Exact steps in C take no mode in which redundant ports share what they hold (two brakes at rest, "
-        "four diodes without a current); it is located.",
+        ("together", "bridge", "two_dogs"), ("C, exact",), False,
+        "Exact steps in C take no mode in which redundant ports share what they hold (two brakes at "
+        "rest, two dogs, four diodes without a current); it is located.",
         "not affine|not one affine map",
     ),
 )  # fmt: skip
