@@ -93,14 +93,14 @@ static int evaluate_group(bg_model *m, const bg_group *group)
 /* Friction efforts that act back on slips or laws at once: all solved together. */
 static int rub_jointly(bg_model *m, const int *mode, bg_hold *held, int checked)
 {
-    bg_loop loop = {NULL, mode, held, K + bg_coupled.count, checked, {0}, {0}};
+    bg_loop loop = {NULL, mode, held, K + BG_COUPLED, checked, {0}, {0}};
     double efforts[BG_ROOM(K)] = {0}, caps[BG_ROOM(K)] = {0};
     int status, columns[BG_ROOM(K)] = {0};
     for (int i = 0; i < K; i++) {
         loop.columns[i] = bg_friction_inputs[i];
         loop.rows[i] = bg_friction_readings[i];
     }
-    for (int i = 0; i < bg_coupled.count; i++) {
+    for (int i = 0; i < BG_COUPLED; i++) {
         loop.columns[K + i] = bg_coupled.inputs[i];
         loop.rows[K + i] = bg_coupled.readings[i];
     }

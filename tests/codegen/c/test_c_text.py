@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sympy as sp
-from oracles.c_model import CModel, Pair, compiled, written
+from oracles.c_model import STRICT, CModel, Pair, compiled, written
+from oracles.exported import small_cases
 from references.build import bond_graph
 
 import bondgraph as bg
@@ -124,6 +125,18 @@ def test_every_function_of_laws_is_right_in_c(tmp_path: Path) -> None:
         for _ in range(2)
     ]
     assert [float(one) for one in found] == pytest.approx(expected, rel=1e-14, abs=1e-15)
+
+
+@pytest.mark.parametrize("name", ["slip_damper", "mixed"])
+def test_friction_that_is_solved_for_jointly_compiles_without_a_warning(
+    name: str, tmp_path: Path
+) -> None:
+    """Its loop has no more places than ports and laws, which an optimising compiler looks at."""
+    equations, numbers, laws = dict(small_cases())[name]
+    written(tmp_path, to_c(equations, numbers, laws))
+    command = ["gcc", "-O2", *STRICT, "-Werror", "-c", "model_evaluate.c"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_what_is_no_number_is_reported_and_not_clipped_away(tmp_path: Path) -> None:
