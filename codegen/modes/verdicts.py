@@ -1,5 +1,6 @@
 """Whether a port goes with a mode, and whether what only sources rule lets a set of ports hold."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -183,15 +184,21 @@ def torn(look: Look) -> str | None:
     least = TUNING.wide * np.abs(held.mix) @ look.size.slip[held.ports]
     for k in np.flatnonzero(np.abs(slips) > least).tolist():
         ports = held.ports[np.flatnonzero(held.mix[k])]
-        names = " and ".join(repr(look.model.program.friction[i].name) for i in ports)
+        names = _names(look, ports)
         return f"what {names} receive together would have to be zero, not {slips[k]:.6g}"
     return None
 
 
 def _ruled_at(look: Look, row: int) -> str:
     """What other inputs rule, by its ports."""
-    names = [repr(look.model.program.friction[i].name) for i in np.flatnonzero(look.ruling[row])]
-    return f"what {' and '.join(names)} receives, which only sources rule,"
+    names = _names(look, np.flatnonzero(look.ruling[row]))
+    return f"what {names} receives, which only sources rule,"
+
+
+def _names(look: Look, ports: Iterable[int]) -> str:
+    """Ports for people; both ways of friction that gives a flow have one name."""
+    names = dict.fromkeys(repr(look.model.program.friction[i].name) for i in ports)
+    return " and ".join(names)
 
 
 def ruled_out_later(look: Look, later: Look) -> str | None:
