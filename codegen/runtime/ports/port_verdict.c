@@ -1,4 +1,4 @@
-/* Whether a mode contradicts nothing at an instant; a moment later, where the instant is a tie. */
+/* Whether a mode contradicts nothing at an instant, or a moment later, where that is a tie. */
 #include <math.h>
 #include <stddef.h>
 
@@ -25,8 +25,8 @@ static int verdict(const bg_port *port, int coupled, int sign)
     return sure || coupled ? sure : sign_of(sign * port->push, port->near_push);
 }
 
-/* Which way the slip of a coupled port goes: 1, -1, or 0 where neither shows. Its rate tells unless it
- * is not the whole rate: where another port holds, what that gives may change a slip in time, too. */
+/* Which way the slip of a coupled port goes: 1, -1, or 0 where neither shows. Its rate tells unless
+ * it is not the whole rate: where another port holds, what that gives may change a slip, too. */
 static int heading(const bg_port *later, const bg_port *now, double ahead)
 {
     const double moved = later->slip - now->slip, least = BG_SEEN * now->near_slip;

@@ -71,10 +71,18 @@ def _clutch_on_a_spring(law: object, gives: str = "effort") -> Graph:
     return bond_graph(nodes, "w>z>k z>p")
 
 
-@pytest.mark.parametrize("law", ["c*f_p", "c*w*f_p", bg.DryFriction("mu")])
+@pytest.mark.parametrize("law", ["c*f_p", "c*w*f_p"])
 def test_law_that_drives_a_dependent_storage_is_refused(law: object) -> None:
     with pytest.raises(bg.DependentSourceError, match=r"law at 'p'.*gives='flow'"):
         bg.derive(_clutch_on_a_spring(law))
+
+
+def test_dry_friction_gives_its_flow_there_and_has_no_curve_then() -> None:
+    equations = bg.derive(_clutch_on_a_spring(bg.DryFriction("mu")))
+    assert equations.states == sp.symbols("e_k,")
+    assert set(equations.inputs) == set(sp.symbols("w f_p"))
+    with pytest.raises(bg.StructureError, match=r"law at 'p': .* needs an inertia between"):
+        bg.derive(_clutch_on_a_spring(bg.DryFriction("mu", "1 + exp(-slip)")))
 
 
 def test_law_that_gives_the_flow_instead_is_accepted() -> None:

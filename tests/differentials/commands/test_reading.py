@@ -91,7 +91,7 @@ def test_a_graph_with_switches_is_shown_as_it_stands(data: Data, call: Call) -> 
     assert "switches, each let go or held: d (held while off, one-sided)\n" in text
     assert re.search(r"\(--input, --law\): +u from mains\n", text)
     assert "an ideal switch; on, it gives e_d = 0" in " ".join(call("explain", file).stdout.split())
-    assert "Sw: e_d > 0\n" in call("draw", file).stdout
+    assert "Sw: f_d ≥ 0\n" in call("draw", file).stdout
     assert "|" in next(line for line in call("draw", file).stdout.splitlines() if "Sw" in line)
 
 

@@ -1,5 +1,6 @@
 """Files with switches go through the same commands as all others."""
 
+import json
 import shutil
 import subprocess
 import sys
@@ -54,11 +55,17 @@ def test_c_runs_switches_as_numpy_does(data: Data) -> None:
     ("on", "kinds", "speeds"), [(("--on", "dog"), ["off"], [4.0, 0.0]), ((), [], [1.0, 1.0])]
 )
 def test_a_run_begins_with_the_switches_that_are_on(
-    dog: str, data: Data, tmp_path: Path, on: tuple[str, ...], kinds: list[str], speeds: list[float]
+    dog: str, call: Call, tmp_path: Path, on: tuple[str, ...], kinds: list[str], speeds: list[float]
 ) -> None:
-    """A gate of zero leaves the dog as it is: open until 1 s, or closed, and 4 rad/s shared by 1 and 3."""
-    gate = ("--set", "d=0", "--input", "gate=step(1, 1)", "--until", "2", "-o", "run.csv")
-    found = data("simulate", dog, *gate, *on, "--initial", "v_1=4", "--initial", "v_2=0")
+    """A gate of zero leaves the dog as it is: open until 1 s, or closed, and 4 rad/s shared by 1 and 3.
+
+    That it stays open is told, as a gate of 0 and 1 would not be meant so.
+    """
+    gate = ("--set", "d=0", "--input", "gate=step(1, 1)", "--until", "2", "-o", "run.csv", "--json")
+    done = call("simulate", dog, *gate, *on, "--initial", "v_1=4", "--initial", "v_2=0")
+    told = "warning: switch 'dog' stays on while its command -gate rests at zero, from t = 0 on"
+    assert (told in done.stderr) == bool(on)
+    found = json.loads(done.stdout)
     assert [(e["port"], e["kind"]) for e in found["events"]] == [("dog", kind) for kind in kinds]
     assert [found["final"][v] for v in ("v_1", "v_2")] == pytest.approx([1.0, 1.0], abs=1e-9)
     run = np.genfromtxt(tmp_path / "run.csv", delimiter=",", names=True)
