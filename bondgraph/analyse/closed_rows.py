@@ -11,7 +11,7 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.residues import residues
 from bondgraph.analyse.holding import balances_of, solve_for
 from bondgraph.analyse.slopes import Point, slopes, turns_with_slip
-from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
+from bondgraph.declare.laws import ExpressionLaw, Law, slides
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, SignalError, SingularStorageError
 from bondgraph.reduce.motion import slope_of
@@ -92,7 +92,7 @@ class ClosedRows:
     def received(self, port: Port, laws: Mapping[Hashable, Law]) -> Reading:
         """What a held port receives, less the level of dry friction that gives a flow and slips."""
         law, own = laws.get(port.element.name), self.signal(port.received)
-        if port.gives != "flow" or not isinstance(law, DryFriction):
+        if not slides(law, port.gives):
             return own
         point = self._completed(self._point, set(law.free_symbols))
         level = slopes(law, port.element.name, port.given, self._signals, point)

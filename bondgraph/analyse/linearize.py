@@ -14,7 +14,7 @@ from bondgraph.analyse.constrained import Rows, locked
 from bondgraph.analyse.linear_model import LinearModel
 from bondgraph.analyse.modes import ToldModes, held_rows, told_modes
 from bondgraph.analyse.slopes import operating_point, with_given
-from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
+from bondgraph.declare.laws import ExpressionLaw, Law, slides
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, SingularStorageError
 from bondgraph.reduce.rates import resolved
@@ -89,9 +89,7 @@ def linearize(
 
 def _level(law: Law | None, port: Port) -> frozenset[sp.Symbol]:
     """What the level reads of dry friction that gives a flow."""
-    return (
-        law.free_symbols if isinstance(law, DryFriction) and port.gives == "flow" else frozenset()
-    )
+    return law.free_symbols if slides(law, port.gives) else frozenset()
 
 
 def _least_first(equations: StateEquations, size: int) -> list[int]:

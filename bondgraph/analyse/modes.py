@@ -9,7 +9,7 @@ import sympy as sp
 from bondgraph.analyse.closed_rows import ClosedRows
 from bondgraph.analyse.constrained import echelon
 from bondgraph.analyse.holding import split, stuck_ports
-from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
+from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, slides
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
 from bondgraph.reduce.record import Reading
@@ -71,10 +71,7 @@ def told_modes(
             raise StructureError(f"{name!r} is in stuck and slips in mode; leave one of them out")
     sticking = [name for name, word in told.items() if word == "stick" and name not in names]
     held += stuck_ports(equations, sticking)
-    sliders = [
-        port for port in equations.ports
-        if port.gives == "flow" and isinstance(laws.get(port.element.name), DryFriction)
-    ]  # fmt: skip
+    sliders = [p for p in equations.ports if slides(laws.get(p.element.name), p.gives)]
     resting = [port for port in sliders if port in held]
     held = [port for port in held if port not in sliders]
     held += [port for port in sliders if port not in resting]

@@ -10,7 +10,7 @@ from bondgraph.algebra.residues import is_zero
 from bondgraph.declare import fields
 from bondgraph.declare.elements import Switch
 from bondgraph.declare.kinds import Kind
-from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, check_slider, law
+from bondgraph.declare.laws import ExpressionLaw, Law, check_slider, law, slides
 from bondgraph.errors import ExpressionError, StructureError
 
 
@@ -139,7 +139,7 @@ def _law(name: Hashable, kind: Kind, given: object, gives: str | None) -> Law:
     if kind.stores:
         state = symbol(f"{kind.letter}_{name}", where)
     result = law(given, where, state)
-    if isinstance(result, DryFriction) and gives == "flow":
+    if gives is not None and slides(result, gives):
         check_slider(result, where)
     return result
 

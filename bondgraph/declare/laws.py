@@ -1,6 +1,7 @@
 """What closes an open port: an expression, or dry friction that sticks and slips."""
 
 from dataclasses import dataclass
+from typing import TypeGuard
 
 import sympy as sp
 
@@ -84,6 +85,11 @@ class DryFriction:
 
 
 Law = ExpressionLaw | DryFriction
+
+
+def slides(law: Law | None, gives: str) -> TypeGuard[DryFriction]:
+    """Whether a law is dry friction, and its port gives its flow."""
+    return isinstance(law, DryFriction) and gives == "flow"
 
 
 def check_slider(friction: DryFriction, where: str) -> None:

@@ -147,7 +147,7 @@ class _Listing:
         for at, port in enumerate(program.friction):
             if port.switch is None or port.slides:
                 kind = "FMU_SLIDES" if port.slides else "FMU_MODE"
-                if port.in_c[-1] >= 0:
+                if port.way >= 0:
                     self._made(f"mode({port.name})", kind, at, variability="discrete")
             else:
                 self._made(str(port.name), "FMU_SWITCH", at, variability="discrete")

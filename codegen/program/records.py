@@ -73,12 +73,17 @@ class FrictionPort:
         if one is None:
             return 0, 0, 0, 0, 0
         kind = 1 if one.side else 2
-        return kind, int(one.on), one.side, max(one.guard, 0), -one.side * one.slides
+        return kind, int(one.on), one.side, max(one.guard, 0), self.way
 
     @property
     def slides(self) -> bool:
         """Whether it is one way in which dry friction slips that gives a flow."""
         return self.switch is not None and self.switch.slides
+
+    @property
+    def way(self) -> int:
+        """Of such friction 1 for its way forwards, -1 for that backwards; 0 of other ports."""
+        return -self.switch.side if self.switch is not None and self.switch.slides else 0
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.exact import fixed
-from bondgraph.declare.laws import DryFriction, Law
+from bondgraph.declare.laws import DryFriction, Law, slides
 from bondgraph.equations import StateEquations
 from bondgraph.reduce.motion import slope_of
 from bondgraph.reduce.record import Reading, ReadingSum
@@ -54,7 +54,7 @@ def sliders_of(
     found: list[Slider] = []
     for port in equations.ports:
         law = laws.get(port.element.name)
-        if isinstance(law, DryFriction) and port.gives == "flow":
+        if slides(law, port.gives):
             equations, slider = _halved(equations, port, law)
             found.append(slider)
     return equations, tuple(found)

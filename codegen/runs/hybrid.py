@@ -255,8 +255,7 @@ def _changes(model: ClosedModel, t: float, old: Mode, new: Mode) -> list[Event]:
         before, after = old[i], new[i]
         if port.slides:
             # Which way it slips by the modes of both, told by the first.
-            ahead = port.in_c[-1] > 0
-            before, after = (way_of(mode, i) if ahead else 0 for mode in (old, new))
+            before, after = (way_of(mode, i) if port.way > 0 else 0 for mode in (old, new))
         if before == after:
             continue
         if port.switch is not None and not port.slides:

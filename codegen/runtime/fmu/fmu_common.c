@@ -142,7 +142,7 @@ fmu_error fmu_get(fmu_instance *f, unsigned reference, double *value)
         *value = indicators[v->index];
         break;
     case FMU_SWITCH: *value = bg_model_switched(v->index, f->at.mode[v->index]); break;
-    case FMU_SLIDES: *value = (f->at.mode[v->index] == 0) - (f->at.mode[v->index + 1] == 0); break;
+    case FMU_SLIDES: *value = bg_slides(f->at.mode + v->index); break;
     default: *value = f->at.mode[v->index];
     }
     return NULL;

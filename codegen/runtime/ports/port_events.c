@@ -3,8 +3,7 @@
 
 #include <stddef.h>
 
-/* Which way friction slips that gives a flow, by the modes of its ways; 0: it sticks. */
-static int slides(const int *mode)
+int bg_slides(const int *mode)
 {
     return (mode[0] == 0) - (mode[1] == 0);
 }
@@ -21,7 +20,7 @@ static int happened(const bg_switch *with, int switched, const int *before, cons
     if (is_switch != switched || (with != NULL && with->slides < 0))
         return -1;
     if (with != NULL && with->slides)
-        return rubbed(slides(before), slides(now));
+        return rubbed(bg_slides(before), bg_slides(now));
     if (!switched || *now == *before)
         return switched ? -1 : rubbed(*before, *now);
     return with->on == (*now == 0) ? BG_ON : BG_OFF;

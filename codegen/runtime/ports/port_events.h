@@ -12,6 +12,9 @@ typedef struct {
     int port, kind;
 } bg_event;
 
+/* Which way friction slips that gives a flow, by the modes of its ways; 0: it sticks. */
+int bg_slides(const int *mode);
+
 /* Appends an event for each of `ports` modes that is not what it was, of switches first; 0, or -1
  * where the events have no room for it; where they are NULL they are but counted. `switches`: NULL
  * where no port is one. */
