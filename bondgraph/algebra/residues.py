@@ -21,6 +21,9 @@ PRIME = 2874246 * 802241960520 + 1
 PARTS = 2**4 * 3**2 * 5 * 7
 """Angles and exponents are counted in this fraction of a symbol, so that x/2 and x/3 agree with x."""
 
+DIGITS = 30
+"""In so many digits an expression is looked at whose zero residues do not decide."""
+
 KNOWN_FUNCTIONS = (sp.sin, sp.cos, sp.tan, sp.sinh, sp.cosh, sp.tanh, sp.exp)
 
 
@@ -164,7 +167,20 @@ def is_zero(expr: sp.Expr) -> bool:
 @lru_cache(maxsize=1_024)
 def _vanishes(expr: sp.Expr) -> bool:
     """What sympy says, which takes long; graphs that are derived again ask for the same."""
-    return bool(expr.equals(0))
+    return not _differs(expr) and bool(expr.equals(0))
+
+
+def _differs(expr: sp.Expr) -> bool:
+    """Whether an expression has a value that is plainly not zero at some numbers: then it is not zero."""
+    names = sorted(expr.free_symbols, key=str)
+    rng = random.Random(len(names))
+    point = {name: sp.Rational(rng.randrange(1, 1_000), 1_009) for name in names}
+    try:
+        # As many digits as told are right; what cancels comes out far smaller.
+        value = abs(expr.xreplace(point).evalf(DIGITS))
+    except (ArithmeticError, TypeError, ValueError):
+        return False
+    return bool(value.is_Float and value > sp.Rational(1, 10 ** (DIGITS // 2)))
 
 
 def is_rational_function(expr: sp.Expr) -> bool:

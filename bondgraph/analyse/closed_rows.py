@@ -1,20 +1,20 @@
 """Equations as rows over states and inputs, every closed law replaced by its slopes."""
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import sympy as sp
 
 from bondgraph.algebra.elimination import ResidueRows
 from bondgraph.algebra.exact import Row, SingularError, add_scaled, solve
-from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.residues import residues
+from bondgraph.analyse.deviations import Deviations
 from bondgraph.analyse.holding import balances_of, solve_for
 from bondgraph.analyse.slopes import Point, slopes, turns_with_slip
+from bondgraph.analyse.unknowns import Moment, Unknowns
 from bondgraph.declare.laws import ExpressionLaw, Law, slides
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, SignalError, SingularStorageError
-from bondgraph.reduce.motion import slope_of
 from bondgraph.reduce.readings import depends_on_signals
 from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.structure import Port
@@ -23,51 +23,66 @@ from bondgraph.reduce.structure import Port
 class ClosedRows:
     """The equations as rows over states, those of laws included, and inputs, laws replaced by slopes.
 
-    ``silent``: ports that give zero.
+    ``silent``: ports that give zero; ``held``: those whose inputs hold them; ``seen``: the nodes of the
+    laws that rows to be read touch, left out all; ``moment``: the time since the point, for rows that move
+    along from there.
     """
 
     def __init__(
         self, equations: StateEquations, closed: Mapping[Hashable, Law],
-        outer: tuple[sp.Symbol, ...], point: Point, silent: Iterable[Port] = (),
+        outer: tuple[sp.Symbol, ...], point: Point, unknowns: Unknowns,
+        silent: Iterable[Port] = (), held: Iterable[Port] = (),
+        seen: Collection[Hashable] | None = None, moment: Moment | None = None,
     ) -> None:  # fmt: skip
-        self._equations = equations
+        self.equations, self.closed, self.silent = equations, closed, tuple(silent)
         ports = {port.element.name: port for port in equations.ports}
-        self._rated = {
+        self.rated = {
             law.state: ports[name].received
             for name, law in closed.items()
             if isinstance(law, ExpressionLaw) and law.state is not None
         } | dict(equations.integrals)
-        self._point = point
-        self.states = (*equations.states, *self._rated)
+        self.states = (*equations.states, *self.rated)
         self.columns = (*equations.inputs, *outer)
-        signals = self._signals = {*equations.signals, *self._rated, *outer}
+        signals = self.signals = {*equations.signals, *self.rated, *outer}
+        given = {port.given for port in (*map(ports.__getitem__, closed), *silent, *held)}
+        self.point = point
+        holding = {port.given for port in held}
+        # What holds is told by the point as a whole, or by the equations.
+        there = (
+            point
+            if holding <= point.keys()
+            else {n: v for n, v in point.items() if n not in holding}
+        )
+        self.here = Deviations(equations, self.states, self.columns, given, there, unknowns, moment)
         moved: dict[int, Reading] = {}
         owner: dict[int, Hashable] = {}
         for name, law in closed.items():
-            if depends_on_signals(law, signals):
+            if (seen is None or name in seen) and depends_on_signals(law, signals):
                 port = ports[name]
                 read = set(law.free_symbols)
                 read |= {port.received} if turns_with_slip(law, signals) else set()
-                slope = slopes(law, name, port.received, signals, self._completed(point, read))
+                slope = slopes(law, name, port.received, signals, self.completed(point, read))
                 column = equations.inputs.index(port.given)
                 moved[column], owner[column] = self._combined(slope), name
-        for port in silent:
+        for port in self.silent:
             column = equations.inputs.index(port.given)
             moved[column], owner[column] = Reading({}, {}, {}, {}), port.element.name
         self._given = _settled(moved, owner)
         self.left = [j for j in range(len(self.columns)) if j not in moved]
 
-    def _completed(self, point: Point, read: set[sp.Symbol]) -> Point:
+    def completed(self, point: Point, read: set[sp.Symbol]) -> Point:
         """The point with the signals that a law reads worked out, where states and inputs are known."""
         found = dict(point)
         for name in read - found.keys():
-            row = self._equations.readings.get(name)
+            row = self.equations.readings.get(name)
             if row is None or row.H or row.K:
                 continue
             terms = [(self.states[j], e) for j, e in row.F.items()]
             terms += [(self.columns[j], e) for j, e in row.D.items()]
-            if all(part in point for part, _ in terms):
-                found[name] = sp.Add(*(entry * point[part] for part, entry in terms))
+            used = set().union(*(entry.free_symbols for _, entry in terms))
+            used &= {*self.equations.varying}
+            if used.union(part for part, _ in terms) <= point.keys():
+                found[name] = sp.Add(*(self.here.there(e) * point[part] for part, e in terms))
         return found
 
     def give(self, columns: Sequence[int], rows: Sequence[Reading], ports: Sequence[Port]) -> None:
@@ -87,46 +102,18 @@ class ClosedRows:
             return Reading({self.states.index(name): one}, {}, {}, {})
         if name in self.columns:
             return Reading({}, {self.columns.index(name): one}, {}, {})
-        return self._frozen(self._equations.readings[name])
+        return self.here.row(self.equations.readings[name], self.signal)
 
     def received(self, port: Port, laws: Mapping[Hashable, Law]) -> Reading:
         """What a held port receives, less the level of dry friction that gives a flow and slips."""
         law, own = laws.get(port.element.name), self.signal(port.received)
         if not slides(law, port.gives):
             return own
-        point = self._completed(self._point, set(law.free_symbols))
-        level = slopes(law, port.element.name, port.given, self._signals, point)
+        point = self.completed(self.point, set(law.free_symbols))
+        level = slopes(law, port.element.name, port.given, self.signals, point)
         result = ReadingSum(own)
         result.add(self._combined(level), -sp.Integer(1))
         return result.whole()
-
-    def _frozen(self, row: Reading) -> Reading:
-        """A row whose coefficients change in time, for deviations from the point, where all rates are 0.
-
-        ``g(xi) v`` deviates by ``g v`` at the point and by the slope of g by each xi, times v there.
-        """
-        if not self._equations.varying:
-            return row
-        moving = set(self._equations.varying)
-        there = [{j: self._there(entry) for j, entry in part.items()} for part in row.parts]
-        kept = ({j: value for j, value in part.items() if value != 0} for part in there)
-        result = ReadingSum(Reading(*kept))
-        for names, part in ((self.states, row.F), (self.columns, row.D)):
-            for j, entry in part.items():
-                for name in sorted(entry.free_symbols & moving - {TIME}, key=str):
-                    slope = self._there(slope_of(entry, name) * names[j])
-                    result.add(self.signal(name), slope)
-        return result.whole()
-
-    def _there(self, expr: sp.Expr) -> sp.Expr:
-        """An expression at the operating point."""
-        moving = {*self._equations.varying, *self.states, *self.columns, TIME}
-        missing = sorted((expr.free_symbols & moving) - self._point.keys(), key=str)
-        if missing:
-            raise SignalError(
-                f"values of the graph change with {', '.join(map(str, missing))}: give a value in at"
-            )
-        return expr.subs({name: self._point[name] for name in expr.free_symbols & moving})
 
     def _combined(self, slope: Mapping[sp.Symbol, sp.Expr]) -> Reading:
         result = ReadingSum()
@@ -150,11 +137,14 @@ class ClosedRows:
 
     def dynamics(self) -> tuple[list[Row], list[Reading]]:
         """A and the right sides of ``A x' =``, the rates of laws' own states below."""
-        A, balances = balances_of(self._equations)
-        if self._equations.varying:
-            A = [{j: self._there(entry) for j, entry in row.items()} for row in A]
-        rows = [self.put_in(self._frozen(balance)) for balance in balances]
-        for at, received in enumerate(self._rated.values(), start=len(A)):
+        whole = [
+            replace(row, H={j: -entry for j, entry in inertia.items()})
+            for inertia, row in zip(*balances_of(self.equations), strict=True)
+        ]
+        whole = [self.here.row(row, self.signal) for row in whole]
+        A = [{j: -entry for j, entry in row.H.items()} for row in whole]
+        rows = [self.put_in(replace(row, H={})) for row in whole]
+        for at, received in enumerate(self.rated.values(), start=len(A)):
             A.append({at: sp.Integer(1)})
             rows.append(self.put_in(self.signal(received)))
         if any(row.H for row in rows):

@@ -21,19 +21,33 @@ class Rows:
     outputs: tuple[Reading, ...]
 
 
+@dataclass(frozen=True)
+class TiedStates:
+    """``x = T x_r + S v`` by rows, and how fast T and S change; x_r are the states ``kept``."""
+
+    T: tuple[FixedRow, ...]
+    S: tuple[FixedRow, ...]
+    T_rate: tuple[FixedRow, ...]
+    S_rate: tuple[FixedRow, ...]
+    kept: tuple[int, ...]
+
+
 def locked(
-    model: Rows, slips: Sequence[Reading], held: Sequence[int], order: Sequence[int], ports: str
-) -> Rows:
+    model: Rows, slips: Sequence[Reading], bends: Sequence[Reading], held: Sequence[int],
+    order: Sequence[int], ports: str,
+) -> Rows:  # fmt: skip
     """The model with slips at zero: ``x = T x_r + S v``, and the balances along what is left free.
 
-    ``slips``: ``F x + D v``; ``held``: the columns of what holds them; ``order``: of the states
+    ``slips``: ``F x + D v``; ``bends``: how fast their coefficients change, none if they do not;
+    ``held``: the columns of what holds them; ``order``: of the states
     those go first that it has first; ``ports``: what holds them, for people.
 
     Raises `DependentSourceError` for a slip that only sources rule and for one that rates rule,
     `SignalError` for an output that shows what several ports hold together.
     """
     _check_held(model, slips, held, ports)
-    T, S, kept = _without(slips, order, ports)
+    tied = _without(slips, bends, order, ports)
+    T, kept = tied.T, tied.kept
     efforts = [{held.index(j): e for j, e in row.D.items() if j in held} for row in model.balances]
     N = left_annihilator(transposed(efforts, len(held)), len(T))
     if len(N) != len(kept):
@@ -43,9 +57,9 @@ def locked(
     symmetric = transposed(T, len(kept))
     if not any(multiplied(row, efforts) for row in symmetric):
         N = symmetric
-    A, balances = _along(model, N, T, S)
+    A, balances = _along(model, N, tied)
     try:
-        outputs = tuple(_shown(model, y, efforts, held, T, S) for y in model.outputs)
+        outputs = tuple(_shown(model, y, efforts, held, tied) for y in model.outputs)
     except SingularError:
         raise SignalError(
             f"an output shows what one of {ports} gives, which hold together and share it as their limits "
@@ -68,25 +82,27 @@ def _check_held(model: Rows, slips: Sequence[Reading], held: Sequence[int], port
 
 
 def _along(
-    model: Rows, N: Sequence[FixedRow], T: Sequence[FixedRow], S: Sequence[FixedRow]
+    model: Rows, N: Sequence[FixedRow], tied: TiedStates
 ) -> tuple[tuple[FixedRow, ...], tuple[Reading, ...]]:
-    """``N A (T x_r' + S v') = N (J (T x_r + S v) + B v + E v')``."""
+    """``N A (T x_r' + S v' + T' x_r + S' v) = N (J (T x_r + S v) + B v + E v')``."""
     F, D, K = ([getattr(row, part) for row in model.balances] for part in "FDK")
     A, balances = [], []
     for row in N:
         inertia, forces = multiplied(row, model.A), multiplied(row, F)
         inputs, rates = multiplied(row, D), multiplied(row, K)
-        add_scaled(inputs, multiplied(forces, S), sp.Integer(1))
-        add_scaled(rates, multiplied(inertia, S), -sp.Integer(1))
-        A.append(fixed(multiplied(inertia, T)))
-        balances.append(Reading(multiplied(forces, T), inputs, {}, rates))
+        add_scaled(inputs, multiplied(forces, tied.S), sp.Integer(1))
+        add_scaled(inputs, multiplied(inertia, tied.S_rate), -sp.Integer(1))
+        add_scaled(rates, multiplied(inertia, tied.S), -sp.Integer(1))
+        A.append(fixed(multiplied(inertia, tied.T)))
+        states = multiplied(forces, tied.T)
+        add_scaled(states, multiplied(inertia, tied.T_rate), -sp.Integer(1))
+        balances.append(Reading(states, inputs, {}, rates))
     return tuple(A), tuple(balances)
 
 
 def _shown(
-    model: Rows, y: Reading, efforts: Sequence[FixedRow], held: Sequence[int],
-    T: Sequence[FixedRow], S: Sequence[FixedRow],
-) -> Reading:  # fmt: skip
+    model: Rows, y: Reading, efforts: Sequence[FixedRow], held: Sequence[int], tied: TiedStates
+) -> Reading:
     """An output over the states that are left; what holds ports is what the balances lack of ``A x'``."""
     total = ReadingSum(y)
     wanted = {held.index(j): entry for j, entry in y.D.items() if j in held}
@@ -96,9 +112,12 @@ def _shown(
         total.add(Reading(row.F, row.D, {}, row.K), -weight)
     D = {j: entry for j, entry in total.D.items() if j not in held}
     K = dict(total.K)
-    add_scaled(D, multiplied(total.F, S), sp.Integer(1))
-    add_scaled(K, multiplied(total.H, S), sp.Integer(1))
-    return Reading(multiplied(total.F, T), D, multiplied(total.H, T), K)
+    add_scaled(D, multiplied(total.F, tied.S), sp.Integer(1))
+    add_scaled(D, multiplied(total.H, tied.S_rate), sp.Integer(1))
+    add_scaled(K, multiplied(total.H, tied.S), sp.Integer(1))
+    F = multiplied(total.F, tied.T)
+    add_scaled(F, multiplied(total.H, tied.T_rate), sp.Integer(1))
+    return Reading(F, D, multiplied(total.H, tied.T), K)
 
 
 def _weights(efforts: Sequence[FixedRow], wanted: FixedRow, count: int) -> Row:
@@ -118,33 +137,45 @@ def _weights(efforts: Sequence[FixedRow], wanted: FixedRow, count: int) -> Row:
 
 
 def _without(
-    slips: Sequence[Reading], order: Sequence[int], ports: str
-) -> tuple[tuple[FixedRow, ...], tuple[FixedRow, ...], tuple[int, ...]]:
+    slips: Sequence[Reading], bends: Sequence[Reading], order: Sequence[int], ports: str
+) -> TiedStates:
     """``F x + D v = 0`` as ``x = T x_r + S v`` by rows, and the states that are left, in their own order."""
-    inputs = sorted({j for slip in slips for j in slip.D})
-    matrix = sp.zeros(len(slips), len(order) + len(inputs))
+    inputs, count = sorted({j for slip in slips for j in slip.D}), len(order)
+    width = count + len(inputs)
+    # Beside the rows what they are combined of, for their bends.
+    matrix = sp.zeros(len(slips), width + len(bends))
     for i, slip in enumerate(slips):
         for at, j in enumerate(order):
             matrix[i, at] = slip.F.get(j, 0)
-        for at, j in enumerate(inputs, start=len(order)):
+        for at, j in enumerate(inputs, start=count):
             matrix[i, at] = slip.D.get(j, 0)
+        if bends:
+            matrix[i, width + i] = 1
     reduced, pivots = echelon(matrix)
-    if any(pivot >= len(order) for pivot in pivots):
+    if any(count <= pivot < width for pivot in pivots):
         raise DependentSourceError(
             f"inputs alone rule what is to be held at {ports}, so that no port can hold it; leave one of "
             "them free, or put a storage between"
         )
-    gone = {order[pivot]: i for i, pivot in enumerate(pivots)}
-    kept = tuple(j for j in range(len(order)) if j not in gone)
+    gone = {order[pivot]: i for i, pivot in enumerate(pivots) if pivot < count}
+    kept = tuple(j for j in range(count) if j not in gone)
     place = {j: at for at, j in enumerate(kept)}
-    T: list[Row] = [{place[j]: sp.Integer(1)} if j in place else {} for j in range(len(order))]
+    T: list[Row] = [{place[j]: sp.Integer(1)} if j in place else {} for j in range(count)]
     S: list[Row] = [{} for _ in order]
     for j, i in gone.items():
         entries = {place[k]: reduced[i, at] for at, k in enumerate(order) if k in place}
         T[j] = {at: -entry for at, entry in entries.items() if entry != 0}
-        driven = {k: reduced[i, at] for at, k in enumerate(inputs, start=len(order))}
+        driven = {k: reduced[i, at] for at, k in enumerate(inputs, start=count)}
         S[j] = {k: -entry for k, entry in driven.items() if entry != 0}
-    return tuple(map(fixed, T)), tuple(map(fixed, S)), kept
+    T_rate, S_rate = [Row() for _ in order], [Row() for _ in order]
+    for j, i in gone.items():
+        for at, bend in enumerate(bends):
+            factor = -reduced[i, width + at]
+            add_scaled(T_rate[j], multiplied(bend.F, T), factor)
+            add_scaled(S_rate[j], multiplied(bend.F, S), factor)
+            add_scaled(S_rate[j], bend.D, factor)
+    T_all, S_all, T_late, S_late = (tuple(map(fixed, part)) for part in (T, S, T_rate, S_rate))
+    return TiedStates(T_all, S_all, T_late, S_late, kept)
 
 
 def left_annihilator(columns: Sequence[Row], size: int) -> list[Row]:

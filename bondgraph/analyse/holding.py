@@ -6,6 +6,7 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.exact import Row, SingularError, rows_of, solve
+from bondgraph.algebra.residues import is_zero
 from bondgraph.algebra.tidy import tidy
 from bondgraph.analyse.constrained import echelon
 from bondgraph.equations import StateEquations
@@ -41,7 +42,7 @@ def holding_efforts(
         )
     held = [equations.inputs.index(port.given) for port in ports]
     rows = [equations.readings[port.received] for port in ports]
-    direct, bound = split(rows, held)
+    direct, bound, _ = split(rows, held)
     rates = [_rate(equations, row, ports) for row in bound]
     solved = solve_for([*direct, *rates], held, len(equations.states), ports)
     variables = [*equations.states, *equations.inputs]
@@ -77,22 +78,24 @@ def stuck_ports(
     return ports
 
 
-def split(rows: Sequence[Reading], held: Sequence[int]) -> tuple[list[Reading], list[Reading]]:
+def split(
+    rows: Sequence[Reading], held: Sequence[int]
+) -> tuple[list[Reading], list[Reading], tuple[int, ...]]:
     """What sticking ports receive, split into rows that fix efforts at once and rows that bind states.
 
-    The first are those whose D over the held efforts is independent; the others are the combinations
-    in which these efforts cancel.
+    The first are those whose D over the held efforts is independent, and which these are is told last; the
+    others are the combinations in which these efforts cancel.
     """
     D = sp.Matrix(len(rows), len(held), lambda i, j: rows[i].D.get(held[j], 0))
     _, pivots = echelon(D.T)
     direct = [rows[i] for i in pivots]
     bound = []
-    for weights in D.T.nullspace(simplify=sp.cancel):
+    for weights in D.T.nullspace(simplify=sp.cancel, iszerofunc=is_zero):
         total = ReadingSum()
         for row, weight in zip(rows, weights, strict=True):
             total.add(row, weight)
         bound.append(total.whole())
-    return direct, bound
+    return direct, bound, pivots
 
 
 def balances_of(equations: StateEquations) -> tuple[list[Row], list[Reading]]:

@@ -1,19 +1,23 @@
 """`linearize`: equations with laws closed at an operating point, symbolic, for small deviations."""
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import sympy as sp
 
-from bondgraph.algebra.exact import FixedRow, Row, SingularError, fixed
+from bondgraph.algebra.exact import FixedRow, Row, SingularError, cancelled, fixed
 from bondgraph.algebra.expressions import TIME, normal
 from bondgraph.algebra.tidy import tidy_matrices
 from bondgraph.analyse.closed_rows import ClosedRows
 from bondgraph.analyse.closures import merged_laws
 from bondgraph.analyse.constrained import Rows, locked
+from bondgraph.analyse.instant import Instant
 from bondgraph.analyse.linear_model import LinearModel
 from bondgraph.analyse.modes import ToldModes, held_rows, told_modes
-from bondgraph.analyse.slopes import operating_point, with_given
+from bondgraph.analyse.moving_hold import turns
+from bondgraph.analyse.slopes import Point, operating_point, with_given
+from bondgraph.analyse.unknowns import Unknowns, unknowns_in
 from bondgraph.declare.laws import ExpressionLaw, Law, slides
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, SingularStorageError
@@ -30,10 +34,13 @@ def linearize(
     stuck: Iterable[Hashable] = (),
     outputs: Iterable[str] | None = None,
     mode: Mapping[Any, str] | None = None,
+    rates: Mapping[Any, object] | None = None,
 ) -> LinearModel:
     """The equations for small deviations, every law replaced by its slopes, every switch in one mode.
 
-    ``at``: signal to value at the operating point, as far as slopes depend on it. ``laws``: as for a
+    ``at``: signal to value at the operating point, as far as slopes depend on it. Where A or what is held
+    depends on what moves, and states accelerate at the point, how they do counts: their rates are those that
+    the equations have there, with ``rates`` of open inputs, zero where left out. ``laws``: as for a
     simulator, over those declared. ``inputs``: names in laws that become inputs; what else no signal
     has is a parameter. A law that reads no signal and no such input leaves its port an input. ``outputs``:
     names of signals, else the equations' outputs. ``mode``: node to its mode: "on" or "off" for every
@@ -73,18 +80,50 @@ def linearize(
     own = {law.state for law in closed.values() if isinstance(law, ExpressionLaw) and law.state}
     moving = {*equations.signals, *equations.integrals, *own, *outer, TIME}
     point = with_given(operating_point(at, known), by_input | told.zeros, moving)
-    system = ClosedRows(equations, closed, outer, point, told.free)
-    columns = [equations.inputs.index(port.given) for port in told.held]
-    rows = [system.put_in(system.received(port, merged)) for port in told.held]
-    bound, tied = held_rows(system, rows, columns, told.held)
+    unknowns, free = Unknowns(), told.free
+    system = ClosedRows(equations, closed, outer, point, unknowns, free, told.held)
+    instant = Instant(system, told.held, merged, _rates(system, rates, told), unknowns)
+    held, bends = held_rows(system, told.held, merged), tuple[Reading, ...]()
+    tied = held.tied
+    if held.bound and turns(system, told.held, merged):
+        held, bends = instant.hold.held, instant.hold.bends
     A, balances = system.dynamics()
-    ys = [system.put_in(system.signal(name)) for name in shown]
-    model = Rows(system.states, tuple(map(fixed, A)), tuple(balances), tuple(ys))
+    ys = tuple(system.put_in(system.signal(name)) for name in shown)
+    model = Rows(system.states, tuple(map(fixed, A)), tuple(balances), ys)
+    model, bound, bends = _filled(instant, model, held.bound, bends)
     if bound:
         order = _least_first(equations, len(system.states))
-        model = locked(model, bound, tied, order, told.holding)
+        model = locked(model, bound, bends, tied, order, told.holding)
+    columns = {equations.inputs.index(port.given) for port in told.held}
     left = [j for j in system.left if j not in columns]
     return _model(model, left, system.columns, tuple(shown))
+
+
+def _rates(system: ClosedRows, rates: Mapping[Any, object] | None, told: ToldModes) -> Point:
+    """The rates of open inputs at the point, by name; `SignalError` for what is none."""
+    given = {port.given for port in told.ports}
+    given |= {port.given for port in system.equations.ports if port.element.name in system.closed}
+    return operating_point(rates, [name for name in system.columns if name not in given], "rates")
+
+
+def _filled(
+    instant: Instant, model: Rows, bound: Sequence[Reading], bends: Sequence[Reading]
+) -> tuple[Rows, tuple[Reading, ...], tuple[Reading, ...]]:
+    """The same rows with what the point does not tell and its equations do."""
+    inertia = [Reading({}, {}, row, {}) for row in model.A]
+    values = instant.solved(
+        unknowns_in([*inertia, *model.balances, *model.outputs, *bound, *bends])
+    )
+    if not values:
+        return model, tuple(bound), tuple(bends)
+
+    def filled(rows: Sequence[Reading]) -> tuple[Reading, ...]:
+        return tuple(Reading(*({j: v for j, e in part.items() if (v := cancelled(e.xreplace(values))) != 0}
+                               for part in row.parts)) for row in rows)  # fmt: skip
+
+    A = tuple(row.H for row in filled(inertia))
+    known = replace(model, A=A, balances=filled(model.balances), outputs=filled(model.outputs))
+    return known, filled(bound), filled(bends)
 
 
 def _level(law: Law | None, port: Port) -> frozenset[sp.Symbol]:

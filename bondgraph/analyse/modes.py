@@ -116,16 +116,26 @@ def _listed(equations: StateEquations) -> list[Hashable]:
     return [port.element.name for port in equations.ports if port.element.kind.resists]
 
 
-def held_rows(
-    system: ClosedRows, rows: Sequence[Reading], columns: Sequence[int], ports: Sequence[Port]
-) -> tuple[list[Reading], list[int]]:
-    """What is held, and the columns that hold it, less what resistances rule at once.
+@dataclass(frozen=True)
+class HeldRows:
+    """What is held, ``F x + D v = 0``, less what resistances rule at once.
 
-    ``rows``: what held ports receive; ``columns``: what they give. Where these see one another beside a
-    resistance, they are put into the system; what is left are rows over states and other inputs, and
-    the columns of what then holds them.
+    ``bound``: rows over states and other inputs; ``tied``: the columns of what then holds them. ``direct``:
+    which of the ports tell at once what others, of the columns that are not tied, give.
     """
-    direct, bound = split(rows, columns)
+
+    bound: tuple[Reading, ...]
+    tied: tuple[int, ...]
+    direct: tuple[int, ...]
+
+
+def held_rows(system: ClosedRows, ports: Sequence[Port], laws: Mapping[Hashable, Law]) -> HeldRows:
+    """What held ports receive, as rows; where they see one another beside a resistance, what they give
+    is put into the system.
+    """
+    columns = [system.equations.inputs.index(port.given) for port in ports]
+    rows = [system.put_in(system.received(port, laws)) for port in ports]
+    direct, bound, independent = split(rows, columns)
     D = sp.Matrix(len(direct), len(columns), lambda i, j: direct[i].D.get(columns[j], 0))
     _, pivots = echelon(D)
     if direct:
@@ -135,4 +145,4 @@ def held_rows(
         for row in bound
     ]
     tied = [j for at, j in enumerate(columns) if at not in pivots]
-    return without, tied
+    return HeldRows(tuple(without), tuple(tied), independent)

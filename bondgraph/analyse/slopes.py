@@ -7,6 +7,7 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME, expression, normal
 from bondgraph.algebra.residues import is_zero
+from bondgraph.analyse.unknowns import still
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.errors import SignalError
 
@@ -14,20 +15,23 @@ Point = Mapping[sp.Symbol, sp.Expr]
 """Values of signals, and of parameters where they decide on which side of a corner it lies."""
 
 
-def operating_point(at: Mapping[object, object] | None, known: Iterable[sp.Symbol]) -> Point:
-    """Names and their values there: numbers, or expressions in parameters.
+def operating_point(
+    at: Mapping[object, object] | None, known: Iterable[sp.Symbol], what: str = "at"
+) -> Point:
+    """Names and their values there: numbers, or expressions in parameters. ``what``: the argument's name.
 
     Raises `SignalError` for a name that neither the equations nor a law has.
     """
     if not isinstance(at, Mapping | None):
-        raise SignalError(f"at must map signals to values, not be {at!r}")
+        raise SignalError(f"{what} must map signals to values, not be {at!r}")
     point = {
         sp.Symbol(str(normal(str(name)))): expression(value, f"operating point of {name}")
         for name, value in (at or {}).items()
     }
     unknown = sorted(point.keys() - set(known), key=str)
     if unknown:
-        raise SignalError(f"at: no signal, state or parameter is called {unknown[0]}")
+        kinds = "signal, state or parameter" if what == "at" else "open input"
+        raise SignalError(f"{what}: no {kinds} is called {unknown[0]}")
     return point
 
 
@@ -62,8 +66,8 @@ def slopes(
     Raises `SignalError` where a derivative needs a value that the point lacks, or where the law has a
     corner or a jump there.
     """
-    given = _as_expression(law, port, received, signals, point)
-    read = sorted(given.free_symbols & signals - {TIME}, key=str)
+    given = as_expression(law, port, received, signals, point)
+    read = sorted(given.free_symbols & signals, key=str)
     # The derivative of a modulus is a sign for real names only.
     real = {name: sp.Dummy(name.name, real=True) for name in given.free_symbols}
     plain = {dummy: name for name, dummy in real.items()}
@@ -86,7 +90,7 @@ def turns_with_slip(law: Law, signals: set[sp.Symbol]) -> bool:
     return SLIP in law.curve.free_symbols or bool(law.level.free_symbols & signals)
 
 
-def _as_expression(
+def as_expression(
     law: Law, port: Hashable, received: sp.Symbol, signals: set[sp.Symbol], point: Point
 ) -> sp.Expr:
     """A law as an expression; slipping friction on the side on which the operating point lies."""
@@ -94,7 +98,7 @@ def _as_expression(
         return law.expression
     if not turns_with_slip(law, signals) and received not in point:
         return law.level
-    side = sp.sign(point.get(received, sp.Integer(0)))
+    side = sp.sign(still(point.get(received, sp.Integer(0))))
     if side not in (1, -1):
         raise SignalError(
             f"dry friction at {port!r} slips one way or the other, or sticks: give {received} a number "
@@ -151,7 +155,7 @@ def _check_given(
 def _check_turn(turn: sp.Expr, port: Hashable, signals: set[sp.Symbol], point: Point) -> None:
     """Refuse a point at which ``atan2(y, x)`` jumps by a turn, which no slope shows."""
     _check_given(turn, port, signals, point, "value")
-    y, x = (part.subs(point) for part in turn.args)
+    y, x = (still(part.subs(point)) for part in turn.args)
     if is_zero(y) and x.is_number and x <= 0:
         raise SignalError(
             f"the law at {port!r} jumps at the operating point, where {turn.args[0]} = 0; "
@@ -161,7 +165,7 @@ def _check_turn(turn: sp.Expr, port: Hashable, signals: set[sp.Symbol], point: P
 
 def _sides(switch: sp.Expr, port: Hashable, point: Point) -> tuple[int, ...]:
     """The sign of a switch at the point; both where it is zero."""
-    value = switch.subs(point)
+    value = still(switch.subs(point))
     if value.free_symbols:
         names = ", ".join(sorted(map(str, value.free_symbols)))
         raise SignalError(

@@ -29,6 +29,7 @@ def _options(command: Command) -> Command:
         options.parameters,
         options.laws,
         options.assigned("--at", "at", START, "A signal at the operating point."),
+        options.assigned("--rate", "rates", START, "How fast an input changes there, 0 by default."),
         click.option("--speed", type=click.FloatRange(min=0, min_open=True), metavar="RAD/S",
                      help=f"Wheel speed of a differential's tires, {SPEED:g} rad/s by default."),
         click.option("--stuck", multiple=True, metavar="PORT",
@@ -44,8 +45,8 @@ def _options(command: Command) -> Command:
 
 def _linear(
     subject: Subject, parameters: Mapping[str, float], laws: Mapping[str, Any],
-    at: Mapping[str, float], speed: float | None, stuck: tuple[str, ...], on: tuple[str, ...],
-    mode: Mapping[str, str],
+    at: Mapping[str, float], rates: Mapping[str, float], speed: float | None, stuck: tuple[str, ...],
+    on: tuple[str, ...], mode: Mapping[str, str],
 ) -> StateSpace:  # fmt: skip
     if subject.differential is None:
         if speed is not None:
@@ -55,7 +56,8 @@ def _linear(
         equations = bg.derive(subject.graph())
         ports = [port.element.name for port in equations.ports]
         held, told = nodes_called(stuck, ports, "port"), _told(subject, ports, on, mode)
-        return bg.linearize(equations, at, laws, stuck=held, mode=told).numeric(parameters)
+        there = bg.linearize(equations, at, laws, stuck=held, mode=told, rates=rates)
+        return there.numeric(parameters)
     full = model(subject.name, laws)
     subject.graph(on=on)
     check_names(parameters, (*full.parameters, *full.starts), "parameter")
@@ -63,7 +65,8 @@ def _linear(
     values = numbers(full, parameters, SPEED if speed is None else speed)
     nodes = nodes_called(mode, full.differential.clutches, "clutch")
     told = dict(zip(nodes, mode.values(), strict=True))
-    return bg.linearize(full.equations, at, full.laws, stuck=held, mode=told).numeric(values)
+    there = bg.linearize(full.equations, at, full.laws, stuck=held, mode=told, rates=rates)
+    return there.numeric(values)
 
 
 def _told(

@@ -97,10 +97,7 @@ def nonlinear_storage() -> Kind:
 
 
 def crank() -> Kind:
-    """A crank with a slider of mass m: (J + m r^2 sin^2 theta) w^2/2 = T theta + J w_0^2/2.
-
-    Where it is linearized the angle is a right one, where A does not change.
-    """
+    """A crank with a slider of mass m: (J + m r^2 sin^2 theta) w^2/2 = T theta + J w_0^2/2."""
     J, m, r, T, w0 = 0.1, 2.0, 0.3, 0.4, 2.0
     nodes = [bg.Se("drive", "T"), bg.One("shaft"), bg.I("J", "J", flow="w"),
              bg.Df("angle", integrate="theta"), bg.TF("yoke", "r*sin(theta)"), bg.One("slider"),
@@ -112,7 +109,7 @@ def crank() -> Kind:
         return {"w": np.sqrt(2 * (T * theta + J * w0**2 / 2) / inertia)}
 
     return Kind("moving ratio", bond_graph(nodes, "drive>shaft>J shaft>angle shaft>yoke>slider>m"),
-                {"J": J, "m": m, "r": r}, {"T": f"{T}"}, known, 1.0, {"w": w0, "theta": 0.0}, at=0.6787,
+                {"J": J, "m": m, "r": r}, {"T": f"{T}"}, known, 1.0, {"w": w0, "theta": 0.0}, at=0.3,
                 rest={"inputs": {"T": 0.0}})  # fmt: skip
 
 
