@@ -7,13 +7,17 @@ networkx.DiGraph        the user's: nodes carry `kind`, `value`, ...; edges are 
   state_equations       `StateEquations`: A J B E F D G, laws          `DependentSourceError`
 """
 
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
+
+import sympy as sp
 
 from bondgraph.algebra.exact import FixedRow
 from bondgraph.algebra.tidy import tidy_matrices
 from bondgraph.causality.assign import assign_causality
+from bondgraph.declare.elements import Element
+from bondgraph.declare.validate import graph_of
 from bondgraph.equations import StateEquations
 from bondgraph.reduce.inertia import check_regular, inertia
 from bondgraph.reduce.junction import junction_structure
@@ -21,7 +25,8 @@ from bondgraph.reduce.outputs import named_signals, shown_signals
 from bondgraph.reduce.ports import reduce_ports
 from bondgraph.reduce.rates import resolved
 from bondgraph.reduce.readings import check_laws
-from bondgraph.reduce.structure import JunctionStructure
+from bondgraph.reduce.sorting import Reduction
+from bondgraph.reduce.structure import JunctionStructure, PortRow
 from bondgraph.reduce.switches import check_switches, switch_ports
 
 
@@ -63,13 +68,39 @@ def state_equations(
     Raises `SingularStorageError` if A is singular, `DependentSourceError` if a law would have to be
     differentiated, `StructureError` for an output that does not exist.
     """
+    return _equations(structure, lambda reduction, _: shown_signals(reduction.structure, outputs))
+
+
+def derive_again(equations: StateEquations, elements: Mapping[Hashable, Element]) -> StateEquations:
+    """The equations of the same graph with other elements at some of its nodes, showing the same signals.
+
+    Each node keeps its ports and the names of its variables; causality is assigned anew.
+
+    Raises what `derive` raises.
+    """
+    kept = equations.reduction.structure
+    graph = graph_of({**kept.elements, **elements}, zip(kept.ends, kept.bonds, strict=True))
+    return _equations(
+        junction_structure(assign_causality(graph)),
+        lambda _, signals: [(symbol, signals[symbol]) for symbol in equations.outputs],
+    )
+
+
+Shown = list[tuple[sp.Symbol, PortRow]]
+"""Signals by name, as rows over ports."""
+
+
+def _equations(
+    structure: JunctionStructure, show: Callable[[Reduction, Mapping[sp.Symbol, PortRow]], Shown]
+) -> StateEquations:
+    """The equations of a junction structure; ``show``: the outputs, told the named signals."""
     reduction = reduce_ports(structure)
     structure, ports = reduction.structure, reduction.structure.ports
     A, balances = inertia(reduction)
     states = reduction.names
     check_regular(reduction, A)
     signals = named_signals(reduction)
-    shown = shown_signals(structure, outputs)
+    shown = show(reduction, signals)
     rows = [(ports[port].received, structure.rows[port]) for port in reduction.imposed]
     readings = {symbol: reduction.reading(row) for symbol, row in [*rows, *shown]}
     resolved_rows = [resolved(A, balances, readings[symbol]) for symbol, _ in shown]

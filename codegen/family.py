@@ -12,6 +12,7 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import normal
 from bondgraph.analyse.closures import merged_laws
+from bondgraph.analyse.turned import turned
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, SignalError
 from codegen.engine.located import LocatedLibrary
@@ -56,6 +57,7 @@ class Family:
         if self.backend not in BACKENDS:
             raise SignalError(f"unknown backend {self.backend!r}; there is {', '.join(BACKENDS)}")
         exact_parameters(self.parameters)
+        object.__setattr__(self, "equations", turned(self.equations, self.laws))
         named = {str(normal(name)): value for name, value in self.parameters.items()}
         object.__setattr__(self, "parameters", MappingProxyType(named))
         if isinstance(self.laws, Mapping):

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bondgraph.analyse.turned import turned
 from bondgraph.declare.switching import checked_modes
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, SignalError
@@ -314,6 +315,7 @@ def bare_simulator(
     """A simulator in numpy, without a word on what is doubtful; ``timed``: as `lower` takes it."""
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
+    equations = turned(equations, laws)
     return bound(lower(equations, laws, parameters, timed), equations, parameters, laws)
 
 

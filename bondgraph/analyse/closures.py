@@ -41,7 +41,7 @@ def merged_laws(
 def port_called(ports: Sequence[Port], key: Hashable) -> Port:
     """The port of that node, or the one that gives the input of that name."""
     named = [port for port in ports if port.element.name == key]
-    giving = [port for port in ports if port.given.name == str(key)]
+    giving = [port for port in ports if str(key) in _inputs(port)]
     found = named or giving
     if not found:
         raise StructureError(
@@ -51,3 +51,9 @@ def port_called(ports: Sequence[Port], key: Hashable) -> Port:
     if named and giving and named != giving:
         raise StructureError(f"law at {key!r}: that names a node and another node's input")
     return found[0]
+
+
+def _inputs(port: Port) -> set[str]:
+    """The names of what a port gives; of one that goes either way, of both its variables."""
+    either = port.element.lets_go and not port.element.kind.switches
+    return {port.given.name} | ({port.received.name} if either else set())

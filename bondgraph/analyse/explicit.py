@@ -11,6 +11,7 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.tidy import tidy
 from bondgraph.analyse.closures import merged_laws
 from bondgraph.analyse.holding import balances_of
+from bondgraph.analyse.turned import turned
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import AlgebraicLoopError, StructureError
@@ -46,6 +47,7 @@ def explicit(
             f"an explicit form of {len(equations.states)} states is no expression for people (at most "
             f"{LARGEST}); the equations themselves stay sparse: A, J, B, E"
         )
+    equations = turned(equations, laws)
     system = _Explicit(equations, laws)
     found = system.rates()
     if energy:
@@ -66,6 +68,7 @@ class _Explicit:
         self._own = {law.state: ports[n].received for n, law in closed.items() if law.state}
         self._own |= dict(equations.integrals)
         self._equations = equations.with_readings({*read, *self._own.values()})
+        self._own_names = {*equations.states, *equations.inputs}
         self._known: dict[sp.Symbol, sp.Expr] = {}
 
     def rates(self) -> dict[sp.Symbol, sp.Expr]:
@@ -102,7 +105,7 @@ class _Explicit:
         if name in self._laws:
             law = self._laws[name].expression
             value = law.xreplace({s: self.over_states(s, below) for s in law.free_symbols})
-        elif name in self._equations.readings and name not in self._equations.states:
+        elif name in self._equations.readings and name not in self._own_names:
             reading = resolved(*balances_of(self._equations), self._equations.readings[name])
             value = self._sum(reading, below)
         else:

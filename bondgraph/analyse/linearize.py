@@ -17,6 +17,7 @@ from bondgraph.analyse.linear_model import LinearModel
 from bondgraph.analyse.modes import ToldModes, held_rows, told_modes
 from bondgraph.analyse.moving_hold import turns
 from bondgraph.analyse.slopes import Point, operating_point, with_given
+from bondgraph.analyse.turned import turned
 from bondgraph.analyse.unknowns import Unknowns, unknowns_in
 from bondgraph.declare.laws import ExpressionLaw, Law, slides
 from bondgraph.equations import StateEquations
@@ -60,6 +61,7 @@ def linearize(
     >>> linearize(bg.derive(g), at={"q": 3}).J
     Matrix([[-6*c]])
     """
+    equations = turned(equations, laws)
     merged = merged_laws(equations, {} if laws is None else laws)
     told = told_modes(equations, merged, stuck, mode)
     closed = {name: law for name, law in merged.items() if name not in told.names}

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 from bondgraph.causality.record import Contradiction, Reason, Strokes
+from bondgraph.declare.elements import OTHER
 
 LONGEST_STORY = 12
 """Lines of a chain that are told; of a longer one the middle is counted only."""
@@ -26,7 +27,17 @@ def contradiction_story(strokes: Strokes, conflict: Contradiction) -> str:
     return (
         f"{_headline(strokes, conflict, nodes)}: {'; '.join(lines)}. "
         "Remove one of them, or put a storage, a resistance or a junction of the other kind between"
+        f"{_other_way(strokes, nodes)}"
     )
+
+
+def _other_way(strokes: Strokes, nodes: list[int]) -> str:
+    """That an open port may give its other variable, where the last that imposes is one."""
+    element = strokes.elements[nodes[-1]]
+    if not element.kind.resists or element.law is not None or element.gives is None:
+        return ""
+    other = OTHER[element.gives]
+    return f", or let the open port {element.name!r} give its {other} (gives={other!r})"
 
 
 def _headline(strokes: Strokes, conflict: Contradiction, nodes: list[int]) -> str:

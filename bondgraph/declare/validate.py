@@ -1,6 +1,6 @@
 """`validate`: what passes is complete, checked and frozen; no other stage sees what the user wrote."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import networkx as nx
@@ -61,6 +61,19 @@ def with_elements(
     result = _Validated(graph)
     for name, element in elements.items():
         result.nodes[name]["element"] = element
+    nx.freeze(result)
+    return result
+
+
+def graph_of(
+    elements: Mapping[Hashable, Element], bonds: Iterable[tuple[Bond, Bond]]
+) -> "nx.DiGraph[Hashable]":
+    """The validated graph of these elements and bonds, each by its ends and as it was declared."""
+    result = _Validated()
+    for name, element in elements.items():
+        result.add_node(name, element=element)
+    for ends, declared in bonds:
+        result.add_edge(*ends, declared=declared)
     nx.freeze(result)
     return result
 

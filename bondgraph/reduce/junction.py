@@ -48,6 +48,7 @@ def junction_structure(causal: CausalGraph) -> JunctionStructure:
         bonds=MappingProxyType(dict(zip(strokes.declared, pairs, strict=True))),
         elements=MappingProxyType(dict(zip(strokes.names, strokes.elements, strict=True))),
         loops=loops,
+        ends=tuple((strokes.names[tail], strokes.names[head]) for tail, head in strokes.bonds),
     )
 
 

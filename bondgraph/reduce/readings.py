@@ -36,7 +36,7 @@ def check_laws(
         reading = readings[port.received]
         if reading.H or reading.K or any(column in row for row in E):
             other = "flow" if port.gives == "effort" else "effort"
-            way = f"let it give its {other} (gives={other!r})"
+            way = f"let it give its {other} (gives={other!r}), by a law of its {port.gives}"
             if port.element.kind.stores:
                 way = "put a resistance between"
             raise DependentSourceError(

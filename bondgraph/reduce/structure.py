@@ -8,7 +8,7 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.exact import FixedRow, matrix_of
-from bondgraph.declare.elements import Element
+from bondgraph.declare.elements import Bond, Element
 from bondgraph.declare.laws import ExpressionLaw
 
 PortRow = FixedRow
@@ -68,6 +68,9 @@ class JunctionStructure:
     elements: Mapping[Hashable, Element]
     #: Of each loop of signals ``s = W s + r`` that was solved the rows of ``1 - W``.
     loops: tuple[tuple[FixedRow, ...], ...] = ()
+    #: The nodes at the ends of each bond, as the checked graph has them: with the elements the graph itself,
+    #: which is derived once more where a law put later needs another causality.
+    ends: tuple[Bond, ...] = ()
 
     @cached_property
     def places(self) -> Mapping[Hashable, int]:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from bondgraph.algebra.expressions import normal
+from bondgraph.analyse.turned import turned
 from bondgraph.declare.switching import checked_modes
 from bondgraph.equations import StateEquations
 from bondgraph.errors import BondGraphError, SignalError
@@ -75,7 +76,7 @@ def write_fmu(
         raise SignalError(f"FMI version {version!r}: there is {', '.join(OTHERS)}")
     target = Path(path)
     chosen = chosen_platforms(platforms)
-    official = headers(version)
+    official, equations = headers(version), turned(equations, laws)
     model = _model(
         name or target.stem, equations, parameters, laws, initial or {}, inputs or {}, initially_on
     )

@@ -6,6 +6,7 @@ from typing import Any
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
+from bondgraph.analyse.turned import turned
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError
@@ -34,7 +35,7 @@ def lower(
     Raises `ParameterError` if the matrices use a name that is no parameter, `DependentSourceError`
     if a law would have to be differentiated.
     """
-    given = set(parameters)
+    given, equations = set(parameters), turned(equations, laws)
     missing = [name.name for name in equations.parameters if name.name not in given]
     if missing:
         raise ParameterError(

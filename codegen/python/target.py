@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+from bondgraph.analyse.turned import turned
 from bondgraph.writing import write_all
 from codegen.program.identifiers import module_name
 from codegen.program.lower import lower
@@ -24,9 +25,10 @@ class Python:
         self, export: Export, folder: Path, platforms: str | Iterable[str] | None = None
     ) -> list[Path]:
         """See `Target`."""
-        model = (export.equations, export.parameters, export.laws)
+        equations = turned(export.equations, export.laws)
+        model = (equations, export.parameters, export.laws)
         module = to_python(*model, export.name, initial=export.initial, inputs=export.inputs)
-        program = lower(export.equations, export.laws, export.parameters, timed=True)
+        program = lower(equations, export.laws, export.parameters, timed=True)
         own = module_name(export.name)
         run = script(own, export, [symbol.name for symbol in program.asked])
         texts = {folder / f"{own}.py": module, folder / f"run_{own}.py": run}

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from bondgraph.analyse.turned import turned
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from codegen.inputs.signal import Signal
@@ -37,6 +38,7 @@ def start_of(
     """
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
+    equations = turned(equations, laws)
     program = lower(equations, laws, parameters)
     closed = ClosedModel(program, equations, parameters)
     names = [symbol.name for symbol in (*program.states, *program.law_states)]

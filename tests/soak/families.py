@@ -103,6 +103,12 @@ FAMILIES = (
         1_000,
     ),
     Family(
+        "turned-friction",
+        "bondgraph/analyse/test_turned.py::test_turned_equations_are_those_of_the_same_graph",
+        30,
+        2_000,
+    ),
+    Family(
         "lossless",
         "bondgraph/test_random.py::test_structure_without_resistances_is_skew_symmetric",
         30,

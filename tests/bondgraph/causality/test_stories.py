@@ -73,3 +73,10 @@ def test_bond_is_told_as_it_was_declared() -> None:
     nodes = [bg.Zero("z"), bg.R("p"), bg.R("q"), bg.R("r", "r")]
     text = _refused(bond_graph(nodes, "p>z q>z r>z"), "'p' and 'q'")
     assert "bond 'p' -> 'z'" in text
+
+
+def test_of_two_open_ports_on_one_effort_the_later_may_give_its_flow() -> None:
+    nodes = [bg.Sf("s", "v"), bg.Zero("z"), bg.C("k", "c"), bg.R("a"), bg.R("b")]
+    text = _refused(bond_graph(nodes, "s>z>k z>a z>b"), "nodes 'a' and 'b' both impose the effort")
+    assert text.endswith("or let the open port 'b' give its flow (gives='flow')")
+    assert bg.derive(bond_graph([*nodes[:-1], bg.R("b", gives="flow")], "s>z>k z>a z>b"))

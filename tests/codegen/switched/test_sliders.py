@@ -24,10 +24,14 @@ from codegen import (
     final,
     simulator,
     sweep,
+    to_c,
     to_python,
     trim,
+    write_fmu,
 )
+from codegen.exports import target
 from codegen.numbers.arrays import Array
+from codegen.targets import Export
 
 T = np.linspace(0.0, 2.0, 81)
 SWAY = 0.7 * np.sin(np.pi * T)
@@ -37,11 +41,11 @@ SPEED = Sine(0.7 * np.pi, 0.5, np.pi / 2)
 ENGINES = [(backend, method) for backend in ("numpy", "c") for method in ("exact", "DOP853")]
 
 
-def iwan(sliders: Sequence[str], level: str = "N_{}") -> "nx.DiGraph[str]":
-    """Springs, each directly on a slider, side by side under an imposed speed."""
+def iwan(sliders: Sequence[str], level: str | None = "N_{}") -> "nx.DiGraph[str]":
+    """Springs, each directly on a slider, side by side under an imposed speed; without a level open ports."""
     graph = bond_graph([bg.Sf("speed", "v"), bg.One("j")], "speed>j")
     for one in sliders:
-        law = bg.DryFriction(level.format(one))
+        law = None if level is None else bg.DryFriction(level.format(one))
         graph.add_nodes_from([
             bg.Zero(f"z_{one}"), bg.C(f"k_{one}", f"1/k_{one}", effort=f"F_k_{one}"),
             bg.R(one, effort=f"F_{one}", flow=f"s_{one}", law=law),
@@ -65,6 +69,12 @@ def play(sway: Array, stiffness: float, level: float) -> Array:
 
 JENKINS = bg.derive(iwan(["a"]))
 NUMBERS = {"k_a": 10.0, "N_a": 2.0}
+LATER = bg.derive(iwan(["a"], None))
+"""The same with an open port, over which its law is put later."""
+
+BARE = bg.derive(iwan(["a"], None), outputs=[])
+
+FRICTION = {"a": bg.DryFriction("N_a")}
 RIGHT = play(SWAY, 10.0, 2.0)
 LAG = np.arcsin(0.3 / 0.7) / np.pi
 EVENTS = [(np.arcsin(0.2 / 0.7) / np.pi, "slip"), (0.5, "stick"), (1 - LAG, "slip"),
@@ -222,6 +232,85 @@ def test_a_linear_model_in_either_mode() -> None:
     graph = iwan(["a"])
     model = bg.linearize(bg.derive(graph), at={"s_a": -1}, inputs=["N_a"], outputs=["e_speed"])
     assert model.D.tolist()[0][list(map(str, model.inputs)).index("N_a")] == -1
+
+
+@pytest.mark.parametrize(("backend", "method"), ENGINES)
+def test_friction_put_later_over_a_port_on_a_spring(backend: str, method: str) -> None:
+    """As it is declared, it gives its effort and rules the spring; with friction the spring is a state."""
+    assert (LATER.states, list(map(str, LATER.inputs))) == ((), ["v", "F_a"])
+    ready = simulator(LATER, NUMBERS, FRICTION, backend)
+    assert (ready.states, ready.inputs, ready.outputs) == (("F_k_a",), ("v",), ("s_a",))
+    run = ready.run(T, {}, {"v": SPEED}, method, 1e-11, 1e-13)
+    assert run.backend == backend
+    assert run["F_a"] == pytest.approx(RIGHT, abs=1e-9)
+    assert [(event.port, event.kind) for event in run.events] == [("a", kind) for _, kind in EVENTS]
+    assert set(run) == {"F_k_a", "v", "e_speed", "F_a", "s_a"}
+    assert run.audit().lost["a"] == pytest.approx(2.0 * 1.8, rel=1e-9)
+
+
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_friction_put_later_in_series(backend: str) -> None:
+    """Of two in series on a spring the weaker slips: the force is that of it alone, the other stays."""
+    nodes = [bg.Sf("speed", "v"), bg.Zero("z"), bg.C("K", "1/10", effort="F"),
+             bg.R("a", effort="F_a", flow="s_a"),
+             bg.R("b", effort="F_b", flow="s_b", gives="flow")]  # fmt: skip
+    equations = bg.derive(bond_graph(nodes, "speed>z>K z>a z>b"))
+    laws = {"F_a": bg.DryFriction("A"), "b": bg.DryFriction("B")}
+    for numbers, weak, strong in (
+        ({"A": 3.0, "B": 2.0}, "b", "a"),
+        ({"A": 2.0, "B": 3.0}, "a", "b"),
+    ):
+        run = simulator(equations, numbers, laws, backend).run(T, {}, {"v": SPEED})
+        assert run["F"] == pytest.approx(RIGHT, abs=1e-9)
+        assert run[f"s_{strong}"] == pytest.approx(0 * T, abs=1e-12)
+        assert {event.port for event in run.events} == {weak}
+
+
+def test_friction_put_later_goes_every_way(tmp_path: Path) -> None:
+    """Sweeps, exports, linear models, steady states, explicit rates: those of the graph with its law."""
+    measures = {"F": final("F_a")}
+    done = sweep(
+        Family(LATER, NUMBERS, FRICTION), {"N_a": [2.0, 5.0]}, T, measures, inputs={"v": SPEED}
+    )
+    assert done["F"] == pytest.approx(
+        [play(SWAY, 10.0, level)[-1] for level in (2.0, 5.0)], abs=1e-9
+    )
+    assert to_python(BARE, NUMBERS, FRICTION) == to_python(JENKINS, NUMBERS)
+    assert to_c(BARE, NUMBERS, FRICTION, main=True) == to_c(JENKINS, NUMBERS, main=True)
+    shown = ["e_speed", "s_a"]
+    for mode in ("stick", "slip"):
+        late = bg.linearize(LATER, laws=FRICTION, mode={"a": mode}, outputs=shown)
+        assert late == bg.linearize(JENKINS, mode={"a": mode}, outputs=shown)
+    assert bg.explicit(LATER, FRICTION) == bg.explicit(JENKINS)
+    assert trim(simulator(LATER, NUMBERS, FRICTION), {"v": 0.0})["F_k_a"] == pytest.approx(0.0)
+    run = loaded(to_python(LATER, NUMBERS, FRICTION)).simulate(T, {}, {"v": SPEED}, step=5e-4)
+    assert run["F_k_a"] == pytest.approx(RIGHT, abs=2e-2)
+    assert set(run) == {"t", "F_k_a", "v", "s_a"}
+    export = Export("late", LATER, NUMBERS, FRICTION, {}, {"v": SPEED}, T)
+    files = target("python").write(export, tmp_path)
+    assert [file.name for file in files] == ["late.py", "run_late.py"]
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+@pytest.mark.usefixtures("compiled_quickly")
+def test_units_with_friction_put_later(version: str, tmp_path: Path) -> None:
+    """The same bytes as with the law declared."""
+    first, second = (
+        write_fmu(tmp_path / "one.fmu", one, NUMBERS, law, version).read_bytes()
+        for one, law in ((BARE, FRICTION), (JENKINS, None))
+    )
+    assert first == second
+    # With its slip as an output, which the port gives now.
+    unit = Unit(
+        SwitchedCase(LATER, NUMBERS, FRICTION, {}, {"v": 1.0}, 2.0),
+        version,
+        tmp_path,
+        inputs={"v": 1.0},
+    )
+    made = unit.started("CoSimulation")
+    made.doStep(currentCommunicationPoint=0.0, communicationStepSize=0.5)
+    assert unit.get(made, "F_a", "F_k_a", "s_a") == pytest.approx([2.0, 2.0, 1.0], abs=1e-9)
+    unit.free(made)
 
 
 def test_a_steady_state() -> None:

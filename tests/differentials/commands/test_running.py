@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import Result
+from references.build import bond_graph
 
+import bondgraph as bg
 import differentials
 
 Call = Callable[..., Result]
@@ -100,6 +102,21 @@ def test_laws_close_ports_of_files(data: Data) -> None:
         "--law", "force=-9.81*m", "--until", "30", "-o", "run.csv",
     )  # fmt: skip
     assert found["final"]["F_k"] == pytest.approx(-9.81 * 2, rel=1e-6)
+
+
+def test_friction_over_a_port_on_a_spring_makes_the_spring_a_state(data: Data) -> None:
+    """Stretched at 1 m/s from 1 N: it slips at 2 N after 0.1 m."""
+    nodes = [
+        bg.Sf("speed", "v"),
+        bg.Zero("z"),
+        bg.C("k", "1/k", effort="F"),
+        bg.R("slider", flow="s"),
+    ]
+    bg.write_json(bond_graph(nodes, "speed>z>k z>slider"), "jenkins.json")
+    found = data("simulate", "jenkins.json", "--set", "k=10", "--law", "slider=friction(2)", "--input",
+                 "v=1", "--initial", "F=1", "--until", "1", "-o", "run.csv")  # fmt: skip
+    assert (found["final"]["F"], found["final"]["s"]) == pytest.approx((2.0, 1.0), abs=1e-9)
+    assert [round(event["time"], 9) for event in found["events"]] == [0.1]
 
 
 def test_a_file_is_drawn_too(call: Call, tmp_path: Path) -> None:
