@@ -7,6 +7,7 @@ import sympy as sp
 
 from bondgraph.algebra.exact import FixedRow, Row, SingularError, solve
 from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.residues import is_zero
 from bondgraph.analyse.closed_rows import ClosedRows
 from bondgraph.analyse.constrained import echelon
 from bondgraph.analyse.holding import balances_of
@@ -77,7 +78,7 @@ class Instant:
         try:
             if len(inside) != len(known):
                 raise SingularError
-            found = solve(inside, right)
+            found = _solved(inside, right)
         except SingularError:
             raise SingularStorageError(
                 "at the operating point the rates of states are not determined"
@@ -225,6 +226,37 @@ class Instant:
                 f"give {port.given} a value in at, or {unknown}"
             )
         return value
+
+
+def _solved(inside: Sequence[Row], right: Sequence[Row]) -> list[Row]:
+    """`solve` with entries as names: multiplied out, sums of many terms would not come to an end."""
+    names: dict[sp.Expr, sp.Expr] = {}
+
+    def named(entry: sp.Expr) -> sp.Expr:
+        if entry.is_Rational:
+            return entry
+        sign = -1 if entry.could_extract_minus_sign() else 1
+        return sign * names.setdefault(sign * entry, sp.Dummy())
+
+    kept = [
+        [{j: e for j, e in row.items() if not is_zero(e)} for row in part]
+        for part in (inside, right)
+    ]
+    found = solve(*([{j: named(e) for j, e in row.items()} for row in part] for part in kept))
+    back = {name: entry for entry, name in names.items()}
+    if not _vanishes_below(found, back):
+        return [{j: e.xreplace(back) for j, e in row.items()} for row in found]
+    # Names hide what cancels; polynomials do not, but for what sines and cosines have to one another.
+    found = solve(*kept)
+    if _vanishes_below(found, {}):
+        raise SingularError
+    return found
+
+
+def _vanishes_below(rows: Sequence[Row], back: Mapping[sp.Expr, sp.Expr]) -> bool:
+    """Whether something is divided by what vanishes."""
+    powers = {part for row in rows for entry in row.values() for part in entry.atoms(sp.Pow)}
+    return any(is_zero(part.base.xreplace(back)) for part in powers if part.exp.is_negative)
 
 
 def _coefficients(line: sp.Expr, known: Mapping[Unknown, int]) -> Row:

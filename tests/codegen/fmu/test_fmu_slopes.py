@@ -2,9 +2,13 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from oracles.called import Unit
-from oracles.units import belt, divider, duffing, figure_11
+from oracles.units import Case, belt, divider, duffing, figure_11
+from references.build import bond_graph
+
+import bondgraph as bg
 
 VERSIONS = ["2.0", "3.0"]
 
@@ -33,6 +37,29 @@ def test_slopes_of_a_nonlinear_model_are_its_derivatives(version: str, tmp_path:
     assert found == pytest.approx([1 / m, 3.0], rel=1e-8)
     # Asking leaves the unit as it was.
     assert unit.get(made, "v", "q_s") == pytest.approx([-0.4, 1.1], rel=1e-15)
+    unit.free(made)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_slopes_where_a_crank_accelerates_have_the_change_of_its_inertia(
+    version: str, tmp_path: Path
+) -> None:
+    """(J + m q^2) w' = T - m q q' w^2 with q = r sin(theta), as a whole by theta."""
+    nodes = [bg.Se("drive", "T"), bg.One("shaft"), bg.I("J", "J", flow="w"),
+             bg.Df("angle", integrate="theta"), bg.TF("yoke", "r*sin(theta)"), bg.One("slider"),
+             bg.I("m", "m", priority=-1)]  # fmt: skip
+    bonds = "drive>shaft>J shaft>angle shaft>yoke>slider>m"
+    J, m, r, T, w, theta = 0.1, 2.0, 0.3, 0.4, 2.0, 0.7
+    case = Case(bg.derive(bond_graph(nodes, bonds), []), {"J": J, "m": m, "r": r}, None,
+                {"w": w, "theta": theta}, {"T": T}, 1.0)  # fmt: skip
+    unit = Unit(case, version, tmp_path, inputs={"T": T})
+    made = unit.started("ModelExchange")
+    inertia = J + m * r**2 * np.sin(theta) ** 2
+    twice = m * r**2 * np.sin(2 * theta)
+    rate = (T - twice / 2 * w**2) / inertia
+    slope = (-m * r**2 * np.cos(2 * theta) * w**2 - twice * rate) / inertia
+    found = unit.slopes(made, ["der(w)", "der(theta)"], ["theta"], [1.0])
+    assert found == pytest.approx([slope, 0.0], rel=1e-8, abs=1e-9)
     unit.free(made)
 
 
