@@ -19,7 +19,7 @@ from bondgraph.analyse.moving_hold import turns
 from bondgraph.analyse.slopes import Point, operating_point, with_given
 from bondgraph.analyse.turned import turned
 from bondgraph.analyse.unknowns import Unknowns, unknowns_in
-from bondgraph.declare.laws import ExpressionLaw, Law, slides
+from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, slides
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, SingularStorageError
 from bondgraph.reduce.rates import resolved
@@ -61,7 +61,8 @@ def linearize(
     >>> linearize(bg.derive(g), at={"q": 3}).J
     Matrix([[-6*c]])
     """
-    equations = turned(equations, laws)
+    stuck = tuple(stuck) if isinstance(stuck, Iterable) and not isinstance(stuck, str) else stuck
+    equations = turned(equations, _with_held(equations, laws, stuck, mode))
     merged = merged_laws(equations, {} if laws is None else laws)
     told = told_modes(equations, merged, stuck, mode)
     closed = {name: law for name, law in merged.items() if name not in told.names}
@@ -99,6 +100,26 @@ def linearize(
     columns = {equations.inputs.index(port.given) for port in told.held}
     left = [j for j in system.left if j not in columns]
     return _model(model, left, system.columns, tuple(shown))
+
+
+def _with_held(
+    equations: StateEquations, laws: Mapping[Any, object] | None, stuck: object,
+    mode: Mapping[Any, str] | None,
+) -> dict[Any, object]:  # fmt: skip
+    """The laws, and friction over open ports that stick without one: what holds them goes either way."""
+    found = dict(laws) if isinstance(laws, Mapping) else {}
+    told = [*stuck] if isinstance(stuck, tuple) else []
+    told += (
+        [name for name, word in mode.items() if word == "stick"]
+        if isinstance(mode, Mapping)
+        else []
+    )
+    for port in equations.ports:
+        name = port.element.name
+        named = {name, port.given, port.given.name} & found.keys()
+        if name in told and not named and port.element.law is None:
+            found[name] = DryFriction(0)
+    return found
 
 
 def _rates(system: ClosedRows, rates: Mapping[Any, object] | None, told: ToldModes) -> Point:

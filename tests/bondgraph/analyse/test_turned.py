@@ -69,6 +69,15 @@ def test_a_port_that_gives_its_flow_to_a_mass_is_turned_too() -> None:
     assert differences(model.B, [[1, -1]]) == {}
 
 
+@pytest.mark.parametrize("held", [{"stuck": iter(["slider"])}, {"mode": {"slider": "stick"}}])
+def test_a_port_without_a_law_is_held_on_a_spring(held: dict) -> None:
+    """What holds it is the spring's effort, F' = k v."""
+    model = bg.linearize(_spring(), outputs=["F_s", "e_speed"], **held)
+    assert list(map(str, model.states)) == ["F"]
+    assert differences(model.A.inv() * model.B, [[sp.Symbol("k")]]) == {}
+    assert differences(model.F, [[1], [1]]) == {}
+
+
 def test_only_the_ports_that_drive_are_turned() -> None:
     """A brake on a mass keeps its effort, beside a slider on a spring."""
     nodes = [bg.Se("push", "P"), bg.One("block"), bg.I("m", "m", flow="v"), bg.R("brake", effort="B"),
