@@ -209,3 +209,50 @@ def test_models_are_the_slopes_of_rates_at_points_that_accelerate(seed: int) -> 
     ends = [[run.rhs(0, x + h[:count], u + h[count:]) for h in (dh, -dh)] for dh in step]
     slopes = np.array([over - under for over, under in ends]).T / 2e-5
     assert np.hstack([model.P, model.Q]) == pytest.approx(slopes, rel=1e-7, abs=1e-7)
+
+
+def test_what_is_held_behind_a_ratio_that_an_input_sets() -> None:
+    """Stuck, u = n w: (J + m n^2) w' = tau - m n n' w, and F = m (n w)'."""
+    extra = [bg.Zero("z"), bg.R("clutch", effort="F", law=bg.DryFriction("N")), bg.One("k"),
+             bg.I("mass", "m", flow="u", priority=-2), bg.Se("lever", "n"), bg.R("rest", 1)]  # fmt: skip
+    equations = _crank(*extra, ratio="n", bonds="slider>z>clutch z>k>mass lever>rest")
+    at = {"omega": 3, "tau": 5, "n": 2, "theta": 0, "u": 6}
+    model = bg.linearize(equations, at=at, rates={"n": 4}, mode={"clutch": "stick"}, outputs=["F"])
+    rate = sp.Symbol("n_rate")
+    acceleration = (tau - m * n * rate * omega) / (J + m * n**2)
+    names = (omega, tau, n, rate)
+    there = {omega: 3, tau: 5, n: 2, rate: 4, J: 0.5, m: 2}
+    numbers = model.numeric({"J": 0.5, "m": 2})
+    force = m * (n * acceleration + rate * omega)
+    found = numbers.P[0, 0], *numbers.Q[0], numbers.R[0, 1]
+    shown = numbers.F[0, 0], *numbers.D[0], numbers.G[0, 1]
+    for value, row in ((acceleration, found), (force, shown)):
+        expected = [float(sp.diff(value, name).subs(there)) for name in names]
+        assert row == pytest.approx(expected, rel=1e-12)
+
+
+def test_what_holds_beside_a_resistance_behind_a_crank() -> None:
+    """All of q w goes through the damper: J w' = tau - c q^2 w, and the clutch takes c q w."""
+    extra = [bg.Zero("z"), bg.R("clutch", effort="F", law=bg.DryFriction("N")), bg.R("oil", "c")]
+    equations = _crank(*extra, bonds="slider>z>clutch z>oil")
+    at = {"omega": "w0", "theta": "th0", "tau": "T0"}
+    model = bg.linearize(equations, at=at, mode={"clutch": "stick"}, outputs=["F"])
+    q, slope = r * sp.sin(th0), r * sp.cos(th0)
+    assert differences(model.J, [[-c * q**2, -2 * c * q * slope * w0], [1, 0]]) == {}
+    assert differences(model.F, [[c * q, c * slope * w0]]) == {}
+
+
+def test_laws_in_a_loop_tell_what_accelerates_where_they_are_affine() -> None:
+    """e_p = a e_q + d w and e_q = b e_p: e_p = d w/(1 - a b), which the point does not tell."""
+    ports = [bg.R("p", law="a*e_q + d*omega"), bg.R("q", law="b*e_p")]
+    equations = _crank(MASS, *ports, bonds="slider>m rot>p rot>q")
+    a, b, d = sp.symbols("a b d")
+    drag = d * (1 + b) / (1 - a * b)
+    at = {"omega": "w0", "theta": "th0", "tau": "T0"}
+    model = bg.linearize(equations, at=at)
+    inertia = J + m * r**2 * sp.sin(th0) ** 2
+    moved = m * r**2 * sp.sin(th0) * sp.cos(th0)
+    rate = (T0 - moved * w0**2 - drag * w0) / inertia
+    expected = -m * r**2 * sp.cos(2 * th0) * w0**2 - 2 * moved * rate
+    assert sp.simplify(model.J[0, 1] - expected) == 0
+    assert sp.simplify(model.J[0, 0] + 2 * moved * w0 + drag) == 0
