@@ -19,6 +19,9 @@ import pytest
 FOLDER = "BONDGRAPH_TEST_FOLDER"
 """In the environment: the run's folder, which its processes share."""
 
+QUICK = "BONDGRAPH_TEST_QUICK_CC"
+"""In the environment: the compiler for code that is not optimised; none for the system's own. Else tcc."""
+
 NAMES = ("cc", "gcc")
 
 PROGRAM = Path(__file__).with_name("shared_cc.py")
@@ -35,7 +38,8 @@ def pytest_configure(config: pytest.Config) -> None:
     for name in NAMES:
         found = shutil.which(name)
         if found:
-            words = [sys.executable, "-I", "-S", str(PROGRAM), str(folder), found]
+            quick = shutil.which(os.environ.get(QUICK, "tcc")) or ""
+            words = [sys.executable, "-I", "-S", str(PROGRAM), str(folder), found, quick]
             program = folder / "bin" / name
             program.write_text(f'#!/bin/sh\nexec {shlex.join(words)} "$@"\n', encoding="utf-8")
             program.chmod(0o755)

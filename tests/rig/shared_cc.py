@@ -1,11 +1,15 @@
 """A C compiler that keeps what it compiles by all that this depends on.
 
-Run as a script, by bare Python: FOLDER COMPILER ARGUMENTS. Calls that are no builds of C files, or that ask
-for warnings of each file as errors, go to the compiler as they are. The files of a build are compiled as one,
-in a third of the time that they take one by one, but for those that only some programs of a model have,
+Run as a script, by bare Python: FOLDER COMPILER QUICK ARGUMENTS. Calls that are no builds of C files, or that
+ask for warnings of each file as errors, go to the compiler as they are. The files of a build are compiled as
+one, in a third of the time that they take one by one, but for those that only some programs of a model have,
 which are one of their own; what comes of it depends on the compiler, the flags, the files' texts, and the
 texts of what they include from their own folder or one given by ``-I``; comments do not count. Files that
 are refused as one, or with a word, are compiled one by one, as without this program.
+
+QUICK is another compiler, or nothing: tcc makes code that is not optimised in a thirtieth of the time. It is
+asked where a call asks for no optimising and for nothing else that it does not know; where it has a word to
+say, the compiler itself is.
 """
 
 import fcntl
@@ -26,23 +30,40 @@ so do its runs one by one and all at once."""
 
 WITH_ARGUMENT = ("-o", "-I", "-D", "-U", "-l", "-L", "-include", "-isystem")
 
+NEEDLESS = (
+    "-O",
+    "-std=c99",
+    "-ffp-contract=",
+    "-march=native",
+    "-fvisibility=hidden",
+    "-g0",
+    "-fPIC",
+    "-shared",
+)
+"""How flags begin that a quick compiler is not told: they change nothing of what code that is not optimised
+computes."""
+
 INCLUDED = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.M)
 
 COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|/\*.*?\*/', re.S)
 
 
-def main(folder: str, compiler: str, arguments: Sequence[str]) -> int:
+def main(folder: str, compiler: str, quick: str, arguments: Sequence[str]) -> int:
     """The status of the link, or of the first file that is refused."""
     parts = split(arguments)
     if parts is None:
         os.execv(compiler, [compiler, *arguments])
     files, flags, places, rest = parts
     objects = []
+    told = plain(flags) if quick else None
     for group in grouped(files):
-        joined = compiled(folder, compiler, group, flags, places)
-        if joined is None:
+        made = None if told is None else compiled(folder, quick, group, told, places)
+        made = made or compiled(folder, compiler, group, flags, places)
+        if made is None:
             return subprocess.run([compiler, *arguments], check=False).returncode
-        objects.append(joined)
+        objects.append(made)
+    # Of objects by a compiler that does not say so the linker would warn that they want a stack to run.
+    flags = [*flags, "-Wl,-z,noexecstack"] if told is not None else flags
     return subprocess.run([compiler, *flags, *objects, *rest], check=False).returncode
 
 
@@ -74,6 +95,21 @@ def split(arguments: Sequence[str]) -> tuple[list[str], list[str], list[str], li
     return (files, flags, places, rest) if files and "-o" in rest else None
 
 
+def plain(flags: Sequence[str]) -> list[str] | None:
+    """What a quick compiler is told, names and their values; None where it is not to be asked."""
+    told: list[str] = []
+    waiting = iter(flags)
+    for one in waiting:
+        if one in ("-D", "-U"):
+            told += [one, next(waiting, "")]
+        elif one.startswith(("-D", "-U")):
+            told.append(one)
+        elif not one.startswith(NEEDLESS):
+            return None
+    wanted = [one for one in flags if one.startswith("-O")]
+    return told if wanted[-1:] == ["-O0"] else None
+
+
 def compiled(
     folder: str, compiler: str, files: Sequence[str], flags: Sequence[str], places: Sequence[str]
 ) -> str | None:
@@ -88,9 +124,8 @@ def compiled(
             made = f"{kept}.{os.getpid()}"
             near = [f"-I{place}" for place in places]
             command = [compiler, *flags, *near, "-x", "c", "-", "-c", "-o", made]
-            text = "".join(f'#include "{os.path.abspath(one)}"\n' for one in files)
             done = subprocess.run(
-                command, input=os.fsencode(text), capture_output=True, check=False
+                command, input=os.fsencode(joined(files)), capture_output=True, check=False
             )
             if done.returncode or done.stderr:
                 note(folder, "apart")
@@ -98,6 +133,11 @@ def compiled(
             os.replace(made, kept)
     note(folder, "shared" if known else "compiled")
     return kept
+
+
+def joined(files: Sequence[str]) -> str:
+    """A text that is all files."""
+    return "".join(f'#include "{os.path.abspath(one)}"\n' for one in files)
 
 
 def fingerprint(
@@ -147,4 +187,4 @@ def note(folder: str, word: str) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1], sys.argv[2], sys.argv[3:]))
+    sys.exit(main(*sys.argv[1:4], sys.argv[4:]))

@@ -11,6 +11,12 @@ from rig import shared_cc
 COMPILER = shutil.which("cc", path="/usr/local/bin:/usr/bin:/bin")
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="no compiler")
 
+QUICK = """#!/bin/sh
+echo "$@" >> "{log}"
+exec "{compiler}" "$@"
+"""
+"""A second compiler that notes what it is told."""
+
 FILES = {
     "one.c": '#include "sizes.h"\nint one(void) { return ONE; }\n',
     "main.c": "int one(void);\nint main(void) { return one(); }\n",
@@ -29,7 +35,7 @@ def _status(folder: Path, *flags: str, **changed: str) -> tuple[int, list[str]]:
     units = [str(place / "main.c"), str(place / "one.c")]
     assert COMPILER
     arguments = [*flags, "-I", str(place), *units, "-o", to, "-lm"]
-    assert shared_cc.main(str(folder), COMPILER, arguments) == 0
+    assert shared_cc.main(str(folder), COMPILER, "", arguments) == 0
     return subprocess.run([to], check=False).returncode, (folder / "log").read_text().split()
 
 
@@ -73,7 +79,7 @@ def test_what_is_refused_has_the_compilers_status(tmp_path: Path, capfd) -> None
     (tmp_path / "bad.c").write_text("int bad(void) { return }\n")
     assert COMPILER
     arguments = [str(tmp_path / "bad.c"), "-o", str(tmp_path / "bad")]
-    assert shared_cc.main(str(tmp_path), COMPILER, arguments) == 1
+    assert shared_cc.main(str(tmp_path), COMPILER, "", arguments) == 1
     assert "bad.c:1" in capfd.readouterr().err
     assert not (tmp_path / "bad").exists()
 
@@ -122,6 +128,46 @@ def test_units_of_one_model_share_what_is_not_their_own(tmp_path: Path) -> None:
         (tmp_path / "log").write_text("")
         files = [str(tmp_path / name) for name in ("model.c", f"fmu{version}.c")]
         to = str(tmp_path / f"run{version}")
-        assert shared_cc.main(str(tmp_path), COMPILER, [*files, "-o", to]) == 0
+        assert shared_cc.main(str(tmp_path), COMPILER, "", [*files, "-o", to]) == 0
         assert subprocess.run([to], check=False).returncode == 10 + version
         assert (tmp_path / "log").read_text().split() == words
+
+
+def _quick(folder: Path, compiler: str) -> tuple[str, Path]:
+    program, log = folder / "quick", folder / "told"
+    program.write_text(QUICK.format(log=log, compiler=compiler))
+    program.chmod(0o755)
+    log.touch()
+    return str(program), log
+
+
+@pytest.mark.parametrize(
+    ("flags", "told"),
+    [
+        (["-O0", "-std=c99", "-ffp-contract=fast", "-DX=1", "-U", "Y"], "-DX=1 -U Y "),
+        (["-O3", "-march=native", "-O0"], ""),
+        (["-O1"], None), (["-O0", "-O2"], None), ([], None),
+        (["-O0", "-g"], None), (["-O0", "-Wall"], None), (["-O0", "-fsanitize=address"], None),
+    ],
+)  # fmt: skip
+def test_a_quick_compiler_is_asked_for_plain_code_alone(
+    flags: list[str], told: str | None, tmp_path: Path
+) -> None:
+    assert COMPILER
+    quick, log = _quick(tmp_path, COMPILER)
+    (tmp_path / "one.c").write_text("int main(void) { return 7; }\n")
+    arguments = [*flags, str(tmp_path / "one.c"), "-o", str(tmp_path / "run")]
+    assert shared_cc.main(str(tmp_path), COMPILER, quick, arguments) == 0
+    assert subprocess.run([tmp_path / "run"], check=False).returncode == 7
+    lines = log.read_text().splitlines()
+    assert [line.split("-x c")[0] for line in lines] == ([] if told is None else [told])
+
+
+def test_what_a_quick_compiler_does_not_take_the_other_compiles(tmp_path: Path) -> None:
+    assert COMPILER
+    quick, log = _quick(tmp_path, "false")
+    (tmp_path / "one.c").write_text("int main(void) { return 7; }\n")
+    arguments = ["-O0", str(tmp_path / "one.c"), "-o", str(tmp_path / "run")]
+    assert shared_cc.main(str(tmp_path), COMPILER, quick, arguments) == 0
+    assert subprocess.run([tmp_path / "run"], check=False).returncode == 7
+    assert len(log.read_text().splitlines()) == 1
