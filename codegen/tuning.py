@@ -69,6 +69,9 @@ class Tuning:
     followed: float = _told(0.1, "an implicit step in time constants of the inputs")
     refresh: int = _told(50, "steps after which time constants are looked at again")
     checks: int = _told(6, "points inside a step at which events are looked for")
+    dip: float = _told(1e-9, "of a step, to which the bottom of a dip is found")
+    dip_looks: int = _told(60, "so often, at most")
+    dip_inside: float = _told(0.1, "of the distance of two points, next to which none is looked at")
     first_small: float = _told(1e-5, "states or rates so small in tolerances tell no first step")
     first_step: float = _told(1e-6, "s, the first step then")
     first_part: float = _told(1e-2, "of what moves a state by itself: a first try; of a tolerance")
@@ -177,7 +180,6 @@ class Tuning:
     guard_moment: float = _told(1e-9, "of the time, in which a guard moves by rounding")
     guard_floor: float = _told(1e-3, "s, the least time for that")
     rate_rounding: float = _told(1e-12, "of the largest rate: smaller ones are rounding")
-    dip: float = _told(1e-9, "of a step, to which the bottom of a dip is found")
     tighter: float = _told(
         1e-2, "of the tolerances, which CVODE is given, as its error is a step's"
     )

@@ -91,21 +91,33 @@ def binaries(
     ``CFLAGS`` of the environment come after its flags, and override them.
     """
     made: dict[str, dict[str, bytes]] = {}
+    units = _units(sources)
     with workshop(Path(tempfile.gettempdir())) as folder:
         with telling(folder):
-            for name, text in sources.items():
+            for name, text in (*sources.items(), *units.items()):
                 (folder / name).write_text(text, encoding="utf-8", newline="\n")
         for name in platforms:
             one = PLATFORMS[name]
             place = one.name if version == "3.0" else one.second
             path = f"binaries/{place}/{identifier}{one.ending}"
-            made.setdefault(path, {})[name] = _compiled(folder, sources, identifier, one)
+            made.setdefault(path, {})[name] = _compiled(folder, list(units), identifier, one)
     return {path: _joined(found) for path, found in made.items()}
 
 
-def _compiled(folder: Path, sources: Mapping[str, str], identifier: str, where: Platform) -> bytes:
+def _units(sources: Mapping[str, str]) -> dict[str, str]:
+    """All files as two, the unit's own and the model's: to start a compiler for each takes far longer."""
+    files = sorted(name for name in sources if name.endswith(".c"))
+    own = [name for name in files if name.startswith("fmu")]
+    both = {"fmu_all.c": own, "all_model.c": [name for name in files if name not in own]}
+    return {
+        name: "".join(f'#include "{one}"\n' for one in group)
+        for name, group in both.items()
+        if group
+    }
+
+
+def _compiled(folder: Path, units: Sequence[str], identifier: str, where: Platform) -> bytes:
     library = f"{identifier}{where.ending}"
-    units = sorted(name for name in sources if name.endswith(".c"))
     flags = [*FLAGS, *([] if where.ending == ".dll" else ["-fPIC"])]
     compiler, own = _compiler(where)
     command = [*compiler, *flags, *own, "-I.", "-o", library, *units]

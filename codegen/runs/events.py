@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 import numpy as np
-import scipy
 
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
@@ -15,6 +14,7 @@ from codegen.modes.trials import Sight
 from codegen.modes.verdicts import limits_of, look_at, room
 from codegen.numbers.arrays import Array
 from codegen.program.layout import CAPS, INPUTS, READINGS
+from codegen.runs.dips import dip
 from codegen.runs.track import Dense
 from codegen.standalone.roots import root
 from codegen.tuning import TUNING
@@ -153,20 +153,8 @@ class Watch:
     def _dip(
         self, i: int, grid: Sequence[float], values: Sequence[float], dense: Dense
     ) -> float | None:
-        """The first of two roots between points, where a trigger dips below zero and comes back.
-
-        The parabola through three points tells whether there is a dip worth a closer look.
-        """
-        a, b, c = values
-        curve, slope = a - 2 * b + c, (c - a) / 2
-        if min(values) <= 0 or curve <= 0 or abs(slope) > 1.25 * curve:
-            return None
-        if b - slope**2 / (2 * curve) > 0.5 * min(values):
-            return None
-        lowest = scipy.optimize.minimize_scalar(
-            lambda t: float(self._triggers(t, self._snapshot(t, dense(t)))[i]),
-            bounds=(grid[0], grid[2]), method="bounded", options={"xatol": TUNING.dip * (grid[2] - grid[0])},
-        )  # fmt: skip
-        if lowest.fun > 0:
-            return None
-        return self._crossing(i, grid[0], float(lowest.x), 0.0, dense)
+        """The first of two roots between points, where a trigger dips below zero and comes back."""
+        lowest = dip(
+            lambda t: float(self._triggers(t, self._snapshot(t, dense(t)))[i]), grid, values
+        )
+        return None if lowest is None else self._crossing(i, grid[0], lowest, 0.0, dense)

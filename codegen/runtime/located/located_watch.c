@@ -4,7 +4,7 @@
 
 #include "located_internal.h"
 
-enum { POINTS = BG_CHECKS + 2, SECTIONS = 44 };
+enum { POINTS = BG_CHECKS + 2 };
 
 /* What a search for a root asks: trigger `port` less `level` inside the latest step. */
 typedef struct {
@@ -96,36 +96,14 @@ static int trigger_fall(root_search *asked, double t_a, double t_b, double a, do
     return 1;
 }
 
-/* The first of two roots where a trigger dips below zero between three points and comes back: the
- * parabola through them tells whether there is a dip worth a closer look, by golden sections. */
+/* The first of two roots where a trigger dips below zero between three points and comes back. */
 static int dip(root_search *asked, const double *t, const double *values, double *root)
 {
-    static const double golden = 0.6180339887498949;
-    const double a = values[0], b = values[1], c = values[2];
-    const double curve = a - 2 * b + c, slope = (c - a) / 2, least = fmin(a, fmin(b, c));
-    double low = t[0], high = t[2], left, right, at_left, at_right;
-    if (least <= 0 || curve <= 0 || fabs(slope) > 1.25 * curve
-        || b - slope * slope / (2 * curve) > 0.5 * least)
-        return 0;
+    double lowest;
     asked->level = 0.0;
-    left = high - golden * (high - low);
-    right = low + golden * (high - low);
-    at_left = above(asked, left);
-    at_right = above(asked, right);
-    for (int k = 0; k < SECTIONS && at_left > 0 && at_right > 0; k++) {
-        if (at_left < at_right) {
-            high = right, right = left, at_right = at_left;
-            left = high - golden * (high - low);
-            at_left = above(asked, left);
-        } else {
-            low = left, left = right, at_left = at_right;
-            right = low + golden * (high - low);
-            at_right = above(asked, right);
-        }
-    }
-    if (at_left > 0 && at_right > 0)
+    if (!bg_dip(above, asked, t, values, &lowest))
         return 0;
-    *root = crossing(asked, t[0], at_left <= 0 ? left : right, 0.0);
+    *root = crossing(asked, t[0], lowest, 0.0);
     return 1;
 }
 

@@ -36,9 +36,10 @@ def _dipping(depth: float) -> tuple[dict[str, object], list[float]]:
 
 @pytest.mark.parametrize("depth", [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6])
 @pytest.mark.parametrize("method", ["DOP853", "Radau"])
-def test_both_of_two_close_zeros_are_found(depth: float, method: str) -> None:
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_both_of_two_close_zeros_are_found(depth: float, method: str, backend: str) -> None:
     start, zeros = _dipping(depth)
-    run = simulator(bg.derive(block()), {"m": 1.0, "F_c": 1e-6})
+    run = simulator(bg.derive(block()), {"m": 1.0, "F_c": 1e-6}, backend=backend)
     result = run.run([0.0, 0.9], start, {"P": Sine(-4.0, 1.0)}, method=method)
     assert [event.kind for event in result.events] == ["cross", "cross"]
     # A zero of a speed of accuracy 1e-10, dipped by depth, is known to about 1e-10/sqrt(depth).
