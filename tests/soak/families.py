@@ -103,6 +103,12 @@ FAMILIES = (
         1_000,
     ),
     Family(
+        "accelerating-mechanisms",
+        "bondgraph/analyse/test_accelerating_random.py",
+        4,
+        200,
+    ),
+    Family(
         "turned-friction",
         "bondgraph/analyse/test_turned.py::test_turned_equations_are_those_of_the_same_graph",
         30,
