@@ -165,16 +165,17 @@ static int step_on(ex_context *c, ex_place *p, const ex_recorder *to)
     return sample ? to->record(to->self, c, p) : BG_OK;
 }
 
-void ex_set_out(const ex_context *c, ex_place *p, double stop)
+void ex_set_out(ex_context *c, ex_place *p, double stop)
 {
     p->t = c->run.at.t;
     p->stop = stop;
     p->at = c->next;
     p->base = -1;
     memset(&p->ports, 0, sizeof p->ports);
-    p->last = first_not_before(c->task, c->next, stop);
+    p->last = c->stretch.foreseen ? p->at : first_not_before(c->task, c->next, stop);
     memcpy(p->z, c->s, sizeof c->s);
-    ex_slots(c->inputs, c->run.segment, c->run.at.t, p->z + EX_N);
+    ex_know(c, p->t);
+    memcpy(p->z + EX_N, c->slots, sizeof c->slots);
 }
 
 /* Where a switch changes over a rounding after a sample, that shows the instant just after, too. */
@@ -185,8 +186,8 @@ static double back_to_sample(const ex_context *c, ex_place *p)
         switched |= bg_has(&p->ports, i) && ex_switches(c, i);
     if (!switched || p->at <= c->next)
         return p->stop;
-    const double last = c->task->times[p->at - 1], begin = c->run.at.t;
-    if (!(last > begin) || p->stop - last > BG_TOGETHER * bg_greater(fabs(p->stop), p->stop - begin))
+    const double last = c->task->times[p->at - 1];
+    if (!ex_shows_after(c, last, p->stop))
         return p->stop;
     p->at--;
     return last;
@@ -207,7 +208,10 @@ int ex_advance_by(ex_context *c, double stop, const ex_recorder *to)
     ex_place p;
     int status = BG_OK;
     ex_set_out(c, &p, stop);
-    while (!status && bg_is_empty(&p.ports) && (p.t < stop || p.at < p.last)) {
+    if (c->stretch.foreseen)
+        status = ex_go_ahead(c, &p, to);
+    while (!c->stretch.foreseen && !status && bg_is_empty(&p.ports)
+           && (p.t < stop || p.at < p.last)) {
         double h = 0.0;
         const int count = p.base >= 0 ? alike(c, &p, &h) : 0;
         if (count >= EX_STRIDE && armed(c, to->row ? to->row : c->task->rows[p.base]))

@@ -5,7 +5,8 @@
 #include <string.h>
 
 /* rows M, where rows are by columns, too: rows[j] is column j of all of them. */
-static void rows_times(double (*rows)[EX_TRIGGERS], double (*M)[EX_Z], double (*to)[EX_TRIGGERS])
+void ex_rows_times(double (*rows)[EX_TRIGGERS], double (*M)[EX_Z],
+                   double (*restrict to)[EX_TRIGGERS])
 {
     for (int j = 0; j < EX_Z; j++) {
         double sum[EX_TRIGGERS] = {0};
@@ -21,8 +22,8 @@ static void first_leap(ex_entry *e, double (*E)[EX_Z])
 {
     double change[EX_Z][EX_TRIGGERS], ends[EX_Z][EX_TRIGGERS];
     memset(e->leap[0], 0, sizeof e->leap[0]);
-    rows_times(e->trigger, E, ends);
-    rows_times(ends, e->M, change); /* M and its exponential commute */
+    ex_rows_times(e->trigger, E, ends);
+    ex_rows_times(ends, e->M, change); /* M and its exponential commute */
     for (int j = 0; j < EX_Z; j++) {
         memcpy(e->leap[0][j], E[j], sizeof E[j]);
         for (int i = 0; i < EX_T; i++) {
@@ -48,36 +49,47 @@ static double square_norm(ex_context *c, const ex_entry *e)
     return bg_lesser(norm, e->norm * e->norm);
 }
 
-/* Bounds on the fourth derivatives of triggers during the next EX_RENEWAL steps, as weights of the
- * magnitudes of the rates z'. With f = W M^3, f exp(M tau) is known at steps, and differs between
- * them from the straight line by at most h^2/8 |f exp(M tau) M^2|. */
-void ex_bound(ex_context *c, ex_entry *e, double (*E)[EX_Z])
+/* How large rows of triggers times exp(M tau) are from now until some steps later, at the most. They
+ * are known at steps, and differ between them from the straight line by at most h^2/8 |rows exp(M tau)
+ * M^2|. */
+void ex_extremes(ex_context *c, const ex_entry *e, double step, int steps, double (*E)[EX_Z],
+                 double (*rows)[EX_TRIGGERS], double (*most)[EX_TRIGGERS])
 {
-    double at[EX_Z][EX_TRIGGERS], next[EX_Z][EX_TRIGGERS], most[EX_TRIGGERS] = {0};
-    const double bend = e->step * e->step / 8.0 * square_norm(c, e);
-    const double scale = e->step * e->step * e->step * e->step / 384.0;
-    rows_times(e->trigger, e->M, next);
-    rows_times(next, e->M, at);
-    rows_times(at, e->M, next);
-    memset(e->fourth, 0, sizeof e->fourth);
-    for (int r = 0; r <= EX_RENEWAL; r++) {
-        memcpy(at, next, sizeof at);
+    double at[EX_Z][EX_TRIGGERS], largest[EX_TRIGGERS] = {0};
+    const double bend = step * step / 8.0 * square_norm(c, e);
+    memset(most, 0, sizeof at);
+    for (int r = 0; r <= steps; r++) {
+        memcpy(at, rows, sizeof at);
         for (int j = 0; j < EX_Z; j++)
             for (int i = 0; i < EX_T; i++)
-                e->fourth[j][i] = bg_greater(e->fourth[j][i], fabs(at[j][i]));
-        if (r < EX_RENEWAL)
-            rows_times(at, E, next);
+                most[j][i] = bg_greater(most[j][i], fabs(at[j][i]));
+        if (r < steps)
+            ex_rows_times(at, E, rows);
     }
     for (int j = 0; j < EX_Z; j++)
         for (int i = 0; i < EX_T; i++)
-            most[i] = bg_greater(most[i], e->fourth[j][i] / e->weight[j]);
+            largest[i] = bg_greater(largest[i], most[j][i] / e->weight[j]);
     for (int j = 0; j < EX_Z; j++)
         for (int i = 0; i < EX_T; i++) {
-            const double between = bend / (1.0 - bend) * most[i] * e->weight[j];
-            const double bound = scale * (e->fourth[j][i] + between) * (1.0 + BG_BOUND_SLACK);
+            most[j][i] += bend / (1.0 - bend) * largest[i] * e->weight[j];
             /* Written so that what is no number is too large as well: nothing is certain then. */
-            e->fourth[j][i] = bound < BG_HUGE ? bound : BG_HUGE;
+            most[j][i] = most[j][i] < BG_HUGE ? most[j][i] : BG_HUGE;
         }
+}
+
+/* Bounds on the fourth derivatives of triggers during the next EX_RENEWAL steps, as weights of the
+ * magnitudes of the rates z', which exp(M tau) takes on. */
+void ex_bound(ex_context *c, ex_entry *e, double (*E)[EX_Z])
+{
+    double rows[EX_Z][EX_TRIGGERS], next[EX_Z][EX_TRIGGERS];
+    const double scale = e->step * e->step * e->step * e->step / 384.0 * (1.0 + BG_BOUND_SLACK);
+    ex_rows_times(e->trigger, e->M, next);
+    ex_rows_times(next, e->M, rows);
+    ex_rows_times(rows, e->M, next);
+    ex_extremes(c, e, e->step, EX_RENEWAL, E, next, e->fourth);
+    for (int j = 0; j < EX_Z; j++)
+        for (int i = 0; i < EX_T; i++)
+            e->fourth[j][i] *= scale;
 }
 
 /* The product of columns with rows that samples have. */

@@ -17,19 +17,29 @@ static double derivative(const double *c, int depth, int width, int order, doubl
     return sum;
 }
 
+/* Whether a chain has the exponential of the one before. */
+static int grows_alike(const ex_chains *chains, const double *start, int i)
+{
+    const double *const rate = chains->rate[i], *const before = chains->rate[i - 1];
+    return rate[0] == before[0] && rate[1] == before[1] && start[i] == start[i - 1];
+}
+
 void ex_slots(const ex_inputs *inputs, int segment, double t, double *g)
 {
     const ex_chains *chains = inputs->structures + inputs->chains[segment];
     const double *c = inputs->polynomial[segment], *start = inputs->start[segment];
+    double re = 1.0, im = 0.0;
     for (int i = 0; i < EX_G; i++)
         g[i] = 0.0;
     for (int i = 0; i < chains->count; i++) {
         const int first = chains->first[i], depth = chains->depth[i], width = chains->width[i];
         const double tau = t - start[i];
-        const double size = chains->rate[i][0] != 0.0 ? exp(chains->rate[i][0] * tau) : 1.0;
-        const double turn = chains->rate[i][1] * tau;
-        const double re = width == 2 ? size * cos(turn) : size;
-        const double im = width == 2 ? size * sin(turn) : 0.0;
+        if (i == 0 || !grows_alike(chains, start, i)) {
+            const double size = chains->rate[i][0] != 0.0 ? exp(chains->rate[i][0] * tau) : 1.0;
+            const double turn = chains->rate[i][1] * tau;
+            re = width == 2 ? size * cos(turn) : size;
+            im = width == 2 ? size * sin(turn) : 0.0;
+        }
         for (int k = 0; k < depth; k++) {
             const double a = derivative(c + first, depth, width, k, tau);
             if (width == 1) {

@@ -27,8 +27,6 @@ int ex_is_same(const ex_key *one, const ex_key *other)
 static int known_place(const ex_context *c, const ex_key *key)
 {
     const ex_model *const m = c->model;
-    if (c->place < m->count && ex_is_same(m->keys + c->place, key))
-        return c->place;
     for (int k = 0; k < m->count; k++)
         if (ex_is_same(m->keys + k, key))
             return k;
@@ -38,15 +36,22 @@ static int known_place(const ex_context *c, const ex_key *key)
 int ex_find(ex_context *c, const int *mode, const ex_mode **found)
 {
     const ex_model *const m = c->model;
+    if (c->place >= 0 && ex_is_alike(c->signs, mode)) {
+        *found = m->modes[c->place];
+        return (*found)->supported ? BG_OK : BG_NOT_AFFINE;
+    }
     const ex_key key = key_of(mode);
     int at = known_place(c, &key);
     c->where = key;
+    c->place = -1;
     *found = NULL;
     if (at < 0 && m->supply && m->supply(m->self, mode) == BG_OK)
         at = known_place(c, &key);
     if (at < 0)
         return BG_MISSING;
     c->place = at;
+    for (int i = 0; i < EX_K; i++)
+        c->signs[i] = mode[i];
     if (m->used)
         m->used[at] = ++c->looks;
     *found = m->modes[at];
@@ -62,17 +67,22 @@ int ex_rests(const ex_mode *mode, int port)
     return any;
 }
 
-/* What affine maps act on; inputs are evaluated once for an instant. */
+/* Inputs are evaluated once for an instant. */
+void ex_know(ex_context *c, double t)
+{
+    if (c->known && c->known_time == t && c->known_segment == c->run.segment)
+        return;
+    ex_slots(c->inputs, c->run.segment, t, c->slots);
+    ex_given(c->inputs, c->run.segment, c->slots, c->given, c->given + EX_W);
+    c->known = 1;
+    c->known_time = t;
+    c->known_segment = c->run.segment;
+}
+
+/* What affine maps act on. */
 void ex_vector(ex_context *c, double t, const double *s, double *v)
 {
-    if (!c->known || c->known_time != t || c->known_segment != c->run.segment) {
-        double g[EX_G];
-        ex_slots(c->inputs, c->run.segment, t, g);
-        ex_given(c->inputs, c->run.segment, g, c->given, c->given + EX_W);
-        c->known = 1;
-        c->known_time = t;
-        c->known_segment = c->run.segment;
-    }
+    ex_know(c, t);
     for (int j = 0; j < EX_N; j++)
         v[j] = s[j];
     for (int j = 0; j < 2 * EX_W; j++)

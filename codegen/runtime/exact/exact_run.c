@@ -15,9 +15,11 @@ void ex_sizes(unsigned long *sizes)
 
 void ex_forget(ex_context *c)
 {
-    c->clock = c->place = 0;
+    c->clock = 0;
+    c->place = -1;
     memset(&c->where, 0, sizeof c->where);
     memset(c->used, 0, sizeof c->used);
+    memset(c->latest, 0, sizeof c->latest);
     c->ladder.known = 0;
 }
 
@@ -124,8 +126,33 @@ static int rest(void *context)
 static int advance(void *context, double stop)
 {
     ex_context *const c = context;
-    const int status = ex_begin(c, stop);
-    return status ? status : c->advance(c, stop);
+    const double begin = c->run.at.t;
+    double slots[EX_G];
+    int status = ex_begin(c, stop);
+    if (status)
+        return status;
+    ex_know(c, begin);
+    memcpy(slots, c->slots, sizeof slots);
+    status = c->advance(c, stop);
+    if (status == BG_OK && !c->stretch.foreseen)
+        ex_notice(c, begin, slots);
+    return status;
+}
+
+/* What is kept of strides and choices is of one run, which so is the same whatever was before. */
+static void set_out(ex_context *c)
+{
+    c->glancing = c->model->switched;
+    for (int i = 0; i < EX_K; i++)
+        c->glancing &= ex_switches(c, i);
+    c->chosen = c->looked = c->vain = 0;
+    c->place = -1;
+    for (int i = 0; i < EX_ENTRIES; i++)
+        c->entries[i].segment = -1;
+    for (int i = 0; i < EX_STRIDES; i++)
+        c->strides[i].used = 0;
+    for (int i = 0; i < EX_CHOICES; i++)
+        c->choices[i].used = 0;
 }
 
 int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task,
@@ -134,10 +161,11 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
     const bg_sight sight = {c, EX_N, EX_K, model->switched ? model->switches : NULL, model->coupled,
                             c->shot + EX_AT_RATE, c->point, c->struck, look, tell, ex_strike,
                             couple};
-    const bg_engine engine = {sight, c, see, fastest, rest, advance};
+    const bg_engine engine = {sight, c, see, fastest, ex_choose, rest, advance};
     c->model = model;
     c->inputs = inputs;
     c->task = task;
+    set_out(c);
     c->advance = how;
     c->caller = caller;
     c->known = c->next = 0;

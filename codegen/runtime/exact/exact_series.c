@@ -22,7 +22,7 @@ static inline void differentiate(const ex_entry *e, const double *restrict term,
     }
 }
 
-/* The powers of the state, z(tau) = sum terms[k] tau^k over a step, and of the triggers. */
+/* The powers of the state, z(tau) = sum terms[k] tau^k over a step. */
 static void expand(ex_context *c, const double *z, double step)
 {
     const ex_entry *e = c->stretch.entry;
@@ -32,11 +32,17 @@ static void expand(ex_context *c, const double *z, double step)
         terms[0][i] = z[i];
     for (int k = 1; k <= BG_DEGREE; k++)
         differentiate(e, terms[k - 1], k == 1 ? c->stretch.b : none, step / k, terms[k]);
+}
+
+/* The same of the triggers. */
+static void expand_triggers(ex_context *c)
+{
+    const ex_entry *e = c->stretch.entry;
     for (int k = 0; k <= BG_DEGREE; k++)
         for (int i = 0; i < EX_T; i++) {
             double sum = k ? 0.0 : c->stretch.level[i];
             for (int j = 0; j < EX_Z; j++)
-                sum += e->trigger[j][i] * terms[k][j];
+                sum += e->trigger[j][i] * c->terms[k][j];
             c->powers[i][k] = sum;
         }
 }
@@ -147,6 +153,7 @@ int ex_series(ex_context *c, double t, double length, double *z, double *end, bg
         const double from = t + part * step;
         double tau;
         expand(c, z, step);
+        expand_triggers(c);
         const int status = event(c, from, step, &tau, ports);
         if (status)
             return status;
@@ -158,4 +165,13 @@ int ex_series(ex_context *c, double t, double length, double *z, double *end, bg
         state(c, 1.0, z);
     }
     return BG_OK;
+}
+
+void ex_glide(ex_context *c, double length, double *z)
+{
+    const double parts = bg_greater(ceil(c->stretch.entry->norm * length), 1.0);
+    for (double part = 0.0; length > 0.0 && part < parts; part += 1.0) {
+        expand(c, z, length / parts);
+        state(c, 1.0, z);
+    }
 }

@@ -38,11 +38,17 @@ static void sizes_of(const ex_context *c, const ex_mode *mode, const double *v, 
     }
 }
 
+/* By how much what keeps a switch may be off: of its terms, and as an event's time may be. */
+static double near_of(double terms, double slope, double t)
+{
+    const double spacing = nextafter(fabs(t), INFINITY) - fabs(t);
+    return BG_ROUNDING * terms + BG_LATE * spacing * fabs(slope) + DBL_MIN;
+}
+
 void ex_round_stay(const ex_context *c, const ex_mode *mode, const double *v, const double *shot,
                    double t, bg_port *ports)
 {
     double size[EX_L];
-    const double spacing = nextafter(fabs(t), INFINITY) - fabs(t);
     if (!c->model->switched)
         return;
     sizes_of(c, mode, v, t, size);
@@ -55,7 +61,26 @@ void ex_round_stay(const ex_context *c, const ex_mode *mode, const double *v, co
             slope += mode->stay[j][i] * shot[EX_AT_RATE + j];
         for (int j = 0; j < EX_W; j++)
             slope += mode->stay[EX_N + j][i] * v[EX_N + EX_W + j];
-        ports[i].near_stay = BG_ROUNDING * terms + BG_LATE * spacing * fabs(slope) + DBL_MIN;
+        ports[i].near_stay = near_of(terms, slope, t);
+    }
+}
+
+void ex_limit_stay(const ex_context *c, const ex_mode *mode, const double *most, const double *shot,
+                   double t, bg_port *ports)
+{
+    double size[EX_L];
+    sizes_of(c, mode, most, t, size);
+    for (int i = 0; i < EX_K; i++) {
+        double terms = 0.0, slope = 0.0;
+        for (int j = 0; j < EX_L; j++) {
+            const double moved = j < EX_N ? c->run.at.time * shot[EX_AT_RATE + j] : 0.0;
+            terms += fabs(mode->stay[j][i]) * bg_greater(bg_greater(size[j], most[j]), moved);
+        }
+        for (int j = 0; j < EX_N; j++)
+            slope += fabs(mode->stay[j][i]) * shot[EX_AT_RATE + j];
+        for (int j = 0; j < EX_W; j++)
+            slope += fabs(mode->stay[EX_N + j][i]) * most[EX_N + EX_W + j];
+        ports[i].near_stay = near_of(terms, slope, t) * (1.0 + BG_BOUND_SLACK);
     }
 }
 

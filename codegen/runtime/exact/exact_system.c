@@ -87,6 +87,34 @@ static void balance(ex_entry *e)
     }
 }
 
+/* What moves the triggers, and whether strides can tell of it. */
+static void tell_moves(ex_entry *e)
+{
+    int paced[EX_G] = {0};
+    e->timed = 0;
+    e->foreseeable = EX_K > 0;
+    for (int i = 0; i < EX_T; i++) {
+        e->moves[i] = EX_STILL;
+        for (int j = EX_Z - 1; j >= 0; j--)
+            if (e->trigger[j][i] != 0.0)
+                e->moves[i] = j < EX_N ? EX_MOVED : EX_TIMED;
+        const int timed = e->moves[i] == EX_TIMED && !e->cap[i];
+        e->timed |= timed;
+        for (int j = 0; j < EX_G; j++)
+            paced[j] |= timed && e->trigger[EX_N + j][i] != 0.0;
+        e->foreseeable &= !ex_rests(e->mode, i / 2);
+    }
+    memset(e->paced, 0, sizeof e->paced);
+    for (int i = 0; i < e->chains.count; i++) {
+        const int first = e->chains.first[i], last = first + e->chains.depth[i] * e->chains.width[i];
+        int any = 0;
+        for (int j = first; j < last; j++)
+            any |= paced[j];
+        for (int j = first; j < last; j++)
+            e->paced[j] = any;
+    }
+}
+
 static void assemble(ex_context *c, ex_entry *e)
 {
     double slots[EX_G][EX_SHOT], keeping[EX_G][EX_PORTS];
@@ -108,6 +136,8 @@ static void assemble(ex_context *c, ex_entry *e)
         e->cap[2 * i + 1] = ex_single(c, e->mode, i);
     balance(e);
     e->h = e->step = 0.0;
+    e->segment = -1;
+    tell_moves(e);
 }
 
 /* The entry of the present mode and generator, from the cache or in place of the oldest. */
@@ -122,13 +152,18 @@ static int entry(ex_context *c, ex_entry **found)
     if (c->clock > 1000000000) {
         c->clock = 0;
         memset(c->used, 0, sizeof c->used);
+        for (int i = 0; i < EX_STRIDES; i++)
+            c->strides[i].used = 0;
     }
     c->clock++;
-    for (int i = 0; i < EX_ENTRIES; i++) {
+    int *const latest = c->latest + c->place % EX_ENTRIES;
+    for (int n = -1; n < EX_ENTRIES; n++) {
+        const int i = n < 0 ? *latest : n;
         ex_entry *e = c->entries + i;
         if (c->used[i] && ex_is_same(&e->key, &c->where)
             && (e->chains.count == chains->count
                 && memcmp(&e->chains, chains, sizeof *chains) == 0)) {
+            *latest = i;
             c->used[i] = c->clock;
             e->mode = mode;
             e->place = c->place;
@@ -140,6 +175,9 @@ static int entry(ex_context *c, ex_entry **found)
     }
     *found = c->entries + oldest;
     c->used[oldest] = c->clock;
+    for (int i = 0; i < EX_STRIDES; i++)
+        if (c->strides[i].entry == oldest)
+            c->strides[i].used = 0;
     (*found)->mode = mode;
     (*found)->key = c->where;
     (*found)->place = c->place;
@@ -149,9 +187,9 @@ static int entry(ex_context *c, ex_entry **found)
 }
 
 /* The constant parts of rates and triggers: of the map itself and of inputs that don't change. */
-static void constants(const ex_context *c, ex_stretch *stretch)
+static void constants(const ex_context *c, ex_entry *e)
 {
-    const ex_mode *mode = stretch->entry->mode;
+    const ex_mode *mode = e->mode;
     ex_shot sum;
     double stay[EX_PORTS];
     memcpy(sum, mode->shot[EX_L - 1], sizeof sum);
@@ -166,10 +204,11 @@ static void constants(const ex_context *c, ex_stretch *stretch)
         }
     }
     for (int i = 0; i < EX_N; i++)
-        stretch->b[i] = sum[EX_AT_RATE + i];
+        e->b[i] = sum[EX_AT_RATE + i];
     for (int i = EX_N; i < EX_Z; i++)
-        stretch->b[i] = 0.0;
-    triggers(c, mode, sum, stay, stretch->level);
+        e->b[i] = 0.0;
+    triggers(c, mode, sum, stay, e->level);
+    e->segment = c->run.segment;
 }
 
 /* How long a motion has to be followed: until its end, or until it has decayed. */
@@ -207,13 +246,18 @@ int ex_begin(ex_context *c, double stop)
     int status = entry(c, &stretch->entry);
     if (status)
         return status;
+    if (stretch->entry->segment != c->run.segment)
+        constants(c, stretch->entry);
+    memcpy(stretch->b, stretch->entry->b, sizeof stretch->b);
+    memcpy(stretch->level, stretch->entry->level, sizeof stretch->level);
+    stretch->t = c->run.at.t;
+    stretch->leaping = 0;
+    if (ex_foresee(c, stop))
+        return BG_OK;
     status = bearable(c, stretch->entry, stop - c->run.at.t);
     if (status)
         return status;
-    constants(c, stretch);
-    stretch->t = c->run.at.t;
     stretch->blind = bg_moment(c->run.at.time);
-    stretch->leaping = 0;
     if (EX_K == 0)
         return BG_OK;
     status = ex_look(c, c->run.at.t, c->s, stretch->entry->mode, now);

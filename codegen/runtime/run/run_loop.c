@@ -48,7 +48,7 @@ static int settle(const bg_engine *e, bg_course *c, int started)
     if (status)
         return status;
     c->at.time = bg_time_constant(fastest, c->at.t - c->began);
-    status = bg_choose(sight, &c->at, c->mode);
+    status = e->choose ? e->choose(e->self, sight) : bg_choose(sight, &c->at, c->mode);
     for (int i = 0; i < sight->ports; i++)
         touched |= c->at.touched[i];
     if (status == BG_OK && started) {

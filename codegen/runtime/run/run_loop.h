@@ -20,7 +20,8 @@ typedef struct {
 } bg_course;
 
 /* What runs. `see` takes the instant, which was looked at with friction slipping so, into what
- * rounding is relative to; `fastest` tells the largest rate [1/s] there in the mode so far; `rest`
+ * rounding is relative to; `fastest` tells the largest rate [1/s] there in the mode so far; `choose`
+ * decides the mode there as bg_choose does, NULL where that is to do it; `rest`
  * takes the slips of ports that stick away; `advance` goes on to `stop` or the first event, whose
  * ports it tells in `touched`. All but the first give a status. */
 typedef struct {
@@ -28,6 +29,7 @@ typedef struct {
     void *self;
     void (*see)(void *self, const int *slipping);
     int (*fastest)(void *self, double *fastest);
+    int (*choose)(void *self, const bg_sight *sight);
     int (*rest)(void *self);
     int (*advance)(void *self, double stop);
 } bg_engine;

@@ -1,0 +1,29 @@
+/* Choices of mode that were made, and what has to be so for them to be made again. */
+#ifndef BG_EXACT_CHOICE_H
+#define BG_EXACT_CHOICE_H
+
+#include "exact.h"
+#include "port_choose.h"
+
+enum {
+    EX_CHOICES = 8,                              /* that are kept */
+    EX_LANE = 8,                                 /* rows that are looked at together */
+    EX_ROWS = EX_PORTS < 16 ? 8 * EX_PORTS : 128 /* conditions of one, at the most */
+};
+
+/* From the mode `before`, with these ports touched, to that `after`; `used`: when it was asked for last,
+ * 0 where it is none. It is made where `rows` rows over (s, w, w', 1), by columns, are above `least`:
+ * as long as the time constant is the same, t before `until`, states and inputs are below `most`, and
+ * inputs above `low`; which these are for sure in the segment `steady`, -1 where they are not. */
+typedef struct {
+    int used, rows, steady;
+    int before[EX_PORTS], touched[EX_PORTS], after[EX_PORTS];
+    double time, until;
+    double most_x[EX_X], most_u[EX_U], most[EX_L], low[EX_W];
+    double row[EX_L][EX_ROWS], least[EX_ROWS];
+} ex_choice;
+
+/* The mode at the instant of a context: as bg_choose decides it, or as before, where that is sure. */
+int ex_choose(void *context, const bg_sight *sight);
+
+#endif

@@ -1,0 +1,176 @@
+/* What is known of stretches that recur. */
+#include "exact_internal.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+/* Whether the inputs that time the events of an entry begin as they did. */
+static int begins_alike(const ex_entry *e, const ex_stride *k, const double *slots)
+{
+    double off = 0.0, size = 0.0;
+    for (int i = 0; i < EX_G; i++) {
+        const double was = e->paced[i] ? k->start[i] : 0.0, now = e->paced[i] ? slots[i] : 0.0;
+        off = bg_greater(off, fabs(now - was));
+        size = bg_greater(size, fabs(was));
+    }
+    return off <= BG_ALIKE * size;
+}
+
+/* Whether a stretch of an entry, with `left` until it has to end, is this one. */
+static int suits(const ex_context *c, const ex_stride *k, int entry, const double *slots, double left)
+{
+    if (!k->used || k->entry != entry)
+        return 0;
+    if (bg_is_empty(&k->ports) ? fabs(left - k->h) > BG_ALIKE * k->h
+                               : left <= k->h * (1.0 + BG_ALIKE))
+        return 0;
+    return !c->entries[entry].timed || begins_alike(c->entries + entry, k, slots);
+}
+
+void ex_ends_of(const ex_stretch *stretch, const ex_stride *k, const double *z, ex_ends *to)
+{
+    const ex_entry *const e = stretch->entry;
+    double rate[EX_Z], lifted[EX_LIFT] = {0};
+    memcpy(rate, stretch->b, sizeof rate);
+    memcpy(to->begins, stretch->level, sizeof to->begins);
+    memset(to->bend, 0, sizeof to->bend);
+    for (int j = 0; j < EX_Z; j++) {
+        for (int i = 0; i < EX_Z; i++)
+            rate[i] += e->M[j][i] * z[j];
+        for (int i = 0; i < EX_T; i++)
+            to->begins[i] += e->trigger[j][i] * z[j];
+    }
+    for (int j = 0; j < EX_Z; j++) {
+        for (int i = 0; i < EX_LIFT; i++)
+            lifted[i] += k->lift[j][i] * rate[j];
+        for (int i = 0; i < EX_T; i++)
+            to->bend[i] += k->bend[j][i] * fabs(rate[j]);
+    }
+    for (int i = 0; i < EX_Z; i++)
+        to->z[i] = z[i] + lifted[EX_TO_STATE + i];
+    memcpy(to->rates, lifted + EX_TO_RATES, sizeof to->rates);
+    for (int i = 0; i < EX_T; i++)
+        to->value[i] = to->begins[i] + lifted[EX_TO_VALUES + i];
+    memcpy(to->slope, lifted + EX_TO_SLOPES, sizeof to->slope);
+}
+
+/* The rows of a stride, from the exponential over it and its integral. */
+static void lift(const ex_entry *e, double (*E)[EX_Z], double (*gather)[EX_Z], ex_stride *k)
+{
+    double values[EX_Z][EX_TRIGGERS], slopes[EX_Z][EX_TRIGGERS];
+    ex_rows_times((double(*)[EX_TRIGGERS])e->trigger, gather, values);
+    ex_rows_times((double(*)[EX_TRIGGERS])e->trigger, E, slopes);
+    memset(k->lift, 0, sizeof k->lift);
+    for (int j = 0; j < EX_Z; j++) {
+        memcpy(k->lift[j] + EX_TO_STATE, gather[j], sizeof gather[j]);
+        memcpy(k->lift[j] + EX_TO_RATES, E[j], sizeof E[j]);
+        for (int i = 0; i < EX_T; i++) {
+            k->lift[j][EX_TO_VALUES + i] = values[j][i];
+            k->lift[j][EX_TO_SLOPES + i] = slopes[j][i];
+        }
+    }
+}
+
+/* Whether inputs alone decide where it ends, and clearly: what falls does so with a slope, and all else
+ * that they move is still far from that. */
+static int is_clear(const ex_stretch *stretch, const ex_stride *k, const ex_ends *to)
+{
+    ex_entry *const e = stretch->entry;
+    double size[EX_TRIGGERS], sizes[EX_Z];
+    for (int i = 0; i < EX_T; i++)
+        size[i] = fabs(stretch->level[i]);
+    for (int j = 0; j < EX_Z; j++)
+        sizes[j] = fabs(to->z[j]);
+    for (int j = 0; j < EX_Z; j++)
+        for (int i = 0; i < EX_T; i++)
+            size[i] += fabs(e->trigger[j][i]) * sizes[j];
+    for (int i = 0; i < EX_T; i++) {
+        if (e->moves[i] != EX_TIMED || e->cap[i])
+            continue;
+        const int falls = bg_has(&k->ports, i / 2);
+        if (!((falls ? -to->slope[i] * k->h : to->value[i]) > BG_WIDE * BG_ALIKE * size[i]))
+            return 0;
+    }
+    return 1;
+}
+
+/* Works out what is to be known, where it comes to little. */
+static void work_out(ex_context *c, ex_stride *k, const double *z)
+{
+    ex_entry *const e = c->stretch.entry;
+    double(*E)[EX_Z] = c->work[5], gather[EX_Z][EX_Z], rows[EX_Z][EX_TRIGGERS];
+    ex_ends to;
+    const double parts = bg_greater(ceil(e->norm * k->h / BG_LONGEST), 1.0);
+    const double bend = k->h * k->h / 8.0 * (1.0 + BG_BOUND_SLACK);
+    k->known = -1;
+    if (!(parts <= EX_PARTS))
+        return;
+    ex_exponential(c, e->M, e->norm, k->h / parts, E, gather);
+    ex_rows_times(e->trigger, e->M, rows);
+    ex_extremes(c, e, k->h / parts, (int)parts, E, rows, k->bend);
+    for (int j = 0; j < EX_Z; j++)
+        for (int i = 0; i < EX_T; i++)
+            k->bend[j][i] *= bend;
+    ex_exponential(c, e->M, e->norm, k->h, E, gather);
+    lift(e, E, gather, k);
+    ex_ends_of(&c->stretch, k, z, &to);
+    if (is_clear(&c->stretch, k, &to))
+        k->known = 1;
+}
+
+ex_stride *ex_known(ex_context *c, const double *z, double stop)
+{
+    const int entry = (int)(c->stretch.entry - c->entries);
+    for (int i = 0; i < EX_STRIDES; i++) {
+        ex_stride *const k = c->strides + i;
+        if (!suits(c, k, entry, z + EX_N, stop - c->run.at.t))
+            continue;
+        k->used = c->clock;
+        if (k->known == 0)
+            work_out(c, k, z);
+        return k->known > 0 ? k : NULL;
+    }
+    return NULL;
+}
+
+/* The ports whose event has ended a stretch; 0 at *timed where it was not time that moved them all. */
+static bg_set ended_by(const ex_context *c, const ex_entry *e, int *timed)
+{
+    bg_set ports = {{0}};
+    *timed = 1;
+    for (int i = 0; i < EX_K; i++)
+        if (c->run.at.touched[i]) {
+            bg_add(&ports, i);
+            *timed &= e->moves[2 * i] == EX_TIMED && e->cap[2 * i + 1];
+        }
+    return ports;
+}
+
+void ex_notice(ex_context *c, double t, const double *slots)
+{
+    const ex_entry *const e = c->stretch.entry;
+    const int entry = (int)(e - c->entries);
+    int oldest = 0, timed;
+    if (!e->foreseeable)
+        return;
+    const bg_set ports = ended_by(c, e, &timed);
+    if (!timed)
+        return;
+    const double h = c->run.at.t - t;
+    for (int i = 0; i < EX_STRIDES; i++) {
+        const ex_stride *const k = c->strides + i;
+        if (k->used && k->entry == entry && bg_is_same(&k->ports, &ports)
+            && fabs(k->h - h) <= BG_ALIKE * h && (!e->timed || begins_alike(e, k, slots)))
+            return;
+        if (k->used < c->strides[oldest].used)
+            oldest = i;
+    }
+    ex_stride *const k = c->strides + oldest;
+    k->entry = entry;
+    k->used = c->clock;
+    k->known = 0;
+    k->ports = ports;
+    k->h = h;
+    memcpy(k->start, slots, sizeof k->start);
+}
