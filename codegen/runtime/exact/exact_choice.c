@@ -57,9 +57,9 @@ static int is_made(ex_context *c)
 {
     double v[EX_L];
     ex_vector(c, c->run.at.t, c->s, v);
-    for (int n = 0; n < EX_CHOICES; n++) {
+    for (int n = 0; n < c->decided; n++) {
         ex_choice *const k = c->choices + n;
-        if (!k->used || !ex_is_alike(k->before, c->run.mode)
+        if (!ex_is_alike(k->before, c->run.mode)
             || !ex_is_alike(k->touched, c->run.at.touched)
             || !is_as_late(&c->run.at, k) || !holds(k, v) || !in_bounds(c, k, v))
             continue;
@@ -130,14 +130,15 @@ static int look_loose(ex_glance *g)
 /* Keeps a choice from a mode to the present one, if it can be told at a first look. */
 static void keep(ex_context *c, const int *before)
 {
-    ex_choice *to = c->choices;
+    ex_choice *to = c->choices + (c->decided < EX_CHOICES ? c->decided : 0);
     bg_set switches = {{0}};
     int found = 0;
-    for (int n = 1; n < EX_CHOICES; n++)
+    for (int n = 1; c->decided == EX_CHOICES && n < EX_CHOICES; n++)
         if (c->choices[n].used < to->used)
             to = c->choices + n;
     ex_glance g = {.c = c, .to = to};
     to->used = to->rows = 0;
+    to->before[0] = EX_NEVER;
     to->time = c->run.at.time;
     ex_vector(c, c->run.at.t, c->s, g.v);
     allow(&g);
@@ -158,6 +159,7 @@ static void keep(ex_context *c, const int *before)
     memcpy(to->touched, c->run.at.touched, EX_K * sizeof *to->touched);
     memcpy(to->after, c->run.mode, EX_K * sizeof *to->after);
     to->used = ++c->chosen;
+    c->decided += c->decided < EX_CHOICES;
 }
 
 int ex_choose(void *context, const bg_sight *sight)

@@ -7,12 +7,13 @@
 
 enum {
     EX_CHOICES = 8,                              /* that are kept */
+    EX_NEVER = 9,                                /* no mode of a port */
     EX_LANE = 8,                                 /* rows that are looked at together */
     EX_ROWS = EX_PORTS < 16 ? 8 * EX_PORTS : 128 /* conditions of one, at the most */
 };
 
-/* From the mode `before`, with these ports touched, to that `after`; `used`: when it was asked for last,
- * 0 where it is none. It is made where `rows` rows over (s, w, w', 1), by columns, are above `least`:
+/* From the mode `before`, with these ports touched, to that `after`; `used`: when it was asked for last.
+ * It is made where `rows` rows over (s, w, w', 1), by columns, are above `least`:
  * as long as the time constant is the same, t before `until`, states and inputs are below `most`, and
  * inputs above `low`; which these are for sure in the segment `steady`, -1 where they are not. */
 typedef struct {

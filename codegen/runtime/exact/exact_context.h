@@ -28,7 +28,8 @@ typedef struct {
     const ex_mode *mode;
     ex_key key;
     int place;                          /* of the mode in the model's */
-    int segment;                        /* whose constant parts these are, -1: of none yet */
+    int segment;                        /* whose constant parts these are, in which run */
+    unsigned run;
     double b[EX_Z], level[EX_TRIGGERS];
     long long parts;
     int cap[EX_TRIGGERS];               /* whether a trigger is only a cap */
@@ -103,9 +104,11 @@ struct ex_context {
     int used[EX_ENTRIES];               /* when each was used last; 0 if it is empty */
     int latest[EX_ENTRIES];             /* which was asked for last of a few modes */
     ex_entry entries[EX_ENTRIES];
+    int stridden;                       /* how many there are */
     ex_stride strides[EX_STRIDES];
-    int glancing, chosen, looked, vain; /* whether choices are kept; how many were */
+    int glancing, decided, chosen, looked, vain; /* whether choices are kept; how many are .. */
     ex_choice choices[EX_CHOICES];
+    unsigned runs;
     ex_ladder ladder;
     bg_course run;
     double point[EX_N], struck[EX_N];   /* room of the loop */

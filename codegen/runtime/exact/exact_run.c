@@ -145,14 +145,9 @@ static void set_out(ex_context *c)
     c->glancing = c->model->switched;
     for (int i = 0; i < EX_K; i++)
         c->glancing &= ex_switches(c, i);
-    c->chosen = c->looked = c->vain = 0;
+    c->stridden = c->decided = c->chosen = c->looked = c->vain = 0;
+    c->runs++;
     c->place = -1;
-    for (int i = 0; i < EX_ENTRIES; i++)
-        c->entries[i].segment = -1;
-    for (int i = 0; i < EX_STRIDES; i++)
-        c->strides[i].used = 0;
-    for (int i = 0; i < EX_CHOICES; i++)
-        c->choices[i].used = 0;
 }
 
 int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task,

@@ -20,7 +20,7 @@ static int begins_alike(const ex_entry *e, const ex_stride *k, const double *slo
 /* Whether a stretch of an entry, with `left` until it has to end, is this one. */
 static int suits(const ex_context *c, const ex_stride *k, int entry, const double *slots, double left)
 {
-    if (!k->used || k->entry != entry)
+    if (k->entry != entry)
         return 0;
     if (bg_is_empty(&k->ports) ? fabs(left - k->h) > BG_ALIKE * k->h
                                : left <= k->h * (1.0 + BG_ALIKE))
@@ -122,7 +122,7 @@ static void work_out(ex_context *c, ex_stride *k, const double *z)
 ex_stride *ex_known(ex_context *c, const double *z, double stop)
 {
     const int entry = (int)(c->stretch.entry - c->entries);
-    for (int i = 0; i < EX_STRIDES; i++) {
+    for (int i = 0; i < c->stridden; i++) {
         ex_stride *const k = c->strides + i;
         if (!suits(c, k, entry, z + EX_N, stop - c->run.at.t))
             continue;
@@ -158,15 +158,15 @@ void ex_notice(ex_context *c, double t, const double *slots)
     if (!timed)
         return;
     const double h = c->run.at.t - t;
-    for (int i = 0; i < EX_STRIDES; i++) {
+    for (int i = 0; i < c->stridden; i++) {
         const ex_stride *const k = c->strides + i;
-        if (k->used && k->entry == entry && bg_is_same(&k->ports, &ports)
+        if (k->entry == entry && bg_is_same(&k->ports, &ports)
             && fabs(k->h - h) <= BG_ALIKE * h && (!e->timed || begins_alike(e, k, slots)))
             return;
         if (k->used < c->strides[oldest].used)
             oldest = i;
     }
-    ex_stride *const k = c->strides + oldest;
+    ex_stride *const k = c->strides + (c->stridden < EX_STRIDES ? c->stridden++ : oldest);
     k->entry = entry;
     k->used = c->clock;
     k->known = 0;

@@ -152,8 +152,7 @@ static int entry(ex_context *c, ex_entry **found)
     if (c->clock > 1000000000) {
         c->clock = 0;
         memset(c->used, 0, sizeof c->used);
-        for (int i = 0; i < EX_STRIDES; i++)
-            c->strides[i].used = 0;
+        c->stridden = 0;
     }
     c->clock++;
     int *const latest = c->latest + c->place % EX_ENTRIES;
@@ -175,9 +174,9 @@ static int entry(ex_context *c, ex_entry **found)
     }
     *found = c->entries + oldest;
     c->used[oldest] = c->clock;
-    for (int i = 0; i < EX_STRIDES; i++)
+    for (int i = 0; i < c->stridden; i++)
         if (c->strides[i].entry == oldest)
-            c->strides[i].used = 0;
+            c->strides[i].entry = -1;
     (*found)->mode = mode;
     (*found)->key = c->where;
     (*found)->place = c->place;
@@ -209,6 +208,7 @@ static void constants(const ex_context *c, ex_entry *e)
         e->b[i] = 0.0;
     triggers(c, mode, sum, stay, e->level);
     e->segment = c->run.segment;
+    e->run = c->runs;
 }
 
 /* How long a motion has to be followed: until its end, or until it has decayed. */
@@ -246,7 +246,7 @@ int ex_begin(ex_context *c, double stop)
     int status = entry(c, &stretch->entry);
     if (status)
         return status;
-    if (stretch->entry->segment != c->run.segment)
+    if (stretch->entry->segment != c->run.segment || stretch->entry->run != c->runs)
         constants(c, stretch->entry);
     memcpy(stretch->b, stretch->entry->b, sizeof stretch->b);
     memcpy(stretch->level, stretch->entry->level, sizeof stretch->level);
