@@ -1,6 +1,6 @@
 """Runs of affine models by the C engine; what it cannot do is left to event-located runs."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -25,8 +25,14 @@ from codegen.tuning import TUNING
 
 KINDS = ("stick", "slip", "cross", "on", "off")
 
+EVENT = np.dtype([("time", np.float64), ("port", np.intc), ("kind", np.intc)], align=True)
+"""``bg_event``."""
+
 CAPACITY = 256
-"""Events there is room for at first."""
+"""Events there is room for at first, at the least."""
+
+MOST_AT_FIRST = 1 << 20
+"""The same at the most, where a run before had more."""
 
 NO_END = 2**31 - 1
 """Events that happen without being kept."""
@@ -126,13 +132,23 @@ class Prepared:
 
     def track(self, model: ClosedModel) -> Track:
         """The record of the run."""
-        names = [port.name for port in model.program.friction]
-        told = self.events[0 : self.task.count] if self.keeping else ()
-        events = [Event(event.time, names[event.port], KINDS[event.kind]) for event in told]
+        events = self._told([port.name for port in model.program.friction])
         vectors = self.rows[:, : model.size].copy()
         largest = np.abs(vectors).max(axis=0)
         modes = [self.tables.known[place] for place in self.modes.tolist()]
         return Track(vectors, modes, largest, events, len(vectors), keeping=self.keeping)
+
+    def _told(self, names: Sequence[Hashable]) -> list[Event]:
+        """The events, ports by these names."""
+        if not self.keeping or not self.task.count:
+            return []
+        size = self.engine.ffi.sizeof("bg_event")
+        told = np.frombuffer(self.engine.ffi.buffer(self.events, self.task.count * size), EVENT)
+        ports, kinds = told["port"].tolist(), told["kind"].tolist()
+        return [
+            Event(time, names[port], KINDS[kind])
+            for time, port, kind in zip(told["time"].tolist(), ports, kinds, strict=True)
+        ]
 
     def _room(self) -> None:
         if not self.keeping:
@@ -155,6 +171,7 @@ class CRuns:
         check_tools()
         self.model, self._flags = model, tuple(flags)
         self._ready: dict[int, tuple[Tables, tuple[Array, Any]]] = {}
+        self._capacity = CAPACITY
 
     def run(
         self, times: Array, start: Array, signals: Sequence[Signal], first: Mode = (),
@@ -166,6 +183,8 @@ class CRuns:
         """
         prepared = self.prepare(times, start, signals, first, keeping)
         status = prepared.call()
+        # A run like this one need not begin again for want of room.
+        self._capacity = min(prepared.capacity, MOST_AT_FIRST)
         track = prepared.track(self.model) if status == Status.OK else None
         return Outcome(status, prepared.task.time, track)
 
@@ -187,7 +206,8 @@ class CRuns:
             np.empty(len(times), dtype=np.intc),
             np.array([*first, *[1] * max(len(self.model.switching), 1)], dtype=np.intc),
             grid_of(times),
-            keeping=keeping,
+            self._capacity,
+            keeping,
         )
 
     def _tables(self, made: Segments) -> tuple[Tables, tuple[Array, Any]]:

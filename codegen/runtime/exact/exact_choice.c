@@ -34,11 +34,14 @@ static int holds(const ex_choice *k, const double *v)
     int all = 1;
     for (int first = 0; first < k->rows; first += EX_LANE) {
         double over[EX_LANE];
-        for (int i = 0; i < EX_LANE; i++)
-            over[i] = -k->least[first + i];
-        for (int j = 0; j < EX_L; j++)
-            for (int i = 0; i < EX_LANE; i++)
-                over[i] += k->row[j][first + i] * v[j];
+#pragma GCC unroll 1
+        for (int i = 0; i < EX_LANE; i++) {
+            double sum = 0.0;
+#pragma GCC unroll 32
+            for (int j = 0; j < EX_L; j++)
+                sum += k->row[j][first + i] * v[j];
+            over[i] = sum - k->least[first + i];
+        }
         for (int i = 0; i < EX_LANE; i++)
             all &= over[i] > 0.0;
     }

@@ -22,9 +22,9 @@ static inline int ex_is_alike(const int *one, const int *other)
 
 /* exact_modes.c: a mode, valid until others are looked for; everything at one instant in it; a status. */
 int ex_is_same(const ex_key *one, const ex_key *other);
-int ex_find(ex_context *c, const int *mode, const ex_mode **found);
+int ex_seek(ex_context *c, const int *mode, const ex_mode **found);
+void ex_evaluate(ex_context *c, double t);
 int ex_rests(const ex_mode *mode, int port);
-void ex_know(ex_context *c, double t);
 void ex_vector(ex_context *c, double t, const double *s, double *v);
 int ex_look(ex_context *c, double t, const double *s, const ex_mode *mode, double *shot);
 void ex_ports(const double *shot, bg_port *ports);
@@ -41,6 +41,22 @@ void ex_limit_stay(const ex_context *c, const ex_mode *mode, const double *most,
                    double t, bg_port *ports);
 int ex_strike(void *context, const bg_instant *at, const int *mode, double *s, int *shocks,
               int *struck);
+
+/* The mode that was looked for last is at hand. */
+static inline int ex_find(ex_context *c, const int *mode, const ex_mode **found)
+{
+    if (c->place < 0 || !ex_is_alike(c->signs, mode))
+        return ex_seek(c, mode, found);
+    *found = c->model->modes[c->place];
+    return (*found)->supported ? BG_OK : BG_NOT_AFFINE;
+}
+
+/* Inputs are evaluated once for an instant: slots, and w and its rate. */
+static inline void ex_know(ex_context *c, double t)
+{
+    if (!c->known || c->known_time != t || c->known_segment != c->run.segment)
+        ex_evaluate(c, t);
+}
 
 /* exact_system.c: an entry of the cache, without and with exponentials, and stretches; whether a port
  * has one trigger, and a cap that is only looked at. */
@@ -90,7 +106,8 @@ void ex_uncertainty(const ex_stretch *stretch, const double *row, double *slack)
  * nothing. Its ends. Takes the stretch that has ended, from t on, where slots were so, to be known next
  * time. */
 ex_stride *ex_known(ex_context *c, const double *z, double stop);
-void ex_ends_of(const ex_stretch *stretch, const ex_stride *k, const double *z, ex_ends *to);
+void ex_ends_of(const ex_stretch *stretch, const ex_stride *k, const double *restrict z,
+                ex_ends *restrict to);
 void ex_notice(ex_context *c, double t, const double *slots);
 
 /* What is done at samples: `record` takes the one that a step has come to, `leap` goes on over

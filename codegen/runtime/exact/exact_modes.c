@@ -33,13 +33,9 @@ static int known_place(const ex_context *c, const ex_key *key)
     return -1;
 }
 
-int ex_find(ex_context *c, const int *mode, const ex_mode **found)
+int ex_seek(ex_context *c, const int *mode, const ex_mode **found)
 {
     const ex_model *const m = c->model;
-    if (c->place >= 0 && ex_is_alike(c->signs, mode)) {
-        *found = m->modes[c->place];
-        return (*found)->supported ? BG_OK : BG_NOT_AFFINE;
-    }
     const ex_key key = key_of(mode);
     int at = known_place(c, &key);
     c->where = key;
@@ -67,11 +63,8 @@ int ex_rests(const ex_mode *mode, int port)
     return any;
 }
 
-/* Inputs are evaluated once for an instant. */
-void ex_know(ex_context *c, double t)
+void ex_evaluate(ex_context *c, double t)
 {
-    if (c->known && c->known_time == t && c->known_segment == c->run.segment)
-        return;
     ex_slots(c->inputs, c->run.segment, t, c->slots);
     ex_given(c->inputs, c->run.segment, c->slots, c->given, c->given + EX_W);
     c->known = 1;

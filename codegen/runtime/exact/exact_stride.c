@@ -28,25 +28,34 @@ static int suits(const ex_context *c, const ex_stride *k, int entry, const doubl
     return !c->entries[entry].timed || begins_alike(c->entries + entry, k, slots);
 }
 
-void ex_ends_of(const ex_stretch *stretch, const ex_stride *k, const double *z, ex_ends *to)
+/* Adds rows, by columns, times z; sums stay in registers. */
+static inline void add_rows(int rows, int width, const double *restrict columns,
+                            const double *restrict z, double *restrict to)
+{
+#pragma GCC unroll 1
+    for (int i = 0; i < rows; i++) {
+        double sum = to[i];
+#pragma GCC unroll 32
+        for (int j = 0; j < EX_Z; j++)
+            sum += columns[j * width + i] * z[j];
+        to[i] = sum;
+    }
+}
+
+void ex_ends_of(const ex_stretch *stretch, const ex_stride *k, const double *restrict z,
+                ex_ends *restrict to)
 {
     const ex_entry *const e = stretch->entry;
-    double rate[EX_Z], lifted[EX_LIFT] = {0};
+    double rate[EX_Z], size[EX_Z], lifted[EX_LIFT] = {0};
     memcpy(rate, stretch->b, sizeof rate);
     memcpy(to->begins, stretch->level, sizeof to->begins);
     memset(to->bend, 0, sizeof to->bend);
-    for (int j = 0; j < EX_Z; j++) {
-        for (int i = 0; i < EX_Z; i++)
-            rate[i] += e->M[j][i] * z[j];
-        for (int i = 0; i < EX_T; i++)
-            to->begins[i] += e->trigger[j][i] * z[j];
-    }
-    for (int j = 0; j < EX_Z; j++) {
-        for (int i = 0; i < EX_LIFT; i++)
-            lifted[i] += k->lift[j][i] * rate[j];
-        for (int i = 0; i < EX_T; i++)
-            to->bend[i] += k->bend[j][i] * fabs(rate[j]);
-    }
+    add_rows(EX_Z, EX_Z, e->M[0], z, rate);
+    add_rows(EX_T, EX_TRIGGERS, e->trigger[0], z, to->begins);
+    for (int i = 0; i < EX_Z; i++)
+        size[i] = fabs(rate[i]);
+    add_rows(EX_LIFT, EX_LIFT, k->lift[0], rate, lifted);
+    add_rows(EX_T, EX_TRIGGERS, k->bend[0], size, to->bend);
     for (int i = 0; i < EX_Z; i++)
         to->z[i] = z[i] + lifted[EX_TO_STATE + i];
     memcpy(to->rates, lifted + EX_TO_RATES, sizeof to->rates);
