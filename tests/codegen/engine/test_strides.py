@@ -143,3 +143,39 @@ def test_a_run_does_not_depend_on_the_one_before() -> None:
     one, two = (_run(ready, times) for _ in range(2))
     assert one["i"].tolist() == two["i"].tolist()
     assert [event.time for event in one.events] == [event.time for event in two.events]
+
+
+DIPS = [
+    bg.Se("src", "u"), bg.Zero("z"), bg.One("s"), bg.Sw("q", on="sin(w*t)"), bg.R("r2", 1),
+    bg.One("l"), bg.I("L", "L", flow="i"), bg.Zero("o"), bg.C("c", "C", effort="v"),
+    bg.One("k"), bg.Diode("d"), bg.R("r", 1), bg.Se("bias", "B"),
+]  # fmt: skip
+RINGING = bg.derive(bond_graph(DIPS, "src>z z>s s>q s>r2 z>l l>L l>o o>c o>k k>d k>r k>bias"))
+
+
+def test_what_the_state_does_within_a_stretch_is_seen() -> None:
+    """A resonance grows by one period in each half period of a switch: v = A/2 (sin x - x cos x), where x is
+    2 w t. At its ends v is lowest, within them a diode conducts as soon as v comes to B."""
+    w, bias = 100 * np.pi, 33.0
+    L, C = 1e-2, 1 / (1e-2 * (2 * w) ** 2)
+    ready = simulator(RINGING, {"w": w, "L": L, "C": C, "B": bias}, backend="c")
+    end = 14.5 * np.pi / w
+    done = ready.run([0.0, end], inputs={"u": Sine(1, 2 * w / (2 * np.pi))}, method="exact")
+    assert done.backend == "c"
+
+    def over(t: float) -> float:
+        x = 2 * w * t
+        return float((np.sin(x) - x * np.cos(x)) / 2 - bias)
+
+    grid = np.linspace(0, end, 4001)
+    above = next(k for k in range(len(grid)) if over(grid[k]) > 0)
+    first = scipy.optimize.brentq(over, grid[above - 1], grid[above], xtol=1e-16)
+    told = [event for event in done.events if event.time <= first * (1 + 1e-9)]
+    halves = int(first * w / np.pi)
+    assert halves > 8
+    assert [(event.port, event.kind) for event in told] == [
+        *[("q", "off" if k % 2 else "on") for k in range(1, halves + 1)], ("d", "on"),
+    ]  # fmt: skip
+    assert [event.time for event in told] == pytest.approx(
+        [*(np.arange(1, halves + 1) * np.pi / w), first], abs=1e-11
+    )
