@@ -58,9 +58,15 @@ static inline void ex_know(ex_context *c, double t)
         ex_evaluate(c, t);
 }
 
-/* exact_system.c: an entry of the cache, without and with exponentials, and stretches; whether a port
- * has one trigger, and a cap that is only looked at. */
+/* exact_assemble.c: an entry of the present mode, generator told; its triggers, from rows of slips,
+ * efforts, caps and what keeps switches; whether a port has one trigger, and a cap that is only looked
+ * at. */
+void ex_assemble(ex_context *c, ex_entry *e);
+void ex_triggers(const ex_context *c, const ex_mode *record, const double *shot, const double *stay,
+                 double *to);
 int ex_single(const ex_context *c, const ex_mode *record, int port);
+
+/* exact_system.c: an entry of the cache, without and with exponentials, and stretches. */
 int ex_begin(ex_context *c, double stop);
 void ex_leaps(ex_context *c, ex_stretch *stretch, double h, const double *row);
 
