@@ -147,7 +147,8 @@ def _quick(folder: Path, compiler: str) -> tuple[str, Path]:
         (["-O0", "-std=c99", "-ffp-contract=fast", "-DX=1", "-U", "Y"], "-DX=1 -U Y "),
         (["-O3", "-march=native", "-O0"], ""),
         (["-O1"], None), (["-O0", "-O2"], None), ([], None),
-        (["-O0", "-g"], None), (["-O0", "-Wall"], None), (["-O0", "-fsanitize=address"], None),
+        (["-O0", "-g"], None), (["-O0", "-fsanitize=address"], None), (["-O0", "-Wl,-s"], None),
+        (["-O0", "-Wall", "-Wextra"], ""),
     ],
 )  # fmt: skip
 def test_a_quick_compiler_is_asked_for_plain_code_alone(
@@ -160,7 +161,7 @@ def test_a_quick_compiler_is_asked_for_plain_code_alone(
     assert shared_cc.main(str(tmp_path), COMPILER, quick, arguments) == 0
     assert subprocess.run([tmp_path / "run"], check=False).returncode == 7
     lines = log.read_text().splitlines()
-    assert [line.split("-x c")[0] for line in lines] == ([] if told is None else [told])
+    assert [line.split("-o ")[0] for line in lines] == ([] if told is None else [told])
 
 
 def test_what_a_quick_compiler_does_not_take_the_other_compiles(tmp_path: Path) -> None:
@@ -171,3 +172,19 @@ def test_what_a_quick_compiler_does_not_take_the_other_compiles(tmp_path: Path) 
     assert shared_cc.main(str(tmp_path), COMPILER, quick, arguments) == 0
     assert subprocess.run([tmp_path / "run"], check=False).returncode == 7
     assert len(log.read_text().splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    "text", ["static int unused(void) { return 0; }", "int rubbish(void) { int x; return x; }"]
+)
+def test_warnings_are_told_where_a_quick_compiler_makes_the_code(
+    text: str, tmp_path: Path, capfd
+) -> None:
+    assert COMPILER
+    quick, log = _quick(tmp_path, COMPILER)
+    (tmp_path / "one.c").write_text(f"{text}\nint main(void) {{ return 7; }}\n")
+    for flags, told in (["-O0"], 1), (["-O0", "-Wall"], 1):
+        arguments = [*flags, str(tmp_path / "one.c"), "-o", str(tmp_path / "run")]
+        assert shared_cc.main(str(tmp_path), COMPILER, quick, arguments) == 0
+        assert ("[-Wun" in capfd.readouterr().err) == ("-Wall" in flags)
+        assert len(log.read_text().splitlines()) == told
