@@ -31,7 +31,7 @@ FEW = 3
 @pytest.fixture(autouse=True, scope="module")
 def _compiled_quickly(optimised: None) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(binaries, "FLAGS", (*binaries.FLAGS, "-O1"))
+        patch.setattr(binaries, "FLAGS", (*binaries.FLAGS, "-O0"))
         yield
 
 

@@ -75,7 +75,7 @@ class Made:
         if self.name not in self.pairs:
             case = self.case
             self.pairs[self.name] = Pair(
-                self.folder / self.name, case.equations, case.parameters, case.laws, "-O1"
+                self.folder / self.name, case.equations, case.parameters, case.laws, "-O0"
             )
         return self.pairs[self.name].at(self.case.parameters)
 
