@@ -4,8 +4,8 @@ Every differential in its own scenario; every scenario of the paper's figures fo
 and for all the rest, too, with BONDGRAPH_SOAK_AGREEMENTS=1. `make bench-agreement` prints the figures.
 """
 
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Callable, Iterator
+from functools import cache
 
 import numpy as np
 import pytest
@@ -30,19 +30,20 @@ FEW = 3
 
 @pytest.fixture(autouse=True, scope="module")
 def _compiled_quickly(optimised: None) -> Iterator[None]:
+    """The engine as for users; units, which run for a moment, in no time."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(binaries, "FLAGS", (*binaries.FLAGS, "-O0"))
+        patch.setattr(binaries, "words", lambda name: ("-O0",))
         yield
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("made")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, str], Made]:
+    """A differential in a scenario, once for all tests that ask for it."""
+    folder, pairs = tmp_path_factory.mktemp("made"), {}
+    return cache(lambda name, scenario: Made(name, scenario, folder, pairs))
 
 
-@pytest.fixture(scope="module")
-def pairs() -> dict:
-    return {}
+Making = Callable[[str, str], Made]
 
 
 def _check(found: Apart, limit: float) -> None:
@@ -62,42 +63,38 @@ def _cases() -> list[tuple[str, str, str]]:
 
 @pytest.mark.parametrize(("name", "scenario", "method"), _cases())
 def test_methods_that_locate_events_agree(
-    name: str, scenario: str, method: str, folder: Path, pairs: dict
+    name: str, scenario: str, method: str, made: Making
 ) -> None:
-    made = Made(name, scenario, folder, pairs)
-    found = apart(LOCATED[method](made), LOCATED["numpy exact"](made))
+    one = made(name, scenario)
+    found = apart(LOCATED[method](one), LOCATED["numpy exact"](one))
     _check(found, SAME if method == "C backend" else ALIKE)
 
 
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 @pytest.mark.parametrize(("name", "scenario"), CHOSEN)
-def test_units_agree(name: str, scenario: str, version: str, folder: Path, pairs: dict) -> None:
+def test_units_agree(name: str, scenario: str, version: str, made: Making) -> None:
     """With the simulator where CVODE locates events, with exported C where steps are fixed."""
-    made = Made(name, scenario, folder, pairs)
-    exchanged = LOCATED[f"FMI {version} exchange"](made)
-    _check(apart(exchanged, LOCATED["numpy exact"](made)), ALIKE)
-    stepped = STEPPED[f"FMI {version} co-simulation"](made, FEW)
-    _check(apart(stepped, STEPPED["exported C"](made, FEW)), SAME)
+    one = made(name, scenario)
+    exchanged = LOCATED[f"FMI {version} exchange"](one)
+    _check(apart(exchanged, LOCATED["numpy exact"](one)), ALIKE)
+    stepped = STEPPED[f"FMI {version} co-simulation"](one, FEW)
+    _check(apart(stepped, STEPPED["exported C"](one, FEW)), SAME)
 
 
 @pytest.mark.parametrize(("name", "scenario"), CHOSEN)
-def test_exported_python_and_c_make_the_same_steps(
-    name: str, scenario: str, folder: Path, pairs: dict
-) -> None:
-    made = Made(name, scenario, folder, pairs)
-    _check(apart(STEPPED["exported Python"](made, FEW), STEPPED["exported C"](made, FEW)), SAME)
+def test_exported_python_and_c_make_the_same_steps(name: str, scenario: str, made: Making) -> None:
+    one = made(name, scenario)
+    _check(apart(STEPPED["exported Python"](one, FEW), STEPPED["exported C"](one, FEW)), SAME)
 
 
 @pytest.mark.parametrize(("name", "scenario"), CHOSEN)
-def test_fixed_steps_converge_to_located_events(
-    name: str, scenario: str, folder: Path, pairs: dict
-) -> None:
+def test_fixed_steps_converge_to_located_events(name: str, scenario: str, made: Making) -> None:
     """Of fourth order; of first where something sticks or slips, seen at the end of its step."""
-    made = Made(name, scenario, folder, pairs)
-    expected, counts = LOCATED["numpy exact"](made), (10, 30)
+    case = made(name, scenario)
+    expected, counts = LOCATED["numpy exact"](case), (10, 30)
     steps = [SAMPLE / count for count in counts]
     found = [
-        apart(STEPPED["exported C"](made, count), expected, made.exact.states) for count in counts
+        apart(STEPPED["exported C"](case, count), expected, case.exact.states) for count in counts
     ]
     for step, one in zip(steps, found, strict=True):
         assert one.events <= step * (1 + 1e-9), one
