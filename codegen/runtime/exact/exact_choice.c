@@ -49,9 +49,10 @@ static int holds(const ex_choice *k, const double *v)
 }
 
 /* Whether ties are decided as late as those of a choice were. */
-static int is_as_late(const bg_instant *at, const ex_choice *k)
+static int is_as_late(const ex_context *c, const ex_choice *k)
 {
-    return at->time == k->time && at->t <= k->until
+    const bg_instant *const at = &c->run.at;
+    return at->time == k->time && at->t <= k->until && c->inputs->fastest[c->run.segment] <= k->pace
         && bg_look_ahead(at->time, at->t, at->following) == BG_LOOK_AHEAD * at->time;
 }
 
@@ -64,7 +65,7 @@ static int is_made(ex_context *c)
         ex_choice *const k = c->choices + n;
         if (!ex_is_alike(k->before, c->run.mode)
             || !ex_is_alike(k->touched, c->run.at.touched)
-            || !is_as_late(&c->run.at, k) || !holds(k, v) || !in_bounds(c, k, v))
+            || !is_as_late(c, k) || !holds(k, v) || !in_bounds(c, k, v))
             continue;
         k->used = ++c->chosen;
         memcpy(c->run.mode, k->after, EX_K * sizeof *k->after);
@@ -88,7 +89,7 @@ static void allow(ex_glance *g)
 {
     const ex_context *const c = g->c;
     ex_choice *const to = g->to;
-    const double pace = c->inputs->fastest[c->run.segment];
+    const double pace = to->pace = c->inputs->fastest[c->run.segment];
     double w[EX_W], later[EX_W];
     to->until = 2.0 * fabs(c->run.at.t);
     to->steady = is_steady(c->inputs, c->run.segment) ? c->run.segment : -1;
@@ -145,7 +146,7 @@ static void keep(ex_context *c, const int *before)
     to->time = c->run.at.time;
     ex_vector(c, c->run.at.t, c->s, g.v);
     allow(&g);
-    if (!is_as_late(&c->run.at, to) || !look_loose(&g))
+    if (!is_as_late(c, to) || !look_loose(&g))
         return;
     for (int i = 0; i < EX_K; i++)
         bg_add(&switches, i);

@@ -5,16 +5,29 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Whether the inputs that time the events of an entry begin as they did. */
-static int begins_alike(const ex_entry *e, const ex_stride *k, const double *slots)
+/* Whether a chain of inputs begins as it did, if it times events: values and slopes as they weigh. */
+static int chain_is_alike(const ex_entry *e, int chain, const double *start, const double *slots)
 {
+    const int first = e->chains.first[chain];
+    const int last = first + e->chains.depth[chain] * e->chains.width[chain];
     double off = 0.0, size = 0.0;
-    for (int i = 0; i < EX_G; i++) {
-        const double was = e->paced[i] ? k->start[i] : 0.0, now = e->paced[i] ? slots[i] : 0.0;
-        off = bg_greater(off, fabs(now - was));
-        size = bg_greater(size, fabs(was));
+    for (int i = first; i < last && e->paced[i]; i++) {
+        off = bg_greater(off, e->weight[EX_N + i] * fabs(slots[i] - start[i]));
+        size = bg_greater(size, e->weight[EX_N + i] * fabs(start[i]));
     }
     return off <= BG_ALIKE * size;
+}
+
+/* Whether the inputs that time the events of an entry begin as they did, with the same constant parts. */
+static int begins_alike(const ex_stretch *stretch, const ex_stride *k, const double *slots)
+{
+    const ex_entry *const e = stretch->entry;
+    int same = 1;
+    for (int i = 0; i < EX_T; i++)
+        same &= e->moves[i] != EX_TIMED || stretch->level[i] == k->level[i];
+    for (int i = 0; i < e->chains.count; i++)
+        same &= chain_is_alike(e, i, k->start, slots);
+    return same;
 }
 
 /* Whether a stretch of an entry, with `left` until it has to end, is this one. */
@@ -25,7 +38,7 @@ static int suits(const ex_context *c, const ex_stride *k, int entry, const doubl
     if (bg_is_empty(&k->ports) ? fabs(left - k->h) > BG_ALIKE * k->h
                                : left <= k->h * (1.0 + BG_ALIKE))
         return 0;
-    return !c->entries[entry].timed || begins_alike(c->entries + entry, k, slots);
+    return !c->entries[entry].timed || begins_alike(&c->stretch, k, slots);
 }
 
 /* Adds rows, by columns, times z; sums stay in registers. */
@@ -170,7 +183,7 @@ void ex_notice(ex_context *c, double t, const double *slots)
     for (int i = 0; i < c->stridden; i++) {
         const ex_stride *const k = c->strides + i;
         if (k->entry == entry && bg_is_same(&k->ports, &ports)
-            && fabs(k->h - h) <= BG_ALIKE * h && (!e->timed || begins_alike(e, k, slots)))
+            && fabs(k->h - h) <= BG_ALIKE * h && (!e->timed || begins_alike(&c->stretch, k, slots)))
             return;
         if (k->used < c->strides[oldest].used)
             oldest = i;
@@ -182,4 +195,5 @@ void ex_notice(ex_context *c, double t, const double *slots)
     k->ports = ports;
     k->h = h;
     memcpy(k->start, slots, sizeof k->start);
+    memcpy(k->level, c->stretch.level, sizeof k->level);
 }

@@ -22,14 +22,15 @@ enum {
 /* What moves a trigger: nothing, inputs alone, or the state. */
 enum { EX_STILL, EX_TIMED, EX_MOVED };
 
-/* `entry`: the place of its own, -1 where that is no more; `used`: when it was asked for last; `known`: whether
- * it has been worked out, -1 where that is of no use. `ports`: whose events end it after `h`, as time
- * alone moves their triggers; none where it ends as told. `start`: the slots at its begin. `lift`, by
- * columns; `bend`: bounds on how far triggers are from straight lines, per rate. */
+/* `entry`: the place of its own, -1 where that is no more; `used`: when it was asked for last; `known`:
+ * whether it has been worked out, -1 where that is of no use. `ports`: whose events end it after `h`, as
+ * time alone moves their triggers; none where it ends as told. `start`: the slots at its begin; `level`:
+ * the constant parts of triggers. `lift`, by columns; `bend`: bounds on how far triggers are from straight
+ * lines, per rate. */
 typedef struct {
     int entry, used, known;
     bg_set ports;
-    double h, start[EX_G];
+    double h, start[EX_G], level[EX_TRIGGERS];
     double lift[EX_Z][EX_LIFT], bend[EX_Z][EX_TRIGGERS];
 } ex_stride;
 

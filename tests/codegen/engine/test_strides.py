@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from references.build import bond_graph
 
 import bondgraph as bg
-from codegen import Result, Simulator, Sine, simulator
+from codegen import Result, Simulator, Sine, Step, simulator
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 
@@ -178,4 +178,32 @@ def test_what_the_state_does_within_a_stretch_is_seen() -> None:
     ]  # fmt: skip
     assert [event.time for event in told] == pytest.approx(
         [*(np.arange(1, halves + 1) * np.pi / w), first], abs=1e-11
+    )
+
+
+STEPS = [
+    *(bg.Se(f"s{k}", f"e{k}") for k in (1, 2, 3, 5)), bg.One("w"), bg.Sw("q", on="sin(w*t) + 2 + a"),
+    bg.Zero("n"), bg.Sw("d", on="-e_d", off="f_d"), bg.One("l"), bg.I("L", 1, flow="i"), bg.R("R", 1),
+]  # fmt: skip
+STEPPED = bg.derive(bond_graph(STEPS, "s1>w s2>w s3>w s5>w w>q w>n n>d n>l l>L l>R"))
+
+
+def test_what_inputs_do_from_a_step_on_is_seen() -> None:
+    """Five stretches of a period, each to a step of a source: from the step of a on, after four, the same
+    sine crosses its level at 7/12 and 11/12 of each period."""
+    period = 0.25
+    ready = simulator(STEPPED, {"w": 2 * np.pi / period}, backend="c")
+    inputs = {f"e{k}": Step(k * period, 1.0, 1.0 if k == 1 else 0.5) for k in (1, 2, 3, 5)}
+    inputs["a"] = Step(4 * period, -1.5)
+    done = ready.run([0.0, 6 * period], inputs=inputs, method="exact")
+    assert done.backend == "c"
+    expected = [
+        ((k + part / 12) * period, port, kind)
+        for k in (4, 5)
+        for part, first in ((7, "off"), (11, "on"))
+        for port, kind in (("q", first), ("d", "on" if first == "off" else "off"))
+    ]
+    assert [(event.port, event.kind) for event in done.events] == [one[1:] for one in expected]
+    assert [event.time for event in done.events] == pytest.approx(
+        [one[0] for one in expected], abs=1e-13
     )
