@@ -113,7 +113,7 @@ def plain(flags: Sequence[str]) -> list[str] | None:
         elif one.startswith("-Wl,") or not one.startswith((*NEEDLESS, "-W")):
             return None
     wanted = [one for one in flags if one.startswith("-O")]
-    return told if wanted[-1:] == ["-O0"] else None
+    return told if wanted[-1:] in ([], ["-O0"]) else None
 
 
 def compiled(

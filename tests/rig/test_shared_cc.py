@@ -146,7 +146,7 @@ def _quick(folder: Path, compiler: str) -> tuple[str, Path]:
     [
         (["-O0", "-std=c99", "-ffp-contract=fast", "-DX=1", "-U", "Y"], "-DX=1 -U Y "),
         (["-O3", "-march=native", "-O0"], ""),
-        (["-O1"], None), (["-O0", "-O2"], None), ([], None),
+        (["-O1"], None), (["-O0", "-O2"], None), ([], ""),
         (["-O0", "-g"], None), (["-O0", "-fsanitize=address"], None), (["-O0", "-Wl,-s"], None),
         (["-O0", "-Wall", "-Wextra"], ""),
     ],
