@@ -6,7 +6,7 @@
 
 /* Whether nothing but what ends it can happen in a stride: triggers that the state moves differ from
  * straight lines by what bounds allow. */
-static int is_certain(const ex_entry *e, const ex_ends *to)
+static int is_foreseen(const ex_entry *e, const ex_ends *to)
 {
     int sure = 1;
     for (int i = 0; i < EX_T; i++) {
@@ -18,7 +18,7 @@ static int is_certain(const ex_entry *e, const ex_ends *to)
 }
 
 /* How much later than told the first of its ports falls to zero; 0 at *alike where they differ. */
-static double late(const ex_stride *k, const ex_ends *to, int *alike)
+static double how_late(const ex_stride *k, const ex_ends *to, int *alike)
 {
     double first = 0.0, last = 0.0;
     int any = 0;
@@ -60,8 +60,8 @@ int ex_foresee(ex_context *c, double stop)
         return 0;
     const int told = bg_is_empty(&k->ports);
     ex_ends_of(stretch, k, z, &to);
-    const double off = told ? stop - t - k->h : late(k, &to, &alike);
-    if (!alike || !is_certain(stretch->entry, &to))
+    const double off = told ? stop - t - k->h : how_late(k, &to, &alike);
+    if (!alike || !is_foreseen(stretch->entry, &to))
         return 0;
     for (int j = 0; j < EX_Z; j++)
         stretch->ahead.z[j] = to.z[j] + off * to.rates[j];

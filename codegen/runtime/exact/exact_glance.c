@@ -105,7 +105,7 @@ static double least_near(const ex_glance *g, const double *row)
 }
 
 /* What contradicts a mode that can be evaluated, impulses taken into account; 0 where it is not sure. */
-static int judge(ex_glance *g, const ex_mode *mode, double (*stay)[EX_PORTS], const double *most,
+static int contradicted(ex_glance *g, const ex_mode *mode, double (*stay)[EX_PORTS], const double *most,
                  const int *shocks, bg_set *broken)
 {
     ex_limits limits;
@@ -142,7 +142,7 @@ static int judge(ex_glance *g, const ex_mode *mode, double (*stay)[EX_PORTS], co
 }
 
 /* Whether slips that only inputs rule are not zero in a mode without impulses, for sure: it is none. */
-static int ruled_out(ex_glance *g, const ex_mode *mode)
+static int slides_for_sure(ex_glance *g, const ex_mode *mode)
 {
     ex_limits limits;
     ex_limit(g, mode, g->to->most, &limits);
@@ -173,11 +173,11 @@ int ex_glance_at(void *self, const bg_set *held, int *holds, bg_set *broken)
     if (status)
         return BG_UNDECIDED;
     if (mode->ruled)
-        return !mode->held && ruled_out(g, mode) ? BG_OK : BG_UNDECIDED;
+        return !mode->held && slides_for_sure(g, mode) ? BG_OK : BG_UNDECIDED;
     memcpy(stay, mode->stay, sizeof stay);
     memcpy(most, g->to->most, sizeof most);
     if (!ex_glance_strike(g, mode, stay, most, shocks, &struck)
-        || !judge(g, mode, stay, most, shocks, broken))
+        || !contradicted(g, mode, stay, most, shocks, broken))
         return BG_UNDECIDED;
     *holds = bg_is_empty(broken);
     memcpy(g->mode, tried, sizeof g->mode);

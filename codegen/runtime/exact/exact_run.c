@@ -140,7 +140,7 @@ static int advance(void *context, double stop)
 }
 
 /* What is kept of strides and choices is of one run, which so is the same whatever was before. */
-static void set_out(ex_context *c)
+static void start_anew(ex_context *c)
 {
     c->glancing = c->model->switched;
     for (int i = 0; i < EX_K; i++)
@@ -160,7 +160,7 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
     c->model = model;
     c->inputs = inputs;
     c->task = task;
-    set_out(c);
+    start_anew(c);
     c->advance = how;
     c->caller = caller;
     c->known = c->next = 0;

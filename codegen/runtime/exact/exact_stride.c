@@ -42,7 +42,7 @@ static int suits(const ex_context *c, const ex_stride *k, int entry, const doubl
 }
 
 /* Adds rows, by columns, times z; sums stay in registers. */
-static inline void add_rows(int rows, int width, const double *restrict columns,
+static inline void add_columns(int rows, int width, const double *restrict columns,
                             const double *restrict z, double *restrict to)
 {
 #pragma GCC unroll 1
@@ -63,12 +63,12 @@ void ex_ends_of(const ex_stretch *stretch, const ex_stride *k, const double *res
     memcpy(rate, stretch->b, sizeof rate);
     memcpy(to->begins, stretch->level, sizeof to->begins);
     memset(to->bend, 0, sizeof to->bend);
-    add_rows(EX_Z, EX_Z, e->M[0], z, rate);
-    add_rows(EX_T, EX_TRIGGERS, e->trigger[0], z, to->begins);
+    add_columns(EX_Z, EX_Z, e->M[0], z, rate);
+    add_columns(EX_T, EX_TRIGGERS, e->trigger[0], z, to->begins);
     for (int i = 0; i < EX_Z; i++)
         size[i] = fabs(rate[i]);
-    add_rows(EX_LIFT, EX_LIFT, k->lift[0], rate, lifted);
-    add_rows(EX_T, EX_TRIGGERS, k->bend[0], size, to->bend);
+    add_columns(EX_LIFT, EX_LIFT, k->lift[0], rate, lifted);
+    add_columns(EX_T, EX_TRIGGERS, k->bend[0], size, to->bend);
     for (int i = 0; i < EX_Z; i++)
         to->z[i] = z[i] + lifted[EX_TO_STATE + i];
     memcpy(to->rates, lifted + EX_TO_RATES, sizeof to->rates);

@@ -23,7 +23,7 @@ static int promising(const double *values)
 }
 
 /* Between points k and k + 1; a chord beside which the function bends downwards tells nothing. */
-static place between(const double *t, const double *f, int count, int k)
+static place place_between(const double *t, const double *f, int count, int k)
 {
     const double h = t[k + 1] - t[k], chord = (f[k + 1] - f[k]) / h;
     const double before = k > 0 ? (f[k] - f[k - 1]) / (t[k] - t[k - 1]) : chord;
@@ -46,9 +46,9 @@ static place between(const double *t, const double *f, int count, int k)
 
 static place lowest_of(const double *t, const double *f, int count)
 {
-    place found = between(t, f, count, 0);
+    place found = place_between(t, f, count, 0);
     for (int k = 1; k + 1 < count; k++) {
-        const place one = between(t, f, count, k);
+        const place one = place_between(t, f, count, k);
         if (one.least < found.least)
             found = one;
     }
