@@ -54,7 +54,7 @@ def _program(folder: Path, sources: list[str], places: list[str], to: str) -> li
     heads = "".join(f"int {place}_run(void);\n" for place in places)
     calls = " || ".join(f"{place}_run()" for place in places)
     main.write_text(f"{heads}int main(void)\n{{\n    return {calls};\n}}\n")
-    program = compiled(folder, [*sources, str(main)], "-O1", to=to)
+    program = compiled(folder, [*sources, str(main)], "-O0", to=to)
     done = subprocess.run([program], capture_output=True, text=True, check=True)
     return done.stdout.splitlines()
 

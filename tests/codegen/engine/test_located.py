@@ -260,7 +260,7 @@ def test_the_main_program_runs_a_scenario_with_events_located(tmp_path: Path) ->
     case = prepared("alsd", "fig11")
     arguments = (case.equations, case.parameters, case.laws)
     files = to_c(*arguments, name="alsd", main=True, initial=case.initial, inputs=case.inputs)
-    program = compiled(tmp_path, written(tmp_path, files), "-O1")
+    program = compiled(tmp_path, written(tmp_path, files), "-O0")
     table, names, told = _rows(program, "1", "0.001", "located")
     run = simulator(*arguments).run(case.times, case.initial, case.inputs)
     events = [line.split(",") for line in told.splitlines()]
