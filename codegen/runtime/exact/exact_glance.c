@@ -105,8 +105,8 @@ static double least_near(const ex_glance *g, const double *row)
 }
 
 /* What contradicts a mode that can be evaluated, impulses taken into account; 0 where it is not sure. */
-static int contradicted(ex_glance *g, const ex_mode *mode, double (*stay)[EX_PORTS], const double *most,
-                 const int *shocks, bg_set *broken)
+static int contradicted(ex_glance *g, const ex_mode *mode, double (*stay)[EX_PORTS],
+                        const double *most, const int *shocks, bg_set *broken)
 {
     ex_limits limits;
     keeper tied[EX_PORTS];

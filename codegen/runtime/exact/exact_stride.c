@@ -43,7 +43,7 @@ static int suits(const ex_context *c, const ex_stride *k, int entry, const doubl
 
 /* Adds rows, by columns, times z; sums stay in registers. */
 static inline void add_columns(int rows, int width, const double *restrict columns,
-                            const double *restrict z, double *restrict to)
+                               const double *restrict z, double *restrict to)
 {
 #pragma GCC unroll 1
     for (int i = 0; i < rows; i++) {
