@@ -14,7 +14,7 @@ from codegen.modes.trials import Sight
 from codegen.modes.verdicts import limits_of, look_at, room
 from codegen.numbers.arrays import Array
 from codegen.program.layout import CAPS, INPUTS, READINGS
-from codegen.runs.dips import dip
+from codegen.runs.dips import dip, may_dip
 from codegen.runs.track import Dense
 from codegen.standalone.roots import root
 from codegen.tuning import TUNING
@@ -65,7 +65,7 @@ class Watch:
         self._before = values[-1]
         roots: dict[int, float] = {}
         for i in range(len(self._armed)):
-            root = self._first_fall(i, grid, [value[i] for value in values], dense)
+            root = self._first_fall(i, grid, [float(value[i]) for value in values], dense)
             if root is not None:
                 roots[i] = root
         if not roots:
@@ -78,12 +78,15 @@ class Watch:
         self, i: int, grid: Sequence[float], values: Sequence[float], dense: Dense
     ) -> float | None:
         """The first time in a step at which trigger i falls through zero, seen or hidden in a dip."""
+        near = may_dip(values)
         for k in range(len(grid) - 1):
+            # What is rising from zero, after its own event, has not come from above.
+            risen = self._armed[i] or values[k] > self._limits[i]
             root = self._fall(i, grid[k], grid[k + 1], values[k], values[k + 1], dense)
             if root is not None:
                 return root
-            if k > 0 and self._armed[i]:
-                root = self._dip(i, grid[k - 1 : k + 2], values[k - 1 : k + 2], dense)
+            if near and risen:
+                root = self._dip(i, grid, values, k, dense)
                 if root is not None:
                     return root
         return None
@@ -151,10 +154,10 @@ class Watch:
         return root(above, t_a, t_b)
 
     def _dip(
-        self, i: int, grid: Sequence[float], values: Sequence[float], dense: Dense
+        self, i: int, grid: Sequence[float], values: Sequence[float], k: int, dense: Dense
     ) -> float | None:
-        """The first of two roots between points, where a trigger dips below zero and comes back."""
+        """The first root between points k and k + 1, where a trigger dips below zero and comes back."""
         lowest = dip(
-            lambda t: float(self._triggers(t, self._snapshot(t, dense(t)))[i]), grid, values
+            lambda t: float(self._triggers(t, self._snapshot(t, dense(t)))[i]), grid, values, k
         )
-        return None if lowest is None else self._crossing(i, grid[0], lowest, 0.0, dense)
+        return None if lowest is None else self._crossing(i, grid[k], lowest, 0.0, dense)

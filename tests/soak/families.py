@@ -232,6 +232,7 @@ FAMILIES = (
         6,
         200,
     ),
+    Family("dips", "codegen/runs/test_dipping_guards.py", 12, 600),
     Family(
         "diodes",
         "codegen/switched/test_switched_networks.py::test_diodes_with_resistances",

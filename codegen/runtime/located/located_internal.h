@@ -29,9 +29,10 @@ int bg_progress_check(bg_located *c);
 int bg_watch_begin(bg_located *c);
 int bg_watch_step(bg_located *c, int *found, double *time, int *ports);
 
-/* located_dip.c: 1 where what is above zero at three points is not at one between them. */
-int bg_dip(double (*above)(void *self, double at), void *self, const double *times,
-           const double *values, double *found);
+/* located_dip.c: 1 where what is above zero at points k and k + 1, of `count`, is not at one
+ * between them, which is found. */
+int bg_dip(double (*above)(void *self, double at), void *self, int count, const double *times,
+           const double *values, int k, double *found);
 
 /* The mean of values over scales, which repeat. */
 static inline double bg_norm(int count, const double *values, const double *scale)

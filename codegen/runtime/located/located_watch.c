@@ -96,30 +96,33 @@ static int trigger_fall(root_search *asked, double t_a, double t_b, double a, do
     return 1;
 }
 
-/* The first of two roots where a trigger dips below zero between three points and comes back. */
-static int dip(root_search *asked, const double *t, const double *values, double *root)
+/* The first of two roots between points k and k + 1, where a trigger dips below zero and comes
+ * back. */
+static int dip(root_search *asked, const double *times, const double *values, int k, double *root)
 {
     double lowest;
     asked->level = 0.0;
-    if (!bg_dip(above, asked, t, values, &lowest))
+    if (!bg_dip(above, asked, POINTS, times, values, k, &lowest))
         return 0;
-    *root = crossing(asked, t[0], lowest, 0.0);
+    *root = crossing(asked, times[k], lowest, 0.0);
     return 1;
 }
 
-/* The first time in a step at which a trigger falls through zero, seen or hidden in a dip. */
+/* The first time in a step at which a trigger falls through zero, seen or hidden in a dip. What is
+ * rising from zero, after its own event, has not come from above. */
 static int first_fall(root_search *asked, const double *times, double values[POINTS][PORTS],
                       double *root)
 {
+    const bg_watch *const watch = &asked->c->watch;
     const int i = asked->port;
+    double own[POINTS];
+    for (int k = 0; k < POINTS; k++)
+        own[k] = values[k][i];
     for (int k = 0; k + 1 < POINTS; k++) {
-        if (trigger_fall(asked, times[k], times[k + 1], values[k][i], values[k + 1][i], root))
+        const int risen = watch->armed[i] || own[k] > watch->limit[i];
+        if (trigger_fall(asked, times[k], times[k + 1], own[k], own[k + 1], root)
+            || (risen && dip(asked, times, own, k, root)))
             return 1;
-        if (k > 0 && asked->c->watch.armed[i]) {
-            const double three[3] = {values[k - 1][i], values[k][i], values[k + 1][i]};
-            if (dip(asked, times + k - 1, three, root))
-                return 1;
-        }
     }
     return 0;
 }

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles.called import Unit
-from oracles.switched_units import SWITCHED, SwitchedCase, dog, joined, rectifier
+from oracles.switched_units import SWITCHED, SwitchedCase, dog, joined, passing, rectifier
 from oracles.units import sampled, simulated
 from soak.families import whole
 
@@ -80,6 +80,18 @@ def test_co_simulation_locates_events_at_any_communication_step(pair: Pair, samp
     output = [*pair.expected.states, *pair.names]
     found = simulated(pair.path, "CoSimulation", pair.case, output, samples)
     pair.check(found, samples, 1e-9)
+
+
+@pytest.mark.parametrize("step", [0.5, 6.0])
+def test_co_simulation_locates_what_dips_inside_a_step(step: float, tmp_path: Path) -> None:
+    """Between x = 0.4 - d and 0.4 + d nothing flows, six times upwards and downwards until t = 6."""
+    unit = Unit(passing(), "3.0", tmp_path)
+    made = unit.started("CoSimulation")
+    for k in range(round(6.0 / step)):
+        _step(made, k * step, step)
+    without = (np.arcsin(0.401) - np.arcsin(0.399)) / 3
+    assert unit.get(made, "q") == pytest.approx([6.0 - 6 * without], abs=1e-8)
+    unit.free(made)
 
 
 @pytest.mark.parametrize("version", VERSIONS)

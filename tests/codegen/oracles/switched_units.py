@@ -123,6 +123,18 @@ def crank() -> SwitchedCase:
     )  # fmt: skip
 
 
+def passing() -> SwitchedCase:
+    """An oscillator x = sin 3 t; a current of 1 but where ``|x - 0.4| < d``, its charge counted as q."""
+    nodes = [
+        bg.One("m"), bg.I("M", "1/3", flow="v"), bg.C("K", "1/3", effort="x"), bg.Se("u", 1), bg.One("j"),
+        bg.R("r", 1), bg.Df("count", integrate="q"), bg.Sw("k", on="Abs(x - 0.4) - d"),
+    ]  # fmt: skip
+    return _case(
+        nodes, "m>M m>K u>j j>k j>r j>count", ["k"], {"d": 1e-3}, initial={"v": 1.0, "x": 0.0},
+        on=("k",), end=6.0,
+    )  # fmt: skip
+
+
 SWITCHED: Mapping[str, Callable[[], SwitchedCase]] = {
     made.__name__: made for made in (rectifier, buck, dog, freewheel, controlled, joined, crank)
 }

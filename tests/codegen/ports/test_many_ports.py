@@ -48,6 +48,13 @@ def test_a_bridge_and_a_gearbox_are_located_in_c_as_in_numpy(case: Many) -> None
     _agree(case, _run(case, "c"), expected, 1e-8)
 
 
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_implicit_steps_of_a_gearbox_leave_rest_as_explicit_ones(backend: str) -> None:
+    """Where it breaks loose its slips rise from zero as t^2: none of them dips to zero."""
+    case = gearbox()
+    _agree(case, _run(case, backend, "Radau"), _run(case, "c", "DOP853"), 1e-8)
+
+
 def test_blocks_that_all_touch_are_pivoted_the_same_way_in_c() -> None:
     """Twelve ports in one block, more than are enumerated."""
     case = stack(12)
