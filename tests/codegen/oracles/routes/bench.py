@@ -41,13 +41,13 @@ class Bench:
     def run(self) -> codegen.Result:
         """By numpy: what the other routes find states and switches of."""
         kind = self.kind
-        return codegen.simulator(kind.equations, kind.numbers).run(
+        return codegen.simulator(kind.equations, kind.numbers, kind.laws).run(
             kind.times(), kind.initial, kind.signals, initially_on=kind.on
         )
 
     @cached_property
     def compiled(self) -> codegen.Simulator:
-        return codegen.simulator(self.kind.equations, self.kind.numbers, backend="c")
+        return codegen.simulator(self.kind.equations, self.kind.numbers, self.kind.laws, "c")
 
     @property
     def given(self) -> dict[str, object]:
@@ -59,7 +59,9 @@ class Bench:
     def program(self) -> Path:
         """The exported C with its main program, as a user compiles it."""
         kind = self.kind
-        files = codegen.to_c(kind.equations, kind.numbers, name="kind", main=True, **self.given)
+        files = codegen.to_c(
+            kind.equations, kind.numbers, kind.laws, "kind", main=True, **self.given
+        )
         return compiled(self.folder, written(self.folder, files), "-O0")
 
     def printed(self, *how: str) -> Mapping[str, Array]:
@@ -77,7 +79,7 @@ class Bench:
     def unit(self, version: str) -> tuple[Path, Case]:
         """A unit, and the case that it is made of."""
         kind = self.kind
-        case = Case(kind.equations, kind.numbers, None, kind.initial, kind.signals, kind.end)
+        case = Case(kind.equations, kind.numbers, kind.laws, kind.initial, kind.signals, kind.end)
         path = self.folder / f"unit{version[0]}.fmu"
         if not path.exists():
             case.written(path, version, initially_on=kind.on)

@@ -1,6 +1,7 @@
 """Dry friction in its forms, each with a run that is known by hand."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from references.build import bond_graph
@@ -152,6 +153,12 @@ def on_a_spring() -> Kind:
     )
 
 
+def put_later() -> Kind:
+    """The same, the port open where the graph is derived, and closed by dry friction after it."""
+    closed = _jenkins("put later on a spring", [bg.R("rub")], "z>rub", {"N": 2.0})
+    return replace(closed, later={"rub": "friction(N)"})
+
+
 def in_series() -> Kind:
     """The same with a second slider beside it, of a greater level: it never slips."""
     rubs = [
@@ -229,5 +236,5 @@ def behind_moving_ratio() -> Kind:
 
 FRICTION = (
     coulomb, level_of_input, breakaway, stribeck, asymmetric, level_of_state, curve_of_state,
-    ruled_by_load, on_a_spring, in_series, together, chain, behind_moving_ratio,
+    ruled_by_load, on_a_spring, put_later, in_series, together, chain, behind_moving_ratio,
 )  # fmt: skip

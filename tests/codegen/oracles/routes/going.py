@@ -24,18 +24,25 @@ Route = Callable[[Bench], None]
 
 
 def explain(bench: Bench) -> None:
-    """Every state, every switch and every law is told."""
+    """Every state, every switch and every law is told; of many states, how many there are."""
     kind = bench.kind
     text = str(bg.explain(kind.graph))
-    told = [*map(str, kind.equations.states), *kind.switches, *map(str, kind.equations.laws)]
-    assert [name for name in told if name not in text] == []
+    states = [*map(str, kind.equations.states)]
+    told = [*states, *kind.switches, *map(str, kind.equations.laws)]
+    untold = [name for name in told if name not in text]
+    if len(states) > 100:
+        first, last = ", ".join(states[:5]), ", ".join(states[-2:])
+        assert f"{len(states)} states: {first}, ..., {last}" in text
+        assert {*untold} < {*states}
+    else:
+        assert untold == []
 
 
 def explicit(bench: Bench) -> None:
     """The rates, at what the run gives at one instant, are those of the run about it."""
-    kind, rates = bench.kind, bg.explicit(bench.kind.equations)
+    kind, rates = bench.kind, bg.explicit(bench.kind.equations, bench.kind.laws)
     h = 1e-4 * kind.end
-    run = codegen.simulator(kind.equations, kind.numbers).run(
+    run = codegen.simulator(kind.equations, kind.numbers, kind.laws).run(
         [0.0, kind.at - h, kind.at, kind.at + h], kind.initial, kind.signals, initially_on=kind.on
     )
     numbers = {sp.Symbol(name): value for name, value in kind.numbers.items()}
@@ -88,6 +95,7 @@ def commands(bench: Bench) -> None:
         ("--set", kind.numbers),
         ("--initial", kind.initial),
         ("--input", kind.inputs),
+        ("--law", kind.later),
     ):
         words += [word for name, value in given.items() for word in (switch, f"{name}={value}")]
     words += [word for name in kind.on for word in ("--on", name)]
@@ -146,7 +154,7 @@ def sweep_c(bench: Bench) -> None:
 def _swept(bench: Bench, backend: str, within: float) -> None:
     """Two runs: the kind's own, and one with another first number, against that by itself."""
     kind, (name, value) = bench.kind, next(iter(bench.kind.numbers.items()))
-    family = codegen.Family(kind.equations, kind.numbers, backend=backend)
+    family = codegen.Family(kind.equations, kind.numbers, kind.laws, backend=backend)
     state = next(iter(kind.known(kind.times(), bench.run)))
     measures = {"all": codegen.samples(state), "last": codegen.final(state)}
     found = codegen.sweep(
@@ -155,7 +163,7 @@ def _swept(bench: Bench, backend: str, within: float) -> None:
     )  # fmt: skip
     if found.failed:
         raise bg.SimulationError(found.failed[0].message)
-    other = codegen.simulator(kind.equations, {**kind.numbers, name: 1.01 * value}).run(
+    other = codegen.simulator(kind.equations, {**kind.numbers, name: 1.01 * value}, kind.laws).run(
         kind.times(), kind.initial, kind.signals, initially_on=kind.on
     )
     for row, run in zip(found["all"], (bench.run, other), strict=True):
@@ -166,7 +174,7 @@ def _swept(bench: Bench, backend: str, within: float) -> None:
 def to_python(bench: Bench) -> None:
     """Fixed steps, as a real-time target takes them."""
     kind = bench.kind
-    module = loaded(codegen.to_python(kind.equations, kind.numbers, name="kind"))
+    module = loaded(codegen.to_python(kind.equations, kind.numbers, kind.laws, "kind"))
     on = {"initially_on": list(kind.on)} if kind.switches else {}
     run = module.simulate(kind.times(), kind.initial, kind.signals, step=kind.end / FEW, **on)
     bench.check(run, stepped(FEW), aside=1.5 * kind.end / FEW)
@@ -197,7 +205,7 @@ def linearize(bench: Bench) -> None:
     """In the mode of the run: along it, rates change as the linear model says."""
     kind = bench.kind
     h = 1e-3 * kind.end
-    run = codegen.simulator(kind.equations, kind.numbers).run(
+    run = codegen.simulator(kind.equations, kind.numbers, kind.laws).run(
         [0.0, *(kind.at + h * np.arange(-2, 3))], kind.initial, kind.signals, initially_on=kind.on
     )
     given = {*map(str, kind.equations.inputs)}
@@ -209,8 +217,14 @@ def linearize(bench: Bench) -> None:
     names = {*map(str, kind.equations.signals), *run.states, *outside} - told
     read = {*map(str, set().union(*(law.free_symbols for law in kind.equations.laws.values())))}
     point = {name: float(run[name][3]) for name in names} | {"t": kind.at}
+    # On which side of a corner a law is, may depend on its numbers.
+    point |= {name: value for name, value in kind.numbers.items() if name in read}
     model = bg.linearize(
-        kind.equations, at=point, mode=kind.mode, inputs=[name for name in outside if name in read]
+        kind.equations,
+        at=point,
+        laws=kind.laws,
+        mode=kind.mode,
+        inputs=[name for name in outside if name in read],
     )
     numbers = {sp.Symbol(name): value for name, value in kind.numbers.items()}
     sizes = len(model.states), len(model.inputs)
@@ -233,7 +247,7 @@ def trim(bench: Bench) -> None:
     """A steady state, from which a run does not move."""
     kind = bench.kind
     rest = kind.rest or {}
-    ready = codegen.simulator(kind.equations, kind.numbers)
+    ready = codegen.simulator(kind.equations, kind.numbers, kind.laws)
     point = codegen.trim(ready, rest.get("inputs"), rest.get("initial"))
     start = {name: point[name] for name in ready.states}
     run = ready.run([0.0, 0.01 * kind.end], start, rest.get("inputs"), initially_on=kind.on)

@@ -9,7 +9,7 @@ import numpy as np
 
 import bondgraph as bg
 from codegen import Signal
-from differentials.commands.signals import signal
+from differentials.commands.signals import law, signal
 
 Array = np.ndarray
 Known = Callable[[Array, Mapping[str, Array]], Mapping[str, Array]]
@@ -20,6 +20,7 @@ Known = Callable[[Array, Mapping[str, Array]], Mapping[str, Array]]
 class Kind:
     """A graph and a run of it from 0 to ``end`` [s]; ``inputs`` as the command line takes them.
 
+    ``later``: laws of open ports, put in after the graph is derived, as the command line takes them.
     ``known``: what the run is by hand. ``rest``: inputs and a start for a steady state; None where there
     is none at all. ``mode``: what ports do at ``at`` [s], in the words of events. ``ends``: nodes that
     have impulses, so that fixed steps and samples beside them are of either side.
@@ -32,6 +33,7 @@ class Kind:
     known: Known
     end: float
     initial: Mapping[str, float] = field(default_factory=dict)
+    later: Mapping[str, str] = field(default_factory=dict)
     on: tuple[str, ...] = ()
     at: float = 0.0
     mode: Mapping[str, str] = field(default_factory=dict)
@@ -44,6 +46,10 @@ class Kind:
     @property
     def signals(self) -> dict[str, Signal]:
         return {name: signal(text) for name, text in self.inputs.items()}
+
+    @property
+    def laws(self) -> dict[str, object]:
+        return {name: law(text) for name, text in self.later.items()}
 
     @property
     def switches(self) -> list[str]:

@@ -5,6 +5,8 @@ from collections.abc import Callable, Sequence
 from oracles.routes.friction import FRICTION
 from oracles.routes.going import COMPILED, ROUTES
 from oracles.routes.kind import Kind
+from oracles.routes.kinds import KINDS
+from oracles.routes.lawful import LAWFUL
 from oracles.routes.plain import PLAIN
 from oracles.routes.switches import SWITCHES
 from oracles.routes.table import REFUSALS, REFUSED
@@ -21,7 +23,7 @@ than the toolkit does.
 WHAT = """
 | route | what is asked of it |
 |---|---|
-| explain, latex | every state, switch and law is told |
+| explain, latex | every state, switch and law is told; of hundreds of states, how many there are |
 | explicit | its rates are the slopes of the run |
 | drawing | every node, every bond with its stroke, a switch as one |
 | JSON, GraphML | read again, the graph has the same equations, laws and switches |
@@ -40,7 +42,7 @@ def page() -> str:
     for title, kinds in (
         ("Dry friction", FRICTION),
         ("Switches", SWITCHES),
-        ("No port that switches", PLAIN),
+        ("No port that switches", (*PLAIN, *LAWFUL)),
     ):
         plain = [route for route in ROUTES if route not in COMPILED]
         parts += [f"\n## {title}\n", *_table(kinds, plain), "", *_table(kinds, COMPILED)]
@@ -48,7 +50,7 @@ def page() -> str:
     for at, one in enumerate(REFUSALS, 1):
         word = "For good" if one.genuine else "Not yet"
         parts.append(f"{at}. {word}. {one.reason}")
-    cells = len(ROUTES) * len((*FRICTION, *SWITCHES, *PLAIN))
+    cells = len(ROUTES) * len(KINDS)
     later = sum(not one.genuine for one in REFUSED.values())
     parts.append(
         f"\nOf {cells} cells {cells - len(REFUSED)} go, {len(REFUSED) - later} are refused for good, "

@@ -19,7 +19,8 @@ class Refusal:
 REFUSALS = (
     Refusal(
         ("stribeck", "asymmetric", "level_of_state", "curve_of_state", "ruled_by_load",
-         "behind_moving_ratio", "nonlinear_resistance", "nonlinear_storage", "crank"),
+         "behind_moving_ratio", "nonlinear_resistance", "nonlinear_storage", "crank", "inverted_storage",
+         "energy_field", "piecewise", "table", "play", "soft_stop"),
         ("C, exact",), True,
         "Matrix exponentials need rates that are affine in each mode, and here a law or a ratio bends them. "
         "`method=\"auto\"`, which users take, locates events with step control instead.",
@@ -30,6 +31,16 @@ REFUSALS = (
         "Exact steps in C take no mode in which redundant ports share what they hold (two brakes at "
         "rest, two dogs, four diodes without a current); it is located.",
         "not affine|not one affine map",
+    ),
+    Refusal(
+        ("large",), ("explicit",), True,
+        "A closed form of more than 40 states is no expression for people; `A`, `J`, `B`, `E` stay sparse.",
+        "no expression for people",
+    ),
+    Refusal(
+        ("table",), ("JSON", "GraphML", "command line"), False,
+        "Text says no `Piecewise`, as which sympy writes a table; the graph is kept in code.",
+        "text cannot say a piecewise expression",
     ),
 )  # fmt: skip
 
