@@ -4,6 +4,8 @@ import pytest
 
 pytest_plugins = [
     "rig.bytecode",
+    "rig.examples",
+    "rig.garbage",
     "rig.needs",
     "rig.used",
     "rig.guard",

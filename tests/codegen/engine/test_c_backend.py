@@ -241,9 +241,11 @@ STRICT = ("-O3", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wcon
           "-Wno-sign-conversion")  # fmt: skip
 
 
-@pytest.mark.parametrize("K", [0, 1, 3])
-def test_the_engine_compiles_without_warnings(K: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("CFLAGS", raising=False)
+@pytest.mark.parametrize(("K", "optimised"), [(0, "-O1"), (1, "-O1"), (3, "-O3")])
+def test_the_engine_compiles_without_warnings(
+    K: int, optimised: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CFLAGS", optimised)
     engine(Sizes(N=3, X=2, U=1, W=1, K=K, G=1), STRICT)
 
 
@@ -264,3 +266,18 @@ cases.test_models_without_friction_run()
 @pytest.mark.slow
 def test_the_engine_is_clean_under_sanitizers() -> None:
     check_clean(SANITIZED)
+
+
+UNDEFINED = """
+import ctypes, subprocess, tempfile
+from oracles.sanitized import FLAGS
+with tempfile.TemporaryDirectory() as folder:
+    call = ["gcc", *FLAGS, "-shared", "-fPIC", "-o", folder + "/more.so", "-x", "c", "-"]
+    subprocess.run(call, input="int more(int a) { return a + 2147483647; }", text=True, check=True)
+    ctypes.CDLL(folder + "/more.so").more(5)
+"""
+
+
+def test_what_a_sanitizer_finds_is_told() -> None:
+    with pytest.raises(AssertionError, match=r"signed integer overflow: 5 \+ 2147483647"):
+        check_clean(UNDEFINED)
