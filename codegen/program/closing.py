@@ -8,7 +8,7 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.analyse.closures import merged_laws
-from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
+from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError
 from bondgraph.reduce.readings import depends_on_signals
@@ -196,8 +196,10 @@ def _reads(
     equations: StateEquations, laws: Mapping[sp.Symbol, Law], name: sp.Symbol
 ) -> set[sp.Symbol]:
     """The inputs a law's value depends on, by name or through the readings it uses."""
-    used = laws[name].free_symbols
-    if isinstance(laws[name], DryFriction):
+    closed = laws[name]
+    used = closed.free_symbols
+    # Which way it slips the mode says: without a curve what it gives does not hang on how fast.
+    if isinstance(closed, DryFriction) and SLIP in closed.curve.free_symbols:
         used = used | {port.received for port in equations.ports if port.given == name}
     result = {symbol for symbol in used if symbol in laws}
     for symbol in used & set(equations.readings):

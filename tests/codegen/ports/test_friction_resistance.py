@@ -1,5 +1,6 @@
 """Friction beside or behind a resistance: its slip depends at once on its own effort (D not zero)."""
 
+import shutil
 from itertools import pairwise
 
 import numpy as np
@@ -33,6 +34,15 @@ def test_a_plate_without_mass_moves_by_the_excess_of_the_force() -> None:
     P = result["P"]
     assert result["s"] == pytest.approx(_dead_zone(P, 2.0) / 4, abs=1e-9)
     assert result["f"] == pytest.approx(np.clip(P, -2, 2), abs=1e-9)
+
+
+def test_a_plate_without_mass_whose_friction_rises_with_its_slip() -> None:
+    """P = (b + L c) s + L beyond L: friction and slip determine each other."""
+    law = bg.DryFriction("L", "1 + c*slip")
+    result = simulator(_slider(law), {"b": 4.0, "L": 2.0, "c": 0.5}).run(
+        TIMES, inputs={"P": Sine(5.0, 0.9, 0.3)}
+    )
+    assert result["s"] == pytest.approx(_dead_zone(result["P"], 2.0) / 5, abs=1e-9)
 
 
 def test_events_of_a_plate_without_mass_are_where_the_force_passes_the_level() -> None:
@@ -106,13 +116,21 @@ def test_friction_behind_a_damper_is_a_damper_that_saturates() -> None:
     assert {event.kind for event in result.events} == {"stick", "slip"}
 
 
-def test_friction_behind_a_damper_breaks_away_and_is_caught_at_its_level() -> None:
+NEEDS_CC = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+
+
+@pytest.mark.parametrize(
+    ("backend", "method"),
+    [("numpy", "DOP853"), ("numpy", "exact"), pytest.param("c", "exact", marks=NEEDS_CC)],
+)
+def test_friction_behind_a_damper_breaks_away_and_is_caught_at_its_level(
+    backend: str, method: str
+) -> None:
     """b v rises to 1.5 L at t_1, slides with f = L until b v has come back to L."""
     m, b, L, P = 2.0, 4.0, 2.0, 6.0
     drive = Step(1.0, -P, P)
-    result = simulator(_slip_damper(ratio=1.5), {"m": m, "b": b, "L": L}).run(
-        TIMES, inputs={"P": drive}
-    )
+    ready = simulator(_slip_damper(ratio=1.5), {"m": m, "b": b, "L": L}, backend=backend)
+    result = ready.run(TIMES, inputs={"P": drive}, method=method)
     # m v' = P - b v to v = 3 L/(2 b); m v' = P - L until 1.0; m v' = -P - L down to v = L/b; ...
     t_1 = -m / b * np.log(1 - 1.5 * L / P)
     peak = 1.5 * L / b + (P - L) / m * (1 - t_1)

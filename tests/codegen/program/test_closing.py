@@ -142,3 +142,25 @@ def test_a_law_over_a_dependent_storage_is_refused() -> None:
     assert [port.slides for port in program.friction] == [True, True]
     # What time alone determines is a known source and may drive it.
     assert lower(equations, {"plate": "b*sin(t)"}, ["C", "m", "b"]).known.ports == ("plate",)
+
+
+def _beside(friction: bg.DryFriction) -> bg.StateEquations:
+    """Friction that moves nothing but a damper: its slip is what its own effort leaves of the force."""
+    nodes = [bg.Se("push", "P"), bg.One("plate"), bg.R("damper", 4),
+             bg.R("rub", law=friction, effort="f", flow="s")]  # fmt: skip
+    return bg.derive(bond_graph(nodes, "push>plate>damper plate>rub"))
+
+
+def test_friction_of_one_level_beside_a_resistance_is_affine_in_each_mode() -> None:
+    """Which way it slips the mode says; how fast, what it gives does not read."""
+    for friction in (bg.DryFriction(2), bg.DryFriction("L", 0.9, 1.5), bg.DryFriction("2 + w")):
+        program = lower(_beside(friction), parameters={"L"})
+        assert not program.joint
+        assert program.affine
+
+
+def test_friction_that_reads_its_own_slip_beside_a_resistance_is_solved_for() -> None:
+    for friction in (bg.DryFriction(2, "1 + slip/8"), bg.DryFriction("2 + s/8")):
+        program = lower(_beside(friction))
+        assert program.joint
+        assert not program.affine
