@@ -228,13 +228,17 @@ def _side_by_side(now: Occasion, here: Sight, mode: Mode, blocks: list[list[int]
 
 
 def _one_by_one(now: Occasion, here: Sight, mode: Mode, blocks: list[list[int]]) -> Mode | None:
-    """The first way of each block after those before it, where a whole way cannot be looked at."""
+    """The first way of each block after those before it, where a whole way cannot be looked at.
+
+    None where they contradict one another: what a switch holds may join blocks that nothing else does.
+    """
     for block in blocks:
         told = _in_block(now, here, mode, block, block, None)
         if isinstance(told, _Refusal):
             return None
         mode = told
-    return mode
+    every = [i for block in blocks for i in block]
+    return mode if _looked_at(now, here, mode, every, None).reason is None else None
 
 
 def _in_block(

@@ -90,9 +90,11 @@ static int side_by_side(bg_choice *choice, int blocks, bg_port_block *block, int
     }
 }
 
-/* The first way of each block after those before it, where a whole way cannot be looked at. */
+/* The first way of each block after those before it, where a whole way cannot be looked at; none
+ * where they contradict one another: what a switch holds may join blocks that nothing else does. */
 static int one_by_one(bg_choice *choice, int blocks, bg_port_block *block, int *mode, int *holds)
 {
+    bg_finding found;
     for (int k = 0; k < blocks; k++) {
         bg_set asked = {{0}}, broken = {{0}};
         for (int l = 0; l < block[k].count; l++)
@@ -101,7 +103,9 @@ static int one_by_one(bg_choice *choice, int blocks, bg_port_block *block, int *
         if (status || !*holds)
             return status;
     }
-    return BG_OK;
+    const int status = bg_find(choice, mode, &choice->open, &found);
+    *holds = found.holds;
+    return status;
 }
 
 /* The first way of several blocks; where some ports depend on others only as they hold, of all at

@@ -65,6 +65,14 @@ def test_what_breaks_loose_beside_a_held_port_slips() -> None:
     _check(NEIGHBOUR_HOLDS, "c")
 
 
+JOINED = 206
+"""Two frictions that touch one another only by way of a diode that holds: what one does decides the other."""
+
+
+def test_frictions_that_a_held_switch_joins_are_decided_together() -> None:
+    _check(JOINED, "numpy")
+
+
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 @pytest.mark.parametrize("seed", seeds("mixed-ports-in-c"))
 def test_random_networks_in_c(seed: int) -> None:
