@@ -3,7 +3,10 @@
 #include <math.h>
 
 #include "fmu_common.h"
+#include "located_internal.h"
 #include "run_pace.h"
+
+enum { MOMENTS = BG_CHECKS + 1 };
 
 /* Values and rates at t; what the importer gives goes on from the instance's time with its slope. */
 void fmu_externals(const fmu_instance *f, int segment, double t, double *w, double *dw)
@@ -43,47 +46,78 @@ double fmu_resolution(const fmu_instance *f, double t, double longest)
     return h;
 }
 
-/* The signs of the expressions of time alone: whether they are above zero. */
-static void signs_at(bg_values *now, double t, int *above)
+/* An expression of time alone, and whether it is above zero at first. */
+typedef struct {
+    bg_values *now;
+    int which, above;
+} timed_sign;
+
+static void values_at(bg_values *now, double t, double *values)
 {
-    double values[BG_ROOM(FMU_TIMED)] = {0};
     now->t = t;
     fmu_timed_values(now, values);
-    for (int i = 0; i < FMU_TIMED; i++)
-        above[i] = values[i] > 0.0;
 }
 
-/* The first instant after a, no later than b, at which one of these signs is another. */
-static double change_of(bg_values *now, int which, double a, double b, int before)
+/* Positive where the expression is on the side where it was at first. */
+static double kept(void *self, double t)
 {
-    int above[BG_ROOM(FMU_TIMED)];
+    const timed_sign *const sign = self;
+    double values[BG_ROOM(FMU_TIMED)] = {0};
+    values_at(sign->now, t, values);
+    return sign->above ? values[sign->which] : -values[sign->which];
+}
+
+static int is_kept(timed_sign *sign, double t)
+{
+    const double side = kept(sign, t), value = sign->above ? side : -side;
+    return (value > 0.0) == sign->above;
+}
+
+/* The first instant after a, where the sign is kept, no later than b, at which it is another. */
+static double change_between(timed_sign *sign, double a, double b)
+{
     for (;;) {
         const double middle = a + 0.5 * (b - a);
         if (!(middle > a && middle < b))
             return b;
-        signs_at(now, middle, above);
-        if (above[which] == before)
+        if (is_kept(sign, middle))
             a = middle;
         else
             b = middle;
     }
 }
 
+/* The first change of a sign, which points show or a dip between two of them hides, or `found`. */
+static double change_of(timed_sign *sign, const double *times, const double *sides, double found)
+{
+    const double clear = BG_ROUNDING * bg_largest(MOMENTS, sides);
+    for (int k = 0; k + 1 < MOMENTS && times[k] < found; k++) {
+        double lowest = times[k + 1];
+        if (!is_kept(sign, lowest))
+            return change_between(sign, times[k], lowest);
+        /* What rises from zero, after its own event, has not come from above. */
+        if (fmin(sides[k], sides[k + 1]) > clear
+            && bg_dip(kept, sign, MOMENTS, times, sides, k, &lowest) && !is_kept(sign, lowest))
+            return change_between(sign, times[k], lowest);
+    }
+    return found;
+}
+
 /* The first change of such a sign from a to b, or b; what an event at a has changed is past. */
 static double first_change(const fmu_instance *f, double a, double b)
 {
     const double past = fmax(BG_NARROW * (b - a), 8 * DBL_EPSILON * fabs(a));
-    int before[BG_ROOM(FMU_TIMED)], above[BG_ROOM(FMU_TIMED)];
+    double times[MOMENTS], values[MOMENTS][BG_ROOM(FMU_TIMED)] = {{0}}, sides[MOMENTS], found = b;
     bg_values now = f->model.now;
-    double from = a + past, found = b;
-    signs_at(&now, from, before);
-    for (int k = 1; k <= BG_CHECKS && from < b && found == b; k++) {
-        const double to = k == BG_CHECKS ? b : a + k * (b - a) / BG_CHECKS;
-        signs_at(&now, to, above);
-        for (int i = 0; i < FMU_TIMED; i++)
-            if (above[i] != before[i])
-                found = fmin(found, change_of(&now, i, from, to, before[i]));
-        from = to;
+    for (int k = 0; k < MOMENTS; k++) {
+        times[k] = k == 0 ? a + past : k + 1 == MOMENTS ? b : a + k * (b - a) / (MOMENTS - 1);
+        values_at(&now, times[k], values[k]);
+    }
+    for (int i = 0; i < FMU_TIMED && times[0] < times[1]; i++) {
+        timed_sign sign = {&now, i, values[0][i] > 0.0};
+        for (int k = 0; k < MOMENTS; k++)
+            sides[k] = sign.above ? values[k][i] : -values[k][i];
+        found = fmin(found, change_of(&sign, times, sides, found));
     }
     return found;
 }

@@ -84,14 +84,25 @@ def test_co_simulation_locates_events_at_any_communication_step(pair: Pair, samp
 
 @pytest.mark.parametrize("step", [0.5, 6.0])
 def test_co_simulation_locates_what_dips_inside_a_step(step: float, tmp_path: Path) -> None:
-    """Between x = 0.4 - d and 0.4 + d nothing flows, six times upwards and downwards until t = 6."""
+    """Between x = 0.4 - d and 0.4 + d nothing flows."""
     unit = Unit(passing(), "3.0", tmp_path)
     made = unit.started("CoSimulation")
     for k in range(round(6.0 / step)):
         _step(made, k * step, step)
-    without = (np.arcsin(0.401) - np.arcsin(0.399)) / 3
-    assert unit.get(made, "q") == pytest.approx([6.0 - 6 * without], abs=1e-8)
+    assert unit.get(made, "q") == pytest.approx([_charge(1e-3)], abs=1e-8)
     unit.free(made)
+
+
+def test_a_condition_of_time_that_dips_makes_events_of_model_exchange(tmp_path: Path) -> None:
+    """The importer's own steps would pass over all of them."""
+    case = passing(by_time=True)
+    found = simulated(case.written(tmp_path / "unit.fmu", "3.0"), "ModelExchange", case, ["q"], 7)
+    assert found["q"][-1] == pytest.approx(_charge(1e-3), abs=1e-12)
+
+
+def _charge(d: float) -> float:
+    """Until t = 6, where sin 3 t has passed from 0.4 - d to 0.4 + d six times, up or down."""
+    return 6.0 - 6 * (np.arcsin(0.4 + d) - np.arcsin(0.4 - d)) / 3
 
 
 @pytest.mark.parametrize("version", VERSIONS)

@@ -123,16 +123,21 @@ def crank() -> SwitchedCase:
     )  # fmt: skip
 
 
-def passing() -> SwitchedCase:
-    """An oscillator x = sin 3 t; a current of 1 but where ``|x - 0.4| < d``, its charge counted as q."""
+def passing(by_time: bool = False) -> SwitchedCase:
+    """A current of 1 but where ``|x - 0.4| < d``, its charge counted as q; x = sin 3 t.
+
+    x is the state of an oscillator or, ``by_time``, that expression.
+    """
+    x = "sin(3*t)" if by_time else "x"
     nodes = [
-        bg.One("m"), bg.I("M", "1/3", flow="v"), bg.C("K", "1/3", effort="x"), bg.Se("u", 1), bg.One("j"),
-        bg.R("r", 1), bg.Df("count", integrate="q"), bg.Sw("k", on="Abs(x - 0.4) - d"),
+        bg.Se("u", 1), bg.One("j"), bg.R("r", 1), bg.Df("count", integrate="q"),
+        bg.Sw("k", on=f"Abs({x} - 0.4) - d"),
     ]  # fmt: skip
-    return _case(
-        nodes, "m>M m>K u>j j>k j>r j>count", ["k"], {"d": 1e-3}, initial={"v": 1.0, "x": 0.0},
-        on=("k",), end=6.0,
-    )  # fmt: skip
+    bonds, start = "u>j j>k j>r j>count", {}
+    if not by_time:
+        nodes += [bg.One("m"), bg.I("M", "1/3", flow="v"), bg.C("K", "1/3", effort="x")]
+        bonds, start = f"{bonds} m>M m>K", {"v": 1.0, "x": 0.0}
+    return _case(nodes, bonds, ["k"], {"d": 1e-3}, initial=start, on=("k",), end=6.0)
 
 
 SWITCHED: Mapping[str, Callable[[], SwitchedCase]] = {
