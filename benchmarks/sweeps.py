@@ -24,7 +24,8 @@ import floor  # noqa: E402
 
 import bondgraph as bg  # noqa: E402
 import codegen  # noqa: E402
-from codegen.sweeps.job import Job, batch_of  # noqa: E402
+from codegen.sweeps.job import Job  # noqa: E402
+from codegen.sweeps.measuring import batch_of  # noqa: E402
 from differentials.laws import magic_formula_tire  # noqa: E402
 from differentials.scenarios import prepared  # noqa: E402
 

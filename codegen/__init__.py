@@ -32,7 +32,8 @@ from codegen.record.measures import (
 )
 from codegen.record.result import Result
 from codegen.runs.track import Event
-from codegen.simulate import Simulator, simulator
+from codegen.simulate import simulator
+from codegen.simulator import Simulator
 from codegen.sparse.model import SparseModel, sparse_model
 from codegen.sparse.run import run_sparse
 from codegen.sweeps.design import Grid, Samples, Table

@@ -21,7 +21,8 @@ from codegen.model.numbers import exact_parameters
 from codegen.packing import packed
 from codegen.program.lower import lower
 from codegen.program.records import Program
-from codegen.simulate import BACKENDS, Simulator, bound, with_engine
+from codegen.simulate import BACKENDS, bound, with_engine
+from codegen.simulator import Simulator
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from codegen.modes.steady import choices, steady_modes
 from codegen.modes.trials import Sight
 from codegen.modes.verdicts import look_at
 from codegen.numbers.arrays import Array
-from codegen.simulate import Simulator
+from codegen.simulator import Simulator
 from codegen.standalone.switchings import Broken
 from codegen.tuning import TUNING
 

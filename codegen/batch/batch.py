@@ -1,8 +1,8 @@
 """A sweep's runs in one call of C for many, where the backend is C and the measures are ready ones."""
 
 from collections import Counter
-from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cache
 from threading import Lock
 from typing import Any, Protocol
@@ -11,44 +11,23 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from bondgraph.algebra.expressions import normal
 from bondgraph.errors import BondGraphError
 from bondgraph.reduce.resistances import resistive_loops
+from codegen.batch.asked import Asked
 from codegen.batch.energy import ENERGETIC, plan, telling
 from codegen.batch.exact import ExactLoop
 from codegen.batch.located import LocatedLoop
-from codegen.batch.model import BatchModel, Flags, batch_model
+from codegen.batch.model import BatchModel, batch_model
 from codegen.batch.plan import Plan
+from codegen.batch.rows import Rows
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.engine.status import Status
 from codegen.family import Family
 from codegen.inputs.signal import Signal
-from codegen.inputs.swept import Swept, settled
-from codegen.model.numbers import exact_parameters
-from codegen.model.sources import source_signals
 from codegen.numbers.arrays import Array
 from codegen.program.records import Program
 from codegen.record.measures import READY, Measure
-from codegen.runs.arguments import named_numbers, signals_for
 from codegen.runs.methods import EXACT
-from codegen.runs.track import Settings
-
-Given = Mapping[str, Any] | Callable[[Mapping[str, float]], Mapping[str, Any]] | None
-"""Initial states or inputs, or a function of a run's numbers that gives them."""
-
-
-@dataclass(frozen=True)
-class Asked:
-    """A sweep as the loop needs it; ``names``: what each run has numbers for."""
-
-    family: Family
-    names: tuple[str, ...]
-    time: Array
-    measures: Mapping[str, Callable[..., Any]]
-    initial: Given
-    inputs: Given
-    settings: Settings
-    initially_on: tuple[Hashable, ...] = ()
 
 
 class Loop(Protocol):
@@ -88,7 +67,8 @@ class Batch:
         rest: Callable[[], "Batch"] | None = None,
     ) -> None:  # fmt: skip
         self.asked, self.plan, self.loop = asked, kept, loop
-        self._model, self._shared, self._rest = model, None, None if rest is None else cache(rest)
+        self._rows, self._rest = Rows(asked, model), None if rest is None else cache(rest)
+        self._shared: Any = None
         self._lock = Lock()
         self.statuses: Counter[int] = Counter()
 
@@ -107,8 +87,8 @@ class Batch:
         found = np.empty((len(table), self.plan.width))
         ended = np.full(len(table), Status.REFUSED, dtype=np.intc)
         with self._lock:
-            parameters, usable = self._parameters(table)
-            states, settled = self._states(table)
+            parameters, usable = self._rows.parameters(table)
+            states, settled = self._rows.states(table)
             completed = np.full_like(states, np.nan)
             groups = self._inputs(table, np.flatnonzero(usable & settled))
         for inputs in groups:
@@ -120,7 +100,7 @@ class Batch:
             found[indices], ended[indices] = results, status
             followed = (moved != 0) & (status == 0)[:, None]
             completed[indices] = np.where(followed, states[indices] + moved, np.nan)
-        columns = self.plan.told(found, self._numbers(table))
+        columns = self.plan.told(found, self._rows.numbers(table))
         more = np.flatnonzero(~np.isin(ended, FINAL))
         if self._rest is not None and len(more):
             with self._lock:
@@ -132,91 +112,19 @@ class Batch:
             ended[more[left]] = Status.NOT_AFFINE
         return columns, np.flatnonzero(ended).tolist(), completed
 
-    def _numbers(self, table: Array) -> Mapping[str, Array]:
-        """The parameters of each run by name."""
-        exact = exact_parameters(self.asked.family.parameters)
-        known = {name: np.full(len(table), float(value)) for name, value in exact.items()}
-        swept = {name: table[:, at] for at, name in enumerate(self.asked.names) if name in known}
-        return known | swept
-
-    def _parameters(self, table: Array) -> tuple[Array, Flags]:
-        """The parameters of each run, and which runs' elements have values that can be used."""
-        model = self._model
-        parameters = np.tile(model.defaults, (len(table), 1))
-        for column, name in enumerate(self.asked.names):
-            for at, symbol in enumerate(model.program.parameters):
-                if symbol.name == name:
-                    parameters[:, at] = table[:, column]
-        with np.errstate(all="ignore"):
-            usable = model.usable(parameters)
-        return np.ascontiguousarray(parameters), usable
-
-    def _states(self, table: Array) -> tuple[Array, Flags]:
-        """The states at the start of each run, and which of them can be used."""
-        asked, names = self.asked, self.asked.family.states
-        states, usable = np.zeros((len(table), len(names))), np.ones(len(table), dtype=bool)
-        if callable(asked.initial):
-            for k, values in enumerate(self._named(table)):
-                try:
-                    numbers = named_numbers(dict(asked.initial(values) or {}), names)
-                except Exception:  # noqa: BLE001 - told by whoever does the run then
-                    usable[k] = False
-                    continue
-                states[k] = [numbers.get(name, 0.0) for name in names]
-        else:
-            numbers = named_numbers(asked.initial or {}, names)
-            states[:] = [numbers.get(name, 0.0) for name in names]
-        for column, name in enumerate(asked.names):
-            if name in names:
-                states[:, names.index(name)] = table[:, column]
-        return states, usable & np.isfinite(states).all(axis=1)
-
     def _inputs(self, table: Array, indices: NDArray[np.intp]) -> Sequence[Any]:
         """The inputs of these runs, in groups that are run together."""
-        asked, names = self.asked, self.asked.family.inputs
-        swept = [name for name in asked.names if name in names]
-        if not callable(asked.inputs) and not self._sources_differ:
-            given = {**(asked.inputs or {}), **{name: Swept(name) for name in swept}}
-            sized = {name: one for name, one in given.items() if isinstance(one, Swept)}
-            if self._shared is None:
-                units = {name: one.signal for name, one in sized.items()}
-                signals = signals_for({**given, **units}, names)
-                self._shared = self.loop.shared([*signals, *self._sources({})])
-            factors = table[:, [asked.names.index(one.name) for one in sized.values()]]
-            places = [names.index(str(normal(name))) for name in sized]
-            indices = indices[np.isfinite(factors[indices]).all(axis=1)]
-            if not len(indices):
-                return []
-            with np.errstate(all="ignore"):
-                return [self.loop.alike(self._shared, places, factors, indices)]
-        found: list[tuple[int, Sequence[Signal]]] = []
-        for k, values in zip(indices.tolist(), self._named(table[indices]), strict=True):
-            try:
-                told = asked.inputs(values) if callable(asked.inputs) else asked.inputs
-                given = settled(told or {}, values)
-                given |= {name: values[name] for name in swept}
-                found.append((k, [*signals_for(given, names), *self._sources(values)]))
-            except Exception:  # noqa: BLE001 - told by whoever does the run then
-                continue
-        return self.loop.different(found)
-
-    @property
-    def _sources_differ(self) -> bool:
-        """Whether numbers that differ from run to run tell what known sources do."""
-        sources = self._model.program.sources
-        return any(s.name in self.asked.names for expr in sources for s in expr.free_symbols)
-
-    def _sources(self, values: Mapping[str, float]) -> list[Signal]:
-        """What known sources do in a run with these numbers."""
-        program, family, time = self._model.program, self.asked.family, self.asked.time
-        numbers = {
-            **family.parameters,
-            **{k: v for k, v in values.items() if k in family.parameters},
-        }
-        return source_signals(program, exact_parameters(numbers), float(time[0]), float(time[-1]))
-
-    def _named(self, table: Array) -> list[dict[str, float]]:
-        return [dict(zip(self.asked.names, row, strict=True)) for row in table.tolist()]
+        rows = self._rows
+        if not rows.alike:
+            return self.loop.different(rows.each(table, indices))
+        if self._shared is None:
+            self._shared = self.loop.shared(rows.common())
+        places, factors = rows.factors(table)
+        indices = indices[np.isfinite(factors[indices]).all(axis=1)]
+        if not len(indices):
+            return []
+        with np.errstate(all="ignore"):
+            return [self.loop.alike(self._shared, places, factors, indices)]
 
 
 def batch(asked: Asked) -> Batch | None:

@@ -16,7 +16,8 @@ FILES = (
     "batch.h", "batch_internal.h", "batch.c", "batch_advance.c", "batch_doubt.h", "batch_gauss.h",
     "batch_integral.c", "batch_leap.c",
     "batch_measure.h", "batch_measure.c",
-    "batch_mode.c", "batch_model.h", "batch_model.c", "batch_signal.c", "batch_table.c",
+    "batch_fastest.c", "batch_mode.c", "batch_mode_switches.c", "batch_model.h", "batch_model.c",
+    "batch_signal.c", "batch_table.c",
 )  # fmt: skip
 
 CAPACITY = 256

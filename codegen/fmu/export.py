@@ -35,7 +35,8 @@ from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import Leg
 from codegen.runs.steps import round_step, step_at_start
 from codegen.runs.track import Settings
-from codegen.simulate import Simulator, bare_simulator
+from codegen.simulate import bare_simulator
+from codegen.simulator import Simulator
 from codegen.tuning import TUNING
 
 OTHERS: Mapping[str, str] = {"2.0": "fmu3", "3.0": "fmu2"}

@@ -6,8 +6,9 @@ from typing import Any
 
 from bondgraph.errors import MissingExtraError, SignalError, SimulationError
 from codegen.packing import packed
+from codegen.sweeps.chunks import Chunk, Outcome
 from codegen.sweeps.crews import Lost
-from codegen.sweeps.job import Chunk, Outcome, measured_remotely
+from codegen.sweeps.measuring import measured_remotely
 
 RETRIES = 3
 """How often a task is sent again that got lost between the machines."""

@@ -17,7 +17,9 @@ from contextlib import contextmanager
 from typing import NamedTuple, Protocol
 
 from bondgraph.errors import SimulationError
-from codegen.sweeps.job import Chunk, Job, Outcome, measured
+from codegen.sweeps.chunks import Chunk, Outcome
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import measured
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """What tells linear algebra how many threads to use."""

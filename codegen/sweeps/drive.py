@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from codegen.sweeps.chunks import Chunk, Outcome
 from codegen.sweeps.crews import Crew, Lost
 from codegen.sweeps.design import Table
-from codegen.sweeps.job import Chunk, Outcome
 from codegen.tuning import TUNING
 
 

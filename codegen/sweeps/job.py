@@ -1,33 +1,21 @@
 """What a sweep does for every run, as one object that can be sent to other processes."""
 
 import hashlib
-import pickle
-import time
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache, partial
-from threading import Lock
-from types import MappingProxyType
-from typing import Any, NamedTuple, Protocol
-from weakref import WeakKeyDictionary
+from functools import partial
+from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bondgraph.errors import BondGraphError, SignalError
-from codegen.batch.batch import Asked, Batch, Given, batch
-from codegen.family import Family
+from bondgraph.errors import BondGraphError
+from codegen.batch.asked import Given
 from codegen.inputs.swept import settled
 from codegen.numbers.arrays import Array
-from codegen.packing import packed
 from codegen.record.measures import EVENTFUL, READY, Measure
 from codegen.record.result import Result
-from codegen.runs.track import Settings
-from codegen.simulate import Simulator
-from codegen.sweeps.columns import Columns
+from codegen.simulator import Simulator
 from codegen.tuning import TUNING
-
-NOTHING: Mapping[int, Mapping[str, float]] = MappingProxyType({})
 
 
 class Runner(Protocol):
@@ -65,27 +53,6 @@ class Model(Protocol):
 
     def fingerprint(self) -> str:
         """A text that is another for another model."""
-
-
-class Chunk(NamedTuple):
-    """Runs that are done together: their indices, and a row of numbers for each."""
-
-    indices: Sequence[int] | NDArray[np.intp]
-    rows: Sequence[Sequence[float]] | Array
-
-
-class Outcome(NamedTuple):
-    """What a chunk gave: for each run its measures, or the text of why there are none.
-
-    ``seconds``: how long it took. ``fallen``: why numpy ran what C was asked to, once for each run.
-    ``completed``: by index the states that a run's start did not name and that followed what switches held.
-    """
-
-    indices: Sequence[int] | NDArray[np.intp]
-    results: Sequence[tuple[Array, ...] | str] | Columns
-    seconds: float
-    fallen: tuple[str, ...] = ()
-    completed: Mapping[int, Mapping[str, float]] = NOTHING
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,75 +140,6 @@ def _measured(value: Any) -> Array:
     if np.iscomplexobj(value):
         raise TypeError(f"{value!r} is complex")
     return np.array(value, dtype=float)
-
-
-def measured(job: Job, chunk: Chunk) -> Outcome:
-    """The outcome of a chunk, run after run."""
-    start = time.perf_counter()
-    loop = batch_of(job)
-    rows = np.asarray(chunk.rows, dtype=float)
-    fallen: list[str] = []
-    starts: list[dict[str, float]] = [{} for _ in rows]
-    results: tuple[tuple[Array, ...] | str, ...] | Columns
-    if loop is None:
-        each = zip(rows.tolist(), starts, strict=True)
-        results = tuple(job.run(row, fallen, own) for row, own in each)
-    else:
-        columns, left, completed = loop.telling(rows)
-        for at in np.flatnonzero(np.isfinite(completed).any(axis=1)):
-            named = zip(job.model.states, completed[at].tolist(), strict=True)
-            starts[at] |= {name: value for name, value in named if np.isfinite(value)}
-        results = Columns(
-            columns, {at: job.run(rows[at].tolist(), fallen, starts[at]) for at in left}
-        )
-    told = {int(index): own for index, own in zip(chunk.indices, starts, strict=True) if own}
-    return Outcome(chunk.indices, results, time.perf_counter() - start, tuple(fallen), told)
-
-
-def batch_of(job: Job) -> Batch | None:
-    """The loop in C for the runs of a job, made once; None where there is none."""
-    with _making:
-        if job not in _batches:
-            model, settings = job.model, Settings(**job.settings)
-            asked = (
-                job.names,
-                job.time,
-                job.measures,
-                job.initial,
-                job.inputs,
-                settings,
-                job.initially_on,
-            )
-            _batches[job] = batch(Asked(model, *asked)) if isinstance(model, Family) else None
-        return _batches[job]
-
-
-_batches: WeakKeyDictionary[Job, Batch | None] = WeakKeyDictionary()
-_making = Lock()
-
-
-def sent(job: Job) -> bytes:
-    """The job for other processes; `SignalError` where a part of it cannot be sent."""
-    try:
-        return packed(job)
-    except (pickle.PicklingError, AttributeError, TypeError) as error:
-        raise SignalError(
-            f"the sweep cannot be sent to other processes: {error}; define measures at the top of a "
-            "module, or let the runs be done in this process with workers=0"
-        ) from None
-
-
-@lru_cache(maxsize=4)
-def received(job: bytes) -> Job:
-    """The job that was sent; kept, so that a process makes it once."""
-    found = pickle.loads(job)
-    assert isinstance(found, Job)
-    return found
-
-
-def measured_remotely(job: bytes, chunk: bytes) -> Outcome:
-    """The outcome of a chunk in another process."""
-    return measured(received(job), pickle.loads(chunk))
 
 
 def _given(given: Given, values: Mapping[str, float]) -> dict[str, Any]:

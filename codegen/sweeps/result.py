@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from bondgraph.errors import MissingExtraError
 from codegen.numbers.arrays import Array
+from codegen.sweeps.chunks import NOTHING, Outcome
 from codegen.sweeps.columns import Columns
 from codegen.sweeps.design import Table
-from codegen.sweeps.job import NOTHING, Outcome
 
 Shapes = tuple[tuple[int, ...], ...]
 

@@ -14,7 +14,7 @@ import numpy as np
 from bondgraph.errors import StoreError
 from bondgraph.writing import made_folder, replacing, write_bytes
 from codegen.numbers.arrays import Array
-from codegen.sweeps.job import Outcome
+from codegen.sweeps.chunks import Outcome
 
 FORMAT = {"format": "bondgraph-sweep", "version": 1}
 ABOUT = "sweep.json"

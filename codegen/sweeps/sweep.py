@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from bondgraph.algebra.expressions import normal
 from bondgraph.errors import SignalError
-from codegen.batch.batch import Given
+from codegen.batch.asked import Given
 from codegen.engine.fallback import tell_all
 from codegen.inputs.signal import Signal
 from codegen.inputs.swept import Swept, settled
@@ -20,11 +20,13 @@ from codegen.record.measures import Measure
 from codegen.record.result import Result
 from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
 from codegen.runs.completion import tell_all_completed
+from codegen.sweeps.chunks import Outcome
 from codegen.sweeps.cluster import Cluster
 from codegen.sweeps.crews import Crew, Here, Processes, Threads
 from codegen.sweeps.design import Table, design
 from codegen.sweeps.drive import QUICK, STEADY, Pace, Work, drive
-from codegen.sweeps.job import Job, Model, Outcome, batch_of, sent
+from codegen.sweeps.job import Job, Model
+from codegen.sweeps.measuring import batch_of, sent
 from codegen.sweeps.result import Collected, Sweep, SweepInterrupted
 from codegen.sweeps.store import Store
 from codegen.tuning import TUNING

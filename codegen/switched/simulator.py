@@ -14,7 +14,8 @@ from codegen.record.result import Result
 from codegen.runs.arguments import named_numbers
 from codegen.runs.completion import tell_completed
 from codegen.runs.dependent import dependent_variables, over_states
-from codegen.simulate import Simulator, simulator
+from codegen.simulate import simulator
+from codegen.simulator import Simulator
 from codegen.tuning import TUNING
 
 

@@ -33,6 +33,25 @@ typedef struct {
  * ago where there is no more room; a status. */
 int batch_supply(void *room, const int *mode);
 
+/* What an affine map over fewer inputs has in a column of the engine's maps; -1 for none. */
+static inline int batch_column_of(int j)
+{
+    if (j < EX_N)
+        return j;
+    if (j == EX_L - 1)
+        return BG_MAP_COLUMNS - 1;
+    const int rate = j >= EX_N + EX_W, input = (j - EX_N) % EX_W;
+    return input < BG_EXTERNAL ? EX_N + rate * BG_EXTERNAL + input : -1;
+}
+
+/* batch_mode_switches.c: what keeps switches, and where friction slips forwards what they do as they
+ * come to hold. */
+void batch_fill_switches(ex_mode *made, const double *map, bg_model *m, const int *mode);
+
+/* batch_fastest.c: the largest magnitude of an eigenvalue, nearly, and one over the scales that balance
+ * the rates, which are scaled so. */
+double batch_fastest(double (*own)[EX_N], double *weight);
+
 /* batch_signal.c: signals in the present stretch as rows over its state, with their constant parts;
  * one sample of all, of a stretch's state, and of the state at the end of a run. */
 void batch_show(const ex_context *c, const batch_room *room, const batch_table *table);

@@ -28,7 +28,8 @@ from codegen import (
     sweep,
 )  # fmt: skip
 from codegen.numbers.arrays import Array
-from codegen.sweeps.job import Job, batch_of
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import batch_of
 from differentials.scenarios import prepared
 
 CASE = prepared("alsd", "fig11")

@@ -9,7 +9,8 @@ import bondgraph as bg
 from codegen import Family, Sine, Step, balance, final, integral, peak, samples, sweep, work
 from codegen.batch.exact import ExactLoop
 from codegen.batch.located import LocatedLoop
-from codegen.sweeps.job import Job, batch_of
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import batch_of
 
 QUIET = {"progress": False, "workers": 2}
 ENDS = np.array([0.0, 5.0])

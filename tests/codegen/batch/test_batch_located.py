@@ -34,7 +34,8 @@ from codegen.batch.exact import ExactLoop
 from codegen.batch.located import LocatedLoop
 from codegen.engine.located import LocatedLibrary
 from codegen.inputs.pieces import Piece
-from codegen.sweeps.job import Job, batch_of
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import batch_of
 from differentials.laws import magic_formula_tire, stribeck_clutch
 from differentials.scenarios import prepared
 

@@ -25,7 +25,8 @@ from codegen.batch.engine import batch_engine
 from codegen.c.export import to_c
 from codegen.engine.sizes import sizes
 from codegen.record.result import Result
-from codegen.sweeps.job import Job, batch_of
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import batch_of
 from differentials.scenarios import prepared
 
 

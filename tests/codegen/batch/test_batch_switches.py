@@ -11,7 +11,8 @@ from soak.families import whole
 
 from bondgraph import ModelWarning
 from codegen import Family, event_count, final, first_event, samples, sweep
-from codegen.sweeps.job import Job, batch_of
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import batch_of
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 

@@ -25,7 +25,8 @@ from codegen import (
 )
 from codegen.numbers.arrays import Array
 from codegen.record.measures import Measure
-from codegen.sweeps.job import Job, batch_of
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import batch_of
 from oracles.chains import random_chain
 from oracles.circuits import Drawing
 

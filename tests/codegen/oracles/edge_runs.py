@@ -5,7 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 
 import codegen
-from codegen.sweeps.job import Job, batch_of
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import batch_of
 from oracles.units import Case
 
 METHODS = ("auto", "DOP853", "Radau")

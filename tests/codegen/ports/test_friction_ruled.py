@@ -15,7 +15,8 @@ from soak.families import seeds
 import bondgraph as bg
 import codegen
 from codegen import Ramp, Sampled, Step, simulator
-from codegen.sweeps.job import Job, batch_of
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import batch_of
 
 SECOND = np.linspace(0.0, 1.0, 5)
 ROUTES = [("numpy", "auto"), ("numpy", "DOP853"), ("c", "auto"), ("c", "DOP853")]

@@ -15,7 +15,8 @@ import bondgraph as bg
 import codegen
 from codegen import Ramp, Sampled, Step, simulator
 from codegen.runs.arguments import signals_for
-from codegen.sweeps.job import Job, batch_of
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import batch_of
 
 TIMES = np.linspace(0.0, 1.0, 11)
 LINE = Ramp(0.3, -13, 1.3, 0.4)

@@ -14,7 +14,8 @@ import bondgraph as bg
 from codegen import Family, Result, Swept, event_count, samples, simulator, to_c, to_python
 from codegen.batch.exact import ExactLoop
 from codegen.standalone.ranks import SlipRows, held_set
-from codegen.sweeps.job import Job, batch_of
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import batch_of
 
 
 def _run(case: Many, backend: str, method: str = "auto") -> Result:

@@ -14,7 +14,8 @@ import bondgraph as bg
 from codegen import Family, Simulator, final, simulator
 from codegen.numbers.latest import Latest
 from codegen.runs.track import Track
-from codegen.sweeps.job import Job, batch_of
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import batch_of
 
 F2 = 4e4
 """Half periods [1/s]."""

@@ -13,9 +13,11 @@ from oracles.sweeping import LOCKING, TIMES, Killer, Logged, locking, spring_mas
 import bondgraph as bg
 import codegen
 from codegen import Sweep, sweep
+from codegen.sweeps.chunks import Chunk
 from codegen.sweeps.crews import THREADS, Processes
 from codegen.sweeps.drive import ENDED, Pace, Work, drive
-from codegen.sweeps.job import Chunk, Job, sent
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import sent
 
 TESTS = Path(__file__).parents[2]
 SPEEDS = np.arange(1.0, 13.0)
@@ -105,8 +107,8 @@ class _Fake:
         self.begun.append(chunk)
 
     def finished(self) -> list:
+        from codegen.sweeps.chunks import Outcome
         from codegen.sweeps.crews import Lost
-        from codegen.sweeps.job import Outcome
 
         begun, self.begun = self.begun, []
         if self.unblamed:

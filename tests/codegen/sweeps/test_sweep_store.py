@@ -16,8 +16,8 @@ from oracles.sweeping import MEASURES, TIMES, Logged, Plain, spring_mass, twice
 import bondgraph as bg
 import codegen
 from codegen import Family, Sweep, SweepInterrupted, Table, sweep
+from codegen.sweeps.chunks import Outcome
 from codegen.sweeps.design import Samples
-from codegen.sweeps.job import Outcome
 from codegen.sweeps.result import Collected
 
 TESTS = Path(__file__).parents[2]

@@ -1,0 +1,205 @@
+"""`Simulator`: a model with numbers, ready to run."""
+
+from collections.abc import Callable, Hashable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bondgraph.declare.switching import checked_modes
+from bondgraph.errors import SignalError
+from codegen.energy.ledger import Ledger
+from codegen.engine.backends import Request, in_c, in_numpy
+from codegen.engine.fallback import Stopped, tell
+from codegen.engine.located import LocatedRuns, Recorded
+from codegen.engine.runs import CRuns
+from codegen.inputs.pieces import Piece, constant_piece
+from codegen.inputs.signal import Signal
+from codegen.inputs.signals import Constant
+from codegen.model.sources import source_signals
+from codegen.modes.closed import ClosedModel
+from codegen.modes.rates import rates
+from codegen.numbers.arrays import Array, is_finite, is_number, read_only
+from codegen.program.units import told_units
+from codegen.record.columns import named_columns, with_switches
+from codegen.record.replay import Run
+from codegen.record.resting import tell_resting
+from codegen.record.result import Result
+from codegen.runs.arguments import (
+    checked_times,
+    initial_values,
+    numbers_of,
+    settings_of,
+    signals_for,
+)
+from codegen.runs.completion import beginning, tell_completed
+from codegen.runs.impulses import refuse_impulses
+from codegen.tuning import TUNING
+
+
+@dataclass(frozen=True)
+class Simulator:
+    """A model with numbers for its parameters; every call returns fresh arrays.
+
+    ``states``: names in the order of ``x``, states that laws own last. ``inputs``: names in the order
+    of ``u``, what the model must be given. ``switches``: switches and controlled junctions. ``laws``: over
+    those declared. ``engine`` and ``located``: the C that runs it, exactly where it is affine, and with
+    step control.
+    """
+
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    switches: tuple[Hashable, ...]
+    closed: ClosedModel
+    laws: Mapping[Any, object] | None = field(default=None, repr=False, compare=False)
+    engine: CRuns | None = field(default=None, repr=False, compare=False)
+    located: LocatedRuns | None = field(default=None, repr=False, compare=False)
+
+    def rhs(
+        self, t: float, x: ArrayLike, u: ArrayLike = (), initially_on: Iterable[Hashable] = ()
+    ) -> Array:
+        """The rate of the states at one instant, inputs held; friction sticks where it can.
+
+        Switches are as the states, the inputs and the time tell; where their conditions leave it open,
+        those in ``initially_on`` are on, the others off. Where one holds what still moves, the rate
+        is the one just after the impact.
+
+        Raises `SignalError` for arrays of another length than ``states`` and ``inputs``, `StructureError`
+        for a switch that there is not, `SimulationError` where there are no rates.
+        """
+        state, given = numbers_of(x, "x"), numbers_of(u, "u")
+        for array, names, what in ((state, self.states, "states"), (given, self.inputs, "inputs")):
+            if array.shape != (len(names),):
+                raise SignalError(
+                    f"{what} must have shape ({len(names)},), not {array.shape}: {names}"
+                )
+            if not np.isfinite(array).all():
+                raise SignalError(f"{what} must be finite, not {array.tolist()}: {names}")
+        if not is_number(t) or not is_finite(t):
+            raise SignalError(f"the time must be a finite number, not {t!r}")
+        pieces = [Constant(float(value)).pieces[0] for value in given]
+        sources = self.sources(t, t)
+        pieces += [signal.piece(t) for signal in sources]
+        given = np.append(given, [signal(t) for signal in sources])
+        s = self.vector(t, state, given)
+        before = self.closed.program.before(checked_modes(self.switches, initially_on))
+        return rates(self.closed, t, s, pieces, before)
+
+    def run(
+        self,
+        time: ArrayLike,
+        initial: Mapping[str, float] | None = None,
+        inputs: Mapping[str, object] | None = None,
+        method: str = "auto",
+        rtol: float = TUNING.rtol,
+        atol: float = TUNING.atol,
+        initially_on: Iterable[Hashable] = (),
+        events: bool = True,
+    ) -> Result:
+        """Integrate over the given times [s] and sample every signal at them.
+
+        ``initial``: states by name, the rest start at 0. ``inputs``: a signal or a number for each
+        of ``inputs``. ``method``: "exact" (matrix exponentials, for models that are affine in each friction
+        mode), "DOP853", "Radau" (stiff models), "auto" of these, or "CVODE" (SUNDIALS; the extra
+        ``sundae``): backward differences, Adams's formulas where a mode is affine and not stiff.
+        ``initially_on``: the switches that are on at first, as far as their conditions let them; each
+        switch is a column of the result, 1 or 0. States that are not named then follow what these hold:
+        the result's ``completed`` has them, and a `ModelWarning` tells. One tells, too, of a switch that
+        stays on while its command rests at zero. ``events``: whether the result keeps what happened; without,
+        a run of any length takes no more memory than its samples and inputs.
+
+        What backend "c" cannot go on with is run by numpy, and a `BackendWarning` tells why.
+
+        Raises `SignalError` for unusable arguments, `SimulationError` if the run can't go on,
+        `MissingExtraError` for what the method needs.
+        """
+        done = self.run_telling(
+            tell, time, initial, inputs, method, rtol, atol, initially_on, events
+        )
+        tell_completed(done.completed)
+        tell_resting(self.closed, done)
+        return done
+
+    def run_telling(
+        self,
+        tell: Callable[[Stopped], None],
+        time: ArrayLike,
+        initial: Mapping[str, float] | None = None,
+        inputs: Mapping[str, object] | None = None,
+        method: str = "auto",
+        rtol: float = TUNING.rtol,
+        atol: float = TUNING.atol,
+        initially_on: Iterable[Hashable] = (),
+        events: bool = True,
+    ) -> Result:
+        """As `run`; ``tell`` is called where numpy runs what C was asked to.
+
+        Of a limit of C's own it is called before numpy starts, else once numpy has not refused it, too.
+        """
+        times = checked_times(time)
+        given = signals_for({} if inputs is None else inputs, self.inputs)
+        signals = [*given, *self.sources(float(times[0]), float(times[-1]))]
+        settings = settings_of(method, rtol, atol)
+        refuse_impulses(self.closed, signals, times)
+        at_start = np.array([signal(times[0]) for signal in signals])
+        on = checked_modes(self.switches, initially_on)
+        initial = {} if initial is None else initial
+        states = initial_values(initial, self.states)
+        begin = float(times[0])
+        start = self.vector(begin, states, at_start)
+        with np.errstate(all="ignore"):
+            pieces = [signal.piece(begin) for signal in signals]
+            begun = beginning(self.closed, begin, start, pieces, on, {str(n) for n in initial})
+            asked = Request(times, states + begun.moved, begun, signals, settings, events)
+            found = None
+            if self.located is not None:
+                found = in_c(self.closed, asked, self.engine, self.located)
+            if not isinstance(found, Recorded):
+                stopped = found
+                if stopped is not None and stopped.limit:
+                    tell(stopped)
+                found = in_numpy(self.closed, asked)
+                if stopped is not None and not stopped.limit:
+                    tell(stopped)
+            columns, observer = named_columns(self.closed, times, found.shots)
+        columns = with_switches(columns, self.closed.program, found.modes)
+        laws, numbers, start = self.laws, self.closed.parameters, read_only(begun.s)
+        run = Run(laws, numbers, times, start, tuple(given), settings, begun.mode)
+        return Result(
+            times,
+            self.states,
+            self.inputs,
+            self.outputs,
+            found.events,
+            columns,
+            observer,
+            self._ledger(run),
+            told_units(self.closed.equations),
+            found.backend,
+            begun.completed,
+        )
+
+    def _ledger(self, run: Run) -> Ledger:
+        program = self.closed.program
+        names = (*program.states, *program.law_states, *program.inputs, *program.asked)
+        return Ledger(self.closed.declared, tuple(name.name for name in names), run.again)
+
+    def steady(
+        self, inputs: Mapping[str, float], initial: Mapping[str, float]
+    ) -> tuple[list[Piece], Array]:
+        """Constant inputs as pieces, and the integrated vector at these states."""
+        signals = signals_for(inputs, self.inputs)
+        pieces = [constant_piece(0.0, signal(0.0)) for signal in signals]
+        pieces += [signal.piece(0.0) for signal in self.sources(0.0, 0.0)]
+        given = np.array([piece(0.0) for piece in pieces])
+        return pieces, self.vector(0.0, initial_values(initial, self.states), given)
+
+    def sources(self, begin: float, end: float) -> list[Signal]:
+        """What known sources do from ``begin`` to ``end`` [s]; their pieces follow those of the inputs."""
+        return source_signals(self.closed.program, self.closed.parameters, begin, end)
+
+    def vector(self, t: float, state: Array, given: Array) -> Array:
+        """The integrated vector at a state: x less what inputs that drive dependent storages add."""
+        return self.closed.vector(t, state, given)

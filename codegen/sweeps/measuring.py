@@ -1,0 +1,89 @@
+"""From a chunk of runs to its outcome, in this process or in another."""
+
+import pickle
+import time
+from functools import lru_cache
+from threading import Lock
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from bondgraph.errors import SignalError
+from codegen.batch.asked import Asked
+from codegen.batch.batch import Batch, batch
+from codegen.family import Family
+from codegen.numbers.arrays import Array
+from codegen.packing import packed
+from codegen.runs.track import Settings
+from codegen.sweeps.chunks import Chunk, Outcome
+from codegen.sweeps.columns import Columns
+from codegen.sweeps.job import Job
+
+
+def measured(job: Job, chunk: Chunk) -> Outcome:
+    """The outcome of a chunk, run after run."""
+    start = time.perf_counter()
+    loop = batch_of(job)
+    rows = np.asarray(chunk.rows, dtype=float)
+    fallen: list[str] = []
+    starts: list[dict[str, float]] = [{} for _ in rows]
+    results: tuple[tuple[Array, ...] | str, ...] | Columns
+    if loop is None:
+        each = zip(rows.tolist(), starts, strict=True)
+        results = tuple(job.run(row, fallen, own) for row, own in each)
+    else:
+        columns, left, completed = loop.telling(rows)
+        for at in np.flatnonzero(np.isfinite(completed).any(axis=1)):
+            named = zip(job.model.states, completed[at].tolist(), strict=True)
+            starts[at] |= {name: value for name, value in named if np.isfinite(value)}
+        results = Columns(
+            columns, {at: job.run(rows[at].tolist(), fallen, starts[at]) for at in left}
+        )
+    told = {int(index): own for index, own in zip(chunk.indices, starts, strict=True) if own}
+    return Outcome(chunk.indices, results, time.perf_counter() - start, tuple(fallen), told)
+
+
+def batch_of(job: Job) -> Batch | None:
+    """The loop in C for the runs of a job, made once; None where there is none."""
+    with _making:
+        if job not in _batches:
+            model, settings = job.model, Settings(**job.settings)
+            asked = (
+                job.names,
+                job.time,
+                job.measures,
+                job.initial,
+                job.inputs,
+                settings,
+                job.initially_on,
+            )
+            _batches[job] = batch(Asked(model, *asked)) if isinstance(model, Family) else None
+        return _batches[job]
+
+
+_batches: WeakKeyDictionary[Job, Batch | None] = WeakKeyDictionary()
+_making = Lock()
+
+
+def sent(job: Job) -> bytes:
+    """The job for other processes; `SignalError` where a part of it cannot be sent."""
+    try:
+        return packed(job)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise SignalError(
+            f"the sweep cannot be sent to other processes: {error}; define measures at the top of a "
+            "module, or let the runs be done in this process with workers=0"
+        ) from None
+
+
+@lru_cache(maxsize=4)
+def received(job: bytes) -> Job:
+    """The job that was sent; kept, so that a process makes it once."""
+    found = pickle.loads(job)
+    assert isinstance(found, Job)
+    return found
+
+
+def measured_remotely(job: bytes, chunk: bytes) -> Outcome:
+    """The outcome of a chunk in another process."""
+    return measured(received(job), pickle.loads(chunk))
