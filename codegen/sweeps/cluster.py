@@ -7,7 +7,7 @@ from typing import Any
 from bondgraph.errors import MissingExtraError, SignalError, SimulationError
 from codegen.packing import packed
 from codegen.sweeps.chunks import Chunk, Outcome
-from codegen.sweeps.crews import Lost
+from codegen.sweeps.crew import Lost
 from codegen.sweeps.measuring import measured_remotely
 
 RETRIES = 3

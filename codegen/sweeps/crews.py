@@ -14,10 +14,10 @@ from concurrent.futures import (
     wait,
 )
 from contextlib import contextmanager
-from typing import NamedTuple, Protocol
 
 from bondgraph.errors import SimulationError
 from codegen.sweeps.chunks import Chunk, Outcome
+from codegen.sweeps.crew import Lost
 from codegen.sweeps.job import Job
 from codegen.sweeps.measuring import measured
 
@@ -26,31 +26,6 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 STARTS = 3
 """How many processes in a row may fail to start."""
-
-
-class Lost(NamedTuple):
-    """No outcome: the process ended. ``blamed``: while it did these runs."""
-
-    blamed: bool
-
-
-class Crew(Protocol):
-    """Does chunks; several at a time."""
-
-    #: Whether processes are shared, so that a run's process may have ended by another run.
-    shared: bool
-
-    def slots(self) -> int:
-        """How many chunks may be under way."""
-
-    def start(self, chunk: Chunk) -> None:
-        """Begin a chunk."""
-
-    def finished(self) -> list[tuple[Chunk, Outcome | Lost]]:
-        """Chunks that are through; waits for one."""
-
-    def close(self, now: bool) -> None:
-        """Let the processes end; ``now``: with whatever is under way."""
 
 
 class Here:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codegen.sweeps.chunks import Chunk, Outcome
-from codegen.sweeps.crews import Crew, Lost
+from codegen.sweeps.crew import Crew, Lost
 from codegen.sweeps.design import Table
 from codegen.tuning import TUNING
 

@@ -22,7 +22,8 @@ from codegen.runs.arguments import checked_times, named_numbers, settings_of, si
 from codegen.runs.completion import tell_all_completed
 from codegen.sweeps.chunks import Outcome
 from codegen.sweeps.cluster import Cluster
-from codegen.sweeps.crews import Crew, Here, Processes, Threads
+from codegen.sweeps.crew import Crew
+from codegen.sweeps.crews import Here, Processes, Threads
 from codegen.sweeps.design import Table, design
 from codegen.sweeps.drive import QUICK, STEADY, Pace, Work, drive
 from codegen.sweeps.job import Job, Model

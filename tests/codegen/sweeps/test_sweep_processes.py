@@ -108,7 +108,7 @@ class _Fake:
 
     def finished(self) -> list:
         from codegen.sweeps.chunks import Outcome
-        from codegen.sweeps.crews import Lost
+        from codegen.sweeps.crew import Lost
 
         begun, self.begun = self.begun, []
         if self.unblamed:
