@@ -142,27 +142,24 @@ def _roots(powers: Array) -> Array:
     """The places in their steps at which polynomials rise through zero; each does so once.
 
     By Newton's steps; where one leaves what is known to hold the root, or falls there, that is halved.
+    They end where a value is the rounding of its terms: steps from there on only turn about the root.
     """
     low, high = np.zeros(len(powers)), np.ones(len(powers))
     ends = powers.sum(axis=1)
     place = -powers[:, 0] / (ends - powers[:, 0])
-    slopes = powers[:, 1:] * np.arange(1, powers.shape[1])
+    slopes = powers[:, 1:] * np.arange(1.0, powers.shape[1])
+    rounding = np.finfo(float).eps * np.abs(powers).sum(axis=1)
     for _ in range(HALVES if len(powers) else 0):
-        value, slope = _values(powers, place), _values(slopes, place)
+        raised = np.vander(place, powers.shape[1], increasing=True)
+        value = np.einsum("ij,ij->i", powers, raised)
+        slope = np.einsum("ij,ij->i", slopes, raised[:, :-1])
         low, high = np.where(value > 0, low, place), np.where(value > 0, place, high)
         with np.errstate(all="ignore"):
             moved = place - value / slope
         good = (slope > 0) & (moved >= low) & (moved <= high)
         moved = np.where(good, moved, (low + high) / 2)
-        still = np.abs(moved - place) <= TUNING.polished
+        still = (np.abs(moved - place) <= TUNING.polished) | (good & (np.abs(value) <= rounding))
         place = moved
         if still.all():
             break
     return np.asarray(place, dtype=float)
-
-
-def _values(powers: Array, places: Array) -> Array:
-    total = np.zeros(len(places))
-    for column in powers.T[::-1]:
-        total = total * places + column
-    return np.asarray(total, dtype=float)

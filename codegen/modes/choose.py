@@ -95,12 +95,17 @@ def decide(now: Occasion, here: Sight) -> Decision:
     """
     if not now.previous:
         return Decision((), here.s, ())
-    previous, known = told(now.model, now.t, now.pieces, now.previous, now.ahead, now.touched)
-    now = now._replace(previous=previous)
-    free = [i for i in now.model.switches if i not in known]
+    free = now.model.switches
+    if now.model.timed:
+        previous, known = told(now.model, now.t, now.pieces, now.previous, now.ahead, now.touched)
+        if previous != now.previous:
+            now = now._replace(previous=previous)
+        free = [i for i in free if i not in known]
     found = _decided(now, here, free)
     impacts = found.impacts
-    for _ in range(TUNING.impacts if impacts else 0):
+    if not impacts:
+        return found
+    for _ in range(TUNING.impacts):
         now = now._replace(previous=found.mode, touched=frozenset())
         found = _decided(now, now.seen(found.s), free)
         if not found.impacts:

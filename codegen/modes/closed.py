@@ -7,21 +7,20 @@ drives a dependent storage steps; z are the states that laws own.
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from functools import cached_property
-from operator import is_
 from types import MappingProxyType
 
 import numpy as np
 
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SimulationError
-from codegen.inputs.pieces import Piece
+from codegen.inputs.pieces import Piece, are_same
 from codegen.model.affine_modes import LetGo, in_mode, let_go
 from codegen.model.instant import Binding
 from codegen.model.moves import Moves, moves
 from codegen.model.numbers import assembled, check_values, exact_parameters, numbers
 from codegen.model.sharp import NotAffineError, sharp_rates
 from codegen.model.snapshot import Mode, Run, Snapshot
-from codegen.numbers.arrays import Array, read_only
+from codegen.numbers.arrays import Array
 from codegen.numbers.latest import Latest, room_for
 from codegen.numbers.pairs import Pair, pair
 from codegen.ports.forming import formed, rubbing
@@ -87,6 +86,8 @@ class ClosedModel:
         rows = sum(widths(program))
         self._maps = Latest[Mode, AffineMap | None](room_for(rows * self.size))
         self._guard_maps = Latest[Mode, Array]()
+        self._loose_maps = Latest[Mode, AffineMap | None](room_for(rows * self.size))
+        self._mixing = Latest[Mode, bool]()
         self._bases: dict[int, LetGo] = {}
         self._moves: tuple[Numbers, Moves] | None = None
         self._run: Run | None = None
@@ -216,13 +217,14 @@ class ClosedModel:
     def given(self, t: float, pieces: Sequence[Piece]) -> tuple[Array, Array]:
         """The external inputs, and their rates where anything asks for them; read-only."""
         latest = self._latest
-        if latest[0] == t and len(latest[1]) == len(pieces) and all(map(is_, latest[1], pieces)):
+        if latest[0] == t and are_same(latest[1], pieces):
             return latest[2], latest[3]
-        w = np.array([piece(t) for piece in pieces])
-        dw = np.zeros(len(w))
+        w, dw = np.array([piece(t) for piece in pieces]), np.zeros(len(pieces))
         if self.program.rated:
             dw = np.array([piece.derivative(t) for piece in pieces])
-        self._latest = t, tuple(pieces), read_only(w), read_only(dw)
+        w.setflags(write=False)
+        dw.setflags(write=False)
+        self._latest = t, tuple(pieces), w, dw
         return w, dw
 
     def rates(self, pieces: Sequence[Piece], mode: Mode) -> Callable[[float, Array], Array]:
@@ -258,6 +260,18 @@ class ClosedModel:
             return None if redundant else self._affine_map(mode, inputs)
 
         return self._maps.of(mode, made)
+
+    def let_go_map(self, mode: Mode, inputs: int) -> AffineMap | None:
+        """The same with all that a mode holds let go, friction slipping forwards there."""
+        return self._loose_maps.of(
+            mode, lambda: self.affine_map(tuple(sign or 1 for sign in mode), inputs)
+        )
+
+    def stops(self, mode: Mode) -> bool:
+        """Whether what a mode holds stops combinations of slips that states have."""
+        if self.program.varying:
+            return bool(0 in mode)
+        return self._mixing.of(mode, lambda: len(self.hold(mode, self.constant).mix) > 0)
 
     @cached_property
     def sharp_rates(self) -> Pair | None:

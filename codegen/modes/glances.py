@@ -1,24 +1,18 @@
-"""A first look at affine modes of switches: where all is far from a tie, a few products decide.
+"""A first look at affine modes of switches: where all is far from a tie, a few products decide."""
 
-Bounds on what counts as zero are no smaller than what `rounding` finds, so a closer look, which is taken
-wherever they are reached, would decide alike.
-"""
-
-from dataclasses import dataclass
+import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from bondgraph.errors import SimulationError
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
-from codegen.modes.keeping import GUARDS, SLIPS, impacts_of, keeping, kept_by
 from codegen.modes.rounding import Peaks
+from codegen.modes.tables import Glance, glance
 from codegen.modes.trials import Sight
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, all_of
 from codegen.numbers.latest import Latest, room_for
-from codegen.program.affine import AffineMap
-from codegen.program.layout import INPUTS, LAW_STATES, RATES_OF_INPUTS, READINGS, STATES
 from codegen.tuning import TUNING
 
 NONE: Array = np.zeros(0)
@@ -26,25 +20,19 @@ NONE: Array = np.zeros(0)
 SLACK = 1.001
 """Bounds are rounded themselves."""
 
+UNITS = 16
+"""So many pairs of a time constant and a rounding of the time have units that are kept."""
 
-@dataclass(frozen=True)
-class Glance:
-    """What a mode is judged by, K ports, n states, m inputs, l states of laws, h slips that an impact stops.
+GENEROUS = 2.0
+"""So many times the magnitudes at hand have bounds that are kept, and hold for all smaller ones."""
 
-    ``rows``: over [s, w, w', 1], what keeps each port, slips that an impact would stop, and [x, u, z, u', 1].
-    ``least``: over magnitudes of [x, u, z, u', 1], bounds on what counts as zero of what keeps a port, four
-    blocks of K rows: in roundings, these times a time constant, times its square, and in the time's own.
-    ``still``: the same of the slips. ``shock``: how far the impulses go with each port's way, per slip;
-    ``jump``: what they do to the values of ``rows``.
-    """
 
-    rows: Array
-    least: Array
+class Bounds(NamedTuple):
+    """What counts as zero of what keeps the ports; slips up to ``still`` are none, above ``struck`` some."""
+
+    least: list[float]
     still: Array
-    shock: Array
-    jump: Array
-    #: Whether what keeps the ports are combinations of slips that only sources rule, which must be zero.
-    ruled: bool = False
+    struck: Array
 
 
 class Seen(NamedTuple):
@@ -57,6 +45,39 @@ class Seen(NamedTuple):
 NEVER = Seen(frozenset(), real=False)
 
 
+class Judged:
+    """A mode's tables, and bounds that are kept as long as they are no smaller than what they ought to be."""
+
+    def __init__(self, glance: Glance) -> None:
+        self.glance = glance
+        self._first = len(glance.rows) - glance.least.shape[1]
+        self._most, self._both, self._units = NONE, NONE, NONE
+        self._kept = Bounds([], NONE, NONE)
+
+    def generous(self, values: Array, units: Array, both: Array) -> Bounds:
+        """Bounds beyond those at these values of the rows: whatever they tell, these would, too.
+
+        ``both``: the magnitudes that states and inputs have reached, which grow only.
+        """
+        sizes = np.abs(values[self._first :])
+        lasts = units is self._units and all_of(sizes <= self._most)
+        if lasts and (both is self._both or all_of(both <= self._most[: len(both)])):
+            self._both = both
+            return self._kept
+        least = np.zeros(len(sizes))
+        least[: len(both)], least[-1] = both, 1.0
+        self._most, self._units, self._both = GENEROUS * np.maximum(sizes, least), units, both
+        still = _bounds(self.glance, least, units).still
+        self._kept = _bounds(self.glance, self._most, units)._replace(still=still)
+        return self._kept
+
+    def exact(self, values: Array, units: Array, both: Array) -> Bounds:
+        """Those at these values."""
+        sizes = np.abs(values[self._first :])
+        np.maximum(sizes[: len(both)], both, out=sizes[: len(both)])
+        return _bounds(self.glance, sizes, units)
+
+
 class Glances:
     """First looks at the modes of a run; those that were not asked for longest go."""
 
@@ -64,200 +85,102 @@ class Glances:
         self._model, size = model, len(model.program.states) + len(model.program.inputs)
         self._timed = frozenset(model.timed)
         self._at, self._in = (np.nan, np.nan), NONE
-        self._found = Latest[Mode, Glance | None](room_for(4 * size**2))
+        self._units = Latest[tuple[float, float], Array](UNITS)
+        self._found = Latest[Mode, Judged | None](room_for(4 * size**2))
 
     def seen(self, here: Sight, mode: Mode, asked: list[int], peaks: Peaks) -> Seen | None:
         """Which switches of those asked contradict a mode; None where that takes a closer look."""
-        found = self._found.of(mode, lambda: glance(self._model, mode))
-        if found is None or not self._timed.isdisjoint(asked):
+        judged = self._found.of(mode, lambda: self._judged(mode))
+        if judged is None or not self._timed.isdisjoint(asked):
             return None
-        values, units = found.rows @ here.vector, self._units(peaks.time, here.t)
-        if found.ruled:
-            least = units @ (found.least @ _sizes(found, values, peaks)).reshape(4, -1)
-            return NEVER if (np.abs(values[: len(least)]) > SLACK * least).any() else None
-        shocks: Array | None = None
-        if len(found.shock):
-            slips = values[len(mode) : len(mode) + len(found.shock)]
-            struck = _struck(slips, units, found.still @ _sizes(found, values, peaks))
-            if struck is None:
-                return None
-            if struck:
-                shocks = _surely(slips, found.shock)
-                if shocks is None:
-                    return None
-                values += slips @ found.jump
-        least = SLACK * (units @ (found.least @ _sizes(found, values, peaks)).reshape(4, -1))
-        if shocks is not None:
-            values, least = (
-                np.where(shocks, shocks, values[: len(mode)]),
-                np.where(shocks, 0, least),
-            )
-        broken = _contrary(values.tolist(), least.tolist(), asked)
-        # What an impact does is worked out where it is consistent.
-        return None if broken is None or not (broken or shocks is None) else Seen(broken)
+        units, both = self._units_at(peaks.time, here.t), peaks.both
+        values = judged.glance.rows.dot(here.vector)
+        told = _told(judged.glance, values, lambda v: judged.generous(v, units, both), asked)
+        if told is None:
+            told = _told(judged.glance, values, lambda v: judged.exact(v, units, both), asked)
+        return told
 
-    def _units(self, time: float, t: float) -> Array:
-        """What the blocks of bounds are in."""
-        if self._at != (time, t):
-            rounding, late = TUNING.rounding, TUNING.late * float(np.spacing(abs(t)))
-            self._at, self._in = (
-                (time, t),
-                np.array([rounding, rounding * time, rounding * time**2, late]),
-            )
+    def _judged(self, mode: Mode) -> Judged | None:
+        found = glance(self._model, mode)
+        return None if found is None else Judged(found)
+
+    def _units_at(self, time: float, t: float) -> Array:
+        """What the blocks of bounds are in; the same array at the same roundings."""
+        key = time, math.ulp(t)
+        if self._at != key:
+            self._at, self._in = key, self._units.of(key, lambda: _units(*key))
         return self._in
 
 
-def _sizes(found: Glance, values: Array, peaks: Peaks) -> Array:
-    """The magnitudes of [x, u, z, u', 1]."""
-    sizes: Array = np.abs(values[len(values) - found.least.shape[1] :])
-    most = len(peaks.both)
-    np.maximum(sizes[:most], peaks.both, out=sizes[:most])
-    return sizes
+def _told(
+    found: Glance, values: Array, bounds_at: Callable[[Array], Bounds], asked: list[int]
+) -> Seen | None:
+    """What the values of a mode's rows tell, beside their bounds; None where that is not sure."""
+    bounds, ports = bounds_at(values), found.shock.shape[1]
+    if found.ruled:
+        return NEVER if _reached(values, bounds.least) else None
+    struck: bool | None = False
+    if len(found.shock):
+        slips = values[ports : ports + len(found.shock)]
+        struck = _struck(slips, bounds)
+    if struck is None:
+        return None
+    if not struck:
+        broken = _contrary(values.tolist(), bounds.least, asked)
+        return None if broken is None else Seen(broken)
+    shocks = _surely(slips, found)
+    if shocks is None:
+        return None
+    values = values + slips.dot(found.jump)
+    bounds = bounds_at(values)
+    ways = [shock or value for shock, value in zip(shocks, values.tolist(), strict=False)]
+    least = [0.0 if shock else size for shock, size in zip(shocks, bounds.least, strict=True)]
+    broken = _contrary(ways, least, asked)
+    # What an impact does is worked out where it is consistent.
+    return Seen(broken) if broken else None
 
 
-def _struck(slips: Array, units: Array, near: Array) -> bool | None:
+def _units(time: float, spacing: float) -> Array:
+    """What the blocks of bounds are in, at a time constant [s] and a spacing of the time [s]."""
+    rounding = TUNING.rounding
+    return np.array([rounding, rounding * time, rounding * time**2, TUNING.late * spacing])
+
+
+def _bounds(found: Glance, sizes: Array, units: Array) -> Bounds:
+    """The bounds at these magnitudes of [x, u, z, u', 1]."""
+    least = SLACK * (units @ (found.least @ sizes).reshape(4, -1))
+    near, slips = found.still @ sizes, len(found.shock)
+    still = TUNING.wide * TUNING.rounding * near[:slips]
+    return Bounds(least.tolist(), still, TUNING.wide * SLACK * (units @ near.reshape(4, slips)))
+
+
+def _reached(values: Array, least: list[float]) -> bool:
+    """Whether one of the first values is not zero."""
+    return any(abs(value) > size for value, size in zip(values.tolist(), least, strict=False))
+
+
+def _struck(slips: Array, bounds: Bounds) -> bool | None:
     """Whether there is an impact; None where that is not sure."""
     sizes = np.abs(slips)
-    if (sizes <= TUNING.wide * TUNING.rounding * near[: len(slips)]).all():
+    if all_of(sizes <= bounds.still):
         return False
-    return True if (sizes > TUNING.wide * SLACK * (units @ near.reshape(4, -1))).any() else None
+    return None if all_of(sizes <= bounds.struck) else True
 
 
-def _surely(slips: Array, shock: Array) -> Array | None:
+def _surely(slips: Array, found: Glance) -> list[float] | None:
     """How far the impulses go with each port's way; None where that may be rounding."""
-    found, terms = slips @ shock, np.abs(slips) @ np.abs(shock)
-    unsure = (np.abs(found) <= TUNING.cancelled * terms) & (terms > 0)
-    return None if unsure.any() else np.asarray(found, dtype=float)
+    shocks, terms = slips.dot(found.shock), np.abs(slips).dot(found.shocks)
+    sure = (np.abs(shocks) > TUNING.cancelled * terms) | (terms <= 0)
+    told: list[float] = shocks.tolist()
+    return told if all_of(sure) else None
 
 
 def _contrary(values: list[float], least: list[float], asked: list[int]) -> frozenset[int] | None:
     """The ports that contradict a mode; None where one is too close to zero."""
-    if any(abs(values[i]) <= least[i] for i in asked):
-        return None
-    return frozenset(i for i in asked if values[i] < 0)
-
-
-def glance(model: ClosedModel, mode: Mode) -> Glance | None:
-    """What a mode is judged by; None of modes with friction, and where a port takes a closer look."""
-    try:
-        return _glance(model, mode)
-    except SimulationError:
-        return None
-
-
-def _glance(model: ClosedModel, mode: Mode) -> Glance | None:
-    program, inputs = model.program, len(model.program.external)
-    if model.rubbing or not program.affine or model.constant.R.any():
-        return None
-    loose, affine = (model.affine_map(one, inputs) for one in ((1,) * len(mode), mode))
-    guards = model.guard_rows(mode, inputs)
-    if affine is None or loose is None or guards is None:
-        return None
-    if 0 in mode and len(model.hold(mode, model.constant).ruled):
-        return _ruled(model, mode, affine)
-    least = _bounds(model, mode, guards)
-    if least is None:
-        return None
-    kept, impacts = keeping(model, mode, affine), impacts_of(model, mode)
-    slips, still = np.zeros((0, kept.shape[1])), np.zeros((0, least.shape[1]))
-    if impacts is not None:
-        hold = model.hold(mode, model.constant)
-        slips = hold.slip_x @ loose.rows(STATES) + hold.slip_u @ loose.rows(INPUTS)
-        still = np.vstack([np.abs(hold.mix) @ block[hold.ports] for block in _of_slips(model)])
-    rows = np.vstack([kept, slips, _shown(affine)])
-    if impacts is None:
-        return Glance(rows, least, still, np.zeros((0, len(mode))), rows[:0])
-    return Glance(rows, least, still, impacts.shock, impacts.jump @ rows[:, : model.size].T)
-
-
-def _ruled(model: ClosedModel, mode: Mode, affine: AffineMap) -> Glance | None:
-    """The same of a mode with slips that only sources rule; None where an impact may come before."""
-    hold = model.hold(mode, model.constant)
-    if len(hold.mix):
-        return None
-    slips = affine.rows(READINGS)[model.friction_readings][hold.ports]
-    least = np.vstack([np.abs(hold.ruled) @ block[hold.ports] for block in _of_slips(model)])
-    rows = np.vstack([hold.ruled @ slips, _shown(affine)])
-    return Glance(rows, least, rows[:0], rows[:0], rows[:0], ruled=True)
-
-
-def _shown(affine: AffineMap) -> Array:
-    """The rows of [x, u, z, u', 1]."""
-    width = affine.matrix.shape[1]
-    parts = (STATES, INPUTS, LAW_STATES, RATES_OF_INPUTS)
-    return np.vstack([*(affine.rows(part) for part in parts), np.eye(1, width, width - 1)])
-
-
-def _of_slips(model: ClosedModel) -> list[Array]:
-    """Bounds on what counts as zero of slips: the four blocks."""
-    moved, more = _moved(model)
-    by = model.moves(model.constant)
-    late = moved if by.by_rates is None else moved + _wide(model, 0 * by.pushes, by.by_rates)
-    return [_wide(model, by.terms[: len(moved)]), moved, more, late]
-
-
-def _moved(model: ClosedModel) -> tuple[Array, Array]:
-    """How fast slips change at the most, at once and by what states change in a time constant."""
-    by, count, n = model.moves(model.constant), len(model.switching), len(model.program.states)
-    return _wide(model, by.pushes), _wide(model, by.pushes[:, :n] @ by.terms[count:])
-
-
-def _wide(model: ClosedModel, rows: Array, rates: Array | None = None) -> Array:
-    """Rows over [x, u], and over u', as rows over [x, u, z, u', 1]."""
-    count, laws = len(rows), len(model.program.law_states)
-    rates = np.zeros((count, len(model.program.inputs))) if rates is None else np.abs(rates)
-    return np.hstack([rows, np.zeros((count, laws)), rates, np.zeros((count, 1))])
-
-
-def _bounds(model: ClosedModel, mode: Mode, guards: Array) -> Array | None:
-    """Bounds on what counts as zero of what keeps each port; None where that hangs on inputs' rates."""
-    moved, more = _moved(model)
-    slips, none = _of_slips(model), np.zeros(moved.shape[1])
-    efforts, found = _efforts(model, mode), []
-    for i in range(len(mode)):
-        part, at, _ = kept_by(model, mode, i)
-        if i in model.timed:
-            found.append([none] * 4)
-        elif part == SLIPS:
-            found.append([block[at] for block in slips])
-        elif part == GUARDS:
-            blocks = _of_guard(model, guards[at])
-            if blocks is None:
-                return None
-            found.append(blocks)
-        else:
-            mobility = model.moves(model.constant).mobility[at]
-            found.append([efforts[at] + mobility * moved[at], mobility * more[at], none, none])
-    return np.vstack([[blocks[k] for blocks in found] for k in range(4)])
-
-
-def _efforts(model: ClosedModel, mode: Mode) -> Array:
-    """The magnitudes of what makes the ports' efforts up."""
-    n, inputs = len(model.program.states), model.friction_inputs
-    rows = np.zeros((len(mode), n + len(model.program.inputs)))
-    rates = np.zeros((len(mode), len(model.program.inputs)))
-    rows[np.arange(len(mode)), n + np.array(inputs)] = 1.0
-    if 0 in mode:
-        hold = model.hold(mode, model.constant)
-        X, U, V, inverse = hold.magnitudes
-        rows[hold.ports] += inverse @ np.hstack([X, U])
-        rates[hold.ports] = inverse @ V
-    return _wide(model, rows, rates)
-
-
-def _of_guard(model: ClosedModel, row: Array) -> list[Array] | None:
-    """Bounds on what counts as zero of a condition; None where it reads inputs."""
-    n, size, laws = len(model.program.states), model.size, len(model.program.law_states)
-    own = np.abs(row)
-    if own[size:-1].any():
-        return None
-    by, m = model.moves(model.constant), model.constant
-    rates = by.terms[len(model.switching) :]
-    own_rates = np.abs(np.hstack([m.F, m.D]))[model.law_rates]
-    terms = np.concatenate(
-        [own[:n], np.zeros(m.Q.shape[1]), own[n : n + laws], np.zeros(m.Q.shape[1] + 1)]
-    )
-    terms[-1] = own[-1]
-    moving = _wide(model, (own[:n] @ rates)[None])[0]
-    late = moving + _wide(model, (own[n : n + laws] @ own_rates)[None])[0]
-    return [terms, moving, np.zeros_like(terms), late]
+    broken = []
+    for i in asked:
+        if abs(values[i]) <= least[i]:
+            return None
+        if values[i] < 0:
+            broken.append(i)
+    return frozenset(broken)

@@ -9,8 +9,8 @@ from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.modes.trials import Sight
-from codegen.numbers.arrays import Array
-from codegen.program.affine import ONE
+from codegen.numbers.arrays import Array, all_of
+from codegen.program.affine import ONE, AffineMap
 from codegen.program.layout import INPUTS, STATES
 from codegen.standalone.friction import moved_on
 from codegen.standalone.levels import terms_of
@@ -21,18 +21,19 @@ TINY = float(np.finfo(float).tiny)
 """No number that counts as zero is zero itself."""
 
 
-def input_terms(
-    model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece], mode: Mode
-) -> Array:
+def input_terms(here: Sight, mode: Mode, affine: AffineMap | None) -> Array:
     """For every input the sum of the magnitudes of its terms in states and external inputs.
 
     A tire that gives ``c omega - c omega_0`` gives 0 at its own speed, but only to the rounding of
-    ``c omega``.
+    ``c omega``. ``affine``: the mode's map, if it has one.
     """
-    affine = model.affine_map(mode, len(pieces))
     if affine is not None:
-        w, dw = model.given(t, pieces)
-        return affine.terms(INPUTS, s, w, np.zeros_like(dw))
+        # Rates of inputs are none of them.
+        sizes = np.abs(here.vector)
+        sizes[len(sizes) - 1 - len(here.pieces) : -1] = 0.0
+        found: Array = affine.magnitudes(INPUTS).dot(sizes)
+        return found
+    model, t, s, pieces = here.model, here.t, here.s, here.pieces
     return terms_of(lambda at: model.at(t, at, pieces, mode).u, s, np.abs(s), np.flatnonzero(s))
 
 
@@ -43,7 +44,7 @@ class Peaks:
     ``time`` [s] is the shortest time constant: forces that cancel leave slips of their rounding times it.
     """
 
-    #: Of states and inputs, one after the other.
+    #: Of states and inputs, one after the other; another array where one has grown.
     both: Array
     states: int
     time: float = 0.0
@@ -66,15 +67,18 @@ class Peaks:
 
     def see(self, here: Sight, mode: Mode) -> None:
         """Take an instant into account, friction slipping in the given directions or forwards."""
-        model, slipping = here.model, tuple(sign or 1 for sign in mode)
-        affine = model.affine_map(slipping, len(here.pieces))
+        model = here.model
+        affine = model.let_go_map(mode, len(here.pieces))
         if affine is not None and not affine.limited:
-            x = affine.rows(STATES) @ here.vector
+            x = affine.rows(STATES).dot(here.vector)
         else:
-            slipping, now = here.evaluated(mode)
-            x = now.x
-        terms = input_terms(model, here.t, here.s, here.pieces, slipping)
-        self.both = np.maximum(self.both, np.concatenate((np.abs(x), terms)))
+            mode, now = here.evaluated(mode)
+            affine, x = model.affine_map(mode, len(here.pieces)), now.x
+        terms = input_terms(here, mode, affine)
+        found = np.concatenate((np.abs(x), terms))
+        # The same array stands for the same magnitudes.
+        if not all_of(found <= self.both):
+            self.both = np.maximum(self.both, found)
 
     def sizes(self, now: Snapshot) -> Array:
         """The largest magnitudes of states and inputs, one after the other, with an instant's own."""

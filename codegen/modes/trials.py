@@ -1,7 +1,6 @@
 """Friction modes on trial: a mode in which the laws have no solution is none, and another is looked at."""
 
 from collections.abc import Sequence
-from functools import cached_property
 from itertools import chain
 
 import numpy as np
@@ -22,11 +21,15 @@ class Sight:
     def __init__(self, model: ClosedModel, t: float, s: Array, pieces: Sequence[Piece]) -> None:
         self.model, self.t, self.s, self.pieces = model, t, s, pieces
         self._shots: dict[Mode, Snapshot] = {}
+        self._vector: Array | None = None
 
-    @cached_property
+    @property
     def vector(self) -> Array:
         """What affine modes are maps of: the integrated vector, inputs, their rates, and 1."""
-        return np.concatenate((self.s, *self.model.given(self.t, self.pieces), ONE))
+        if self._vector is None:
+            given = self.model.given(self.t, self.pieces)
+            self._vector = np.concatenate((self.s, *given, ONE))
+        return self._vector
 
     def at(self, mode: Mode) -> Snapshot:
         """Everything in a mode; raises `SimulationError` where there are no values."""

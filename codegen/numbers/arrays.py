@@ -59,6 +59,19 @@ def real_array(values: ArrayLike) -> Array:
         raise ValueError(str(error)) from None
 
 
+FEW = 64
+"""So many flags are looked at one by one sooner than by a reduction."""
+
+
+def all_of(flags: NDArray[np.bool_]) -> bool:
+    """Whether all flags are set, told quickly of a few.
+
+    >>> all_of(np.array([True, False])), all_of(np.array([], dtype=bool))
+    (False, True)
+    """
+    return all(flags.ravel().tolist()) if flags.size <= FEW else bool(flags.all())
+
+
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
     """The array, which nobody can write to any more, nor to what it is a view of.
 
@@ -68,7 +81,7 @@ def read_only(array: NDArray[Any]) -> NDArray[Any]:
     """
     part: Any = array
     while isinstance(part, np.ndarray):
-        part.flags.writeable = False
+        part.setflags(write=False)
         part = part.base
     return array
 

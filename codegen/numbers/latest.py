@@ -32,13 +32,14 @@ class Latest(Generic[Key, Value]):
 
     def of(self, key: Key, make: Callable[[], Value]) -> Value:
         """What belongs to a key; it is made where it is not kept."""
-        if key in self._kept:
-            found = self._kept.pop(key)
+        kept = self._kept
+        if key in kept:
+            found = kept.pop(key)
         else:
             found = make()
-            while len(self._kept) >= self._most:
-                del self._kept[next(iter(self._kept))]
-        self._kept[key] = found
+            while len(kept) >= self._most:
+                del kept[next(iter(kept))]
+        kept[key] = found
         return found
 
     def drop(self, key: Key) -> None:

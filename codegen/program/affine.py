@@ -91,10 +91,14 @@ class AffineMap:
 
     def terms(self, part: int, *vectors: Array) -> Array:
         """The sums of the magnitudes of the terms that make a part up."""
+        found: Array = self.magnitudes(part) @ np.abs(np.concatenate((*vectors, ONE)))
+        return found
+
+    def magnitudes(self, part: int) -> Array:
+        """The magnitudes of the rows of one part."""
         if part not in self._magnitudes:
             self._magnitudes[part] = np.abs(self.rows(part))
-        found: Array = self._magnitudes[part] @ np.abs(np.concatenate((*vectors, ONE)))
-        return found
+        return self._magnitudes[part]
 
     def rows(self, part: int) -> Array:
         """The rows of one part."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Container, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import sympy as sp
 
@@ -183,7 +184,7 @@ class Program:
         """The places among the inputs of those external inputs that are some."""
         return [self.inputs.index(name) for name in self.external if name in self.inputs]
 
-    @property
+    @cached_property
     def rated(self) -> bool:
         """Whether anything asks for the rates of the external inputs."""
         return any(self.layout[letter].rows for letter in "EDHK")

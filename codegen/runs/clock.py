@@ -2,12 +2,11 @@
 
 import math
 from collections.abc import Sequence
-from operator import is_
 
 import numpy as np
 
 from codegen.inputs.crossings import Rises
-from codegen.inputs.pieces import Piece, collected, moved
+from codegen.inputs.pieces import Piece, are_same, collected, moved
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.tuning import TUNING
@@ -30,7 +29,7 @@ class Clock:
         model = self._model
         if not model.timed:
             return math.inf, NONE
-        if len(pieces) != len(self._pieces) or not all(map(is_, pieces, self._pieces)):
+        if not are_same(pieces, self._pieces):
             self._pieces, self._rises = tuple(pieces), {}
         times = {}
         for i in model.timed:

@@ -1,19 +1,18 @@
 """Exact legs: where a friction mode is affine and inputs have linear generators, ``z' = M z`` is stepped
 by matrix exponentials, and its events are roots of power series that no step can hide."""
 
-from functools import cached_property
+import math
 
 import numpy as np
 
 from bondgraph.errors import SimulationError
-from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.model.snapshot import Mode
-from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks
 from codegen.modes.trials import Sight
-from codegen.modes.verdicts import Look, limits_of, look_at
+from codegen.modes.verdicts import Look, look_at
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
+from codegen.runs.falls import Falls
 from codegen.runs.stretches import Stretches
 from codegen.runs.track import Ended, Track
 from codegen.runs.watched import FewSteps, Steps, lasting, series, stride
@@ -28,6 +27,8 @@ BLOCK = 256
 
 FEW, FEW_BLOCK = 0.5, 8
 """So many steps for each component are few: they are taken one by one, so many at once."""
+
+NONE = frozenset[int]()
 
 
 class ExactLeg:
@@ -44,18 +45,7 @@ class ExactLeg:
         rest = None if clear else _rest(look_at(here, mode, peaks))
         self._system, inputs = stretches.system(affine, mode, here.pieces, here.t, rest)
         self._z = np.concatenate([here.s, inputs])
-        self._blind = moment(peaks.time)
-        # What begins well above zero need not rise first.
-        self._armed = np.ones(len(self._system.ports), dtype=bool)
-        if not clear:
-            self._armed = self._system.triggers @ self._z >= self._limits
-
-    @cached_property
-    def _limits(self) -> Array:
-        """Below these what is watched counts as zero where the stretch begins."""
-        look = look_at(self._here, self._mode, self._peaks)
-        limits = np.where(look.ruling.any(axis=0), look.size.slip, limits_of(look))
-        return np.asarray(limits[list(self._system.ports)], dtype=float)
+        self._falls = Falls(here, mode, peaks, self._system, None if clear else self._z)
 
     def steps(self, stop: float) -> float:
         """How many steps the stretch takes, of ``|M| h <= 1`` each."""
@@ -81,17 +71,20 @@ class ExactLeg:
 
     def run(self, stop: float, times: Array, track: Track) -> Ended:
         """Step to ``stop`` or the first event, recording the samples before it."""
-        first = track.recorded
-        last = first + int(np.searchsorted(times[first:], stop, side="left"))
-        points = np.concatenate([times[first:last], [stop]])
-        t, z = self._t, self._z
+        first, t, z = track.recorded, self._t, self._z
+        last = first + int(times[first:].searchsorted(stop))
+        if first == last:
+            return self._run_alone(stop, track)
+        ends = np.empty(last - first + 2)
+        ends[0], ends[1:-1], ends[-1] = t, times[first:last], stop
+        points = ends[1:]
         # An event may lie a rounding behind a sample that shows the instant after it.
-        lengths = np.maximum(np.diff(np.concatenate([[t], points])), 0.0)
+        lengths = np.maximum(points - ends[:-1], 0.0)
         if _kinds(lengths) > MOST_LENGTHS:
             return self._run_ragged(stop, np.maximum(points[:-1], t), track)
         at = 0
         while at < len(points):
-            if lengths[at] <= 2 * np.spacing(points[at]):
+            if lengths[at] <= 2 * math.ulp(points[at]):
                 # No more than the rounding of time.
                 if at < len(points) - 1:
                     self._record(track, z[None], points[at : at + 1])
@@ -103,7 +96,15 @@ class ExactLeg:
             if ended is not None:
                 return ended
             at, t = at + count, float(points[at + count - 1])
-        return stop, z[: self._n], frozenset()
+        return stop, z[: self._n], NONE
+
+    def _run_alone(self, stop: float, track: Track) -> Ended:
+        """The same where there are no samples."""
+        h = stop - self._t
+        if h <= 2 * math.ulp(stop):
+            return stop, self._z[: self._n], NONE
+        ended, z = self._steps(self._t, self._z, h, 1, track, track.recorded)
+        return ended or (stop, z[: self._n], NONE)
 
     def _run_ragged(self, stop: float, times: Array, track: Track) -> Ended:
         """The same where samples lie anywhere: steps of one length, and samples by the series inside them."""
@@ -115,7 +116,7 @@ class ExactLeg:
         for begin in range(0, count, BLOCK):
             states = steps.take(min(BLOCK, count - begin))
             start = t + begin * step
-            found = self._first_event(steps.powers(states[:-1]), start, step)
+            found = self._falls.first(steps.powers(states[:-1]), start, step)
             track.see(states[:, : self._n])
             until = start + step * (len(states) - 1 if found is None else found[0] + found[1])
             now = times[(times >= start) & (times < until)]
@@ -126,20 +127,26 @@ class ExactLeg:
         self._record(
             track, states[-1:].repeat(np.count_nonzero(times >= until), axis=0), np.zeros(0)
         )
-        return stop, states[-1, : self._n], frozenset()
+        return stop, states[-1, : self._n], NONE
 
-    def _record(self, track: Track, rows: Array, times: Array) -> None:
-        """Samples; where a friction level is below zero, let the model refuse it with its time."""
-        if not len(rows):
+    def _check_levels(self, rows: Array, times: Array, track: Track) -> None:
+        """Where a friction level is below zero, let the model refuse it with its time."""
+        caps = rows @ self._system.caps.T
+        if caps.min(initial=0.0) >= 0:
             return
-        caps = rows @ self._system.caps.T if self._system.limited else rows[:, :0]
-        if caps.min(initial=0.0) < 0:
-            sizes = np.abs(rows)
-            sizes[:, : self._n] = np.maximum(sizes[:, : self._n], track.largest)
-            caps = without_rounding(caps, sizes @ np.abs(self._system.caps.T))
+        sizes = np.abs(rows)
+        sizes[:, : self._n] = np.maximum(sizes[:, : self._n], track.largest)
+        caps = without_rounding(caps, sizes @ np.abs(self._system.caps.T))
         for at in np.flatnonzero((caps < 0).any(axis=1)).tolist():
             if at < len(times):
                 self._model.at(float(times[at]), rows[at, : self._n], self._pieces, self._mode)
+
+    def _record(self, track: Track, rows: Array, times: Array) -> None:
+        """Samples, with their times."""
+        if not len(rows):
+            return
+        if self._system.limited:
+            self._check_levels(rows, times, track)
         a, b = track.recorded, track.recorded + len(rows)
         track.vectors[a:b] = rows[:, : self._n]
         track.modes += [self._mode] * len(rows)
@@ -149,10 +156,10 @@ class ExactLeg:
         self, t: float, z: Array, h: float, count: int, track: Track, last: int
     ) -> tuple[Ended | None, Array]:
         """``count`` steps of h from t, at whose ends samples are up to ``last``: what ended them, and z."""
-        parts = max(1, int(np.ceil(self._system.norm * h)))
-        step = h / parts
-        few, system = count * parts < FEW * len(z), self._system
-        taken = system.stride(step, 2 * float(np.spacing(abs(t + h * count))), few)
+        system = self._system
+        parts = max(1, math.ceil(system.norm * h))
+        step, few = h / parts, count * parts < FEW * len(z)
+        taken = system.stride(step, 2 * math.ulp(t + h * count), few)
         steps: Steps | FewSteps
         if taken is None:
             steps, block = FewSteps(system.M, step, z, system.triggers), FEW_BLOCK
@@ -161,73 +168,19 @@ class ExactLeg:
         for begin in range(0, count * parts, block):
             states = steps.take(min(block, count * parts - begin))
             found = None
-            if h > 0:
-                found = self._first_event(steps.powers(states[:-1]), t + begin * step, step)
+            if h > 0 and len(system.ports):
+                found = self._falls.first(steps.powers(states[:-1]), t + begin * step, step)
             done = len(states) - 1 if found is None else found[0]
             rows = states[parts - begin % parts : done + 1 : parts]
             track.see(rows[:, : self._n])
-            rows = rows[: last - track.recorded]
-            first = begin // parts + 1
-            self._record(
-                track, rows, np.asarray(t + h * np.arange(first, first + len(rows)), dtype=float)
-            )
+            if len(rows := rows[: last - track.recorded]):
+                places = np.arange(begin // parts + 1.0, begin // parts + 1.0 + len(rows))
+                self._record(track, rows, np.asarray(t + h * places, dtype=float))
             if found is not None:
                 whole, tau, ports = found
                 end = steps.inside(whole, tau)[: self._n]
                 return (t + (begin + whole + tau) * step, end, ports), z
         return None, states[-1]
-
-    def _first_event(
-        self, powers: Array, t: float, step: float
-    ) -> tuple[int, float, frozenset[int]] | None:
-        """Step, place in it and ports of the first event among steps, by their triggers' series."""
-        if not len(self._armed):
-            return None
-        least = (powers @ to_bernstein(TUNING.degree).T).min(axis=2)
-        if least.min() > 0 and self._armed.all():
-            return None
-        suspects = (least <= 0) | ~self._armed
-        at = 0
-        while at < len(powers):
-            ahead = np.flatnonzero(suspects[at:].any(axis=1))
-            if not len(ahead):
-                return None
-            at += int(ahead[0])
-            roots: dict[int, float] = {}
-            for row in np.flatnonzero(suspects[at]).tolist():
-                root = self._root(row, powers[at, row], (t - self._t) + at * step, step)
-                if root is not None:
-                    port = self._system.ports[row]
-                    roots[port] = min(root, roots.get(port, 2.0))
-            if roots:
-                tau = min(roots.values())
-                near = tau + TUNING.together * max(1.0, (t + at * step) / step)
-                return at, tau, frozenset(p for p, root in roots.items() if root <= near)
-            at += 1
-            suspects[at:] = (least[at:] <= 0) | ~self._armed
-        return None
-
-    def _root(self, row: int, powers: Array, elapsed: float, step: float) -> float | None:
-        """Where one trigger falls in a step; one that began at zero is armed when it has risen."""
-        begin = 0.0
-        if not self._armed[row]:
-            limit = self._limits[row]
-            rise, fall = -powers, powers.copy()
-            rise[0] += limit
-            fall[0] += 2 * limit
-            armed = 0.0 if rise[0] <= 0 else first_fall(rise)
-            blind = min(max((self._blind - elapsed) / step, 0.0), 1.0)
-            lost = blind if value(fall, blind) <= 0 else first_fall(fall, blind)
-            if armed is None or (lost is not None and lost < armed):
-                return lost if lost is not None and lost < 1.0 else None
-            self._armed[row], begin = True, armed
-        root = first_fall(powers, begin)
-        if root is not None and powers.sum() > 0:
-            # It comes back: a touch, unless it fell below zero by more than rounding.
-            below = powers.copy()
-            below[0] += self._limits[row]
-            return root if first_fall(below, root) is not None else None
-        return root
 
 
 def _rest(look: Look) -> Array | None:
@@ -250,7 +203,8 @@ def _kinds(lengths: Array) -> int:
     """How many stretches of equal lengths there are."""
     if len(lengths) == 1:
         return 1
-    return 1 + int(np.count_nonzero(np.abs(np.diff(lengths)) > TUNING.alike * lengths[1:]))
+    changes = np.abs(lengths[1:] - lengths[:-1])
+    return 1 + int(np.count_nonzero(changes > TUNING.alike * lengths[1:]))
 
 
 def _alike(lengths: Array, at: int) -> int:

@@ -1,8 +1,7 @@
 """The event-driven loop: smooth legs between breakpoints, and what ports do where these meet."""
 
-import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,11 +17,13 @@ from codegen.modes.pace import hardly_apart, look_ahead, time_constant
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
+from codegen.numbers.latest import Latest
 from codegen.runs.clock import NONE, Clock
 from codegen.runs.exact import ExactLeg
 from codegen.runs.free import FreeLeg
 from codegen.runs.legs import Leg
 from codegen.runs.methods import EXACT
+from codegen.runs.present import Inputs, Present
 from codegen.runs.stretches import Stretches
 from codegen.runs.track import LATEST, Accumulating, Event, Settings, Track
 from codegen.standalone.switchings import way_of
@@ -79,10 +80,11 @@ class _Course:
         self.t, self.s, self.end = begin, start, float(times[-1])
         self.mode: Mode = tuple(1 for _ in model.friction_inputs) if first is None else first
         self.track = Track(np.zeros((len(times), model.size)), [], np.abs(start))
-        self._model, self._times, self._signals = model.within(self.track), times, signals
+        self._model, self._times, self._inputs = model.within(self.track), times, Inputs(signals)
         self._settings, self._origin = settings, begin
         self._clock, self._stretches = Clock(self._model), Stretches(self._model)
         self._glances = Glances(self._model) if self._model.switches else None
+        self._changes = Latest[tuple[Mode, Mode], list[tuple[Hashable, str]]]()
         self._clear = False
         self._touched = frozenset[int]()
         self._settled: float | None = None
@@ -96,15 +98,6 @@ class _Course:
         return undecided or self.t < self.end or bool(self._touched)
 
     @property
-    def _following(self) -> float:
-        """The next breakpoint of an input [s]."""
-        return min((signal.following(self.t) for signal in self._signals), default=math.inf)
-
-    @property
-    def _pieces(self) -> list[Piece]:
-        return [signal.piece(self.t) for signal in self._signals]
-
-    @property
     def _slipping(self) -> frozenset[int]:
         """Ports that slip, but for those whose slip efforts change at once."""
         coupled = self._model.coupled_directly
@@ -112,16 +105,13 @@ class _Course:
 
     def settle(self) -> None:
         """Decide the mode just after t, and bring ports that hold to rest."""
-        model, t, pieces, peaks = self._model, self.t, self._pieces, self._peaks
+        model, t, peaks, present = self._model, self.t, self._peaks, self._inputs.at(self.t)
+        pieces = present.pieces
         here = Sight(model, t, self.s, pieces)
         peaks.see(here, self.mode)
         if self.mode:
-            mode = self.mode
-            if not self._plain(mode):
-                mode, _ = here.evaluated(mode, slipping=False)
-            fastest = self._leg(pieces, mode).fastest(t, self.s)
-            peaks.time = time_constant(fastest, t - self._origin)
-        ahead = look_ahead(peaks.time, t, self._following)
+            peaks.time = time_constant(self._fastest(here, present), t - self._origin)
+        ahead = look_ahead(peaks.time, t, present.following)
         if t >= self.end and self._settled is not None:
             # The search may have missed an event at the very end by a rounding.
             self._touched |= _still(here, self.mode, self._slipping, peaks)
@@ -132,7 +122,8 @@ class _Course:
         )
         new, after, impacts, self._clear = decide(occasion, here)
         if self._settled is not None:
-            self.track.note(_changes(model, t, self.mode, new))
+            changes = self._changes.of((self.mode, new), lambda: _changes(model, self.mode, new))
+            self.track.note([Event(t, port, kind) for port, kind in changes])
         if self._settled is not None and self._touched:
             _check_progress(self._rounds, t, hardly_apart(peaks.time), self.track.events)
         if after is not here.s:
@@ -141,13 +132,17 @@ class _Course:
         self.mode, self._touched, self._settled = new, frozenset(), t
         self._here = here if self.s is here.s else Sight(model, t, self.s, pieces)
 
-    def _plain(self, mode: Mode) -> bool:
-        """Whether a mode surely has values."""
+    def _fastest(self, here: Sight, present: Present) -> float:
+        """The largest rate [1/s] of what can be evaluated here, and of the inputs."""
         try:
-            affine = self._model.affine_map(mode, len(self._signals))
+            affine = self._model.affine_map(self.mode, len(present.pieces))
         except SimulationError:
-            return False
-        return affine is not None and not affine.limited
+            affine = None
+        if affine is not None and not affine.limited:
+            # It surely has values.
+            return max(affine.fastest, present.fastest)
+        mode, _ = here.evaluated(self.mode, slipping=False)
+        return self._leg(present.pieces, mode).fastest(here.t, here.s)
 
     def _come_to_rest(self, here: Sight, mode: Mode, impacts: Sequence[Impact]) -> None:
         before, tally, pieces = self.s, self.track.tally, here.pieces
@@ -163,7 +158,8 @@ class _Course:
 
     def advance(self) -> None:
         """Integrate to the next breakpoint or event."""
-        pieces, stop = self._pieces, min(self._following, self.end)
+        present = self._inputs.at(self.t)
+        pieces, stop = present.pieces, min(present.following, self.end)
         instant, timed = self._clock.following(self.t, pieces, self.mode, stop)
         stop = min(stop, instant)
         exact = self._exact(pieces, stop)
@@ -189,7 +185,7 @@ class _Course:
             self.t = last
             track.unrecord()
 
-    def _integrate(self, pieces: list[Piece], begin: float, s: Array, first: int) -> None:
+    def _integrate(self, pieces: Sequence[Piece], begin: float, s: Array, first: int) -> None:
         """An exact stretch is integrated from sample to sample, however it was stepped."""
         tally, own = self.track.tally, slice(first, self.track.recorded)
         if tally is not None:
@@ -234,10 +230,8 @@ def _still(here: Sight, mode: Mode, ports: frozenset[int], peaks: Peaks) -> froz
 
 def _at_rest(here: Sight, mode: Mode) -> Array:
     """Remove what slip is left at sticking ports, along ``A^-1 F^T``: no energy but the slip's own."""
-    if all(mode):
-        return here.s
     model = here.model
-    if not model.program.varying and not len(model.hold(mode, model.constant).mix):
+    if all(mode) or not model.stops(mode):
         return here.s
     now = here.at(mode)
     held = model.hold(mode, now.numbers)
@@ -247,10 +241,10 @@ def _at_rest(here: Sight, mode: Mode) -> Array:
     return s
 
 
-def _changes(model: ClosedModel, t: float, old: Mode, new: Mode) -> list[Event]:
-    """Events of ports whose mode is another: of switches, then what friction does about it."""
-    events: list[Event] = []
-    rubbing: list[Event] = []
+def _changes(model: ClosedModel, old: Mode, new: Mode) -> list[tuple[Hashable, str]]:
+    """What happens to ports whose mode is another: to switches, then what friction does about it."""
+    switching: list[tuple[Hashable, str]] = []
+    rubbing: list[tuple[Hashable, str]] = []
     for i, port in enumerate(model.program.friction):
         before, after = old[i], new[i]
         if port.slides:
@@ -259,11 +253,11 @@ def _changes(model: ClosedModel, t: float, old: Mode, new: Mode) -> list[Event]:
         if before == after:
             continue
         if port.switch is not None and not port.slides:
-            events.append(Event(t, port.name, port.switch.word(after)))
+            switching.append((port.name, port.switch.word(after)))
         else:
             kind = "stick" if after == 0 else ("slip" if before == 0 else "cross")
-            rubbing.append(Event(t, port.name, kind))
-    return events + rubbing
+            rubbing.append((port.name, kind))
+    return switching + rubbing
 
 
 def _check_progress(rounds: deque[float], t: float, least: float, events: list[Event]) -> None:

@@ -2,12 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from operator import is_
 
 import numpy as np
 
 from codegen.inputs.generators import Generator, generator
-from codegen.inputs.pieces import Piece, Term, moved
+from codegen.inputs.pieces import Piece, Term, are_same, moved
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
@@ -72,7 +71,7 @@ class Stretches:
             return Driving(here, t, told, made)
 
         found = self._driving.of(used, made)
-        if not all(map(is_, here, found.pieces)):
+        if not are_same(here, found.pieces):
             self._driving.drop(used)
             found = self._driving.of(used, made)
         return found

@@ -95,7 +95,9 @@ class Track:
 
     def see(self, vectors: Array) -> None:
         """Take the magnitudes of some vectors, the rows, into account."""
-        if len(vectors):
+        if len(vectors) == 1:
+            self.largest = np.maximum(self.largest, np.abs(vectors[0]))
+        elif len(vectors):
             self.largest = np.maximum(self.largest, np.abs(vectors).max(axis=0))
 
     def record(self, vector: Array, mode: Mode) -> None:

@@ -6,12 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
+from numpy.typing import NDArray
 
 from codegen.inputs.generators import Generator
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.modes.keeping import GUARDS, kept_by
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, read_only
 from codegen.numbers.latest import Latest
 from codegen.program.affine import AffineMap, balanced_norm
 from codegen.program.layout import CAPS, INPUTS, RATE, READINGS
@@ -46,6 +47,8 @@ class Watched:
     norm: float
     #: Whether a port has a friction level.
     limited: bool
+    #: Every port's trigger, armed.
+    armed: NDArray[np.bool_]
     _strides: Latest[str, Stride] = field(default_factory=lambda: Latest(STRIDES), repr=False)
     _met: Latest[str, bool] = field(default_factory=Latest, repr=False)
 
@@ -118,7 +121,8 @@ def watched(
         rows = [sign * slips[i]] if sign else [below - moved, below + moved]
         triggers.append(np.array(rows))
         ports += [i] * len(rows)
-    return Watched(M, np.vstack(triggers), caps, tuple(ports), balanced_norm(M), affine.limited)
+    armed, norm = read_only(np.ones(len(ports), dtype=bool)), balanced_norm(M)
+    return Watched(M, np.vstack(triggers), caps, tuple(ports), norm, affine.limited, armed)
 
 
 def lasting(M: Array, span: float) -> float:
@@ -164,8 +168,8 @@ class Steps:
 
     def __init__(self, M: Array, taken: Stride, z: Array) -> None:
         self._M, self._step, self._leap, self._series = M, taken.step, taken.leap, taken.series
-        self._start, self._beyond = z, np.zeros_like(z)
-        self._change = taken.gather @ (M @ z)
+        self._start, self._beyond = z, np.zeros(len(z))
+        self._change = taken.gather.dot(M.dot(z))
 
     def take(self, count: int) -> Array:
         """The state that was come to, and those after 1, 2, .. ``count`` more steps."""
@@ -174,7 +178,7 @@ class Steps:
             states[0] = self._start + self._beyond
             self._beyond = self._beyond + self._change
             states[1] = self._start + self._beyond
-            self._change, self._states = self._leap @ self._change, states
+            self._change, self._states = self._leap.dot(self._change), states
             return states
         changes = powers_of(self._leap, self._change, count)
         beyond = np.cumsum(np.vstack([self._beyond, changes[:-1]]), axis=0)
@@ -184,7 +188,7 @@ class Steps:
 
     def powers(self, states: Array) -> Array:
         """Of the steps from these states, those latest taken, the series of each row."""
-        found = states @ self._series.reshape(-1, states.shape[1]).T
+        found: Array = states.dot(self._series.reshape(-1, states.shape[1]).T)
         return found.reshape(len(states), *self._series.shape[:2]).transpose(0, 2, 1)
 
     def inside(self, at: int, part: float) -> Array:

@@ -1,0 +1,90 @@
+"""Where what is watched in an exact stretch first falls to zero, by power series over its steps."""
+
+from functools import cached_property
+
+import numpy as np
+
+from codegen.inputs.polynomials import first_fall, to_bernstein, value
+from codegen.model.snapshot import Mode
+from codegen.modes.pace import moment
+from codegen.modes.rounding import Peaks
+from codegen.modes.trials import Sight
+from codegen.modes.verdicts import limits_of, look_at
+from codegen.numbers.arrays import Array, all_of
+from codegen.runs.watched import Watched
+from codegen.tuning import TUNING
+
+
+class Falls:
+    """The triggers of a stretch that begins ``here``; one that begins at zero must rise before it falls."""
+
+    def __init__(
+        self, here: Sight, mode: Mode, peaks: Peaks, system: Watched, z: Array | None
+    ) -> None:
+        """``z``: the system's components where it begins; None where all triggers are well above zero."""
+        self._here, self._mode, self._peaks, self._system = here, mode, peaks, system
+        self._armed = system.armed
+        if z is not None:
+            self._armed = np.asarray(system.triggers @ z >= self._limits, dtype=np.bool_)
+        self._ready = z is None or all_of(self._armed)
+
+    @cached_property
+    def _limits(self) -> Array:
+        """Below these what is watched counts as zero where the stretch begins."""
+        look = look_at(self._here, self._mode, self._peaks)
+        limits = np.where(look.ruling.any(axis=0), look.size.slip, limits_of(look))
+        return np.asarray(limits[list(self._system.ports)], dtype=float)
+
+    def first(
+        self, powers: Array, t: float, step: float
+    ) -> tuple[int, float, frozenset[int]] | None:
+        """Step, place in it and ports of the first event among steps, by their triggers' series."""
+        if not len(self._armed):
+            return None
+        shapes = powers @ to_bernstein(TUNING.degree).T
+        if self._ready and all_of(shapes > 0):
+            return None
+        least = shapes.min(axis=2)
+        suspects = (least <= 0) | ~self._armed
+        at = 0
+        while at < len(powers):
+            ahead = np.flatnonzero(suspects[at:].any(axis=1))
+            if not len(ahead):
+                return None
+            at += int(ahead[0])
+            roots: dict[int, float] = {}
+            for row in np.flatnonzero(suspects[at]).tolist():
+                root = self._root(row, powers[at, row], (t - self._here.t) + at * step, step)
+                if root is not None:
+                    port = self._system.ports[row]
+                    roots[port] = min(root, roots.get(port, 2.0))
+            if roots:
+                tau = min(roots.values())
+                near = tau + TUNING.together * max(1.0, (t + at * step) / step)
+                return at, tau, frozenset(p for p, root in roots.items() if root <= near)
+            at += 1
+            suspects[at:] = (least[at:] <= 0) | ~self._armed
+        return None
+
+    def _root(self, row: int, powers: Array, elapsed: float, step: float) -> float | None:
+        """Where one trigger falls in a step; one that began at zero is armed when it has risen."""
+        begin = 0.0
+        if not self._armed[row]:
+            limit = self._limits[row]
+            rise, fall = -powers, powers.copy()
+            rise[0] += limit
+            fall[0] += 2 * limit
+            armed = 0.0 if rise[0] <= 0 else first_fall(rise)
+            blind = min(max((moment(self._peaks.time) - elapsed) / step, 0.0), 1.0)
+            lost = blind if value(fall, blind) <= 0 else first_fall(fall, blind)
+            if armed is None or (lost is not None and lost < armed):
+                return lost if lost is not None and lost < 1.0 else None
+            self._armed[row], begin = True, armed
+            self._ready = all_of(self._armed)
+        root = first_fall(powers, begin)
+        if root is not None and powers.sum() > 0:
+            # It comes back: a touch, unless it fell below zero by more than rounding.
+            below = powers.copy()
+            below[0] += self._limits[row]
+            return root if first_fall(below, root) is not None else None
+        return root
