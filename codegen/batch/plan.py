@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from codegen.energy.accounts import Account, Product
-from codegen.engine.runs import KINDS
+from codegen.engine.happened import KINDS
 from codegen.numbers.arrays import Array
 from codegen.program.layout import places
 from codegen.program.records import Program

@@ -12,7 +12,8 @@ from codegen.c.export import CALLING, texts
 from codegen.c.runtime import runtime_file
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
 from codegen.engine.fallback import Stopped
-from codegen.engine.runs import KINDS, NO_END, not_affine
+from codegen.engine.happened import told_events
+from codegen.engine.runs import NO_END, not_affine
 from codegen.engine.sizes import aligned, declarations
 from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
@@ -149,8 +150,7 @@ class LocatedRuns:
             reason = ffi.string(library.bg_model_message(status)).decode()
             return Stopped(reason, float(asked.time), status == Status.EVENTS)
         names = [port.name for port in self.model.program.friction]
-        told = events[0 : asked.count] if keeping else ()
-        return tuple(Event(e.time, names[e.port], KINDS[e.kind]) for e in told)
+        return tuple(told_events(ffi, events, asked.count, names)) if keeping else ()
 
     @cached_property
     def _rooms(self) -> tuple[Array, Array]:

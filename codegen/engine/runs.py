@@ -9,6 +9,7 @@ import numpy as np
 from bondgraph.errors import SimulationError
 from codegen.engine.build import FLAGS, check_tools
 from codegen.engine.fallback import Stopped
+from codegen.engine.happened import told_events
 from codegen.engine.inputs import Packed, Segments, segments
 from codegen.engine.modes import Tables
 from codegen.engine.sizes import Engine, aligned, engine, sizes
@@ -22,11 +23,6 @@ from codegen.program.gains import written_out
 from codegen.program.records import Program
 from codegen.runs.track import Event, Track
 from codegen.tuning import TUNING
-
-KINDS = ("stick", "slip", "cross", "on", "off")
-
-EVENT = np.dtype([("time", np.float64), ("port", np.intc), ("kind", np.intc)], align=True)
-"""``bg_event``."""
 
 CAPACITY = 256
 """Events there is room for at first, at the least."""
@@ -142,13 +138,7 @@ class Prepared:
         """The events, ports by these names."""
         if not self.keeping or not self.task.count:
             return []
-        size = self.engine.ffi.sizeof("bg_event")
-        told = np.frombuffer(self.engine.ffi.buffer(self.events, self.task.count * size), EVENT)
-        ports, kinds = told["port"].tolist(), told["kind"].tolist()
-        return [
-            Event(time, names[port], KINDS[kind])
-            for time, port, kind in zip(told["time"].tolist(), ports, kinds, strict=True)
-        ]
+        return told_events(self.engine.ffi, self.events, self.task.count, names)
 
     def _room(self) -> None:
         if not self.keeping:

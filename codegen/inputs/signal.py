@@ -145,6 +145,8 @@ def sampled_rates(signal: Signal, times: NDArray[np.float64]) -> NDArray[np.floa
 def _sampled(
     pieces: Sequence[Piece], signal: Signal, times: NDArray[np.float64]
 ) -> NDArray[np.float64]:
+    if len(pieces) == 1:
+        return pieces[0].values(times)
     which = np.searchsorted(np.array(signal.breakpoints, dtype=float), times, side="right")
     result = np.zeros(len(times))
     for at in np.unique(which).tolist():

@@ -10,6 +10,7 @@ from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Impact, Mode, Snapshot
 from codegen.modes.blocks import blocks_of, slipping_as, turned_to, ways_to_rub
+from codegen.modes.choices import Choices
 from codegen.modes.closed import ClosedModel
 from codegen.modes.glances import Glances
 from codegen.modes.impact import impact, pushed
@@ -42,6 +43,8 @@ class Occasion(NamedTuple):
     touched: frozenset[int] = frozenset()
     #: What a first look at affine modes needs.
     glances: Glances | None = None
+    #: What it has come to.
+    choices: Choices | None = None
 
     def seen(self, s: Array) -> Sight:
         """The model at this instant with another integrated vector."""
@@ -116,12 +119,18 @@ def decide(now: Occasion, here: Sight) -> Decision:
 
 def _decided(now: Occasion, here: Sight, switches: list[int]) -> Decision:
     """The first consistent mode, at most one impact later; time alone has told the other switches."""
+    if (again := _again(now, here, switches)) is not None:
+        return again
     refused: dict[Mode, str] = {}
     tries = switchings(now.previous, switches)
-    mode = next(tries)
+    mode, glanced = next(tries), True
     while True:
-        found = _glanced(now, here, mode, switches) or _tried(now, here, mode, switches)
+        found = _glanced(now, here, mode, switches)
+        if found is None:
+            found, glanced = _tried(now, here, mode, switches), False
         if isinstance(found, Decision):
+            if glanced and now.choices is not None and now.peaks is not None:
+                now.choices.keep(now.previous, switches, [*refused, mode], here, now.peaks)
             return found
         refused[mode] = found.reason
         try:
@@ -129,8 +138,17 @@ def _decided(now: Occasion, here: Sight, switches: list[int]) -> Decision:
         except StopIteration:
             if now.glances is not None or len(switches) < len(now.model.switches):
                 # Why not is told by a closer look, at what time alone tells, too.
-                return _decided(now._replace(glances=None), here, now.model.switches)
+                closer = now._replace(glances=None, choices=None)
+                return _decided(closer, here, now.model.switches)
             raise _none_consistent(now, refused) from None
+
+
+def _again(now: Occasion, here: Sight, switches: list[int]) -> Decision | None:
+    """What was decided before in a like case, if it would be again."""
+    if now.choices is None or now.peaks is None:
+        return None
+    mode = now.choices.again(now.previous, switches, here, now.peaks)
+    return None if mode is None else Decision(mode, here.s, (), clear=True)
 
 
 def _none_consistent(now: Occasion, refused: dict[Mode, str]) -> SimulationError:

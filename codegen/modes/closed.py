@@ -15,6 +15,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece, are_same
 from codegen.model.affine_modes import LetGo, in_mode, let_go
+from codegen.model.commands import Command, commands
 from codegen.model.instant import Binding
 from codegen.model.moves import Moves, moves
 from codegen.model.numbers import assembled, check_values, exact_parameters, numbers
@@ -177,6 +178,11 @@ class ClosedModel:
                 f"at t = {now.t:.9g} the condition of switch {port.name!r} has no finite value"
             )
         return values
+
+    @cached_property
+    def commands(self) -> tuple[Command, ...]:
+        """The commands of switches that go by one alone."""
+        return commands(self.equations, self.parameters)
 
     @cached_property
     def timed_guards(self) -> Array:

@@ -50,7 +50,8 @@ class Judged:
 
     def __init__(self, glance: Glance) -> None:
         self.glance = glance
-        self._first = len(glance.rows) - glance.least.shape[1]
+        #: Where among the rows those of [x, u, z, u', 1] begin.
+        self.first = len(glance.rows) - glance.least.shape[1]
         self._most, self._both, self._units = NONE, NONE, NONE
         self._kept = Bounds([], NONE, NONE)
 
@@ -59,21 +60,26 @@ class Judged:
 
         ``both``: the magnitudes that states and inputs have reached, which grow only.
         """
-        sizes = np.abs(values[self._first :])
+        sizes = np.abs(values[self.first :])
         lasts = units is self._units and all_of(sizes <= self._most)
         if lasts and (both is self._both or all_of(both <= self._most[: len(both)])):
             self._both = both
             return self._kept
+        self._units, self._both = units, both
+        self._kept, self._most = self.larger(sizes, units, both)
+        return self._kept
+
+    def larger(self, sizes: Array, units: Array, both: Array) -> tuple[Bounds, Array]:
+        """Bounds for larger magnitudes of [x, u, z, u', 1] than these, and how large ones."""
         least = np.zeros(len(sizes))
         least[: len(both)], least[-1] = both, 1.0
-        self._most, self._units, self._both = GENEROUS * np.maximum(sizes, least), units, both
+        most = GENEROUS * np.maximum(sizes, least)
         still = _bounds(self.glance, least, units).still
-        self._kept = _bounds(self.glance, self._most, units)._replace(still=still)
-        return self._kept
+        return _bounds(self.glance, most, units)._replace(still=still), most
 
     def exact(self, values: Array, units: Array, both: Array) -> Bounds:
         """Those at these values."""
-        sizes = np.abs(values[self._first :])
+        sizes = np.abs(values[self.first :])
         np.maximum(sizes[: len(both)], both, out=sizes[: len(both)])
         return _bounds(self.glance, sizes, units)
 
@@ -82,29 +88,31 @@ class Glances:
     """First looks at the modes of a run; those that were not asked for longest go."""
 
     def __init__(self, model: ClosedModel) -> None:
-        self._model, size = model, len(model.program.states) + len(model.program.inputs)
+        #: How many states and inputs there are.
+        self.size = len(model.program.states) + len(model.program.inputs)
+        self._model = model
         self._timed = frozenset(model.timed)
         self._at, self._in = (np.nan, np.nan), NONE
         self._units = Latest[tuple[float, float], Array](UNITS)
-        self._found = Latest[Mode, Judged | None](room_for(4 * size**2))
+        self._found = Latest[Mode, Judged | None](room_for(4 * self.size**2))
 
     def seen(self, here: Sight, mode: Mode, asked: list[int], peaks: Peaks) -> Seen | None:
         """Which switches of those asked contradict a mode; None where that takes a closer look."""
-        judged = self._found.of(mode, lambda: self._judged(mode))
+        judged = self.judged(mode)
         if judged is None or not self._timed.isdisjoint(asked):
             return None
-        units, both = self._units_at(peaks.time, here.t), peaks.both
+        units, both = self.units_at(peaks.time, here.t), peaks.both
         values = judged.glance.rows.dot(here.vector)
         told = _told(judged.glance, values, lambda v: judged.generous(v, units, both), asked)
         if told is None:
             told = _told(judged.glance, values, lambda v: judged.exact(v, units, both), asked)
         return told
 
-    def _judged(self, mode: Mode) -> Judged | None:
-        found = glance(self._model, mode)
-        return None if found is None else Judged(found)
+    def judged(self, mode: Mode) -> Judged | None:
+        """The tables of a mode; None of one that always takes a closer look."""
+        return self._found.of(mode, lambda: _judged(self._model, mode))
 
-    def _units_at(self, time: float, t: float) -> Array:
+    def units_at(self, time: float, t: float) -> Array:
         """What the blocks of bounds are in; the same array at the same roundings."""
         key = time, math.ulp(t)
         if self._at != key:
@@ -138,6 +146,11 @@ def _told(
     broken = _contrary(ways, least, asked)
     # What an impact does is worked out where it is consistent.
     return Seen(broken) if broken else None
+
+
+def _judged(model: ClosedModel, mode: Mode) -> Judged | None:
+    found = glance(model, mode)
+    return None if found is None else Judged(found)
 
 
 def _units(time: float, spacing: float) -> Array:

@@ -21,20 +21,25 @@ TINY = float(np.finfo(float).tiny)
 """No number that counts as zero is zero itself."""
 
 
-def input_terms(here: Sight, mode: Mode, affine: AffineMap | None) -> Array:
+def input_terms(here: Sight, mode: Mode) -> Array:
     """For every input the sum of the magnitudes of its terms in states and external inputs.
 
     A tire that gives ``c omega - c omega_0`` gives 0 at its own speed, but only to the rounding of
-    ``c omega``. ``affine``: the mode's map, if it has one.
+    ``c omega``.
     """
-    if affine is not None:
-        # Rates of inputs are none of them.
-        sizes = np.abs(here.vector)
-        sizes[len(sizes) - 1 - len(here.pieces) : -1] = 0.0
-        found: Array = affine.magnitudes(INPUTS).dot(sizes)
-        return found
     model, t, s, pieces = here.model, here.t, here.s, here.pieces
+    affine = model.affine_map(mode, len(pieces))
+    if affine is not None:
+        return _affine_terms(here, affine)
     return terms_of(lambda at: model.at(t, at, pieces, mode).u, s, np.abs(s), np.flatnonzero(s))
+
+
+def _affine_terms(here: Sight, affine: AffineMap) -> Array:
+    """The same where a mode is affine; rates of inputs are none of them."""
+    sizes = np.abs(here.vector)
+    sizes[len(sizes) - 1 - len(here.pieces) : -1] = 0.0
+    found: Array = affine.magnitudes(INPUTS).dot(sizes)
+    return found
 
 
 @dataclass
@@ -70,11 +75,10 @@ class Peaks:
         model = here.model
         affine = model.let_go_map(mode, len(here.pieces))
         if affine is not None and not affine.limited:
-            x = affine.rows(STATES).dot(here.vector)
+            x, terms = affine.rows(STATES).dot(here.vector), _affine_terms(here, affine)
         else:
-            mode, now = here.evaluated(mode)
-            affine, x = model.affine_map(mode, len(here.pieces)), now.x
-        terms = input_terms(here, mode, affine)
+            slipping, now = here.evaluated(mode)
+            x, terms = now.x, input_terms(here, slipping)
         found = np.concatenate((np.abs(x), terms))
         # The same array stands for the same magnitudes.
         if not all_of(found <= self.both):

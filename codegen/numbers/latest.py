@@ -42,6 +42,13 @@ class Latest(Generic[Key, Value]):
         kept[key] = found
         return found
 
+    def get(self, key: Key) -> Value | None:
+        """What belongs to a key, if it is kept."""
+        found = self._kept.pop(key, None)
+        if found is not None:
+            self._kept[key] = found
+        return found
+
     def drop(self, key: Key) -> None:
         """Forget what belongs to a key."""
         self._kept.pop(key, None)

@@ -3,11 +3,9 @@
 import warnings
 
 import numpy as np
-import sympy as sp
 
-from bondgraph.algebra.expressions import TIME
 from bondgraph.errors import ModelWarning
-from bondgraph.reduce.switch_port import SwitchPort
+from codegen.model.commands import Command
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.record.result import Result
@@ -15,11 +13,9 @@ from codegen.record.result import Result
 
 def tell_resting(model: ClosedModel, done: Result) -> None:
     """Warn whoever called what calls this of switches that are on at two samples with a command of zero."""
-    for one in model.equations.switches:
-        if one.guard != "commanded" or one.off != -one.on:
-            continue
+    for one in model.commands:
         on = done[str(one.name)] == 1
-        idle = on & (_command(model, one, done) == 0)
+        idle = on & (_values(one, done) == 0)
         both = np.flatnonzero(idle[:-1] & idle[1:])
         if len(both):
             warnings.warn(
@@ -31,11 +27,7 @@ def tell_resting(model: ClosedModel, done: Result) -> None:
             )
 
 
-def _command(model: ClosedModel, one: SwitchPort, done: Result) -> Array:
+def _values(one: Command, done: Result) -> Array:
     """The command at each sample."""
-    names = sorted(one.on.free_symbols - {TIME} - {sp.Symbol(n) for n in model.parameters}, key=str)
-    command = one.on.subs({sp.Symbol(n): value for n, value in model.parameters.items()})
-    given = sp.lambdify([TIME, *names], command, "numpy")(
-        done.time, *(done[name.name] for name in names)
-    )
+    given = one.value(done.time, *(done[name] for name in one.signals))
     return np.broadcast_to(np.asarray(given, dtype=float), done.time.shape)

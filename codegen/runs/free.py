@@ -8,9 +8,9 @@ import numpy as np
 from codegen.inputs.generators import generator
 from codegen.inputs.pieces import Piece
 from codegen.numbers.arrays import Array
+from codegen.numbers.ladder import Ladder, rows_by_doubling
 from codegen.numbers.pairs import Pair, matmul, pair, stacked
 from codegen.program.affine import balanced_norm
-from codegen.runs.ladder import Ladder, rows_by_doubling
 from codegen.runs.track import Ended, Track
 from codegen.tuning import TUNING
 

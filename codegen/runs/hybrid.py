@@ -8,8 +8,10 @@ import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
+from codegen.inputs.present import Inputs, Present
 from codegen.inputs.signal import Signal
 from codegen.model.snapshot import Impact, Mode
+from codegen.modes.choices import Choices
 from codegen.modes.choose import Occasion, decide
 from codegen.modes.closed import ClosedModel
 from codegen.modes.glances import Glances
@@ -23,7 +25,6 @@ from codegen.runs.exact import ExactLeg
 from codegen.runs.free import FreeLeg
 from codegen.runs.legs import Leg
 from codegen.runs.methods import EXACT
-from codegen.runs.present import Inputs, Present
 from codegen.runs.stretches import Stretches
 from codegen.runs.track import LATEST, Accumulating, Event, Settings, Track
 from codegen.standalone.switchings import way_of
@@ -83,7 +84,8 @@ class _Course:
         self._model, self._times, self._inputs = model.within(self.track), times, Inputs(signals)
         self._settings, self._origin = settings, begin
         self._clock, self._stretches = Clock(self._model), Stretches(self._model)
-        self._glances = Glances(self._model) if self._model.switches else None
+        glances = Glances(self._model) if self._model.switches else None
+        self._first_looks = glances, None if glances is None else Choices(glances)
         self._changes = Latest[tuple[Mode, Mode], list[tuple[Hashable, str]]]()
         self._clear = False
         self._touched = frozenset[int]()
@@ -118,7 +120,7 @@ class _Course:
         # A breakpoint may set the slips anew, so sticking ports are decided again with the others.
         loose = self._touched | {i for i, sign in enumerate(self.mode) if sign == 0}
         occasion = Occasion(
-            model, t, pieces, self.mode, ahead, peaks, loose, self._touched, self._glances
+            model, t, pieces, self.mode, ahead, peaks, loose, self._touched, *self._first_looks
         )
         new, after, impacts, self._clear = decide(occasion, here)
         if self._settled is not None:

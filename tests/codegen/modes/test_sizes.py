@@ -8,6 +8,7 @@ from references.build import bond_graph
 import bondgraph as bg
 from codegen import Constant, Result, simulator
 from codegen.modes.rounding import input_terms
+from codegen.modes.trials import Sight
 
 #: Two shafts tied by a clutch, each with its own road at its own speed.
 NODES = [
@@ -51,7 +52,7 @@ def test_terms_are_those_of_the_law(shape: str) -> None:
     laws = {"road_a": shape, "road_b": "0*v_b", "clutch": bg.DryFriction("T")}
     ready = simulator(bg.derive(GRAPH), {"J": 0.8, "c": 6.1e4, "w_0": 39.7, "T": 0.0}, laws=laws)
     start = np.array([39.7, 39.7])
-    found = input_terms(ready.closed, 0.0, start, [], (1,))
+    found = input_terms(Sight(ready.closed, 0.0, start, []), (1,))
     at = [str(name) for name in ready.closed.program.inputs].index("tau_a")
     assert found[at] == pytest.approx(2 * 6.1e4, rel=0.51)
 
@@ -59,4 +60,5 @@ def test_terms_are_those_of_the_law(shape: str) -> None:
 def test_external_inputs_count_as_they_are() -> None:
     ready = simulator(bg.derive(block()), {"m": 2.0, "F_c": 3.0})
     pieces = [Constant(-7.0).pieces[0]]
-    assert 7.0 in input_terms(ready.closed, 0.0, np.array([0.5]), pieces, (1,)).tolist()
+    here = Sight(ready.closed, 0.0, np.array([0.5]), pieces)
+    assert 7.0 in input_terms(here, (1,)).tolist()

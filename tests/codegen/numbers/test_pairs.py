@@ -7,8 +7,8 @@ import numpy as np
 
 import bondgraph as bg
 from codegen import simulator
+from codegen.numbers.ladder import Ladder
 from codegen.numbers.pairs import Pair, from_decimals, matmul, pair, plus, times
-from codegen.runs.ladder import Ladder
 
 
 def _long(value: Pair) -> list[Decimal]:
