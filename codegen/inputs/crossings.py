@@ -90,8 +90,11 @@ def rises(powers: Array, above: bool, least: float) -> tuple[Array, bool]:
         [begins[inside] + halves[inside] * _roots(parts[inside]), begins[between]]
     )
     steps = np.concatenate([inside, between])
-    real = [least == 0 or _risen(parts, int(at), least) for at in steps.tolist()]
-    return np.sort(places[np.array(real, dtype=bool)]), bool(ends[-1])
+    # Most have risen by the end of their step.
+    real = (least == 0) | (parts[steps].sum(axis=1) > least)
+    for at in np.flatnonzero(~real).tolist():
+        real[at] = _risen(parts, int(steps[at]), least)
+    return np.sort(places[real]), bool(ends[-1])
 
 
 def _risen(parts: Array, at: int, least: float) -> bool:
