@@ -1,7 +1,7 @@
 """A first look at affine modes of switches: where all is far from a tie, a few products decide."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -30,7 +30,7 @@ GENEROUS = 2.0
 class Bounds(NamedTuple):
     """What counts as zero of what keeps the ports; slips up to ``still`` are none, above ``struck`` some."""
 
-    least: list[float]
+    least: tuple[float, ...]
     still: Array
     struck: Array
 
@@ -53,7 +53,7 @@ class Judged:
         #: Where among the rows those of [x, u, z, u', 1] begin.
         self.first = len(glance.rows) - glance.least.shape[1]
         self._most, self._both, self._units = NONE, NONE, NONE
-        self._kept = Bounds([], NONE, NONE)
+        self._kept = Bounds((), NONE, NONE)
 
     def generous(self, values: Array, units: Array, both: Array) -> Bounds:
         """Bounds beyond those at these values of the rows: whatever they tell, these would, too.
@@ -164,10 +164,12 @@ def _bounds(found: Glance, sizes: Array, units: Array) -> Bounds:
     least = SLACK * (units @ (found.least @ sizes).reshape(4, -1))
     near, slips = found.still @ sizes, len(found.shock)
     still = TUNING.wide * TUNING.rounding * near[:slips]
-    return Bounds(least.tolist(), still, TUNING.wide * SLACK * (units @ near.reshape(4, slips)))
+    return Bounds(
+        tuple(least.tolist()), still, TUNING.wide * SLACK * (units @ near.reshape(4, slips))
+    )
 
 
-def _reached(values: Array, least: list[float]) -> bool:
+def _reached(values: Array, least: tuple[float, ...]) -> bool:
     """Whether one of the first values is not zero."""
     return any(abs(value) > size for value, size in zip(values.tolist(), least, strict=False))
 
@@ -188,7 +190,9 @@ def _surely(slips: Array, found: Glance) -> list[float] | None:
     return told if all_of(sure) else None
 
 
-def _contrary(values: list[float], least: list[float], asked: list[int]) -> frozenset[int] | None:
+def _contrary(
+    values: list[float], least: Sequence[float], asked: list[int]
+) -> frozenset[int] | None:
     """The ports that contradict a mode; None where one is too close to zero."""
     broken = []
     for i in asked:
