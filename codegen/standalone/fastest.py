@@ -210,7 +210,7 @@ class Fastest:
 
     def longest(self, found: Round, h: float) -> float:
         """The longest stable step by a fit, or by the mean growth; h if nothing is against it."""
-        if found.left <= 0.2:
+        if found.left <= TUNING.unexplained:
             root = cmath.sqrt(found.a**2 / 4 + found.b)
             if h * (abs(found.a) / 2 + abs(root)) < NEAREST:
                 return h  # no root is larger
@@ -225,7 +225,7 @@ class Fastest:
         for i in range(len(stir)):
             self.noise = (1664525 * self.noise + 1013904223) % 2**32
             stir[i] = self.noise / 2**31 - 1
-        direction = direction + 0.01 * stir / self.size(stir)
+        direction = direction + TUNING.stirred * stir / self.size(stir)
         self.direction = direction / self.size(direction)
         if growth > 0:
             self.rounds = min(self.rounds + 1, AVERAGED)
@@ -238,6 +238,6 @@ class Fastest:
             seed = (k_3 - k_2) * self.weight
             after = self.size(seed)
         if 0 < before < np.inf and 0 < after < np.inf:
-            part = 0.0 if 2 * after > NEAREST * before else 10.0
+            part = 0.0 if 2 * after > NEAREST * before else 1 / TUNING.seeded
             direction = part * self.direction + seed / after
             self.direction = direction / self.size(direction)
