@@ -163,7 +163,10 @@ def test_units_step_below_the_limit_and_refuse_beyond_it(
 
 
 def test_in_each_mode_its_own_limit(tmp_path: Path) -> None:
-    """Locked, both inertias are on the shaft: steps are stable that a slipping clutch forbids."""
+    """Locked, both inertias are on the shaft: steps are stable that a slipping clutch forbids.
+
+    Longer ones are not: those are refused locked, too.
+    """
     stiff = STIFF["clutch"]()
     case = stiff.case
     locked = np.array([[-6.0 / 0.45, -1.0 / 0.45], [2000.0, 0.0]])
@@ -174,6 +177,9 @@ def test_in_each_mode_its_own_limit(tmp_path: Path) -> None:
     for k in range(400):
         status, s = pair.c.step(k * h, h, s, [[20.0]] * 3)
         assert status == 0, pair.c.message(status)
+    assert pair.c.mode() == (0,)
+    status, _ = pair.c.step(400 * h, 1.1 * first_unstable(locked), s, [[20.0]] * 3)
+    assert "beyond the stability" in pair.c.message(status)
     assert pair.c.mode() == (0,)
     for k in range(400, 405):
         status, s = pair.c.step(k * h, h, s, [[200.0]] * 3)
@@ -188,6 +194,13 @@ def test_a_step_is_a_positive_number(pair: Pair, module, stiff: Stiff, h: float)
     assert "positive finite number" in pair.c.message(status)
     with pytest.raises(ValueError, match="a step must be a positive finite number"):
         module.simulate([0.0, 1.0], stiff.case.initial, stiff.case.inputs, step=h)
+    model = module.Model()
+    w = [stiff.case.inputs[name] for name in model.names.external]
+    at = np.array(w), np.zeros(len(w))
+    s = np.array([stiff.case.initial.get(name, 0.0) for name in module.STATES])
+    mode = model.decided(module.Point(0.0, s, *at), None, 1e-6)
+    with pytest.raises(ValueError, match="a step must be a positive finite number"):
+        model.step(0.0, h, s, [at] * 3, mode)
 
 
 def test_the_check_can_be_left_out_when_compiling(tmp_path: Path) -> None:
