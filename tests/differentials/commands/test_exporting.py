@@ -109,7 +109,7 @@ def test_the_next_line_runs_under_any_name(name: str, call: Call, tmp_path: Path
     out = tmp_path / "the folder"
     done = call(
         "export", path, *OSCILLATOR[2:], "--initial", "v=1", "--to", "python", "--out", str(out),
-        "--until", "0.1", "--sample", "0.001",
+        "--until", "0.02", "--sample", "0.001",
     )  # fmt: skip
     assert done.exit_code == 0, done.output
     following = done.stdout.rpartition("Next: ")[2].strip()

@@ -118,7 +118,7 @@ def test_exports_begin_with_the_switches_that_are_on(
     dog: str, call: Call, tmp_path: Path, on: tuple[str, ...], speeds: tuple[float, float]
 ) -> None:
     """The exported script, and the exported C if there is a compiler, from its first line to its last."""
-    window = ("--until", "0.5", "--sample", "0.1")
+    window = ("--until", "0.05", "--sample", "0.01")
     assert call("export", dog, "--to", "python", *STAYS, *window, *on).exit_code == 0
     script = [sys.executable, "run_dog.py"]
     subprocess.run(script, cwd=tmp_path / "out", check=True, capture_output=True)
@@ -130,7 +130,7 @@ def test_exports_begin_with_the_switches_that_are_on(
     sources = [str(path) for path in (tmp_path / "out" / "dog").glob("*.c")]
     program = str(tmp_path / "program")
     subprocess.run(["cc", "-std=c99", *sources, "-lm", "-o", program], check=True)
-    done = subprocess.run([program, "0.5", "0.1"], check=True, capture_output=True, text=True)
+    done = subprocess.run([program, "0.05", "0.01"], check=True, capture_output=True, text=True)
     header, *rows = done.stdout.splitlines()
     last = dict(zip(header.removeprefix("# ").split(","), rows[-1].split(","), strict=True))
     assert [float(last[v]) for v in ("v_1", "v_2")] == pytest.approx(speeds, abs=1e-9)
