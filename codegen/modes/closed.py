@@ -58,6 +58,7 @@ class ClosedModel:
         #: The equations as declared.
         self.declared = equations
         check_gains(program, exact)
+        self._rated = program.rated
         self.friction_inputs = [port.input for port in program.friction]
         self.friction_readings = [port.reading for port in program.friction]
         self.moving = np.array(
@@ -226,7 +227,7 @@ class ClosedModel:
         if latest[0] == t and are_same(latest[1], pieces):
             return latest[2], latest[3]
         w, dw = np.array([piece(t) for piece in pieces]), np.zeros(len(pieces))
-        if self.program.rated:
+        if self._rated:
             dw = np.array([piece.derivative(t) for piece in pieces])
         w.setflags(write=False)
         dw.setflags(write=False)
