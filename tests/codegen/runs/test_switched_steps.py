@@ -172,9 +172,30 @@ def test_a_start_is_completed_by_what_is_on(tmp_path: Path) -> None:
         to_c(equations, numbers, initially_on=["cog"])
 
 
-def _rows(program: Path, *words: str) -> np.ndarray:
+@pytest.mark.parametrize("on", [(), ("relay",)])
+def test_between_two_thresholds_a_relay_stays_as_it_was_at_first(
+    on: tuple[str, ...], tmp_path: Path
+) -> None:
+    """From 27, where neither 25 nor 30 is passed: to 12/1.1 with the fan on, to 120 with it off."""
+    equations, numbers = bg.derive(CASES["relay"].graph), CASES["relay"].numbers
+    rest, rate = (12 / 1.1, 1.1 / 2) if on else (120.0, 0.1 / 2)
+    times = np.linspace(0.0, 0.2, 5)
+    expected = rest + (27.0 - rest) * np.exp(-rate * times)
+    module = loaded(to_python(equations, numbers))
+    run = module.simulate(times, {"theta": 27.0}, {"P": 12.0}, step=1e-3, initially_on=on)
+    assert run["theta"] == pytest.approx(expected, rel=1e-12)
+    assert run["relay"] == pytest.approx(len(on))
+    more = {"main": True, "initial": {"theta": 27.0}, "inputs": {"P": 12.0}, "initially_on": on}
+    program = compiled(tmp_path, written(tmp_path, to_c(equations, numbers, **more)))
+    for how in ("located", "step=1e-3"):
+        rows = _rows(program, how, end="0.2")
+        assert rows[:, 1] == pytest.approx(expected, rel=1e-9), how
+        assert rows[:, -1] == pytest.approx(len(on)), how
+
+
+def _rows(program: Path, *words: str, end: str = "0.1") -> np.ndarray:
     done = subprocess.run(
-        [program, "0.1", "0.05", *words], capture_output=True, text=True, check=True
+        [program, end, "0.05", *words], capture_output=True, text=True, check=True
     )
     return np.array([list(map(float, row.split(","))) for row in done.stdout.splitlines()[1:]])
 
