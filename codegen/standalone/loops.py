@@ -39,7 +39,10 @@ class Loop(Laws):
         def residual(amounts: Array) -> Array:
             now.u[:], now.y[:] = u, y
             now.give(self.inputs, amounts)
-            return np.nan_to_num(left(), nan=1e300, posinf=1e300, neginf=-1e300)
+            found = left()
+            if np.isfinite(found).all():
+                return found
+            return np.nan_to_num(found, nan=1e300, posinf=1e300, neginf=-1e300)
 
         D = now.numbers.D[np.ix_(self.readings, self.inputs)]
         found, worst = searched(residual, D, y[self.readings], self.rescue)

@@ -252,7 +252,7 @@ FAMILIES = (
     Family(
         "mixed-ports",
         "codegen/switched/test_mixed_ports.py::test_random_networks",
-        1,
+        12,
         1_000,
         1,
     ),
