@@ -122,7 +122,7 @@ def _decided(now: Occasion, here: Sight, switches: list[int]) -> Decision:
     if (again := _again(now, here, switches)) is not None:
         return again
     refused: dict[Mode, str] = {}
-    tries = switchings(now.previous, switches)
+    tries = switchings(now.previous, switches, now.model.guarded)
     mode, glanced = next(tries), True
     while True:
         found = _glanced(now, here, mode, switches)

@@ -69,9 +69,12 @@ class ClosedModel:
         self.law_rates = np.array(program.law_rates, dtype=np.intp)
         #: Of each port that is a switch when it changes over, None of the others.
         self.switching = [port.switch for port in program.friction]
-        #: The places of switches; of those that time alone drives, of these of those that go either way by
-        #: one condition; and whether there is friction beside.
+        #: The places of switches; of those with conditions of their own; of those that time alone drives, of
+        #: these of those that go either way by one condition; and whether there is friction beside.
         self.switches = [i for i, switch in enumerate(self.switching) if switch is not None]
+        self.guarded = frozenset(
+            i for i, switch in enumerate(self.switching) if switch is not None and not switch.side
+        )
         self.timed = timed_ports(program)
         self.opposed = opposed_ports(program, self.timed)
         self.rubbing = len(self.switches) < len(program.friction)

@@ -38,6 +38,9 @@ class SwitchedSteps(DeadBand):
         super().__init__(names, friction)
         self.switches, self.switching = switches, switches.switching
         self.places = [i for i, one in enumerate(self.switching) if one is not None]
+        self.guarded = frozenset(
+            i for i in self.places if (one := self.switching[i]) is not None and not one.side
+        )
         self.rubs = np.array([one is None for one in self.switching])
         self.first = self.mode_of(())
 
@@ -117,7 +120,8 @@ class SwitchedSteps(DeadBand):
 
     def chosen(self, at: Point, previous: Chosen, dead_band: float, h: float) -> tuple[Mode, Array]:
         """The first consistent mode from the one so far on, and s after its impulses."""
-        tries = switchings(self.first if previous is None else previous, self.places)
+        first = self.first if previous is None else previous
+        tries = switchings(first, self.places, self.guarded)
         mode, refused = next(tries), None
         while True:
             broken: Broken = frozenset()

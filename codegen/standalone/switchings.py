@@ -1,6 +1,6 @@
 """When switches change over, and the ways to try: from the one at hand to those farther off."""
 
-from collections.abc import Generator, Iterable
+from collections.abc import Generator, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -67,14 +67,18 @@ def way_of(mode: Mode, port: int) -> int:
     return (mode[port] == 0) - (mode[port + 1] == 0)
 
 
-def switchings(first: Mode, switches: list[int]) -> Generator[Mode, Broken, None]:
+def switchings(
+    first: Mode, switches: list[int], guarded: Broken = frozenset()
+) -> Generator[Mode, Broken, None]:
     """Modes to try, each once; after each the switches that contradict it are sent.
 
     First all that contradict change over, until that has been tried; then the first of them
     (Murty's rule, which ends where the modes' conditions are a linear complementarity problem with
     positive minors: Cottle, Pang, Stone 1992, section 4.2); then all, by how many changes they are
-    away.
+    away. ``guarded``: switches with conditions of their own. As they are is as good as changed over
+    while none holds, so those that contradict no mode change over last.
     """
+    contradicted: set[int] = set()
     seen: set[Mode] = set()
     mode, last, broken = first, first, frozenset[int]()
     for every in (True, False):
@@ -83,16 +87,27 @@ def switchings(first: Mode, switches: list[int]) -> Generator[Mode, Broken, None
                 break
             seen.add(mode)
             broken = yield mode
+            contradicted |= broken
             if not broken:
                 break
             mode, last = flipped(mode, broken if every else [min(broken)]), mode
         if not broken:
             break
         mode = flipped(last, [min(broken)])
+    for changed in _changes(switches, guarded, contradicted):
+        mode = flipped(first, changed)
+        if mode not in seen:
+            seen.add(mode)
+            contradicted |= yield mode
+
+
+def _changes(
+    switches: list[int], guarded: Broken, contradicted: set[int]
+) -> Iterator[tuple[int, ...]]:
+    """Switches to change over, few first; last of all those guarded that have not contradicted."""
     most = len(switches) if len(switches) <= ALL_WAYS else FEW
-    for count in range(1, most + 1):
-        for changed in combinations(switches, count):
-            mode = flipped(first, changed)
-            if mode not in seen:
-                seen.add(mode)
-                yield mode
+    for last_of_all in (False, True):
+        for count in range(1, most + 1):
+            for changed in combinations(switches, count):
+                if last_of_all or contradicted.issuperset(guarded.intersection(changed)):
+                    yield changed

@@ -135,7 +135,7 @@ static int look_loose(ex_glance *g)
 static void keep(ex_context *c, const int *before)
 {
     ex_choice *to = c->choices + (c->decided < EX_CHOICES ? c->decided : 0);
-    bg_set switches = {{0}};
+    bg_set switches = {{0}}, guarded = {{0}};
     int found = 0;
     for (int n = 1; c->decided == EX_CHOICES && n < EX_CHOICES; n++)
         if (c->choices[n].used < to->used)
@@ -148,10 +148,13 @@ static void keep(ex_context *c, const int *before)
     allow(&g);
     if (!is_as_late(c, to) || !look_loose(&g))
         return;
-    for (int i = 0; i < EX_K; i++)
+    for (int i = 0; i < EX_K; i++) {
         bg_add(&switches, i);
+        if (c->model->switches[i].kind == BG_TOLD)
+            bg_add(&guarded, i);
+    }
     const bg_set first = bg_held_in(EX_K, before);
-    if (bg_try_ways(EX_K, &switches, first, ex_glance_at, &g, &found) || !found
+    if (bg_try_ways(EX_K, &switches, &guarded, first, ex_glance_at, &g, &found) || !found
         || !ex_is_alike(g.mode, c->run.mode))
         return;
     for (; to->rows % EX_LANE; to->rows++) {

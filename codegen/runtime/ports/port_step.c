@@ -167,15 +167,17 @@ static int try_in_step(void *self, const bg_set *held, int *holds, bg_set *broke
 /* Where some ports are switches; a step that has no mode leaves all as it was. */
 static int search_ways(step_search *c, const int *before)
 {
-    bg_set switches = {{0}}, first = {{0}};
+    bg_set switches = {{0}}, guarded = {{0}}, first = {{0}};
     int holds;
     for (int i = 0; i < K; i++)
         if (bg_switches[i].kind != BG_RUBS) {
             bg_add(&switches, i);
+            if (bg_switches[i].kind == BG_TOLD)
+                bg_add(&guarded, i);
             if (before[i] == 0)
                 bg_add(&first, i);
         }
-    const int status = bg_try_ways(K, &switches, first, try_in_step, c, &holds);
+    const int status = bg_try_ways(K, &switches, &guarded, first, try_in_step, c, &holds);
     if (status == BG_OK && holds)
         return BG_OK;
     memcpy(c->s, c->begun, sizeof c->begun);

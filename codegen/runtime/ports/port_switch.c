@@ -54,15 +54,17 @@ static int try_way(void *self, const bg_set *held, int *holds, bg_set *broken)
 static int choose_switched(bg_search *search, int *holds)
 {
     const bg_sight *const c = search->choice.sight;
-    bg_set first = {{0}};
+    bg_set first = {{0}}, guarded = {{0}};
     for (int i = 0; i < c->ports; i++) {
         if (c->switches[i].kind == BG_RUBS)
             continue;
         bg_add(&search->switches, i);
+        if (c->switches[i].kind == BG_TOLD)
+            bg_add(&guarded, i);
         if (search->mode[i] == 0)
             bg_add(&first, i);
     }
-    return bg_try_ways(c->ports, &search->switches, first, try_way, search, holds);
+    return bg_try_ways(c->ports, &search->switches, &guarded, first, try_way, search, holds);
 }
 
 /* The first consistent mode, at most one impact later: *struck. */

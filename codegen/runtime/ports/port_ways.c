@@ -13,6 +13,7 @@ enum {
 typedef struct {
     int count, turns, known;
     int switches[BG_MOST_PORTS];
+    bg_set guarded, contradicted;
     bg_way attempt;
     void *self;
     bg_set seen[SEEN];
@@ -30,7 +31,11 @@ static int try_one(way_search *s, const bg_set *held, int *holds, bg_set *broken
 {
     *holds = 0;
     *broken = (bg_set){{0}};
-    return s->attempt(s->self, held, holds, broken);
+    const int status = s->attempt(s->self, held, holds, broken);
+    for (int k = 0; k < s->count; k++)
+        if (bg_has(broken, s->switches[k]))
+            bg_add(&s->contradicted, s->switches[k]);
+    return status;
 }
 
 /* Switches that contradict change over, all or the first of them, until a way has been tried. */
@@ -73,8 +78,21 @@ int bg_next_choice(int size, int total, int *chosen)
     return 1;
 }
 
+/* Whether some switches change over now: those with conditions of their own that contradict no mode
+ * are as good as they are, and do so last of all. */
+static int is_turn(const way_search *s, int size, const int *chosen, int last_of_all)
+{
+    int waits = 0, any = 0;
+    for (int k = 0; k < size; k++) {
+        const int i = s->switches[chosen[k]];
+        any |= bg_has(&s->guarded, i);
+        waits |= bg_has(&s->guarded, i) && !bg_has(&s->contradicted, i);
+    }
+    return last_of_all ? any : !waits;
+}
+
 /* All ways, by how many switches differ from the first. */
-static int try_all(way_search *s, const bg_set *first, int *holds)
+static int try_all(way_search *s, const bg_set *first, int last_of_all, int *holds)
 {
     const int most = s->count <= ALL_WAYS ? s->count : FEW;
     int chosen[BG_MOST_PORTS];
@@ -83,6 +101,8 @@ static int try_all(way_search *s, const bg_set *first, int *holds)
             chosen[k] = k;
         do {
             bg_set held = *first, broken;
+            if (!is_turn(s, changed, chosen, last_of_all))
+                continue;
             for (int k = 0; k < changed; k++) {
                 const bg_set one = bg_only(s->switches[chosen[k]]);
                 held = bg_turned(held, &one);
@@ -97,10 +117,12 @@ static int try_all(way_search *s, const bg_set *first, int *holds)
     return 0;
 }
 
-int bg_try_ways(int ports, const bg_set *switches, bg_set first, bg_way attempt, void *self,
-                int *holds)
+int bg_try_ways(int ports, const bg_set *switches, const bg_set *guarded, bg_set first,
+                bg_way attempt, void *self, int *holds)
 {
     way_search s;
+    s.guarded = *guarded;
+    s.contradicted = (bg_set){{0}};
     s.count = s.known = 0;
     s.attempt = attempt;
     s.self = self;
@@ -109,6 +131,8 @@ int bg_try_ways(int ports, const bg_set *switches, bg_set first, bg_way attempt,
             s.switches[s.count++] = i;
     s.turns = TURNS * s.count < MOST_TURNS ? TURNS * s.count : MOST_TURNS;
     *holds = 0;
-    const int status = follow_both(&s, first, holds);
-    return status || *holds ? status : try_all(&s, &first, holds);
+    int status = follow_both(&s, first, holds);
+    for (int last_of_all = 0; last_of_all < 2 && !status && !*holds; last_of_all++)
+        status = try_all(&s, &first, last_of_all, holds);
+    return status;
 }

@@ -73,6 +73,19 @@ def test_frictions_that_a_held_switch_joins_are_decided_together() -> None:
     _check(JOINED, "numpy")
 
 
+LATCHED = 1107
+"""A slider turns, by which two ports change over at once, beside a latch that as well might, unasked."""
+
+
+def test_a_latch_stays_where_others_change_over() -> None:
+    _check(LATCHED, "numpy")
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+def test_a_latch_stays_where_others_change_over_in_c() -> None:
+    _check(LATCHED, "c")
+
+
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 @pytest.mark.parametrize("seed", seeds("mixed-ports-in-c"))
 def test_random_networks_in_c(seed: int) -> None:
