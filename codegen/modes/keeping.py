@@ -9,7 +9,7 @@ from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
 from codegen.program.layout import INPUTS, READINGS
-from codegen.standalone.striking import struck
+from codegen.standalone.striking import rounded_by, struck
 from codegen.tuning import TUNING
 
 SLIPS, EFFORTS, GUARDS = range(3)
@@ -48,7 +48,7 @@ def impacts_of(model: ClosedModel, mode: Mode) -> Impacts | None:
 
 def _shocks(model: ClosedModel, mode: Mode, given: Array, received: Array) -> Array:
     """How far impulses go with the way of each switch, less what is rounding of their terms."""
-    terms = np.abs(model.constant.D) @ np.abs(given)
+    terms = np.abs(model.constant.D) @ rounded_by(given)
     largest = np.abs(given).max(axis=0)
     guards = [_guards_pushed(model, g, r) for g, r in zip(given.T, received.T, strict=True)]
     rows = []

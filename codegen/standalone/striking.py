@@ -62,6 +62,14 @@ def effort_terms(held: Hold, x: Array, u: Array, du: Array) -> Array:
     return np.asarray(inverse @ terms, dtype=float)
 
 
+def rounded_by(given: Array) -> Array:
+    """What impulses round by, in columns as they are: the largest of those solved for together.
+
+    One that is the rounding of none is so, too.
+    """
+    return np.asarray(np.where(given != 0, np.abs(given).max(axis=0, initial=0.0), 0.0))
+
+
 def shocks(
     strike: Strike,
     now: Instant,
@@ -76,8 +84,8 @@ def shocks(
     """
     inputs, readings = places
     given, received = strike.given[inputs], strike.received[readings]
-    terms = np.abs(now.numbers.D[readings]) @ np.abs(strike.given)
     largest = float(np.abs(given).max(initial=0.0))
+    terms = np.abs(now.numbers.D[readings]) @ rounded_by(strike.given)
     size = max(largest, float(np.abs(strike.received).max(initial=0.0)))
     pushed = _pushed(strike, now, size, guards)
     found = [0] * len(mode)

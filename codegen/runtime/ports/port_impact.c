@@ -167,8 +167,9 @@ void bg_shocks(bg_model *m, const int *mode, const double *given, const double *
         const bg_switch *const w = bg_switches + i;
         const double *const D = m->numbers.D + bg_friction_readings[i] * M;
         double terms = 0.0;
+        /* They are solved for together: one that is the rounding of none counts as the largest. */
         for (int k = 0; k < K; k++)
-            terms += fabs(D[bg_friction_inputs[k]] * given[k]);
+            terms += given[k] != 0.0 ? fabs(D[bg_friction_inputs[k]]) * largest : 0.0;
         ways[i] = w->kind == BG_TOLD ? -pushed[bg_condition(w, mode[i])]
             : mode[i]                ? w->side * received[bg_friction_readings[i]]
                                      : -w->side * given[i];

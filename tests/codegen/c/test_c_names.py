@@ -12,7 +12,7 @@ import bondgraph as bg
 from codegen.batch import engine as batch_engine
 from codegen.batch import plan
 from codegen.c.runtime import FOLDERS, runtime_file, runtime_names
-from codegen.engine import located, runs, sizes
+from codegen.engine import happened, located, sizes
 from codegen.engine.status import Status
 from codegen.modes import blocks
 from codegen.program.lower import lower
@@ -116,7 +116,7 @@ def test_statuses_are_those_of_c() -> None:
 
 
 def test_kinds_of_events_and_methods_are_those_of_c() -> None:
-    kinds = {f"BG_{kind.upper()}": at for at, kind in enumerate(runs.KINDS)}
+    kinds = {f"BG_{kind.upper()}": at for at, kind in enumerate(happened.KINDS)}
     assert _values("port_events.h", enum="bg_kind") == kinds
     methods = {f"BG_{method.upper()}": at for at, method in enumerate(located.METHODS)}
     assert _values("located_request.h", enum="bg_method") == methods
