@@ -11,9 +11,14 @@ PROMPT = b">>> "
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collect_file(file_path: Path) -> Generator[None, list[Any], list[Any]]:
-    """What pytest finds in a file, less a search for examples where there is no prompt."""
+    """What pytest finds in a file, less a search for examples where there is no prompt.
+
+    A package is searched all the same: a file of one that is not imported yet would be another module than
+    that which the package imports later.
+    """
     found = yield
-    if file_path.suffix == ".py" and PROMPT not in file_path.read_bytes():
+    plain = file_path.suffix == ".py" and file_path.name != "__init__.py"
+    if plain and PROMPT not in file_path.read_bytes():
         # The class is not one of those that pytest shows.
         return [one for one in found if type(one).__name__ != "DoctestModule"]
     return found
