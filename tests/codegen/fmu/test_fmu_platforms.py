@@ -8,6 +8,7 @@ import pytest
 from oracles.units import belt
 from soak.families import whole
 
+from codegen.fmu import binaries
 from codegen.fmu.binaries import PLATFORMS, this_platform
 
 pytest.importorskip("ziglang")
@@ -34,6 +35,13 @@ def _format(data: bytes) -> str:
 
 #: The first time, ziglang builds a platform's own C library: minutes for Windows.
 pytestmark = pytest.mark.most(900)
+
+
+@pytest.fixture(autouse=True)
+def _plainly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No code of these is run: what optimising takes is saved, and what checks for undefined behaviour."""
+    flags = ("-O0", "-fno-sanitize=undefined", *(f for f in binaries.FLAGS if f != "-O2"))
+    monkeypatch.setattr(binaries, "FLAGS", flags)
 
 
 @pytest.mark.slow
