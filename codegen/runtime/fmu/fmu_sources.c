@@ -67,10 +67,16 @@ static double kept(void *self, double t)
     return sign->above ? values[sign->which] : -values[sign->which];
 }
 
+/* Whether that is the sign at first; of zero it is that of what is not above. */
+static int is_same(const timed_sign *sign, double side)
+{
+    const double value = sign->above ? side : -side;
+    return (value > 0.0) == sign->above;
+}
+
 static int is_kept(timed_sign *sign, double t)
 {
-    const double side = kept(sign, t), value = sign->above ? side : -side;
-    return (value > 0.0) == sign->above;
+    return is_same(sign, kept(sign, t));
 }
 
 /* The first instant after a, where the sign is kept, no later than b, at which it is another. */
@@ -92,9 +98,9 @@ static double change_of(timed_sign *sign, const double *times, const double *sid
 {
     const double clear = BG_ROUNDING * bg_largest(MOMENTS, sides);
     for (int k = 0; k + 1 < MOMENTS && times[k] < found; k++) {
-        double lowest = times[k + 1];
-        if (!is_kept(sign, lowest))
-            return change_between(sign, times[k], lowest);
+        double lowest = times[k];
+        if (!is_same(sign, sides[k + 1]))
+            return change_between(sign, times[k], times[k + 1]);
         /* What rises from zero, after its own event, has not come from above. */
         if (fmin(sides[k], sides[k + 1]) > clear
             && bg_dip(kept, sign, MOMENTS, times, sides, k, &lowest) && !is_kept(sign, lowest))
