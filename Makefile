@@ -30,7 +30,9 @@ $(READY): pyproject.toml constraints.txt
 demo: $(READY)
 	$(BIN)/python -m differentials demo
 
-test: lint types unit
+# Types take one processor while the tests begin on the others.
+test: lint
+	+@$(MAKE) --no-print-directory --jobs=2 types unit
 
 check: lint types quick
 

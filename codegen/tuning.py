@@ -67,6 +67,8 @@ class Tuning:
     stiff_span: float = _told(2e5, "run over time constant from which steps are implicit")
     stiff_step: float = _told(5e3, "the same, over time constant, of a unit's communication step")
     followed: float = _told(0.1, "an implicit step in time constants of the inputs")
+    wary: int = _told(5, "explicit steps from a corner on that are judged by both estimates")
+    risen: float = _told(8.0, "so many times that of the step before tells a corner of the rates")
     refresh: int = _told(50, "steps after which time constants are looked at again")
     checks: int = _told(6, "points inside a step at which events are looked for")
     dip: float = _told(1e-9, "of a step, to which the bottom of a dip is found")

@@ -8,9 +8,9 @@ from bondgraph.equations import StateEquations
 from codegen.c.rhs import Straight
 from codegen.c.text import array, comment, doubles, integers, quoted, strings
 from codegen.modes.stability import modes_told
+from codegen.modes.steps import told_step
 from codegen.program.records import FrictionPort, Group, Program
 from codegen.program.units import units
-from codegen.runs.steps import told_step
 from codegen.standalone.ranks import SlipRows
 
 WAYS = ("BG_RUBS", "BG_ONE_SIDED", "BG_TOLD")

@@ -28,12 +28,12 @@ from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, as_signal
 from codegen.model.doubts import warn_of_doubts
 from codegen.modes.pace import time_constant
+from codegen.modes.steps import round_step, step_at_start
 from codegen.program.identifiers import identifiers
 from codegen.program.records import Program
 from codegen.runs.arguments import initial_values, named_numbers
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import Leg
-from codegen.runs.steps import round_step, step_at_start
 from codegen.runs.track import Settings
 from codegen.simulate import bare_simulator
 from codegen.simulator import Simulator

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from codegen.modes.stability import modes_told
+from codegen.modes.steps import round_step, told_step
 from codegen.program.records import Program
 from codegen.python.text import listing, names_tuple
-from codegen.runs.steps import round_step, told_step
 from codegen.standalone.ranks import SlipRows
 from codegen.tuning import TUNING
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import scipy
 
+from codegen.runs.explicit import explicit
 from codegen.runs.sundials import Cvode
 
 METHODS: dict[str, tuple[str, str]] = {
@@ -26,4 +27,4 @@ def integrator(name: str) -> Any:
     """What makes the solver of a stretch: CVODE's, or scipy's class, which is loaded when first asked for."""
     if name in METHODS["CVODE"]:
         return partial(Cvode, name)
-    return getattr(scipy.integrate, name)
+    return explicit() if name == "DOP853" else getattr(scipy.integrate, name)

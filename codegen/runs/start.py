@@ -9,10 +9,10 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from codegen.inputs.signal import Signal
 from codegen.modes.closed import ClosedModel
+from codegen.modes.steps import step_at_start
 from codegen.numbers.arrays import Array
 from codegen.program.lower import lower
 from codegen.runs.arguments import initial_values, signals_for
-from codegen.runs.steps import step_at_start
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ int bg_solver_begin(bg_located *c, int method, double longest, double stop)
     bg_solver *const s = &c->solver;
     s->method = method;
     s->longest = longest;
-    s->begun = s->stale = s->factored = 0;
+    s->begun = s->stale = s->factored = s->doubts = 0;
     s->t = s->t_old = c->run.at.t;
     memcpy(s->y, c->s, sizeof s->y);
     const int status = bg_located_rate(c, c->run.at.t, s->y, s->f);

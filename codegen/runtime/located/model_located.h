@@ -10,10 +10,11 @@
 
 enum { BG_EXPLICIT_STAGES = 16 };
 
-/* One step of an integrator, and what its interpolation needs. */
+/* One step of an integrator, and what its interpolation needs. `doubts`: so many explicit steps are
+ * judged warily; `before`: what the third power of the latest one's length makes its estimate. */
 typedef struct {
-    int method, begun, dense, stale, factored;
-    double t_old, t, h, next, longest, error, h_factored;
+    int method, begun, dense, stale, factored, doubts;
+    double t_old, t, h, next, longest, error, before, h_factored;
     double y_old[BG_SIZE], y[BG_SIZE], f_old[BG_SIZE], f[BG_SIZE];
     double stage[BG_EXPLICIT_STAGES][BG_SIZE], tried[BG_SIZE], scale[BG_SIZE];
     double interpolation[7][BG_SIZE], collocation[3][BG_SIZE];

@@ -169,6 +169,17 @@ def test_nonlinear_springs_close_by_their_energy_or_their_power(law: str) -> Non
     assert result.audit().took["s"] == pytest.approx(result.work("s")[-1], rel=1e-6, abs=1e-8)
 
 
+def test_the_balance_closes_over_corners_wherever_steps_meet_them() -> None:
+    """Steps for whose error a corner lay just right left up to 8e-9 open, one run in three over 1e-9."""
+    law = "k*(max(q_s - 0.05, 0) + min(q_s + 0.05, 0))"
+    nodes = [bg.Se("push", "P"), bg.One("m"), bg.I("M", 2, flow="v"), bg.C("s", law=law, effort="F"),
+             bg.R("b", law="0.3*v*abs(v)")]  # fmt: skip
+    ready = simulator(bg.derive(bond_graph(nodes, "push>m>M m>s m>b"), []), {"k": 8.0})
+    for start in 1 + 1e-4 * np.arange(4):
+        result = ready.run([0, 2, 4], {"v": start}, {"P": Sine(3.0, 0.7)})
+        assert open_part(result) < CLOSED, start
+
+
 def test_fields_are_one_node_of_the_balance() -> None:
     nodes = [bg.Se("push", "P"), bg.One("a"), bg.One("b"), bg.I("pair", [[2, 1], [1, 3]], ports=["x", "y"]),
              bg.R("r", 4), bg.R("s", 1)]  # fmt: skip
