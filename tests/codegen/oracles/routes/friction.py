@@ -146,6 +146,32 @@ def ruled_by_load() -> Kind:
     )  # fmt: skip
 
 
+def bollard() -> Kind:
+    """A rope round a bollard holds a load W until it is pulled e^(mu phi) times as hard; it lifts it from there.
+
+    At rest the load is what the level goes by, and what the level holds is the pull less the load; as it slips
+    m v' = P e^-(mu phi) - W - b v, with P - P_0 = A t.
+    """
+    nodes = [bg.Se("hand", "P"), bg.Se("before", "P_0"), bg.One("a"), bg.Zero("rope", effort="pull"),
+             bg.R("post", law=bg.DryFriction("(exp(mu*phi) - 1)*abs(pull)")), bg.One("n"),
+             bg.I("m", "m", flow="v"), bg.R("b", "b"), bg.Se("weight", "G")]  # fmt: skip
+    mu, phi, w, b, first, rise = 0.3, 2.0, 1.0, 2.0, 1.5, 2.0
+    times = np.exp(mu * phi)
+    slips = (w * times - first) / rise
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        s = np.maximum(t - slips, 0)
+        v = rise / times * (s / b - (1 - np.exp(-b * s)) / b**2)
+        return {"v": v}
+
+    return Kind(
+        "a rope round a bollard",
+        bond_graph(nodes, "hand>a before>a a>post a>rope>n>m n>b weight>n"),
+        {"m": 1.0, "mu": mu, "phi": phi, "b": b, "P_0": first, "G": -w}, {"P": f"ramp(0, {rise})"},
+        known, 1.0, at=0.6, mode={"post": "slip"}, rest={"inputs": {"P": 0.1}},
+    )  # fmt: skip
+
+
 def on_a_spring() -> Kind:
     """An imposed speed, 1 then -1, over a spring k and a slider N in series: the force stays within N."""
     return _jenkins(
@@ -236,5 +262,5 @@ def behind_moving_ratio() -> Kind:
 
 FRICTION = (
     coulomb, level_of_input, breakaway, stribeck, asymmetric, level_of_state, curve_of_state,
-    ruled_by_load, on_a_spring, put_later, in_series, together, chain, behind_moving_ratio,
+    ruled_by_load, bollard, on_a_spring, put_later, in_series, together, chain, behind_moving_ratio,
 )  # fmt: skip

@@ -18,7 +18,7 @@ class Refusal:
 
 REFUSALS = (
     Refusal(
-        ("stribeck", "asymmetric", "level_of_state", "curve_of_state", "ruled_by_load",
+        ("stribeck", "asymmetric", "level_of_state", "curve_of_state", "ruled_by_load", "bollard",
          "behind_moving_ratio", "nonlinear_resistance", "nonlinear_storage", "crank", "inverted_storage",
          "energy_field", "piecewise", "table", "play", "soft_stop"),
         ("C, exact",), True,
