@@ -6,12 +6,23 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fmpy import simulate_fmu
 from oracles.c_model import compiled, written
 from oracles.exported import loaded
 from oracles.many import Many, bridge, chain, gearbox, stack
 
 import bondgraph as bg
-from codegen import Family, Result, Swept, event_count, samples, simulator, to_c, to_python
+from codegen import (
+    Family,
+    Result,
+    Swept,
+    event_count,
+    samples,
+    simulator,
+    to_c,
+    to_python,
+    write_fmu,
+)
 from codegen.batch.exact import ExactLoop
 from codegen.standalone.ranks import SlipRows, held_set
 from codegen.sweeps.job import Job
@@ -129,6 +140,26 @@ def test_exports_of_a_gearbox_step_alike_and_locate_its_events(tmp_path: Path) -
         assert np.abs(at_times - stepped[name]).max() <= 1e-9 * size, name
         error = np.interp(case.times, located["t"], located[name]) - expected[name]
         assert np.abs(error).max() <= 1e-8 * np.ptp(expected[name]), name
+
+
+def test_forty_ports_go_into_exported_c_and_a_unit(tmp_path: Path) -> None:
+    """Both locate the chain's events as the simulator does."""
+    case = chain(40)
+    equations, expected = bg.derive(case.graph), _run(case, "numpy")
+    sources = written(tmp_path, to_c(equations, {}, main=True, inputs=case.inputs))
+    located = _columns([str(compiled(tmp_path, sources, "-O0")), "3", "0.05", "located"])
+    unit = write_fmu(tmp_path / "chain.fmu", equations, {}, version="3.0", inputs=case.inputs)
+    stepped = simulate_fmu(
+        str(unit),
+        fmi_type="CoSimulation",
+        stop_time=3.0,
+        output=list(case.shown),
+        output_interval=0.05,
+    )
+    for found in (located, stepped):
+        for name in case.shown:
+            off = np.abs(found[name] - expected[name]).max()
+            assert off <= 1e-8 * (np.ptp(expected[name]) + 1e-9), name
 
 
 def _columns(command: list[str]) -> dict[str, np.ndarray]:

@@ -147,9 +147,9 @@ def ruled_by_load() -> Kind:
 
 
 def bollard() -> Kind:
-    """A rope round a bollard holds a load W until it is pulled e^(mu phi) times as hard; it lifts it from there.
+    """A rope round a bollard holds a load W until it is pulled e^(mu phi) times as hard, then lifts it.
 
-    At rest the load is what the level goes by, and what the level holds is the pull less the load; as it slips
+    At rest the level goes by the load, and what it holds is the pull less the load; as the rope slips
     m v' = P e^-(mu phi) - W - b v, with P - P_0 = A t.
     """
     nodes = [bg.Se("hand", "P"), bg.Se("before", "P_0"), bg.One("a"), bg.Zero("rope", effort="pull"),
