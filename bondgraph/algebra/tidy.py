@@ -7,6 +7,7 @@ import sympy as sp
 
 from bondgraph.algebra.exact import FixedRow, matrix_of
 from bondgraph.algebra.expressions import expanded_terms
+from bondgraph.algebra.factored import factored
 from bondgraph.algebra.residues import is_rational_function, is_zero
 
 MOST_OPERATIONS = 100
@@ -69,7 +70,7 @@ def tidy(expr: sp.Expr) -> sp.Expr:
 
 
 def _forms(expr: sp.Expr) -> list[sp.Expr]:
-    return [expr, sp.cancel(expr), sp.factor(expr), by_linear_symbols(expr)]
+    return [expr, sp.cancel(expr), factored(expr), by_linear_symbols(expr)]
 
 
 def _pairs(named: Mapping[sp.Expr, sp.Dummy]) -> list[tuple[sp.Dummy, sp.Dummy]]:
@@ -116,6 +117,6 @@ def by_linear_symbols(expr: sp.Expr) -> sp.Expr:
         factors = [name ** powers[at] for at, name in enumerate(names) if at != own]
         parts.setdefault(own, []).append(number * sp.prod(factors))
     return sp.Add(*(
-        (1 if own is None else names[own]) * sp.factor(sp.Add(*found) / under)
+        (1 if own is None else names[own]) * factored(sp.Add(*found) / under)
         for own, found in parts.items()
     ))  # fmt: skip

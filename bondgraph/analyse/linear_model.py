@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from bondgraph.algebra.exact import SingularError, rows_of, solve
+from bondgraph.algebra.factored import factored
 from bondgraph.errors import SingularStorageError, StructureError
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ class LinearModel:
             raise SingularStorageError("s A - J is singular whatever s is") from None
         X = sp.Matrix(n, len(self.inputs), lambda i, j: states[i].get(j, 0))
         found = self.F * X + self.D + rate * self.G
-        return sp.ImmutableMatrix(found.applyfunc(lambda g: sp.factor(g).subs(rate, at)))
+        return sp.ImmutableMatrix(found.applyfunc(lambda g: factored(g).subs(rate, at)))
 
     def numeric(self, parameters: Mapping[str, object]) -> "StateSpace":
         """The same with numbers: poles, modes, frequency responses, objects for scipy and control.

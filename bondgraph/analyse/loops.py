@@ -8,6 +8,7 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph.algebra.exact import FixedRow, Row, determinant
+from bondgraph.algebra.factored import factored
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.signals import causal_equations, causal_groups, loop_rows
@@ -92,7 +93,7 @@ def _of_storages(reduction: Reduction) -> Iterator[Loop]:
         rows = [{block.index(j): entry for j, entry in A[i].items() if j in block} for i in block]
         gain = None
         if len(block) <= MOST:
-            gain = sp.factor(1 - determinant(rows) / determinant(own))
+            gain = factored(1 - determinant(rows) / determinant(own))
         names = dict.fromkeys(
             ports[i].element.owner or ports[i].element.name for i in sorted(members)
         )
@@ -119,4 +120,4 @@ def _of_sources(reduction: Reduction) -> Iterator[Loop]:
 
 
 def _gain(rows: Sequence[FixedRow]) -> sp.Expr | None:
-    return None if len(rows) > MOST else sp.factor(1 - determinant(rows))
+    return None if len(rows) > MOST else factored(1 - determinant(rows))

@@ -6,6 +6,7 @@ from dataclasses import replace
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.factored import factored
 from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import DryFriction
 from bondgraph.derive import derive_again
@@ -87,10 +88,10 @@ def _divisors(equations: StateEquations) -> set[sp.Expr]:
     bases = (
         part.base
         for entry in entries
-        for part in sp.factor(entry).atoms(sp.Pow)
+        for part in factored(entry).atoms(sp.Pow)
         if part.exp.is_negative
     )
-    return {factor for base in bases for factor in sp.Mul.make_args(sp.factor(base))}
+    return {factor for base in bases for factor in sp.Mul.make_args(factored(base))}
 
 
 def may_vanish(expr: sp.Expr, moving: set[sp.Symbol]) -> bool:

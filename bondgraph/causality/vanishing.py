@@ -7,6 +7,7 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph.algebra.exact import Row, determinant
+from bondgraph.algebra.factored import factored
 from bondgraph.algebra.residues import is_zero
 from bondgraph.declare.elements import Element
 
@@ -33,7 +34,7 @@ def told(rows: Sequence[Row], values: Mapping[sp.Symbol, sp.Expr]) -> str | None
     """The determinant of these rows, if it vanishes at the values: "m_a*m_b - 1 vanishes with m_a = ..."."""
     if len(rows) > MOST:
         return None
-    found = sp.factor(sp.fraction(sp.together(determinant(rows)))[0])
+    found = factored(sp.fraction(sp.together(determinant(rows)))[0])
     put = {name: values[name] for name in found.free_symbols if name in values}
     if not is_zero(found.xreplace(put)):
         return None
