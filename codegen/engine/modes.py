@@ -4,37 +4,30 @@ from contextlib import suppress
 from typing import Any
 
 import numpy as np
-import scipy
 
 from bondgraph.errors import SimulationError
+from codegen.engine.motions import Motions
+from codegen.engine.places import FEWEST, Places
 from codegen.engine.sizes import DIGITS, Engine, view
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.modes.keeping import impacts_of, keeping
 from codegen.numbers.arrays import Array
+from codegen.numbers.thin import thin
 from codegen.ports.refusals import SlopeNeededError
 from codegen.program.affine import AffineMap
 from codegen.program.layout import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, SHOT, STATES
 
-MOST_ROOM = 1 << 29
-"""Bytes that the modes of a model may take."""
-
 
 class Tables:
-    """The engine's record of a model; modes are worked out as runs ask for them.
-
-    ``known``: those that have been, in the order of the record.
-    """
+    """The engine's record of a model; modes are worked out as runs ask for them."""
 
     def __init__(self, engine: Engine, model: ClosedModel) -> None:
         self.engine, self.model = engine, model
         self.record = engine.new("ex_model")
-        self.known: list[Mode] = []
-        self._made: list[Any] = []
-        words, first = engine.sizes.numbers["WORDS"], 32
-        self._keys = np.zeros((first, words), dtype=np.uint64)
-        self._places = np.zeros(first, dtype=np.uintp)
-        self._point()
+        self.places = Places(engine, self.record)
+        self._motions, self._spectral = Motions(model.size), False
+        self._pushing = _pushing(model)
         self.failed: BaseException | None = None
         with suppress(MemoryError):  # on machines that let no code be made, runs begin again
             self._answer = engine.ffi.callback("int(void *, const int *)", self._asked)
@@ -47,13 +40,13 @@ class Tables:
 
     @property
     def room(self) -> bool:
-        """Whether there is room for one more mode."""
-        return bool((len(self.known) + 1) * self.engine.ffi.sizeof("ex_mode") <= MOST_ROOM)
+        """Whether there is room for one more mode, and none forgotten for it."""
+        return bool(self.places.kept < self.places.most)
 
     def _asked(self, _: Any, mode: Any) -> int:
         """Work out the mode that a run has come to; 1 where that is not done."""
         try:
-            if self.room:
+            if self.places.most >= FEWEST:
                 self.supply(tuple(mode[i] for i in range(self.engine.sizes.K)))
                 return 0
         except BaseException as error:  # noqa: BLE001 - C comes between here and who is to be told
@@ -82,35 +75,31 @@ class Tables:
             if slipping is not None:
                 self._fill_shot(made, slipping)
         self._join(made, mode)
-        self._made.append(made)
-        self._list(mode)
-
-    def _list(self, mode: Mode) -> None:
-        """Tell C of one more mode."""
-        ffi, at = self.engine.ffi, len(self.known)
-        if at == len(self._keys):
-            self._keys = np.concatenate([self._keys, np.zeros_like(self._keys)])
-            self._places = np.concatenate([self._places, np.zeros_like(self._places)])
-            self._point()
-        for i, sign in enumerate(mode):
-            self._keys[at, i // DIGITS] |= np.uint64(sign % 3 << i % DIGITS * 2)
-        self._places[at] = int(ffi.cast("uintptr_t", self._made[at]))
-        self.known.append(mode)
-        self.record.count = len(self.known)
-
-    def _point(self) -> None:
-        ffi = self.engine.ffi
-        self.record.keys = ffi.cast("ex_key *", self._keys.ctypes.data)
-        self.record.modes = ffi.cast("ex_mode **", self._places.ctypes.data)
+        self.places.put(mode, made)
 
     def sharpen(self) -> None:
-        """Work out the rates of the one mode of a model in which nothing is watched, with 32 digits."""
-        made, rates = self._made[0], self.model.sharp_rates
+        """Tell rates that a run wants: without friction with 32 digits, else of all modes from now on."""
+        if self.model.program.friction:
+            self._spectral = True
+            for mode, made in self.places.made():
+                affine = self.model.affine_map(mode, len(self.model.program.external))
+                if affine is not None:
+                    self._tell_rates(made, affine)
+            return
+        ((_, made),), rates = self.places.made(), self.model.sharp_rates
         if rates is not None:
             size = self.engine.sizes.numbers
             for field, part in ((made.rate, rates.hi), (made.rest, rates.lo)):
                 view(self.engine, field, size["L"], size["N"])[:] = self._wide(part).T
             made.sharp = 1
+
+    def _tell_rates(self, made: Any, affine: AffineMap) -> None:
+        """The rates of s by itself, which take long: where any run has asked for them."""
+        made.rates = -1
+        if self._spectral:
+            found = self._motions.of(affine).spectrum
+            made.rates = len(found)
+            view(self.engine, made.spectrum, -1, 2)[: len(found)] = found
 
     def _magnitudes(self) -> None:
         model, numbers, engine = self.model, self.model.constant, self.engine
@@ -156,8 +145,7 @@ class Tables:
                 made.joined[i] = k
 
     def _fill_shot(self, made: Any, affine: AffineMap) -> None:
-        model, size = self.model, self.engine.sizes.numbers
-        parts = _parts(model, affine)
+        parts, size = self._parts(affine), self.engine.sizes.numbers
         at, lengths = 0, (size["X"], size["U"], *[size["PORTS"]] * 4, size["N"])
         shot = view(self.engine, made.shot, size["L"], size["SHOT"])
         for rows, length in zip(parts, lengths, strict=True):
@@ -169,15 +157,10 @@ class Tables:
         self._fill_shot(made, affine)
         self._rule(made, mode)
         made.supported = 1
-        made.fastest = affine.fastest
-        found = np.array(affine.spectrum)
-        made.rates = len(found)
-        view(self.engine, made.spectrum, -1, 2)[: len(found)] = np.column_stack(
-            [abs(found), -found.real]
-        )
-        own = affine.rows(RATE)[:, : model.size]
-        scale = scipy.linalg.matrix_balance(own, permute=False, separate=True)[1][0]
-        view(self.engine, made.weight)[:] = 1 / scale
+        motion = self._motions.of(affine)
+        made.fastest = motion.fastest
+        view(self.engine, made.weight)[:] = motion.weight
+        self._tell_rates(made, affine)
         if model.program.switched:
             self._fill_switches(made, mode, affine)
         if 0 in mode:
@@ -204,6 +187,18 @@ class Tables:
             table = view(self.engine, getattr(made, name), size["PORTS"], -1)
             table[: part.shape[0], : part.shape[1]] = part
 
+    def _parts(self, affine: AffineMap) -> list[Array]:
+        """The rows of each part of the engine's snapshot, in their order."""
+        model = self.model
+        x, u, du = (affine.rows(part) for part in (STATES, INPUTS, RATES_OF_INPUTS))
+        pushes = sum(by @ part for by, part in zip(self._pushing, (x, u, du), strict=True))
+        efforts, slips = u[model.friction_inputs], affine.rows(READINGS)[model.friction_readings]
+        found = {
+            "x": x, "u": u, "slip": slips, "effort": efforts, "cap": affine.rows(CAPS), "push": pushes,
+            "rate": affine.rows(RATE),
+        }  # fmt: skip
+        return [found[part] for part in SHOT]
+
     def _wide(self, rows: Array) -> Array:
         """Rows over (s, w, w', 1), with columns for an input where there is none."""
         n, w, W = self.model.size, len(self.model.program.external), self.engine.sizes.W
@@ -214,15 +209,8 @@ class Tables:
         return wide
 
 
-def _parts(model: ClosedModel, affine: AffineMap) -> list[Array]:
-    """The rows of each part of the engine's snapshot, in their order."""
-    numbers, readings = model.constant, model.friction_readings
-    x, u, du = (affine.rows(part) for part in (STATES, INPUTS, RATES_OF_INPUTS))
-    moving = numbers.P @ x + numbers.Q @ u + numbers.R @ du
-    pushes = numbers.F[readings] @ moving + numbers.D[readings] @ du
-    efforts, slips = u[model.friction_inputs], affine.rows(READINGS)[readings]
-    found = {
-        "x": x, "u": u, "slip": slips, "effort": efforts, "cap": affine.rows(CAPS), "push": pushes,
-        "rate": affine.rows(RATE),
-    }  # fmt: skip
-    return [found[part] for part in SHOT]
+def _pushing(model: ClosedModel) -> tuple[Any, Any, Any]:
+    """How fast slips change, by states, inputs and their rates: F x' + D u'."""
+    numbers, rows = model.constant, model.friction_readings
+    F, D = numbers.F[rows], numbers.D[rows]
+    return thin(F @ numbers.P), thin(F @ numbers.Q), thin(F @ numbers.R + D)

@@ -131,7 +131,7 @@ class Prepared:
         events = self._told([port.name for port in model.program.friction])
         vectors = self.rows[:, : model.size].copy()
         largest = np.abs(vectors).max(axis=0)
-        modes = [self.tables.known[place] for place in self.modes.tolist()]
+        modes = [self.tables.places.known[place] for place in self.modes.tolist()]
         return Track(vectors, modes, largest, events, len(vectors), keeping=self.keeping)
 
     def _told(self, names: Sequence[Hashable]) -> list[Event]:

@@ -43,7 +43,7 @@ typedef struct {
     batch_lanes *constants;
     int capacity, pitch;
     ex_model record;
-    unsigned used[EX_MODES];
+    unsigned long long used[EX_MODES];
     ex_key keys[EX_MODES];
     const ex_mode *known[EX_MODES];
     ex_mode mode[EX_MODES];

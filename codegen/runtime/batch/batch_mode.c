@@ -134,12 +134,11 @@ static void fill_readers(const batch_job *job, const double *map, double (*reade
 /* The next place, or that of the mode that was asked for longest ago. */
 static int place_for(batch_room *room)
 {
-    const unsigned looks = room->context->looks;
     int oldest = 0;
     if (room->record.count < EX_MODES)
         return room->record.count++;
     for (int k = 1; k < EX_MODES; k++)
-        if (looks - room->used[k] > looks - room->used[oldest])
+        if (room->used[k] < room->used[oldest])
             oldest = k;
     return oldest;
 }

@@ -63,7 +63,7 @@ typedef struct {
     /* where friction slips forwards, as switches come to hold: what s gains per unit of each slip, and
      * how far the impulse goes with each switch's way */
     double jump[EX_PORTS][EX_N], shock[EX_PORTS][EX_PORTS];
-    int rates;                     /* how many of `spectrum` are known */
+    int rates;                     /* how many of `spectrum` are known; below 0: none was asked for */
     double spectrum[EX_N][2];      /* rates of s by itself: magnitudes, and how fast they decay */
     int sharp;                     /* whether `rate` and `rest` are known .. */
     double rate[EX_L][EX_N], rest[EX_L][EX_N]; /* .. the rates of s as pairs, without friction */
@@ -76,7 +76,7 @@ typedef struct {
     int count;
     const ex_key *keys;
     const ex_mode *const *modes;
-    unsigned *used;
+    unsigned long long *used;
     int (*supply)(void *self, const int *mode);
     void *self;
     double F[EX_X][EX_PORTS], D[EX_U][EX_PORTS], FP[EX_X][EX_PORTS], FQ[EX_U][EX_PORTS];

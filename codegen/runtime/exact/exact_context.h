@@ -92,7 +92,7 @@ struct ex_context {
     ex_key where;                       /* the latest mode .. */
     int place;                          /* .. its place in the model's, -1 if none has been found, .. */
     int signs[EX_PORTS];                /* .. and what it was asked for as */
-    unsigned looks;
+    unsigned long long looks;
     double s[EX_N];
     int known, known_segment;           /* whether `given` holds, for `known_time` */
     double known_time, slots[EX_G], given[2 * EX_W];

@@ -41,9 +41,9 @@ int ex_seek(ex_context *c, const int *mode, const ex_mode **found)
     c->where = key;
     c->place = -1;
     *found = NULL;
-    if (at < 0 && m->supply && m->supply(m->self, mode) == BG_OK)
+    if ((at < 0 || !m->modes[at]) && m->supply && m->supply(m->self, mode) == BG_OK)
         at = known_place(c, &key);
-    if (at < 0)
+    if (at < 0 || !m->modes[at])
         return BG_MISSING;
     c->place = at;
     for (int i = 0; i < EX_K; i++)

@@ -91,6 +91,8 @@ static int bearable(ex_context *c, const ex_entry *e, double span)
         return isfinite(steps) ? BG_OK : BG_ENDLESS;
     if (EX_K == 0)
         return !e->mode->sharp ? BG_BLUNT : steps < ldexp(1.0, BG_RUNGS - 3) ? BG_OK : BG_ENDLESS;
+    if (e->mode->rates < 0)
+        return BG_BLUNT;
     for (int i = 0; i < e->mode->rates; i++)
         most = bg_greater(most, lasting(e->mode->spectrum[i][0], e->mode->spectrum[i][1], span));
     for (int i = 0; i < e->chains.count; i++) {

@@ -26,7 +26,7 @@ enum bg_status {
     BG_NEGATIVE,     /* a friction level falls below zero */
     BG_STIFF,        /* most steps would follow what has decayed */
     BG_WORK,         /* a search for an event had no end */
-    BG_BLUNT,        /* the rates of a mode are wanted with 32 digits */
+    BG_BLUNT,        /* the rates of a mode are wanted: with 32 digits, or at all */
     BG_ENDLESS,      /* so many steps have no end */
     BG_REFUSED       /* of many runs: the model refuses these numbers */
 };

@@ -24,6 +24,8 @@ from codegen import (
     write_fmu,
 )
 from codegen.batch.exact import ExactLoop
+from codegen.engine.places import FEWEST, Places
+from codegen.engine.sizes import Engine
 from codegen.standalone.ranks import SlipRows, held_set
 from codegen.sweeps.job import Job
 from codegen.sweeps.measuring import batch_of
@@ -50,6 +52,29 @@ def test_a_chain_of_forty_blocks_steps_exactly_in_c_as_in_numpy() -> None:
     expected = _run(case, "numpy")
     assert len(expected.events) > 40
     _agree(case, _run(case, "c"), expected, 1e-9)
+
+
+def test_modes_that_find_no_room_are_worked_out_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A chain of a hundred blocks has more than half a gigabyte of modes; here is room for sixteen."""
+    case, made = chain(12), []
+
+    def few(self: Places, engine: Engine, record: object) -> None:
+        start(self, engine, record, FEWEST * engine.ffi.sizeof("ex_mode"))
+        made.append(self)
+
+    expected = simulator(bg.derive(case.graph), {}, backend="c").run(case.times, {}, case.inputs)
+    start = Places.__init__
+    monkeypatch.setattr(Places, "__init__", few)
+    ready = simulator(bg.derive(case.graph), {}, backend="c")
+    for _ in range(2):
+        found = ready.run(case.times, {}, case.inputs, "exact")
+        assert found.backend == "c"
+        assert found.events == expected.events
+        for name in case.shown:
+            assert np.array_equal(found[name], expected[name])
+            assert np.array_equal(found[f"f_b{name[1:]}"], expected[f"f_b{name[1:]}"])
+    (places,) = made
+    assert places.kept <= places.most == FEWEST < len(places.known)
 
 
 @pytest.mark.parametrize("case", [bridge(12), gearbox()], ids=["24 diodes", "12 clutches"])
