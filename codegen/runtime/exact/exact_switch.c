@@ -94,10 +94,10 @@ static int find_way(ex_context *c, const int *mode, int loose, const ex_mode **f
     return status == BG_NOT_AFFINE && (*found)->none ? BG_NO_HOLD : status;
 }
 
-/* Whether the slips that a mode would stop are more than rounding; *status of a look where all is let
- * go. */
+/* Whether the slips that a mode would stop are more than rounding: `real` without those that are none;
+ * *status of a look where all is let go. */
 static int would_jump(ex_context *c, const bg_instant *at, const int *mode, const ex_mode *holding,
-                 const double *slips, int *status)
+                      const double *slips, double *real, int *status)
 {
     const ex_mode *loose;
     bg_port ports[EX_PORTS];
@@ -112,7 +112,8 @@ static int would_jump(ex_context *c, const bg_instant *at, const int *mode, cons
         double near = 0.0;
         for (int i = 0; i < EX_K; i++)
             near += fabs(holding->mix[k][i]) * ports[i].near_slip;
-        any |= fabs(slips[k]) > BG_WIDE * near;
+        real[k] = fabs(slips[k]) > BG_WIDE * near ? slips[k] : 0.0;
+        any |= real[k] != 0.0;
     }
     return any;
 }
@@ -122,7 +123,7 @@ int ex_strike(void *context, const bg_instant *at, const int *mode, double *s, i
 {
     ex_context *const c = context;
     const ex_mode *holding;
-    double v[EX_L], slips[EX_PORTS] = {0};
+    double v[EX_L], slips[EX_PORTS] = {0}, real[EX_PORTS] = {0};
     *struck = 0;
     int status = find_way(c, mode, 0, &holding);
     if (status)
@@ -131,14 +132,14 @@ int ex_strike(void *context, const bg_instant *at, const int *mode, double *s, i
     for (int k = 0; k < holding->held; k++)
         for (int j = 0; j < EX_L; j++)
             slips[k] += holding->left[j][k] * v[j];
-    if (!would_jump(c, at, mode, holding, slips, &status))
+    if (!would_jump(c, at, mode, holding, slips, real, &status))
         return status;
     *struck = 1;
     for (int i = 0; i < EX_K; i++) {
         double way = 0.0, terms = 0.0;
         for (int k = 0; k < holding->held; k++) {
-            way += holding->shock[k][i] * slips[k];
-            terms += fabs(holding->shock[k][i] * slips[k]);
+            way += holding->shock[k][i] * real[k];
+            terms += fabs(holding->shock[k][i] * real[k]);
         }
         shocks[i] = fabs(way) <= BG_ROUNDING * terms ? 0 : way > 0.0 ? 1 : -1;
     }

@@ -94,6 +94,15 @@ def test_what_rounding_leaves_of_an_impulse_is_none() -> None:
     _check(UNTOUCHED, "numpy")
 
 
+HELD = 360
+"""A switch stops a current of 0.13 beside a diode that blocks a current of 2e-16, which is no impulse."""
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+def test_what_is_stopped_already_takes_no_impulse() -> None:
+    _check(HELD, "c")
+
+
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 @pytest.mark.parametrize("seed", seeds("mixed-ports-in-c"))
 def test_random_networks_in_c(seed: int) -> None:
