@@ -19,6 +19,7 @@ class Tuning:
 
     # What counts as zero
     rounding: float = _told(1e-10, "of the terms that make a slip, an effort or a level up: zero")
+    timed: float = _told(1e-14, "the same of what time alone rules")
     pushes: float = _told(
         10.0, "so many times that of a slip's rate: its terms have been solved for"
     )

@@ -38,11 +38,15 @@ static void sizes_of(const ex_context *c, const ex_mode *mode, const double *v, 
     }
 }
 
-/* By how much what keeps a switch may be off: of its terms, and as an event's time may be. */
-static double near_of(double terms, double slope, double t)
+/* By how much what keeps a switch may be off: of its terms, and as an event's time may be. What time
+ * alone rules has been through no integration: its terms round as numbers do. */
+static double near_of(const ex_mode *mode, int port, double terms, double slope, double t)
 {
     const double spacing = nextafter(fabs(t), INFINITY) - fabs(t);
-    return BG_ROUNDING * terms + BG_LATE * spacing * fabs(slope) + DBL_MIN;
+    int moved = 0;
+    for (int j = 0; j < EX_N; j++)
+        moved |= mode->stay[j][port] != 0.0;
+    return (moved ? BG_ROUNDING : BG_TIMED) * terms + BG_LATE * spacing * fabs(slope) + DBL_MIN;
 }
 
 void ex_round_stay(const ex_context *c, const ex_mode *mode, const double *v, const double *shot,
@@ -61,7 +65,7 @@ void ex_round_stay(const ex_context *c, const ex_mode *mode, const double *v, co
             slope += mode->stay[j][i] * shot[EX_AT_RATE + j];
         for (int j = 0; j < EX_W; j++)
             slope += mode->stay[EX_N + j][i] * v[EX_N + EX_W + j];
-        ports[i].near_stay = near_of(terms, slope, t);
+        ports[i].near_stay = near_of(mode, i, terms, slope, t);
     }
 }
 
@@ -80,7 +84,7 @@ void ex_limit_stay(const ex_context *c, const ex_mode *mode, const double *most,
             slope += fabs(mode->stay[j][i]) * shot[EX_AT_RATE + j];
         for (int j = 0; j < EX_W; j++)
             slope += fabs(mode->stay[EX_N + j][i]) * most[EX_N + EX_W + j];
-        ports[i].near_stay = near_of(terms, slope, t) * (1.0 + BG_BOUND_SLACK);
+        ports[i].near_stay = near_of(mode, i, terms, slope, t) * (1.0 + BG_BOUND_SLACK);
     }
 }
 

@@ -103,6 +103,15 @@ def test_what_is_stopped_already_takes_no_impulse() -> None:
     _check(HELD, "c")
 
 
+BRIEF = 1518
+"""A command that dips below zero for a millisecond, by 8e-9 where its powers of time are about 30."""
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+def test_a_brief_command_is_no_rounding_in_c() -> None:
+    _check(BRIEF, "c")
+
+
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 @pytest.mark.parametrize("seed", seeds("mixed-ports-in-c"))
 def test_random_networks_in_c(seed: int) -> None:
