@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from bondgraph.errors import SimulationError
-from codegen.engine.motions import Motions
+from codegen.engine.motions import Motion, Motions
 from codegen.engine.places import FEWEST, Places
 from codegen.engine.sizes import DIGITS, Engine, view
 from codegen.model.snapshot import Mode
@@ -27,12 +27,13 @@ class Tables:
         self.record = engine.new("ex_model")
         self.places = Places(engine, self.record)
         self._motions, self._spectral = Motions(model.size), False
-        self._pushing = _pushing(model)
+        moved = _slips_moved(model)
+        self._pushing = [thin(part) for part in moved]
         self.failed: BaseException | None = None
         with suppress(MemoryError):  # on machines that let no code be made, runs begin again
             self._answer = engine.ffi.callback("int(void *, const int *)", self._asked)
             self.record.supply = self._answer
-        self._magnitudes()
+        self._magnitudes(*moved[:2])
         self.record.switched = model.program.switched
         for at, port in enumerate(model.program.friction):
             self.record.own[at] = port.input
@@ -41,7 +42,7 @@ class Tables:
     @property
     def room(self) -> bool:
         """Whether there is room for one more mode, and none forgotten for it."""
-        return bool(self.places.kept < self.places.most)
+        return self.places.kept < self.places.most
 
     def _asked(self, _: Any, mode: Any) -> int:
         """Work out the mode that a run has come to; 1 where that is not done."""
@@ -82,9 +83,10 @@ class Tables:
         if self.model.program.friction:
             self._spectral = True
             for mode, made in self.places.made():
-                affine = self.model.affine_map(mode, len(self.model.program.external))
-                if affine is not None:
-                    self._tell_rates(made, affine)
+                if made.supported:
+                    affine = self.model.affine_map(mode, len(self.model.program.external))
+                    assert affine is not None
+                    self._tell_rates(made, self._motions.of(affine))
             return
         ((_, made),), rates = self.places.made(), self.model.sharp_rates
         if rates is not None:
@@ -93,21 +95,22 @@ class Tables:
                 view(self.engine, field, size["L"], size["N"])[:] = self._wide(part).T
             made.sharp = 1
 
-    def _tell_rates(self, made: Any, affine: AffineMap) -> None:
+    def _tell_rates(self, made: Any, motion: Motion) -> None:
         """The rates of s by itself, which take long: where any run has asked for them."""
         made.rates = -1
         if self._spectral:
-            found = self._motions.of(affine).spectrum
+            found = motion.spectrum
             made.rates = len(found)
             view(self.engine, made.spectrum, -1, 2)[: len(found)] = found
 
-    def _magnitudes(self) -> None:
+    def _magnitudes(self, by_states: Array, by_inputs: Array) -> None:
+        """Magnitudes that rounding is told from; the two: of how fast slips change."""
         model, numbers, engine = self.model, self.model.constant, self.engine
         n, m, K = len(model.program.states), len(model.program.inputs), engine.sizes.K
         rows = model.friction_readings
         F, D = numbers.F[rows], numbers.D[rows]
         for name, matrix in (
-            ("F", F), ("D", D), ("FP", F @ numbers.P), ("FQ", F @ numbers.Q),
+            ("F", F), ("D", D), ("FP", by_states), ("FQ", by_inputs),
             ("P", numbers.P), ("Q", numbers.Q),
         ):  # fmt: skip
             field = getattr(self.record, name)
@@ -160,7 +163,7 @@ class Tables:
         motion = self._motions.of(affine)
         made.fastest = motion.fastest
         view(self.engine, made.weight)[:] = motion.weight
-        self._tell_rates(made, affine)
+        self._tell_rates(made, motion)
         if model.program.switched:
             self._fill_switches(made, mode, affine)
         if 0 in mode:
@@ -209,8 +212,8 @@ class Tables:
         return wide
 
 
-def _pushing(model: ClosedModel) -> tuple[Any, Any, Any]:
+def _slips_moved(model: ClosedModel) -> tuple[Array, Array, Array]:
     """How fast slips change, by states, inputs and their rates: F x' + D u'."""
     numbers, rows = model.constant, model.friction_readings
     F, D = numbers.F[rows], numbers.D[rows]
-    return thin(F @ numbers.P), thin(F @ numbers.Q), thin(F @ numbers.R + D)
+    return F @ numbers.P, F @ numbers.Q, F @ numbers.R + D

@@ -23,7 +23,7 @@ class Places:
 
     def __init__(self, engine: Engine, record: Any, most: int = MOST_ROOM) -> None:
         self.known: list[Mode] = []
-        self.most = most // engine.ffi.sizeof("ex_mode")
+        self.most: int = most // engine.ffi.sizeof("ex_mode")
         self._engine, self._record = engine, record
         self._at: dict[Mode, int] = {}
         self._made: dict[int, Any] = {}

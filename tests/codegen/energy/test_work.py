@@ -158,12 +158,19 @@ def test_a_pendulum_turned_by_its_own_angle_closes() -> None:
     assert open_part(result) < CLOSED
 
 
-@pytest.mark.parametrize("law", ["k*q_s + 5*q_s**3", "k*(max(q_s - 0.05, 0) + min(q_s + 0.05, 0))",
-                                 "k*q_s + v"])  # fmt: skip
-def test_nonlinear_springs_close_by_their_energy_or_their_power(law: str) -> None:
+WITH_PLAY = "k*(max(q_s - 0.05, 0) + min(q_s + 0.05, 0))"
+
+
+def _on_a_spring(law: str) -> codegen.Simulator:
+    """A mass of 2, pushed, on a spring with that law and a damper by the square of the speed."""
     nodes = [bg.Se("push", "P"), bg.One("m"), bg.I("M", 2, flow="v"), bg.C("s", law=law, effort="F"),
              bg.R("b", law="0.3*v*abs(v)")]  # fmt: skip
-    ready = simulator(bg.derive(bond_graph(nodes, "push>m>M m>s m>b"), []), {"k": 8.0})
+    return simulator(bg.derive(bond_graph(nodes, "push>m>M m>s m>b"), []), {"k": 8.0})
+
+
+@pytest.mark.parametrize("law", ["k*q_s + 5*q_s**3", WITH_PLAY, "k*q_s + v"])
+def test_nonlinear_springs_close_by_their_energy_or_their_power(law: str) -> None:
+    ready = _on_a_spring(law)
     result = ready.run([0, 2, 4], {"v": 1.0}, {"P": Sine(3.0, 0.7)})
     assert open_part(result) < CLOSED
     assert result.audit().took["s"] == pytest.approx(result.work("s")[-1], rel=1e-6, abs=1e-8)
@@ -171,10 +178,7 @@ def test_nonlinear_springs_close_by_their_energy_or_their_power(law: str) -> Non
 
 def test_the_balance_closes_over_corners_wherever_steps_meet_them() -> None:
     """Steps for whose error a corner lay just right left up to 8e-9 open, one run in three over 1e-9."""
-    law = "k*(max(q_s - 0.05, 0) + min(q_s + 0.05, 0))"
-    nodes = [bg.Se("push", "P"), bg.One("m"), bg.I("M", 2, flow="v"), bg.C("s", law=law, effort="F"),
-             bg.R("b", law="0.3*v*abs(v)")]  # fmt: skip
-    ready = simulator(bg.derive(bond_graph(nodes, "push>m>M m>s m>b"), []), {"k": 8.0})
+    ready = _on_a_spring(WITH_PLAY)
     for start in 1 + 1e-4 * np.arange(4):
         result = ready.run([0, 2, 4], {"v": start}, {"P": Sine(3.0, 0.7)})
         assert open_part(result) < CLOSED, start

@@ -59,57 +59,31 @@ def test_random_networks(seed: int) -> None:
 NEIGHBOUR_HOLDS = 161
 """Friction beside a closed switch: where it breaks loose, the rate of its slip is not the whole rate."""
 
-
-@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
-def test_what_breaks_loose_beside_a_held_port_slips() -> None:
-    _check(NEIGHBOUR_HOLDS, "c")
-
-
 JOINED = 206
 """Two frictions that touch one another only by way of a diode that holds: what one does decides the other."""
-
-
-def test_frictions_that_a_held_switch_joins_are_decided_together() -> None:
-    _check(JOINED, "numpy")
-
 
 LATCHED = 1107
 """A slider turns, by which two ports change over at once, beside a latch that as well might, unasked."""
 
-
-def test_a_latch_stays_where_others_change_over() -> None:
-    _check(LATCHED, "numpy")
-
-
-@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
-def test_a_latch_stays_where_others_change_over_in_c() -> None:
-    _check(LATCHED, "c")
-
-
 UNTOUCHED = 1234
 """An impulse of 3e-2 at one port leaves at another, which it has no part in, 9e-17 of rounding."""
 
-
-def test_what_rounding_leaves_of_an_impulse_is_none() -> None:
-    _check(UNTOUCHED, "numpy")
-
-
 HELD = 360
 """A switch stops a current of 0.13 beside a diode that blocks a current of 2e-16, which is no impulse."""
-
-
-@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
-def test_what_is_stopped_already_takes_no_impulse() -> None:
-    _check(HELD, "c")
-
 
 BRIEF = 1518
 """A command that dips below zero for a millisecond, by 8e-9 where its powers of time are about 30."""
 
 
+@pytest.mark.parametrize("seed", [JOINED, LATCHED, UNTOUCHED])
+def test_networks_that_were_wrong(seed: int) -> None:
+    _check(seed, "numpy")
+
+
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
-def test_a_brief_command_is_no_rounding_in_c() -> None:
-    _check(BRIEF, "c")
+@pytest.mark.parametrize("seed", [NEIGHBOUR_HOLDS, LATCHED, HELD, BRIEF])
+def test_networks_that_were_wrong_in_c(seed: int) -> None:
+    _check(seed, "c")
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
