@@ -4,6 +4,7 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +16,17 @@ from differentials.exporting import export
 
 
 def test_the_exported_python_runs_its_scenario(tmp_path: Path) -> None:
-    paths = export("alsd", "python", "fig11", {"I_1": 0.009}, tmp_path)
+    """Fig. 11 with steps that come soon: the clutch sticks at 0.101 s, and slips again at 0.169 s."""
+    soon = replace(
+        differentials.scenarios["fig11"], engine_step=0.02, clutch_step=0.1, duration=0.2
+    )
+    paths = export("alsd", "python", soon, {"I_1": 0.009}, tmp_path)
     assert [path.name for path in paths] == ["alsd.py", "run_alsd.py"]
     subprocess.run([sys.executable, "run_alsd.py"], cwd=tmp_path, check=True, capture_output=True)
     header, *rows = (tmp_path / "alsd.csv").read_text(encoding="utf-8").splitlines()
     table = np.array([[float(entry) for entry in row.split(",")] for row in rows])
-    expected = differentials.simulate("alsd", "fig11", {"I_1": 0.009})
+    expected = differentials.simulate("alsd", soon, {"I_1": 0.009})
+    assert [event.kind for event in expected.events] == ["stick", "slip"]
     for at, name in enumerate(header.removeprefix("# ").split(",")):
         if name in expected.states:
             error = np.abs(table[:, at] - expected[name]).max()

@@ -25,7 +25,7 @@ def tire_torques(speeds: np.ndarray) -> np.ndarray:
 
 def tight(rhs: Callable, start: list[float], begin: float, end: float) -> Callable:
     run = solve_ivp(
-        rhs, (begin, end), start, method="DOP853", rtol=1e-12, atol=1e-12, max_step=2e-4,
+        rhs, (begin, end), start, method="DOP853", rtol=1e-12, atol=1e-12, max_step=1e-3,
         dense_output=True,
     )  # fmt: skip
     return run.sol
@@ -44,7 +44,7 @@ def over_steps(rhs: Callable, start: list[float], stops: list[float]) -> np.ndar
 
 def agree(run: Result, names: list[str], expected: np.ndarray) -> None:
     for name, values in zip(names, expected, strict=True):
-        assert abs(run[name] - values).max() < 1e-6 * np.ptp(values), name
+        assert abs(run[name] - values).max() < 1e-9 * np.ptp(values), name
 
 
 def test_the_compliant_input_shaft_follows_eq_9() -> None:

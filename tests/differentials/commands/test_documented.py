@@ -10,7 +10,7 @@ from differentials.commands.app import app
 
 Call = Callable[..., Result]
 
-ELSEWHERE = {"demo --out out"}
+ELSEWHERE = {"demo --out out", "figures --out out"}
 """What `test_tours` runs."""
 
 

@@ -44,7 +44,7 @@ def test_the_exported_script_runs_under_any_signal(signal: str, call: Call, tmp_
         "--input",
         f"F={signal}",
         "--until",
-        "0.25",
+        "0.15",
         "--sample",
         "0.001",
     ]

@@ -4,9 +4,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pytest
 from click.testing import Result
 
 import differentials
+from differentials.commands import tours
 
 Call = Callable[..., Result]
 
@@ -35,8 +37,29 @@ def test_the_demo_prints_what_it_found_and_writes_what_it_says(call: Call, tmp_p
     assert abs(data["omega_f"][510:560]).max() < 1e-9
 
 
-def test_figures_draws_those_asked_for(call: Call, tmp_path: Path) -> None:
+TABLES = {
+    "fig11": {"fig11"},
+    "fig12": {f"fig12_{speed}_{k}" for speed in (20, 80) for k in ("0.5", "1", "2", "5")},
+    **{name: {name} for name in ("fig13", "fig13_superposition", "fig14")},
+}
+
+
+def test_figures_draws_all_of_them(call: Call, tmp_path: Path) -> None:
+    assert call("figures", "--out", "out").exit_code == 0
+    assert {path.name for path in (tmp_path / "out").iterdir()} == _files(*TABLES)
+    for picture in (tmp_path / "out").glob("*.png"):
+        assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+def test_figures_draws_those_asked_for(
+    call: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What a picture looks like is tested elsewhere."""
+    monkeypatch.setattr(tours, "draw", lambda figure, results, path: Path(path).touch())
     assert call("figures", "fig13", "fig12", "--out", "figs").exit_code == 0
-    names = {path.name for path in (tmp_path / "figs").iterdir()}
-    tables = {f"fig12_{speed}_{k}.csv" for speed in (20, 80) for k in ("0.5", "1", "2", "5")}
-    assert names == {"fig12.png", "fig13.png", "fig13.csv", *tables}
+    assert {path.name for path in (tmp_path / "figs").iterdir()} == _files("fig13", "fig12")
+
+
+def _files(*names: str) -> set[str]:
+    tables = {f"{table}.csv" for name in names for table in TABLES[name]}
+    return tables | {f"{name}.png" for name in names}
