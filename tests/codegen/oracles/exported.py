@@ -41,6 +41,15 @@ def model_of(name: str) -> Model:
     return model(name)
 
 
+@cache
+def variant_of(
+    name: str, halfshafts: bool = False, lumped: bool = True, backlash: bool = False
+) -> bg.StateEquations:
+    """A differential's equations, with its clutches' slips, derived once in a process."""
+    graph = differentials.graph(name, halfshafts, lumped, backlash)
+    return bg.derive(graph, outputs=list(differentials.catalog[name].clutches))
+
+
 def catalog_case(name: str) -> Case:
     """A differential with halfshafts where there are any."""
     full = model_of(name)

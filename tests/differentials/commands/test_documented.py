@@ -10,7 +10,7 @@ from differentials.commands.app import app
 
 Call = Callable[..., Result]
 
-ELSEWHERE = {"demo --out out", "figures --out out"}
+ELSEWHERE = {"demo --out out", "figures --out out", "figures fig11"}
 """What `test_tours` runs."""
 
 

@@ -13,6 +13,13 @@ from differentials.commands import tours
 Call = Callable[..., Result]
 
 
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures are empty files: `test_figures_draws_all_of_them` draws each."""
+    monkeypatch.setattr(tours, "draw", lambda figure, results, path: Path(path).touch())
+
+
+@pytest.mark.usefixtures("undrawn")
 def test_the_demo_prints_what_it_found_and_writes_what_it_says(call: Call, tmp_path: Path) -> None:
     done = call("demo", "--out", str(tmp_path / "made here"))
     assert (done.exit_code, done.stderr) == (0, "")
@@ -51,13 +58,12 @@ def test_figures_draws_all_of_them(call: Call, tmp_path: Path) -> None:
         assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
 
 
-def test_figures_draws_those_asked_for(
-    call: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What a picture looks like is tested elsewhere."""
-    monkeypatch.setattr(tours, "draw", lambda figure, results, path: Path(path).touch())
+@pytest.mark.usefixtures("undrawn")
+def test_figures_draws_those_asked_for(call: Call, tmp_path: Path) -> None:
     assert call("figures", "fig13", "fig12", "--out", "figs").exit_code == 0
     assert {path.name for path in (tmp_path / "figs").iterdir()} == _files("fig13", "fig12")
+    assert call("figures", "fig11").exit_code == 0
+    assert {path.name for path in (tmp_path / "out").iterdir()} == _files("fig11")
 
 
 def _files(*names: str) -> set[str]:
