@@ -28,9 +28,7 @@ IN_PROCESS = [name for name in LOCATED if "FMI" not in name and name != "numpy e
 FINE = ("alsd",)
 """Where fixed steps are a third of a millisecond, no binary or decimal fraction; elsewhere a whole one."""
 
-FUSED = (
-    tuple(OWN) if whole("agreements") else ("passive_input_shaft", "alsd", "four_wheel_drive_tvd")
-)
+FUSED = ("passive_input_shaft", "alsd", "four_wheel_drive_tvd")
 """With no, one and two clutches: their C is optimised as for users, that of others compiled in no time."""
 
 
@@ -66,6 +64,11 @@ def _few(name: str) -> int:
     return 3 if name in FINE or whole("agreements") else 1
 
 
+def _fused(name: str, scenario: str) -> bool:
+    """Those in their own scenario; everything where all is asked for."""
+    return whole("agreements") or (name in FUSED and scenario == OWN[name])
+
+
 def _check(found: Apart, limit: float) -> None:
     assert found.signals < limit, found
     assert found.events < limit, found
@@ -90,7 +93,7 @@ def test_methods_that_locate_events_agree(
     soon: Making,
     request: pytest.FixtureRequest,
 ) -> None:
-    if name in FUSED:
+    if _fused(name, scenario):
         request.getfixturevalue("optimised")
     one = (soon if method.startswith("numpy") else made)(name, scenario)
     found = apart(LOCATED[method](one), LOCATED["numpy exact"](one))

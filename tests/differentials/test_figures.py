@@ -4,12 +4,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from oracles.exported import model_of
 
 import bondgraph as bg
 import differentials
 from codegen import Result
 from differentials.figures import Figure, draw, figures, panels
-from differentials.model import model
 
 #: Panels of Figs. 11, 13 and 14 as printed, top to bottom, by what they show.
 PRINTED = {
@@ -47,7 +47,7 @@ def test_fig12_has_four_stiffnesses_at_each_of_two_speeds() -> None:
 @pytest.mark.parametrize("name", differentials.catalog)
 def test_every_differential_has_all_that_its_panels_show(name: str) -> None:
     chosen = differentials.catalog[name]
-    full = model(name)
+    full = model_of(name)
     known = {str(symbol) for symbol in full.equations.signals} | set(chosen.clutches.values())
     shown = {curve.signal for panel in panels(chosen) for curve in panel.curves}
     assert shown <= known
