@@ -1,12 +1,16 @@
 """Every notebook runs from clean, and is stored without what a run leaves in it."""
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import nbformat
 import pytest
+from jupyter_client import KernelManager
 from nbclient import NotebookClient
+from nbclient.exceptions import CellExecutionError
 from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell, new_notebook
 
 ROOT = Path(__file__).parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
@@ -28,17 +32,47 @@ def test_there_are_notebooks() -> None:
     assert [path.stem[:2] for path in NOTEBOOKS] == [f"{n:02}" for n in range(1, 8)]
 
 
+BEGIN = "__import__('gc').freeze()\n%reset -f\n__import__('os').chdir({!r})"
+"""No names, an empty folder. What is imported stays, and need not be searched for garbage each time."""
+
+
+@pytest.fixture(scope="module")
+def kernel(tmp_path_factory: pytest.TempPathFactory) -> Iterator[KernelManager]:
+    """One process for all notebooks: to start it and to import takes as long as what most of them do."""
+    manager = KernelManager(kernel_name="python3")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", str(ROOT))
+        patch.setenv("IPYTHONDIR", str(tmp_path_factory.mktemp("ipython")))
+        manager.start_kernel()
+    yield manager
+    manager.shutdown_kernel(now=True)
+    manager.cleanup_resources()
+
+
+def run(notebook: NotebookNode, kernel: KernelManager, folder: Path) -> None:
+    """From clean: without a name of those that ran before."""
+    cells = [new_code_cell(BEGIN.format(str(folder))), *notebook.cells]
+    client = NotebookClient(new_notebook(cells=cells), timeout=None, km=kernel)
+    try:
+        client.execute()
+    finally:
+        client.kc.stop_channels()
+
+
 @every
-def test_runs(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PYTHONPATH", str(ROOT))
-    monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
+def test_runs(path: Path, kernel: KernelManager, tmp_path: Path) -> None:
     notebook = read(path)
-    resources = {"metadata": {"path": str(tmp_path)}}
-    NotebookClient(notebook, timeout=None, kernel_name="python3", resources=resources).execute()
+    run(notebook, kernel, tmp_path)
     outputs = [output for cell in code(notebook) for output in cell.outputs]
     assert outputs
     # A warning of any library is written there.
     assert [output.text for output in outputs if output.get("name") == "stderr"] == []
+
+
+def test_none_has_the_names_of_another(kernel: KernelManager, tmp_path: Path) -> None:
+    run(new_notebook(cells=[new_code_cell("one = 1"), new_code_cell("one")]), kernel, tmp_path)
+    with pytest.raises(CellExecutionError, match="name 'one' is not defined"):
+        run(new_notebook(cells=[new_code_cell("one")]), kernel, tmp_path)
 
 
 @every
