@@ -7,6 +7,8 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterator
+from itertools import groupby
 from pathlib import Path
 
 import pytest
@@ -36,6 +38,32 @@ SHELL = _blocks("sh")
 LINES = [line.split("#")[0].strip() for _, text in SHELL for line in text.splitlines()]
 
 
+TOGETHER = """import runpy, sys
+for path in sys.argv[1:]:
+    runpy.run_path(path, run_name="__main__")
+"""
+"""Scripts one after the other, none with a name of another: in one process they import once."""
+
+SAMPLED = ("linspace(0.0, 1.0, 1001)", "linspace(0.0, 0.02, 21)")
+"""In the script of an exported run. `test_exporting.py` lets the same one run to its end."""
+
+
+def _lines(text: str) -> Iterator[str]:
+    """The lines of a block; examples that follow one another are one line."""
+    for examples, group in groupby(text.splitlines(), lambda line: "python examples/" in line):
+        if examples:
+            paths = [shlex.split(line, comments=True)[1] for line in group]
+            yield shlex.join(["python", "-c", TOGETHER, *paths])
+        else:
+            yield from group
+
+
+def _shorten(script: Path) -> None:
+    text = script.read_text("utf-8")
+    assert SAMPLED[0] in text
+    script.write_text(text.replace(*SAMPLED), "utf-8")
+
+
 def _run(line: str, folder: Path, tools: Path) -> None:
     """Run one line of a shell in a folder; it must succeed."""
     path = [str(Path(sys.executable).parent), str(tools), os.environ["PATH"]]
@@ -56,11 +84,11 @@ def _called(words: list[str]) -> None:
 
 
 def _tools(folder: Path) -> Path:
-    """A folder with `cc`, whichever compiler there is."""
+    """A folder with `cc`, whichever compiler there is; it does not optimise, which takes it long."""
     folder.mkdir()
     found = shutil.which("cc")
     command = found or " ".join(compiler())
-    (folder / "cc").write_text(f'#!/bin/sh\nexec {command} "$@"\n')
+    (folder / "cc").write_text(f'#!/bin/sh\nexec {command} "$@" -O0\n')
     (folder / "cc").chmod(0o755)
     return folder
 
@@ -73,7 +101,7 @@ def test_command_lines_run(
     tools = _tools(tmp_path / "tools")
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     monkeypatch.chdir(tmp_path)
-    for line in text.splitlines():
+    for line in _lines(text):
         words = shlex.split(line, comments=True)
         own = next((len(name) for name in OWN if tuple(words[: len(name)]) == name), 0)
         if words[:1] == ["cd"]:
@@ -81,6 +109,8 @@ def test_command_lines_run(
         elif own:
             _called(words[own:])
         elif words and words[0] not in ("make", "pip"):
+            if words[:2] == ["python", "run_alsd.py"]:
+                _shorten(Path(words[1]))
             _run(line, Path.cwd(), tools)
     if "--out out" in text:
         assert any((tmp_path / "out").iterdir()), page
