@@ -6,6 +6,7 @@ does.
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,8 +30,9 @@ def lemke(M: Array, q: Array) -> Array:
     for _ in range(60 * n):
         left = basis[row]
         table[row] /= table[row, entering]
-        others = np.arange(n) != row
-        table[others] -= np.outer(table[others, entering], table[row])
+        others = table[:, entering].copy()
+        others[row] = 0.0
+        table -= others[:, None] * table[row]
         basis[row] = entering
         if left == 2 * n:
             z = np.zeros(2 * n + 1)
@@ -50,11 +52,16 @@ def lemke(M: Array, q: Array) -> Array:
 
 @dataclass(frozen=True)
 class _Step:
-    """One step's matrix for one position of the switches: nodes and forced branches; ports."""
+    """One step's matrices for one position of the switches.
 
-    inverse: Array
+    ``open``: the nodes' voltages with no current in ports, by what is stored and what waves are;
+    ``lift``: by how much a port's current lowers them; ``M``, ``shift``: of the problem in `_problem`.
+    """
+
+    open: Array
     lift: Array
     M: Array
+    shift: Array
 
 
 class Stepper:
@@ -62,27 +69,33 @@ class Stepper:
 
     def __init__(self, network: Network, h: float) -> None:
         self._network, self._h = network, h
-        self._ways = {b.name: self._way(b) for b in network.branches}
-        self._ports = network.of("D", "F")
+        self._stored, self._driven = network.of("C", "L"), network.of("S", "I", "V")
+        ports = network.of("D", "F")
+        self._more = np.array([b.more for b in ports])
+        self._level = np.array([b.value if b.kind == "F" else 0.0 for b in ports])
+        self._rubs = [k for k, b in enumerate(ports) if b.kind == "F"]
+        self._ways = np.array([self._way(b) for b in ports]).reshape(-1, network.nodes)
         self._made: dict[tuple[bool, ...], _Step] = {}
 
     def run(self, steps: int) -> dict[str, Array]:
         """Voltages of capacitors and currents of coils after each step, from the first on."""
-        network, h = self._network, self._h
+        h, stored = self._h, self._stored
         times: Array = h * np.arange(1, steps + 1, dtype=float)
-        waves = {b.name: self._values(b.wave, times) for b in network.of("S", "V", "I")}
-        stored = {b.name: b.start for b in network.of("C", "L")}
-        kept = {name: np.empty(steps) for name in stored}
+        across = np.array([self._way(b) for b in stored]).reshape(-1, self._network.nodes)
+        coil = np.array([float(b.kind == "L") for b in stored])
+        gain = np.array([h / b.value if b.kind == "L" else 1.0 for b in stored])
+        z = np.zeros(len(self._level) + len(self._rubs))
+        kept = np.empty((steps + 1, len(stored)))
+        kept[0] = [b.start for b in stored]
+        waves = np.array([self._values(b.wave, times) for b in self._driven]).reshape(-1, steps).T
         for k, t in enumerate(times):
-            v = self._step(
-                float(t) - h / 2, stored, {name: wave[k] for name, wave in waves.items()}
-            )
-            for b in network.of("C", "L"):
-                across = float(self._ways[b.name] @ v)
-                new = across if b.kind == "C" else stored[b.name] + h / b.value * across
-                kept[b.name][k] = stored[b.name] = new
-        names = {b.name: ("u_" if b.kind == "C" else "i_") + b.name for b in network.of("C", "L")}
-        return {names[name]: values for name, values in kept.items()}
+            step = self._step(float(t) - h / 2)
+            v = step.open @ np.concatenate((kept[k], waves[k]))
+            z = self._solved(step.M, self._problem(step, v), z)
+            v -= step.lift @ (z[: len(self._level)] - self._level)
+            kept[k + 1] = coil * kept[k] + gain * (across @ v)
+        names = [("u_" if b.kind == "C" else "i_") + b.name for b in stored]
+        return dict(zip(names, kept[1:].T, strict=True))
 
     def _values(self, wave: Wave, times: Array) -> Array:
         """Within a step, neither at its begin nor at its end, is what commands and levels are of it."""
@@ -90,67 +103,64 @@ class Stepper:
         angle = 2 * np.pi * wave.frequency * times + wave.phase
         return np.asarray(lines + wave.amplitude * np.sin(angle))
 
-    def _step(self, t: float, stored: dict[str, float], wave: dict[str, float]) -> Array:
-        """The voltages of the nodes after a step."""
-        network, h, n = self._network, self._h, self._network.nodes
-        forced = self._forced(t)
-        right = np.zeros(n + len(forced))
-        for b in network.branches:
-            way = self._ways[b.name]
-            if b.kind == "C":
-                right[:n] += way * b.value / h * stored[b.name]
-            elif b.kind == "L":
-                right[:n] -= way * stored[b.name]
-            elif b.kind == "S":
-                right[:n] -= way * wave[b.name] / b.more
-            elif b.kind == "I":
-                right[:n] -= way * wave[b.name]
-        right[n:] = [-wave.get(b.name, 0.0) for b in forced]
-        step = self._made.get(self._positions(t)) or self._make(t, forced)
-        open_ = step.inverse @ right
-        return (open_ - step.lift @ self._currents(step, open_[:n]))[:n]
-
-    def _currents(self, step: _Step, v: Array) -> Array:
+    def _problem(self, step: _Step, v: Array) -> Array:
         """Of the ports: a diode's is not negative, nor the voltage against it; friction's has a limit.
 
         With m = j + level and slips s forward and r backward: r = s - u, p = 2 level - m.
         """
-        count, ports = len(self._ports), self._ports
-        rubs = [k for k, b in enumerate(ports) if b.kind == "F"]
-        size = count + len(rubs)
-        level = np.array([b.value if b.kind == "F" else 0.0 for b in ports])
-        u = np.array([self._ways[b.name] @ v for b in ports])
-        M, q = np.zeros((size, size)), np.zeros(size)
-        M[:count, :count] = step.M
-        q[:count] = -u - step.M @ level
-        for at, k in enumerate(rubs):
-            M[k, count + at], M[count + at, k] = 1.0, -1.0
-            q[count + at] = 2 * level[k]
-        return np.asarray(lemke(M, q)[:count] - level)
+        return np.concatenate((-(self._ways @ v) - step.shift, 2 * self._level[self._rubs]))
 
-    def _make(self, t: float, forced: list[Branch]) -> _Step:
+    @staticmethod
+    def _solved(M: Array, q: Array, last: Array) -> Array:
+        """What was positive in the last step, if that is a solution of this one; else Lemke's."""
+        held = np.flatnonzero(last > 0)
+        z = np.zeros(len(q))
+        with contextlib.suppress(np.linalg.LinAlgError):
+            z[held] = np.linalg.solve(M[np.ix_(held, held)], -q[held])
+            w = M @ z + q
+            w[held] = 0.0
+            if (z >= 0).all() and (w >= 0).all():
+                return z
+        return lemke(M, q)
+
+    def _step(self, t: float) -> _Step:
+        positions = tuple(b.commanded(t) for b in self._network.of("K"))
+        if positions not in self._made:
+            self._made[positions] = self._make(t)
+        return self._made[positions]
+
+    def _make(self, t: float) -> _Step:
         network, h, n = self._network, self._h, self._network.nodes
+        forced = [b for b in network.of("V", "K") if b.kind == "V" or b.commanded(t)]
         K = np.zeros((n + len(forced), n + len(forced)))
         K[:n, :n] += LEAK * np.eye(n)
         for b in network.branches:
-            way = self._ways[b.name]
+            way = self._way(b)
             leads = {"C": b.value / h, "L": h / (b.value or 1), "R": 1 / (b.value or 1)}
             lead = 1 / b.more if b.kind == "S" else leads.get(b.kind, 0.0)
             K[:n, :n] += lead * np.outer(way, way)
         for at, b in enumerate(forced):
-            K[:n, n + at] = K[n + at, :n] = self._ways[b.name]
-        inverse: Array = np.asarray(np.linalg.inv(K), dtype=float)
-        ways = np.array([self._ways[b.name] for b in self._ports]).reshape(-1, n).T
-        lift = inverse[:, :n] @ ways
-        M = ways.T @ lift[:n] + np.diag([b.more for b in self._ports])
-        made = self._made[self._positions(t)] = _Step(inverse, lift, M)
-        return made
+            K[:n, n + at] = K[n + at, :n] = self._way(b)
+        inverse: Array = np.asarray(np.linalg.inv(K), dtype=float)[:n]
+        lift = inverse[:, :n] @ self._ways.T
+        count, size = len(self._level), len(self._level) + len(self._rubs)
+        M = np.zeros((size, size))
+        M[:count, :count] = self._ways @ lift + np.diag(self._more)
+        for at, k in enumerate(self._rubs, count):
+            M[k, at], M[at, k] = 1.0, -1.0
+        return _Step(inverse @ self._right(forced), lift, M, M[:count, :count] @ self._level)
 
-    def _forced(self, t: float) -> list[Branch]:
-        return [b for b in self._network.of("V", "K") if b.kind == "V" or b.commanded(t)]
-
-    def _positions(self, t: float) -> tuple[bool, ...]:
-        return tuple(b.commanded(t) for b in self._network.of("K"))
+    def _right(self, forced: list[Branch]) -> Array:
+        """A column for each storage and each wave: what it drives into nodes, what it forces."""
+        n, columns = self._network.nodes, self._stored + self._driven
+        right = np.zeros((n + len(forced), len(columns)))
+        for at, b in enumerate(columns):
+            if b.kind == "V":
+                right[n + forced.index(b), at] = -1.0
+            else:
+                lead = {"C": b.value / self._h, "S": -1 / (b.more or 1)}.get(b.kind, -1.0)
+                right[:n, at] = lead * self._way(b)
+        return right
 
     def _way(self, b: Branch) -> Array:
         way = np.zeros(self._network.nodes)
