@@ -3,6 +3,7 @@
 import math
 import random
 from collections.abc import Iterator
+from functools import cache
 from importlib import util
 from itertools import combinations
 from pathlib import Path
@@ -21,6 +22,12 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 CATALOG = [
     (name, full) for name, row in differentials.catalog.items() for full in {False, row.full}
 ]
+
+
+@cache
+def drawn(name: str, full: bool = False, powers: bool = False) -> Scene:
+    """A differential's picture, made once for all that is asked of it."""
+    return bg.drawing(differentials.graph(name, full), powers=powers).scene
 
 
 def boxes(scene: Scene) -> list[tuple[str, Box]]:
@@ -70,9 +77,8 @@ def example(name: str) -> Any:
     return module.graph()
 
 
-def check_strokes(causal: bg.CausalGraph) -> None:
+def check_strokes(causal: bg.CausalGraph, scene: Scene) -> None:
     """Every bond has one stroke, across its end at the node that receives the effort."""
-    scene = bg.drawing(causal).scene
     box = {node.name: node.box for node in scene.nodes}
     assert {bond.ends for bond in scene.bonds} == set(causal.strokes)
     for bond in scene.bonds:
@@ -99,7 +105,7 @@ def distance(point: Point, box: Box) -> float:
 @pytest.mark.parametrize("powers", [False, True])
 @pytest.mark.parametrize(("name", "full"), CATALOG)
 def test_nothing_touches_in_the_catalog(name: str, full: bool, powers: bool) -> None:
-    assert touching(bg.drawing(differentials.graph(name, full), powers=powers).scene) == []
+    assert touching(drawn(name, full, powers)) == []
 
 
 @pytest.mark.parametrize("powers", [False, True])
@@ -110,12 +116,12 @@ def test_nothing_touches_in_the_examples(name: str, powers: bool) -> None:
 
 @pytest.mark.parametrize(("name", "full"), CATALOG)
 def test_strokes_of_the_catalog(name: str, full: bool) -> None:
-    check_strokes(bg.assign_causality(differentials.graph(name, full)))
+    check_strokes(bg.assign_causality(differentials.graph(name, full)), drawn(name, full))
 
 
 @pytest.mark.slow
 def test_strokes_of_random_graphs() -> None:
-    drawn = 0
+    count = 0
     drawn_of = seeds("drawings")
     for seed in drawn_of:
         graph = random_graph(random.Random(seed), 4 + seed % 24)
@@ -123,14 +129,14 @@ def test_strokes_of_random_graphs() -> None:
             causal = bg.assign_causality(graph)
         except bg.BondGraphError:
             continue
-        check_strokes(causal)
-        drawn += 1
-    assert drawn >= 0.55 * len(drawn_of)
+        check_strokes(causal, bg.drawing(causal).scene)
+        count += 1
+    assert count >= 0.55 * len(drawn_of)
 
 
 def test_barbs_are_on_the_side_of_the_flow() -> None:
     """Below flat bonds, right of steep ones, at the end that power flows to."""
-    scene = bg.drawing(differentials.graph("four_wheel_drive_tvd")).scene
+    scene = drawn("four_wheel_drive_tvd")
     for bond in scene.bonds:
         (x0, y0), (x1, y1) = bond.path[-2:]
         off = (bond.barb[0] - x1, bond.barb[1] - y1)
@@ -146,7 +152,7 @@ def test_barbs_are_on_the_side_of_the_flow() -> None:
 )  # fmt: skip
 def test_mirror_images(name: str, full: bool) -> None:
     """Left and right are images of each other in the line through the case; inputs are on top."""
-    scene = bg.drawing(differentials.graph(name, full)).scene
+    scene = drawn(name, full)
     box = {str(node.name): node.labels[0].box for node in scene.nodes}
     middle = (box["case"].left + box["case"].right) / 2
     assert (box["input"].left + box["input"].right) / 2 == pytest.approx(middle)
@@ -167,7 +173,7 @@ def test_mirror_images(name: str, full: bool) -> None:
 
 
 def test_pictures_are_inside_their_frame() -> None:
-    scene = bg.drawing(differentials.graph("superposition_tvd", True), powers=True).scene
+    scene = drawn("superposition_tvd", True, True)
     whole = Box(0, 0, scene.width, scene.height)
     points = [point for _, *line in lines(scene) for point in line]
     for _, box in boxes(scene):
