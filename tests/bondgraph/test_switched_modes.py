@@ -15,7 +15,7 @@ import bondgraph as bg
 REFUSALS = (bg.CausalityError, bg.AlgebraicLoopError, bg.SingularStorageError)
 
 RATES = [sp.Rational(k, 7) for k in (3, 5, 11, -13, 19, 23, -29, 31, 37, 41, 43, -47)]
-"""Values of s at which a pencil of so many rows, less one, is not zero unless it is so everywhere."""
+"""Values of s: a polynomial of a lower degree than there are values is zero at all only if it is zero."""
 
 
 def _own(graph: "nx.DiGraph[str]", on: Iterable[object]) -> bg.StateEquations | None:
@@ -31,18 +31,18 @@ def _assert_one_motion(
 ) -> bool:
     """Whether the mode exists: then its poles, hidden ones too, and all answers are its own equations'."""
     held = [one for one in whole.switches if (one.held == "on") == (one.name in on)]
-    determinants = [determinant(pencil(whole, held, s)[0]) for s in RATES]
     own = _own(graph, on)
+    # Both are polynomials of s, of no higher degree than there are states.
+    rates = RATES[: 1 + max(len(one.states) for one in (whole, own or whole))]
+    determinants = [determinant(pencil(whole, held, s)[0]) for s in rates]
     if own is None:
         assert not any(determinants), f"{on}: a mode with a motion is refused"
         return False
-    ratios = {
-        sp.cancel(mine / determinant(s * own.A - own.J))
-        for s, mine in zip(RATES, determinants, strict=True)
-        if mine != 0
-    }
+    alone = [determinant(s * own.A - own.J) for s in rates]
+    assert [d == 0 for d in determinants] == [d == 0 for d in alone], f"{on}: other poles"
+    ratios = {sp.cancel(d / e) for d, e in zip(determinants, alone, strict=True) if d != 0}
     assert len(ratios) == 1, f"{on}: other poles"
-    s = next(s for s, mine in zip(RATES, determinants, strict=True) if mine != 0)
+    s = next(s for s, d in zip(rates, determinants, strict=True) if d != 0)
     zero = {name for one in whole.switches for name in (one.port.given, one.port.received)}
     assert answers(whole, held, s) == of_the_mode(own, s, zero), f"{on}: other answers"
     return True

@@ -2,12 +2,20 @@
 
 import random
 from collections.abc import Iterator, Mapping
+from functools import cache, cached_property
 
 import sympy as sp
 
 import bondgraph as bg
+import differentials
 
 Values = dict[sp.Symbol, sp.Expr]
+
+
+@cache
+def explained(name: str, full: bool = False) -> bg.Explanation:
+    """A differential's derivation, told once for all that is asked of it."""
+    return bg.explain(differentials.graph(name, full))
 
 
 class Reader:
@@ -36,11 +44,11 @@ class Reader:
         """An expression over states, inputs, their rates and integrals."""
         return expr.xreplace(self.signals).xreplace(self.given).xreplace(self.detected)
 
-    @property
+    @cached_property
     def detected(self) -> Values:
         return {one.left: one.right for one in self.equations("laws") if one.right == 0}
 
-    @property
+    @cached_property
     def integrals(self) -> Values:
         """The rates of integrals, by their names."""
         owners = {f"{one}'": one for one in self.result.integrals}

@@ -7,7 +7,7 @@ from references.build import bond_graph
 from references.matrices import differences
 
 import bondgraph as bg
-from codegen import simulator
+from codegen import Simulator, simulator
 
 J, m, r, c, n, theta, omega, tau, w0, th0, T0 = sp.symbols("J m r c n theta omega tau w0 th0 T0")
 POINT = {theta: 0.7, omega: 3.0, tau: 1.5, J: 0.5, m: 2.0, r: 0.3, c: 0.1}
@@ -185,10 +185,9 @@ def test_a_level_beyond_its_slope_of_friction_that_slips_on_a_spring() -> None:
     assert differences(model.D, [[1, -2 * c * n * p0 / k]]) == {}
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_models_are_the_slopes_of_rates_at_points_that_accelerate(seed: int) -> None:
+@pytest.fixture(scope="module")
+def two_cranks() -> tuple[bg.StateEquations, Simulator]:
     """Two cranks on one shaft, a spring with a law and a storage whose value moves."""
-    rng = np.random.default_rng(seed)
     more = [bg.TF("cam", "r*cos(theta) + l"), bg.One("tappet", flow="h"),
             bg.I("M", "m*(2 + sin(theta))", priority=-1),
             bg.C("spring", law="k*q_spring + q_spring**3"), bg.R("oil", "c"), bg.Zero("gap"), bg.One("end"),
@@ -199,7 +198,15 @@ def test_models_are_the_slopes_of_rates_at_points_that_accelerate(seed: int) -> 
         *more,
         bonds="slider>m slider>gas rot>cam>tappet>M tappet>gap>spring gap>oil gap>end>I",
     )
-    run = simulator(equations, NUMBERS)
+    return equations, simulator(equations, NUMBERS)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_models_are_the_slopes_of_rates_at_points_that_accelerate(
+    seed: int, two_cranks: tuple[bg.StateEquations, Simulator]
+) -> None:
+    rng = np.random.default_rng(seed)
+    equations, run = two_cranks
     x, u = rng.uniform(0.3, 1.5, len(run.states)), rng.uniform(1, 2, len(run.inputs))
     at = dict(zip((*run.states, *run.inputs), map(float, [*x, *u]), strict=True))
     model = bg.linearize(equations, at=at).numeric(NUMBERS)

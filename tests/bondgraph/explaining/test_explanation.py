@@ -1,12 +1,13 @@
 """Derivations put into themselves: what they state first gives what they state last, and that is derived."""
 
 import random
+from functools import cache
 
 import networkx as nx
 import pytest
 import sympy as sp
 from references.build import bond_graph
-from references.derivations import Reader, result_rows, solved_rates, vanishes
+from references.derivations import Reader, explained, result_rows, solved_rates, vanishes
 from references.random_graphs import random_graph
 
 import bondgraph as bg
@@ -132,21 +133,28 @@ GRAPHS |= {
 GRAPHS["alsd, not lumped"] = lambda: differentials.graph("alsd", lumped=False)
 
 
-@pytest.fixture(scope="module")
-def explained() -> dict[str, bg.Explanation]:
-    return {}
+@cache
+def _told(name: str) -> tuple[bg.Explanation, Reader]:
+    made = explained(name) if name in differentials.catalog else bg.explain(GRAPHS[name]())
+    return made, Reader(made)
 
 
 @pytest.fixture(params=GRAPHS)
-def explanation(request: pytest.FixtureRequest, explained: dict) -> bg.Explanation:
-    name = request.param
-    if name not in explained:
-        explained[name] = bg.explain(GRAPHS[name]())
-    return explained[name]
+def name(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
 
 
-def test_what_ports_receive_follows_from_the_junctions(explanation: bg.Explanation) -> None:
-    reader = Reader(explanation)
+@pytest.fixture
+def explanation(name: str) -> bg.Explanation:
+    return _told(name)[0]
+
+
+@pytest.fixture
+def reader(name: str) -> Reader:
+    return _told(name)[1]
+
+
+def test_what_ports_receive_follows_from_the_junctions(reader: Reader) -> None:
     received = reader.equations("received")
     assert received
     for one in [*received, *reader.equations("loops")]:
@@ -154,8 +162,7 @@ def test_what_ports_receive_follows_from_the_junctions(explanation: bg.Explanati
         assert vanishes(one.left.xreplace(reader.signals).xreplace(reader.detected) - given), one
 
 
-def test_resistances_give_what_their_laws_say(explanation: bg.Explanation) -> None:
-    reader = Reader(explanation)
+def test_resistances_give_what_their_laws_say(reader: Reader) -> None:
     solved = reader.equations("resistances")
     laws = [one for one in reader.equations("laws") if one.right != 0]
     assert len(solved) == len(laws)
@@ -163,9 +170,10 @@ def test_resistances_give_what_their_laws_say(explanation: bg.Explanation) -> No
         assert vanishes(reader.value(one.left) - reader.value(one.right)), one
 
 
-def test_storages_with_everything_put_in_are_the_result(explanation: bg.Explanation) -> None:
+def test_storages_with_everything_put_in_are_the_result(
+    explanation: bg.Explanation, reader: Reader
+) -> None:
     """Every storage's law holds: of dependent ones identically, of states as the rows of A, J, B, E."""
-    reader = Reader(explanation)
     left = [rate - reader.value(effect) for rate, effect in reader.storages()]
     rows = [row for row in left if not vanishes(row)]
     expected = result_rows(explanation.result)[: len(explanation.result.states)]
@@ -173,13 +181,13 @@ def test_storages_with_everything_put_in_are_the_result(explanation: bg.Explanat
     assert all(vanishes(row - want) for row, want in zip(rows, expected, strict=True))
 
 
-def test_outputs_are_the_results_with_rates_put_in(explanation: bg.Explanation) -> None:
-    _check_outputs(explanation)
+def test_outputs_are_the_results_with_rates_put_in(reader: Reader) -> None:
+    _check_outputs(reader)
 
 
-def _check_outputs(explanation: bg.Explanation) -> set[sp.Symbol]:
+def _check_outputs(reader: Reader) -> set[sp.Symbol]:
     """Every output over states and inputs; the rates of states that were put in for that."""
-    reader, result = Reader(explanation), explanation.result
+    result = reader.result
     rates = {sp.Symbol(f"{name}'") for name in result.states}
     used: set[sp.Symbol] = set()
     for name, row in zip(result.outputs, result_rows(result)[len(result.states) :], strict=True):
@@ -193,11 +201,10 @@ def _check_outputs(explanation: bg.Explanation) -> set[sp.Symbol]:
 
 def test_a_torque_behind_a_dependent_inertia_has_rates_put_in() -> None:
     explanation = bg.explain(differentials.graph("passive"), outputs=["bevel_torque", "input"])
-    assert _check_outputs(explanation) == {*sp.symbols("omega_1' omega_2'")}
+    assert _check_outputs(Reader(explanation)) == {*sp.symbols("omega_1' omega_2'")}
 
 
-def test_every_side_of_every_equation_is_equal(explanation: bg.Explanation) -> None:
-    reader = Reader(explanation)
+def test_every_side_of_every_equation_is_equal(reader: Reader) -> None:
     held = {one.left: one.right for one in reader.equations("storages")}
     for topic in ("resistances", "dependent", "balances"):
         for one in reader.equations(topic):
@@ -219,12 +226,13 @@ def _over_states(reader: Reader, side: sp.Expr, held: dict[sp.Expr, sp.Expr]) ->
     return reader.value(side.xreplace({k: v for k, v in held.items() if not str(k).endswith("'")}))
 
 
-def test_the_result_is_what_derive_gives(explanation: bg.Explanation, request) -> None:
-    graph = GRAPHS[request.node.callspec.params["explanation"]]()
-    derived = bg.derive(graph)
+def test_the_result_is_what_derive_gives(
+    name: str, explanation: bg.Explanation, reader: Reader
+) -> None:
+    derived = bg.derive(GRAPHS[name]())
     assert explanation.result == derived
     rows = [row for row in result_rows(derived) if not vanishes(row)]
-    stated = [one.left - one.right for one in Reader(explanation).equations("result")]
+    stated = [one.left - one.right for one in reader.equations("result")]
     assert len(rows) == len(stated)
     assert all(vanishes(row - want) for row, want in zip(stated, rows, strict=True))
 

@@ -1,10 +1,12 @@
 """Derivations as text, LaTeX and Markdown: aligned, closed, and short however large the graph."""
 
 import re
+from functools import cache
 
 import networkx as nx
 import pytest
 from references.build import bond_graph
+from references.derivations import explained
 from references.latex_checks import check_latex
 from references.random_graphs import chain
 from references.random_switches import random_switched
@@ -33,14 +35,14 @@ INERTIA = """\
 
 
 def test_the_passive_differential_reads_as_in_the_paper() -> None:
-    text = bg.explain(differentials.graph("passive")).text()
+    text = explained("passive").text()
     assert PASSIVE in text
     assert INERTIA in text
     assert text == str(bg.explain(differentials.graph("passive")))
 
 
 def test_equations_of_a_step_stand_below_one_another() -> None:
-    text = bg.explain(differentials.graph("alsd")).text().partition("\n\nIn matrices")[0]
+    text = explained("alsd").text().partition("\n\nIn matrices")[0]
     for step in re.split(r"\n\n(?=\d+\. )", text):
         lines = [
             line for line in step.splitlines() if re.match(r"  \(\d+\) ", line) and " = " in line
@@ -52,7 +54,7 @@ def test_equations_of_a_step_stand_below_one_another() -> None:
 @pytest.mark.parametrize("name", ["passive", "alsd", "stationary_tvd"])
 def test_lines_are_short(name: str) -> None:
     """Only a single term, with all of its factor, may be longer than a line."""
-    for line in bg.explain(differentials.graph(name)).text().splitlines():
+    for line in explained(name).text().splitlines():
         right = line.split("=")[-1]
         while "(" in right:
             right = re.sub(r"\([^()]*\)", "", right)
@@ -70,17 +72,23 @@ def _awkward() -> nx.DiGraph:
     return graph
 
 
+@cache
+def _large() -> bg.Explanation:
+    """Of a chain of 120 storages."""
+    return bg.explain(chain(60))
+
+
 FORMS = {
-    **{name: lambda name=name: differentials.graph(name) for name in differentials.catalog},
-    "awkward": _awkward,
-    "switched": lambda: random_switched(3, most=3),
-    "large": lambda: chain(60),
+    **{name: lambda name=name: explained(name) for name in differentials.catalog},
+    "awkward": lambda: bg.explain(_awkward()),
+    "switched": lambda: bg.explain(random_switched(3, most=3)),
+    "large": _large,
 }
 
 
 @pytest.mark.parametrize("name", FORMS)
 def test_latex_and_markdown_are_well_formed(name: str) -> None:
-    explanation = bg.explain(FORMS[name]())
+    explanation = FORMS[name]()
     check_latex(explanation.latex(), tabs=3)
     markdown = explanation._repr_markdown_()
     check_latex(re.sub(r"\\([*_<>`|\[\]])", "", markdown.replace("**", "")), tabs=5)
@@ -88,14 +96,14 @@ def test_latex_and_markdown_are_well_formed(name: str) -> None:
 
 
 def test_letters_are_greek_and_rates_have_dots() -> None:
-    latex = bg.explain(differentials.graph("passive")).latex()
+    latex = explained("passive").latex()
     assert r"I_{w1} \dot{\omega}_{1} & = " in latex.replace("&=", "& =")
     assert r"\frac{i}{2} \tau_{e}" in latex
     assert r"it gives the effort $\tau_{e}$ to input" in latex
 
 
 def test_numbers_are_the_same_in_every_form() -> None:
-    explanation = bg.explain(differentials.graph("alsd"))
+    explanation = explained("alsd")
     numbers = [
         str(n) for s in explanation.steps for n in (e.number for e in (*s.equations, *s.formulas))
     ]
@@ -105,7 +113,7 @@ def test_numbers_are_the_same_in_every_form() -> None:
 
 
 def test_large_graphs_are_summarised_unless_all_is_asked_for() -> None:
-    explanation = bg.explain(chain(120))
+    explanation = _large()
     short, whole = explanation.text(), explanation.text(limit=None)
     assert len(short.splitlines()) < 150
     assert re.search(r"^  \.\.\. and \d+ more, up to \(\d+\)$", short, flags=re.M)
