@@ -26,7 +26,9 @@ def _is_frozen(record: ast.ClassDef) -> bool:
 
 
 def _changeable(source: str, module: str) -> list[str]:
-    found = []
+    found: list[str] = []
+    if "frozen=True" not in source and "NamedTuple" not in source:
+        return found
     for record in ast.walk(ast.parse(source)):
         if not isinstance(record, ast.ClassDef) or not _is_frozen(record):
             continue

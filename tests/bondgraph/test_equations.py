@@ -152,7 +152,7 @@ def test_storage_with_a_law_owns_its_state() -> None:
 
 def test_chain_of_many_nodes_is_derived_as_a_chain() -> None:
     """Neighbours only are coupled: m v' = e_left - e_right - b v and c e' = v_left - v_right."""
-    count = 1_000
+    count = 600
     equations = bg.derive(chain(count))
     places = {str(state): at for at, state in enumerate(equations.states)}
     assert len(places) == 2 * count

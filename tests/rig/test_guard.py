@@ -35,27 +35,27 @@ def _tested(folder: Path, body: str, *limits: str) -> subprocess.CompletedProces
 
 
 def test_an_endless_loop_is_ended(tmp_path: Path) -> None:
-    done = _tested(tmp_path, "while True:\n    pass", "--most=0.5", "--idle=1.2")
-    assert "TimeoutError: no end after 0.5 s of a processor" in done.stdout
+    done = _tested(tmp_path, "while True:\n    pass", "--most=0.2", "--idle=0.8")
+    assert "TimeoutError: no end after 0.2 s of a processor" in done.stdout
     assert "1 failed, 1 passed" in done.stdout
 
 
 def test_what_a_test_starts_counts(tmp_path: Path) -> None:
     body = "subprocess.run([sys.executable, '-c', 'while True: pass'])"
-    done = _tested(tmp_path, body, "--most=0.5", "--idle=1.2")
-    assert "TimeoutError: no end after 0.5 s of a processor" in done.stdout
+    done = _tested(tmp_path, body, "--most=0.2", "--idle=0.8")
+    assert "TimeoutError: no end after 0.2 s of a processor" in done.stdout
     assert "1 failed, 1 passed" in done.stdout
 
 
 def test_a_test_that_waits_for_ever_is_ended(tmp_path: Path) -> None:
-    done = _tested(tmp_path, "time.sleep(1e6)", "--idle=1.2")
-    assert "TimeoutError: nothing done for 1.2 s" in done.stdout
+    done = _tested(tmp_path, "time.sleep(1e6)", "--idle=0.8")
+    assert "TimeoutError: nothing done for 0.8 s" in done.stdout
     assert "1 failed, 1 passed" in done.stdout
 
 
 def test_one_that_takes_no_exception_is_ended_with_its_process(tmp_path: Path) -> None:
     body = "signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGALRM])\ntime.sleep(1e6)"
-    done = _tested(tmp_path, body, "--idle=1.2")
+    done = _tested(tmp_path, body, "--idle=0.8")
     assert done.returncode != 0
     assert "Fatal Python error: Aborted" in done.stderr
     assert "test_one.py" in done.stderr
