@@ -32,8 +32,15 @@ def test_there_are_notebooks() -> None:
     assert [path.stem[:2] for path in NOTEBOOKS] == [f"{n:02}" for n in range(1, 8)]
 
 
-BEGIN = "__import__('gc').freeze()\n%reset -f\n__import__('os').chdir({!r})"
-"""No names, an empty folder. What is imported stays, and need not be searched for garbage each time."""
+BEGIN = """__import__('gc').freeze()
+%reset -f
+__import__('warnings').filterwarnings('default', 'no such warning')
+__import__('os').chdir({!r})
+"""
+"""No names, an empty folder, and warnings that were shown are shown again, as filters have changed.
+
+What is imported stays, and need not be searched for garbage each time.
+"""
 
 
 @pytest.fixture(scope="module")
