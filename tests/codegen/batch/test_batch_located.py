@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from oracles.exported import small_cases
 from oracles.models import oscillator
-from oracles.sanitized import check_clean
 from references.build import bond_graph
 
 import bondgraph as bg
@@ -292,24 +291,3 @@ def test_the_loop_compiles_without_warnings(monkeypatch: pytest.MonkeyPatch) -> 
     for family, optimised in ((_braked("c*v**3", m=2.0, c=0.5), "-O3"), (_pendulum(), "-O1")):
         monkeypatch.setenv("CFLAGS", optimised)
         assert LocatedLibrary(family.simulator().closed, STRICT).opened
-
-
-SANITIZED = """
-import test_batch_energy as energy
-import test_batch_located as cases
-from codegen.engine import located
-from codegen.batch import engine as batch_engine
-from oracles.sanitized import FLAGS
-located.LocatedLibrary.__init__.__defaults__ = (FLAGS,)
-batch_engine.batch_engine.__defaults__ = (FLAGS,)
-energy.test_friction_that_sticks_is_worked_out_by_hand()
-energy.test_a_stretch_of_many_time_constants()
-cases.test_inputs_held_beside_others_that_change()
-cases.test_models_of_every_kind("clutches")
-cases.test_values_that_change_are_checked_run_by_run()
-"""
-
-
-@pytest.mark.slow
-def test_the_loop_is_clean_under_sanitizers() -> None:
-    check_clean(SANITIZED)

@@ -10,7 +10,6 @@ from oracles.c_model import compiled, written
 from oracles.chains import random_chain
 from oracles.exported import small_cases
 from oracles.models import oscillator
-from oracles.sanitized import check_clean
 from references.build import bond_graph
 
 import bondgraph as bg
@@ -300,22 +299,6 @@ def test_located_runs_compile_without_warnings(name: str, monkeypatch: pytest.Mo
     assert (
         runs.run(np.array([0.0, 0.1]), states, signals, Settings("auto", 1e-10, 1e-11)) is not None
     )
-
-
-SANITIZED = """
-import test_located as cases
-from codegen.engine.located import LocatedLibrary
-from oracles.sanitized import FLAGS
-LocatedLibrary.__init__.__defaults__ = (FLAGS,)
-for name in ("mixed", "braked_crank"):
-    cases.test_two_methods_agree_on_models_of_every_kind(name)
-cases.test_room_for_events_grows()
-"""
-
-
-@pytest.mark.slow
-def test_located_runs_are_clean_under_sanitizers() -> None:
-    check_clean(SANITIZED)
 
 
 def test_chains_of_two_hundred_states_run() -> None:

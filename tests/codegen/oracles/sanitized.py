@@ -3,19 +3,34 @@
 import os
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+
+import pytest
 
 TELLING = "BONDGRAPH_TEST_SANITIZER_TELLS"
 """In the environment: undefined behaviour is told in words, not by a trap, in half as much time again."""
 
 FLAGS = (
-    "-O0", "-g", "-std=c99", "-fsanitize=address,undefined", "-fno-sanitize-recover=all",
+    "-O0", "-std=c99", "-fsanitize=address,undefined", "-fno-sanitize-recover=all",
     # What these find ends in a fault that the other sanitizer tells, and they take half of the time.
     "-fno-sanitize=null,object-size,nonnull-attribute,returns-nonnull-attribute,pointer-overflow",
-    *(() if os.environ.get(TELLING) else ("-fsanitize-undefined-trap-on-error",)),
+    # The same checks by calls, not in place: a quarter less to compile.
+    "--param=asan-instrumentation-with-call-threshold=0",
+    *(("-g",) if os.environ.get(TELLING) else ("-g0", "-fsanitize-undefined-trap-on-error")),
 )  # fmt: skip
 
 TESTS = Path(__file__).parents[1]
+
+
+@contextmanager
+def sanitized(*makers: Callable[..., object]) -> Iterator[None]:
+    """What these make is compiled for the sanitizers: the flags are their only default."""
+    with pytest.MonkeyPatch.context() as patch:
+        for maker in makers:
+            patch.setattr(maker, "__defaults__", (FLAGS,))
+        yield
 
 
 def check_clean(script: str) -> None:
