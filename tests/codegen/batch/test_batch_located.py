@@ -31,7 +31,6 @@ from codegen import (
 )  # fmt: skip
 from codegen.batch.exact import ExactLoop
 from codegen.batch.located import LocatedLoop
-from codegen.engine.located import LocatedLibrary
 from codegen.inputs.pieces import Piece
 from codegen.sweeps.job import Job
 from codegen.sweeps.measuring import batch_of
@@ -281,13 +280,3 @@ def test_a_pickled_job_has_its_loop_again() -> None:
     again = pickle.loads(pickle.dumps(job))
     one, other = (batch_of(each)([(1.0,), (2.0,)])[0][0] for each in (job, again))
     assert one.tolist() == other.tolist()
-
-
-STRICT = ("-O3", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion",
-          "-Wno-sign-conversion")  # fmt: skip
-
-
-def test_the_loop_compiles_without_warnings(monkeypatch: pytest.MonkeyPatch) -> None:
-    for family, optimised in ((_braked("c*v**3", m=2.0, c=0.5), "-O3"), (_pendulum(), "-O1")):
-        monkeypatch.setenv("CFLAGS", optimised)
-        assert LocatedLibrary(family.simulator().closed, STRICT).opened

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from oracles.c_model import WARNED
 from oracles.models import belt, stacked_blocks
 from oracles.sweeping import spring_mass
 
@@ -135,13 +136,9 @@ def test_runs_whose_parameters_do_not_change() -> None:
         assert np.abs(row - expected).max() <= 1e-9
 
 
-STRICT = ("-O3", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion",
-          "-Wno-sign-conversion")  # fmt: skip
-
-
 def test_the_loop_compiles_without_warnings(monkeypatch: pytest.MonkeyPatch) -> None:
     for family, optimised in ((_stacked(), "-O3"), (spring_mass(), "-O1")):
         monkeypatch.setenv("CFLAGS", optimised)
         model = to_c(family.equations, family.parameters, family.laws)
         wanted = sizes(family.simulator().closed, 2)
-        batch_engine(model, wanted, STRICT)
+        batch_engine(model, wanted, WARNED)

@@ -6,7 +6,7 @@ from pathlib import Path
 import networkx as nx
 import numpy as np
 import pytest
-from oracles.c_model import compiled, written
+from oracles.c_model import WARNED, check_told, compiled, written
 from oracles.chains import random_chain
 from oracles.exported import small_cases
 from oracles.models import oscillator
@@ -282,23 +282,25 @@ def test_the_main_program_runs_a_scenario_with_events_located(tmp_path: Path) ->
     assert table[:, 1] == pytest.approx(80.0, abs=1e-2)
 
 
-STRICT = ("-O1", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+LEVELS = {"clutches_with_loss": "-O3", "diode": "-O1", "crank": "-O1"}
 
 
 @pytest.mark.parametrize("name", ["duffing", "diode", "stacked", "crank", "clutches_with_loss"])
-def test_located_runs_compile_without_warnings(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_located_runs_compile_without_warnings(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Models without friction ports, without states, with several ports, with moving ratios."""
-    monkeypatch.setenv("CFLAGS", "-O2" if name == "clutches_with_loss" else "-O1")
     equations, numbers, laws = SMALL[name]
     ready = simulator(equations, numbers, laws)
-    runs = LocatedRuns(ready.closed, LocatedLibrary(ready.closed, STRICT))
-    states, signals = (
-        np.zeros(len(ready.states)),
-        signals_for(dict.fromkeys(ready.inputs, 1.0), ready.inputs),
-    )
-    assert (
-        runs.run(np.array([0.0, 0.1]), states, signals, Settings("auto", 1e-10, 1e-11)) is not None
-    )
+    if name not in LEVELS:
+        check_told(tmp_path, LocatedLibrary(ready.closed).sources)
+        return
+    monkeypatch.setenv("CFLAGS", LEVELS[name])
+    runs = LocatedRuns(ready.closed, LocatedLibrary(ready.closed, WARNED))
+    states = np.zeros(len(ready.states))
+    signals = signals_for(dict.fromkeys(ready.inputs, 1.0), ready.inputs)
+    settings = Settings("auto", 1e-10, 1e-11)
+    assert runs.run(np.array([0.0, 0.1]), states, signals, settings) is not None
 
 
 def test_chains_of_two_hundred_states_run() -> None:

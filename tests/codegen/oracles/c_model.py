@@ -16,6 +16,10 @@ from codegen.program.lower import lower
 from codegen.program.records import Program
 
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic")
+
+WARNED = (*STRICT, "-Werror", "-Wconversion", "-Wno-sign-conversion")
+"""What engines are compiled with that are checked for warnings."""
+
 HARNESS = Path(__file__).parent / "harness.c"
 
 
@@ -38,6 +42,18 @@ def compiled(folder: Path, sources: Sequence[str], *flags: str, to: str = "run")
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     return folder / to
+
+
+def check_told(folder: Path, files: Mapping[str, str]) -> None:
+    """The compiler has no warning for these files, compiled as one up to where it optimises.
+
+    For sizes beside those at which the same files are compiled one by one as users have them.
+    """
+    text = "".join(f'#include "{file}"\n' for file in written(folder, files))
+    command = ["gcc", *WARNED, "-O1", "-flto", "-fno-fat-lto-objects", "-fPIC", "-I", str(folder)]
+    done = subprocess.run([*command, "-x", "c", "-", "-c", "-o", str(folder / "all.o")],
+                          input=text, capture_output=True, text=True, check=False)  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def _numbers(values: object) -> ctypes.Array:
