@@ -87,20 +87,21 @@ def test_rates_and_outputs_are_the_simulators(name: str) -> None:
 
 
 FIGURES = {
-    "fig11": ("alsd", 4e-3),
-    "fig13": ("stationary_tvd", 1e-6),
-    "fig14": ("four_wheel_drive_tvd", 2e-2),
+    "fig11": ("alsd", 4e-3, (450, 701)),
+    "fig13": ("stationary_tvd", 1e-6, (0, 601)),
+    "fig14": ("four_wheel_drive_tvd", 2e-2, (450, 701)),
 }
+"""The differential, the error that is left, and the samples [ms]: about all that sticks and slips."""
 
 
 def _figure(name: str):
-    """The module of a figure, and its run by the simulator, sampled every 5 ms."""
-    differential, case = FIGURES[name][0], named(name)
+    """The module of a figure, its run by the simulator, and where and how the module begins."""
+    (differential, _, (first, _)), case = FIGURES[name], named(name)
     full, reference = model(differential), differentials.simulate(differential, name)
     closed = reference.observer.model
     numbers = {symbol: float(value) for symbol, value in closed.parameters.items()}
     module = loaded(to_python(full.equations, numbers, full.laws, differential))
-    start = {state: float(reference[state][0]) for state in reference.states}
+    start = {state: float(reference[state][first]) for state in reference.states}
     inputs = {key: _lagged(case, key, full) for key in reference.inputs}
     return module, reference, start, inputs
 
@@ -118,11 +119,11 @@ def _lagged(case, key: str, full):
 def test_fixed_steps_converge_to_located_events(name: str) -> None:
     """At least of first order, from a step to its half; of fourth where nothing sticks."""
     module, reference, start, inputs = _figure(name)
-    times, errors = reference.time[::5], []
+    part, errors = slice(*FIGURES[name][2], 5), []
     for step in (1e-3, 5e-4):
-        run = module.simulate(times, start, inputs, step=step)
+        run = module.simulate(reference.time[part], start, inputs, step=step)
         errors.append(max(
-            np.abs(run[state] - reference[state][::5]).max() / np.abs(reference[state]).max()
+            np.abs(run[state] - reference[state][part]).max() / np.abs(reference[state]).max()
             for state in module.STATES
         ))  # fmt: skip
     assert errors[1] < FIGURES[name][1]
@@ -134,10 +135,13 @@ def test_a_dependent_storage_follows_its_source() -> None:
     """E u' beside friction: the integrated vector jumps with a step, and holds against a slope."""
     numbers, times = {"m_1": 1.0, "m_2": 3.0, "L": 6.0}, np.linspace(0, 2, 81)
     module, ready = loaded(to_python(lever(), numbers)), simulator(lever(), numbers)
-    for drive in (Step(0.5, 1.2) + Step(1.5, -0.4), Ramp(0.5, 1.9), Ramp(0.5, 2.1)):
+    for drive, step, near in (
+        (Step(0.5, 1.2) + Step(1.5, -0.4), 2e-3, 4e-3), (Ramp(0.5, 1.9), 5e-3, 1e-12),
+        (Ramp(0.5, 2.1), 5e-3, 1e-12),
+    ):  # fmt: skip
         expected = ready.run(times, inputs={"V": drive})
-        run = module.simulate(times, {}, {"V": drive}, step=1e-3)
-        assert run["v_1"] == pytest.approx(expected["v_1"], abs=6e-3)
+        run = module.simulate(times, {}, {"V": drive}, step=step)
+        assert run["v_1"] == pytest.approx(expected["v_1"], abs=near)
 
 
 def test_redundant_ports_share_by_what_each_holds_and_let_go_together() -> None:
@@ -145,20 +149,20 @@ def test_redundant_ports_share_by_what_each_holds_and_let_go_together() -> None:
     graph = clutches(bg.DryFriction("L_0"), bg.DryFriction("L_1"))
     both = bg.derive(graph, outputs=["c0"])
     run = loaded(to_python(both, numbers)).simulate(
-        np.linspace(0, 2, 41), {}, {"T_1": lambda t: 20 * t, "T_2": lambda t: -20 * t}, step=1e-3
+        np.linspace(0, 2, 41), {}, {"T_1": lambda t: 20 * t, "T_2": lambda t: -20 * t}, step=5e-3
     )
     held = run["t"] < 1.74
     assert run["f_0"][held] == pytest.approx(20 * run["t"][held] * 10 / 35, abs=1e-9)
     assert run["slip"][held] == pytest.approx(0, abs=1e-12)
-    assert run["slip"][-1] == pytest.approx(10 * 0.25**2 * 6, rel=3e-2)
+    assert run["slip"][-1] == pytest.approx(10 * 0.25**2 * 6, rel=1e-3)
 
 
 def test_brakes_in_different_gears_hold_whatever_they_can_hold_together() -> None:
     """Each carries the same fraction of its level: they let go at P = L_1 + r L_2 = 5."""
     numbers, times = {"m": 2.0, "L_1": 3.0, "L_2": 1.0, "r": 2.0}, np.linspace(0, 2, 41)
     module = loaded(to_python(constrained(), numbers))
-    run = module.simulate(times, {}, {"P": lambda t: 4 * t}, step=1e-3)
-    assert run["v"] == pytest.approx(np.maximum(times - 1.25, 0) ** 2, abs=1e-4)
+    run = module.simulate(times, {}, {"P": lambda t: 4 * t}, step=5e-3)
+    assert run["v"] == pytest.approx(np.maximum(times - 1.25, 0) ** 2, abs=5e-5)
     held = times < 1.24
     assert run["f_1"][held] == pytest.approx(3 / 5 * 4 * times[held], abs=1e-9)
     assert run["f_2"][held] == pytest.approx(1 / 5 * 4 * times[held], abs=1e-9)
