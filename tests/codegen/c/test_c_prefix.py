@@ -38,14 +38,15 @@ int {folder}_run(void)
 """
 
 
-def _export(folder: Path, prefix: str, case: str) -> list[str]:
-    """A model in a folder called like its prefix, and a file beside it that runs it."""
+def _export(folder: Path, prefix: str, case: str) -> str:
+    """A model in a folder called like its prefix, and a file beside it that includes and runs it."""
     equations, values, laws = CASES[case]
     place = prefix.rstrip("_") or "plain"
     sources = written(folder / place, to_c(equations, values, laws, case, prefix=prefix))
     wrapper = folder / f"{place}.c"
-    wrapper.write_text(WRAPPER.format(folder=place))
-    return [*sources, str(wrapper)]
+    included = "".join(f'#include "{source}"\n' for source in sources)
+    wrapper.write_text(included + WRAPPER.format(folder=place))
+    return str(wrapper)
 
 
 def _program(folder: Path, sources: list[str], places: list[str], to: str) -> list[str]:
@@ -62,10 +63,10 @@ def _program(folder: Path, sources: list[str], places: list[str], to: str) -> li
 def test_two_models_in_one_program_run_as_each_does_alone(tmp_path: Path) -> None:
     sources, alone = [], []
     for prefix, case in MODELS.items():
-        sources += _export(tmp_path, prefix, case)
+        sources.append(_export(tmp_path, prefix, case))
         own = tmp_path / case
         own.mkdir()
-        alone += _program(own, _export(own, "", case), ["plain"], "alone")
+        alone += _program(own, [_export(own, "", case)], ["plain"], "alone")
     together = _program(tmp_path, sources, ["front", "rear"], "together")
     assert together == alone
     assert len({line.split()[0] for line in together}) == 2

@@ -39,8 +39,12 @@ pytestmark = pytest.mark.most(900)
 
 @pytest.fixture(autouse=True)
 def _plainly(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No code of these is run: what optimising takes is saved, and what checks for undefined behaviour."""
+    """No code of these is run: what optimising takes is saved, and what checks for undefined behaviour.
+
+    So is ziglang's own library, which takes longer than all else to make and of which no unit needs a thing.
+    """
     flags = ("-O0", "-fno-sanitize=undefined", *(f for f in binaries.FLAGS if f != "-O2"))
+    flags += ("-rtlib=none",) if SLOWEST else ()
     monkeypatch.setattr(binaries, "FLAGS", flags)
 
 
