@@ -115,5 +115,6 @@ def test_fields_and_nodes_that_are_none() -> None:
     assert found["pair"] == pytest.approx(found["x"] + found["y"])
     assert found["pair"][1] == pytest.approx(alone.work("pair")[-1], rel=1e-9)
     assert (found["open"] < 1e-9).all()
-    wrong = sweep(family, {"m": [2.0]}, ENDS, {"w": work("a")}, None, inputs, **QUIET)
+    here = {"progress": False, "workers": 0}
+    wrong = sweep(family, {"m": [2.0]}, ENDS, {"w": work("a")}, None, inputs, **here)
     assert "'a' is not a one-port" in wrong.failed[0].message

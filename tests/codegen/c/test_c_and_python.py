@@ -15,7 +15,7 @@ CHOSEN = (
     "slip_damper", "constrained", "clutches_with_loss", "heater", "braked_crank",
     "divider V", "lever", "duffing", "mixed",
 )  # fmt: skip
-STEP, BAND, COUNT = 1e-3, 1e-3, 200
+STEP, BAND, COUNT = 2e-3, 1e-3, 100
 
 
 def _inputs(t: float, names: tuple[str, ...]) -> list[float]:

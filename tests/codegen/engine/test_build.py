@@ -57,18 +57,25 @@ def test_flags_of_the_environment_come_last(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_several_processes_share_the_cache() -> None:
+    # One starts, and becomes three when it has imported what they need.
     program = (
+        "import os\n"
         "from codegen.engine import build\n"
+        "children = [os.fork()]\n"
+        "children += [os.fork()] if children[0] else []\n"
         f"path = build.compiled({SOURCE!r}, {FLAGS!r})\n"
-        "print(path, build.loaded(path, 'int one(void);')[1].one())"
+        "one = build.loaded(path, 'int one(void);')[1].one()\n"
+        "os.write(1, f'{path} {one}\\n'.encode())\n"
+        "if all(children):\n"
+        "    statuses = [os.waitpid(child, 0)[1] for child in children]\n"
+        "    assert statuses == [0, 0]\n"
     )
-    runs = [
-        subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
-        for _ in range(3)
-    ]
-    said = {run.communicate()[0].strip() for run in runs}
-    assert len(said) == 1
-    assert said.pop().endswith(" 1")
+    done = subprocess.run(
+        [sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, check=True
+    )
+    first, *others = done.stdout.splitlines()
+    assert first.endswith(" 1")
+    assert others == [first] * 2
     assert len(list(cache.cache_folder().iterdir())) == 1
 
 
