@@ -40,7 +40,7 @@ def test_numbers_do_not_depend_on_how_many_processes_there_are() -> None:
 
 
 def test_a_run_that_ends_its_process_fails_alone() -> None:
-    found = _swept({"F": Killer(at=3.0)}, workers=2, chunk=5)
+    found = _swept({"F": Killer(at=3.0)}, workers=1, chunk=5)
     assert [(f.run, dict(f.values), f.message) for f in found.failed] == [(2, {"v": 3.0}, ENDED)]
     assert np.isnan(found["F"]).tolist() == [v == 3.0 for v in SPEEDS]
     assert found.complete
