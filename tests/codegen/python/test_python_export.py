@@ -87,9 +87,9 @@ def test_rates_and_outputs_are_the_simulators(name: str) -> None:
 
 
 FIGURES = {
-    "fig11": ("alsd", 4e-3, (450, 701)),
+    "fig11": ("alsd", 1.2e-3, (450, 701)),
     "fig13": ("stationary_tvd", 1e-6, (0, 601)),
-    "fig14": ("four_wheel_drive_tvd", 2e-2, (450, 701)),
+    "fig14": ("four_wheel_drive_tvd", 6e-3, (450, 701)),
 }
 """The differential, the error that is left, and the samples [ms]: about all that sticks and slips."""
 
@@ -154,7 +154,7 @@ def test_redundant_ports_share_by_what_each_holds_and_let_go_together() -> None:
     held = run["t"] < 1.74
     assert run["f_0"][held] == pytest.approx(20 * run["t"][held] * 10 / 35, abs=1e-9)
     assert run["slip"][held] == pytest.approx(0, abs=1e-12)
-    assert run["slip"][-1] == pytest.approx(10 * 0.25**2 * 6, rel=1e-3)
+    assert run["slip"][-1] == pytest.approx(10 * 0.25**2 * 6, rel=5e-4)
 
 
 def test_brakes_in_different_gears_hold_whatever_they_can_hold_together() -> None:
