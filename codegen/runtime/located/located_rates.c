@@ -4,7 +4,7 @@
 
 #include "located_internal.h"
 
-enum { SQUARINGS = 8 };
+enum { SQUARINGS = 8, PRODUCTS = 1 << SQUARINGS };
 
 /* How rates change with the states, by rows, from differences that stay where laws have values;
  * downwards where `side` is -1. */
@@ -46,15 +46,11 @@ static void square_of(const double *a, double *product)
         }
 }
 
-/* The largest rate [1/s] of the model linearised in squares[0] and of the inputs: of the model from
- * a high power of the matrix, scaled as it grows. */
-static int largest_rate(bg_located *c, double *fastest)
+/* The largest rate of the model linearised in squares[0], from a high power of the matrix, scaled
+ * as it grows; `size`: the largest entry. */
+static double from_squares(bg_located *c, double size)
 {
     double *power = c->squares[0], *next = c->squares[1], logarithm = 0.0, share = 1.0;
-    double size = bg_largest(BG_SIZE * BG_SIZE, power);
-    *fastest = c->signals->fastest[c->run.segment];
-    if (!isfinite(size))
-        return BG_NOT_FINITE;
     for (int k = 0; k < SQUARINGS && size > 0.0; k++) {
         double *const done = power;
         logarithm += share * log(size);
@@ -66,22 +62,69 @@ static int largest_rate(bg_located *c, double *fastest)
         next = done;
         size = bg_largest(BG_SIZE * BG_SIZE, power);
     }
-    if (size > 0.0)
-        *fastest = fmax(*fastest, exp(logarithm + share * log(size)));
+    return size > 0.0 ? exp(logarithm + share * log(size)) : 0.0;
+}
+
+/* The same of a large model, whose powers take long: by as many products with a vector that no
+ * structure is blind to. */
+static double from_products(bg_located *c)
+{
+    double v[BG_SIZE], next[BG_SIZE], logarithm = 0.0;
+    unsigned noise = 0;
+    bg_list_entries(BG_SIZE, BG_SIZE, c->squares[0], BG_LIST(BG_SIZE, BG_SIZE), c->list);
+    for (int i = 0; i < BG_SIZE; i++) {
+        noise = (1664525u * noise + 1013904223u) & 0xffffffffu;
+        v[i] = noise / 2147483648.0 - 1.0;
+    }
+    for (int k = 0; k < PRODUCTS; k++) {
+        memset(next, 0, sizeof next);
+        bg_multiply_listed(BG_SIZE, BG_SIZE, c->squares[0], c->list, v, next);
+        const double size = bg_largest(BG_SIZE, next);
+        if (!(size > 0.0))
+            return 0.0;
+        logarithm += log(size);
+        for (int i = 0; i < BG_SIZE; i++)
+            v[i] = next[i] / size;
+    }
+    return exp(logarithm / PRODUCTS);
+}
+
+/* The largest rate [1/s] of the model linearised in squares[0] and of the inputs. */
+static int largest_rate(bg_located *c, double *fastest)
+{
+    const double size = bg_largest(BG_SIZE * BG_SIZE, c->squares[0]);
+    if (!isfinite(size))
+        return BG_NOT_FINITE;
+    c->own = BG_LISTED(BG_SIZE, BG_SIZE) ? from_products(c) : from_squares(c, size);
+    *fastest = fmax(c->signals->fastest[c->run.segment], c->own);
     return BG_OK;
 }
 
 int bg_located_fastest(bg_located *c, double t, const double *s, double *fastest)
 {
-    const int status = bg_located_jacobian(c, t, s, c->squares[0]);
-    *fastest = 0.0;
-    return status == BG_OK ? largest_rate(c, fastest) : status;
+    int same = c->known;
+    *fastest = c->signals->fastest[c->run.segment];
+    for (int i = 0; i < K; i++)
+        same &= c->rated[i] == c->run.mode[i];
+    if (same) {
+        *fastest = fmax(*fastest, c->own);
+        return BG_OK;
+    }
+    int status = bg_located_jacobian(c, t, s, c->squares[0]);
+    if (status == BG_OK)
+        status = largest_rate(c, fastest);
+    c->known = BG_AFFINE && status == BG_OK;
+    memcpy(c->rated, c->run.mode, K * sizeof *c->rated);
+    return status;
 }
 
-/* At the present instant, a jump beside it left aside: from the smaller slope of both sides. */
+/* At the present instant, a jump beside it left aside: from the smaller slope of both sides, which
+ * are one where rates are affine in a mode. */
 int bg_located_calm(bg_located *c, double *fastest)
 {
     double *const ahead = c->squares[0], *const behind = c->squares[1];
+    if (BG_AFFINE)
+        return bg_located_fastest(c, c->run.at.t, c->s, fastest);
     int status = slopes(c, c->run.at.t, c->s, 1.0, ahead);
     if (status == BG_OK)
         status = slopes(c, c->run.at.t, c->s, -1.0, behind);

@@ -51,6 +51,9 @@ typedef struct {
     bg_peaks peaks;
     bg_view view;
     double s[BG_SIZE], squares[2][BG_SIZE * BG_SIZE];
+    int list[BG_LIST(BG_SIZE, BG_SIZE)];
+    double own;                /* the largest rate of an affine model in the mode `rated`, if .. */
+    int known, rated[BG_ROOM(BG_FRICTION)]; /* .. it is known */
     int next;
     bg_watch watch;
     bg_progress progress;

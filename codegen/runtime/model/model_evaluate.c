@@ -9,6 +9,13 @@ void bg_give(bg_model *m, int count, const int *columns, const double *values)
 {
     for (int k = 0; k < count; k++)
         m->now.u[columns[k]] += values[k];
+    if (BG_LISTED(ROWS, M) && m->numbers.D_list[0]) {
+        memset(m->work.more, 0, sizeof m->work.more);
+        for (int k = 0; k < count; k++)
+            m->work.more[columns[k]] += values[k];
+        bg_multiply_listed(ROWS, M, m->numbers.D, m->numbers.D_list, m->work.more, m->now.y);
+        return;
+    }
     for (int i = 0; i < ROWS; i++) {
         double sum = 0.0;
         for (int k = 0; k < count; k++)
@@ -50,9 +57,9 @@ static int friction_residual(bg_model *m, const bg_loop *loop, double *left)
         left[i] = m->now.u[bg_friction_inputs[i]] - against[i];
     if (held) {
         ruled = held->count - held->share_count;
-        bg_multiply_add(ruled, N, held->X, m->now.x, rule);
-        bg_multiply_add(ruled, M, held->U, m->now.u, rule);
-        bg_multiply_add(ruled, M, held->V, m->du, rule);
+        bg_multiply_listed(ruled, N, held->X, held->X_list, m->now.x, rule);
+        bg_multiply_listed(ruled, M, held->U, held->U_list, m->now.u, rule);
+        bg_multiply_listed(ruled, M, held->V, held->V_list, m->du, rule);
         for (int r = 0; r < held->share_count; r++)
             for (int c = 0; c < held->count; c++)
                 rule[ruled + r] += held->share[r * held->count + c]
@@ -179,10 +186,10 @@ static int begin(bg_model *m, double t, const double *s, const double *w, const 
     } else if (BG_DRIVEN) {
         bg_multiply_add(N, M, m->numbers.R, now->u, now->x);
     }
-    bg_multiply_add(ROWS, N, m->numbers.F, now->x, now->y);
-    bg_multiply_add(ROWS, M, m->numbers.D, now->u, now->y);
+    bg_multiply_listed(ROWS, N, m->numbers.F, m->numbers.F_list, now->x, now->y);
+    bg_multiply_listed(ROWS, M, m->numbers.D, m->numbers.D_list, now->u, now->y);
     if (BG_RATED)
-        bg_multiply_add(ROWS, M, m->numbers.G, m->du, now->y);
+        bg_multiply_listed(ROWS, M, m->numbers.G, m->numbers.G_list, m->du, now->y);
     return status;
 }
 
@@ -191,8 +198,8 @@ static int finish(bg_model *m, const bg_hold *held, bg_snapshot *shot)
 {
     const bg_values *const now = &m->now;
     memset(shot->rate, 0, sizeof shot->rate);
-    bg_multiply_add(N, N, m->numbers.P, now->x, shot->rate);
-    bg_multiply_add(N, M, m->numbers.Q, now->u, shot->rate);
+    bg_multiply_listed(N, N, m->numbers.P, m->numbers.P_list, now->x, shot->rate);
+    bg_multiply_listed(N, M, m->numbers.Q, m->numbers.Q_list, now->u, shot->rate);
     if (BG_VARYING)
         bg_multiply_add(N, M, m->numbers.R, m->du, shot->rate);
     for (int i = 0; i < OWN; i++)

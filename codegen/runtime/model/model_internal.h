@@ -70,6 +70,15 @@ int bg_factor(int n, double *a, int *pivots);
 void bg_solve(int n, const double *a, const int *pivots, int columns, double *right);
 int bg_inverse(int n, double *a, int *pivots, double *inverse);
 void bg_multiply_add(int rows, int columns, const double *a, const double *x, double *y);
+
+/* The same by a list of the entries that are not zero, if there is one; and making it, where
+ * `room` is for so many numbers. */
+void bg_multiply_listed(int rows, int columns, const double *a, const int *list, const double *x,
+                        double *y);
+void bg_list_entries(int rows, int columns, const double *a, int room, int *list);
+#define BG_LIST_ENTRIES(rows, columns, from, name) \
+    bg_list_entries(rows, columns, (from)->name, (int)(sizeof (from)->name##_list / sizeof(int)), \
+                    (from)->name##_list)
 int bg_finite(int count, const double *values);
 double bg_largest(int count, const double *values);
 double *bg_put(double *to, int count, const double *from);

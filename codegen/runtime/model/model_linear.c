@@ -102,6 +102,39 @@ void bg_multiply_add(int rows, int columns, const double *a, const double *x, do
     }
 }
 
+void bg_list_entries(int rows, int columns, const double *a, int room, int *list)
+{
+    int end = rows + 1;
+    for (int i = 0; i < rows && room > 1; i++) {
+        list[i] = end;
+        for (int j = 0; j < columns; j++)
+            if (a[i * columns + j] != 0.0) {
+                if (end == room) {
+                    list[0] = 0;
+                    return;
+                }
+                list[end++] = j;
+            }
+    }
+    list[room > 1 ? rows : 0] = room > 1 ? end : 0;
+}
+
+void bg_multiply_listed(int rows, int columns, const double *a, const int *list, const double *x,
+                        double *y)
+{
+    if (!list[0]) {
+        bg_multiply_add(rows, columns, a, x, y);
+        return;
+    }
+    for (int i = 0; i < rows; i++) {
+        const double *const row = a + i * columns;
+        double sum = 0.0;
+        for (int k = list[i]; k < list[i + 1]; k++)
+            sum += row[list[k]] * x[list[k]];
+        y[i] += sum;
+    }
+}
+
 int bg_finite(int count, const double *values)
 {
     for (int i = 0; i < count; i++)
@@ -114,7 +147,7 @@ double bg_largest(int count, const double *values)
 {
     double most = 0.0;
     for (int i = 0; i < count; i++)
-        most = fmax(most, fabs(values[i]));
+        most = fabs(values[i]) > most ? fabs(values[i]) : most; /* what is no number is not */
     return most;
 }
 

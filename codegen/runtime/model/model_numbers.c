@@ -82,6 +82,16 @@ static void note_slips(bg_numbers *a)
     }
 }
 
+/* Of matrices that stay as they are; those that change would be listed at every instant. */
+static void list_matrices(bg_numbers *a)
+{
+    BG_LIST_ENTRIES(BG_STATES, BG_STATES, a, P);
+    BG_LIST_ENTRIES(BG_STATES, BG_INPUTS, a, Q);
+    BG_LIST_ENTRIES(BG_READINGS, BG_STATES, a, F);
+    BG_LIST_ENTRIES(BG_READINGS, BG_INPUTS, a, D);
+    BG_LIST_ENTRIES(BG_READINGS, BG_INPUTS, a, G);
+}
+
 /* All matrices at `m->now`. */
 int bg_assemble(bg_model *m)
 {
@@ -107,5 +117,7 @@ int bg_assemble(bg_model *m)
     if (bg_layout[BG_E].count > 0)
         bg_solve_storages(a, BG_INPUTS, a->R);
     show_rates(a, shown);
+    if (!BG_VARYING)
+        list_matrices(a);
     return BG_OK;
 }

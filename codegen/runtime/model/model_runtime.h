@@ -15,6 +15,13 @@
 #define BG_ROOM(n) ((n) > 0 ? (n) : 1)
 #define BG_TABLE(rows, columns) (BG_ROOM(rows) * BG_ROOM(columns))
 
+/* Room to list which entries of a table are not zero: of a large one, up to a tenth of them, the sizes
+ * from which numpy looks at that as well (numbers/thin.py). Begins
+ * with where the columns of each row begin in the list; 0 in front where there is none. */
+#define BG_LISTED(rows, columns) (BG_TABLE(rows, columns) >= 4096)
+#define BG_LIST(rows, columns) \
+    (BG_LISTED(rows, columns) ? (rows) + 1 + BG_TABLE(rows, columns) / 10 : 1)
+
 enum {
     /* The integrated vector s: states less what driven dependent storages add, then law states. */
     BG_SIZE = BG_ROOM(BG_STATES + BG_LAW_STATES),
@@ -54,6 +61,9 @@ typedef struct {
     double slip_F[BG_TABLE(BG_FRICTION, BG_STATES)];
     double slip_D[BG_TABLE(BG_FRICTION, BG_FRICTION + BG_COUPLED)];
     int pivots[BG_ROOM(BG_STATES)];
+    int P_list[BG_LIST(BG_STATES, BG_STATES)], Q_list[BG_LIST(BG_STATES, BG_INPUTS)];
+    int F_list[BG_LIST(BG_READINGS, BG_STATES)], D_list[BG_LIST(BG_READINGS, BG_INPUTS)];
+    int G_list[BG_LIST(BG_READINGS, BG_INPUTS)];
 } bg_numbers;
 
 /* Ranks of one set of sticking ports, exact: `direct` rows of D, over the set and the coupled laws
@@ -84,12 +94,17 @@ typedef struct {
     double fixed[BG_TABLE(BG_FRICTION, BG_INPUTS)];
     double take_away[BG_TABLE(BG_STATES, BG_FRICTION)];
     double mix[BG_TABLE(BG_FRICTION, BG_FRICTION)]; /* what those slips are of the ports' own */
+    int X_list[BG_LIST(BG_FRICTION, BG_STATES)], U_list[BG_LIST(BG_FRICTION, BG_INPUTS)];
+    int V_list[BG_LIST(BG_FRICTION, BG_INPUTS)], fixed_list[BG_LIST(BG_FRICTION, BG_INPUTS)];
+    int inverse_list[BG_LIST(BG_FRICTION, BG_FRICTION)];
+    int slip_x_list[BG_LIST(BG_FRICTION, BG_STATES)];
+    int take_away_list[BG_LIST(BG_STATES, BG_FRICTION)];
 } bg_hold;
 
 /* Room to work in, so that nothing large lies on the stack. */
 typedef struct {
     double entries[BG_ROOM(BG_ENTRIES)], moved[BG_TABLE(BG_STATES, BG_FRICTION)];
-    double law[BG_ROOM(BG_LARGEST)];
+    double law[BG_ROOM(BG_LARGEST)], more[BG_ROOM(BG_INPUTS)];
     double u[BG_ROOM(BG_INPUTS)], y[BG_ROOM(BG_READINGS)];
     double stage[4][BG_SIZE], point[BG_SIZE];
     double weight[BG_SIZE], reach[BG_SIZE], image[BG_SIZE], next[BG_SIZE];

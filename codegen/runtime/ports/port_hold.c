@@ -109,6 +109,19 @@ static int check_slopes(const bg_hold *held)
     return BG_OK;
 }
 
+/* Where matrices stay as they are. */
+static void list_rules(bg_hold *held)
+{
+    const int ruled = held->ranks.direct + held->ranks.kept;
+    BG_LIST_ENTRIES(ruled, N, held, X);
+    BG_LIST_ENTRIES(ruled, M, held, U);
+    BG_LIST_ENTRIES(ruled, M, held, V);
+    BG_LIST_ENTRIES(held->kept, M, held, fixed);
+    BG_LIST_ENTRIES(held->count, held->count, held, inverse);
+    BG_LIST_ENTRIES(held->kept, N, held, slip_x);
+    BG_LIST_ENTRIES(N, held->kept, held, take_away);
+}
+
 static int build(bg_model *m, bg_hold *held)
 {
     const bg_structure *const s = &held->ranks;
@@ -124,6 +137,8 @@ static int build(bg_model *m, bg_hold *held)
     /* Where laws answer as well, all are searched for together. */
     if ((s->moved == 0 && !invert_system(held)) || !find_take_away(m, held))
         return BG_NO_HOLD;
+    if (!BG_VARYING)
+        list_rules(held);
     return check_slopes(held);
 }
 
@@ -171,15 +186,15 @@ int bg_holding_efforts(bg_model *m, const bg_hold *held, double *efforts)
 {
     double right[PORTS] = {0}, caps[PORTS];
     const int ruled = held->count - held->share_count;
-    bg_multiply_add(ruled, N, held->X, m->now.x, right);
-    bg_multiply_add(ruled, M, held->U, m->now.u, right);
-    bg_multiply_add(ruled, M, held->V, m->du, right);
+    bg_multiply_listed(ruled, N, held->X, held->X_list, m->now.x, right);
+    bg_multiply_listed(ruled, M, held->U, held->U_list, m->now.u, right);
+    bg_multiply_listed(ruled, M, held->V, held->V_list, m->du, right);
     for (int r = 0; r < held->count; r++) {
         right[r] = -right[r];
         efforts[r] = 0.0;
         caps[r] = m->caps[held->ports[r]];
     }
-    bg_multiply_add(held->count, held->count, held->inverse, right, efforts);
+    bg_multiply_listed(held->count, held->count, held->inverse, held->inverse_list, right, efforts);
     if (!bg_finite(held->count, efforts))
         return BG_NOT_FINITE;
     return held->share_count == 0 || bg_fair_share(held, caps, efforts) ? BG_OK : BG_NO_HOLD;
@@ -209,13 +224,13 @@ void bg_effort_terms(const bg_hold *held, const double *x, const double *u, cons
 void bg_correct(const bg_hold *held, double *rate, const double *du, const double *y)
 {
     double drift[PORTS] = {0};
-    bg_multiply_add(held->kept, N, held->slip_x, rate, drift);
-    bg_multiply_add(held->kept, M, held->fixed, du, drift);
+    bg_multiply_listed(held->kept, N, held->slip_x, held->slip_x_list, rate, drift);
+    bg_multiply_listed(held->kept, M, held->fixed, held->fixed_list, du, drift);
     for (int k = 0; k < held->kept; k++)
         for (int c = 0; c < held->count; c++)
             if (bg_moving[held->ports[c]] >= 0)
                 drift[k] += held->mix[k * held->count + c] * y[bg_moving[held->ports[c]]];
-    bg_multiply_add(N, held->kept, held->take_away, drift, rate);
+    bg_multiply_listed(N, held->kept, held->take_away, held->take_away_list, drift, rate);
 }
 
 void bg_held_slips(const bg_hold *held, const bg_snapshot *shot, double *slips)
