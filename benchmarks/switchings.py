@@ -145,7 +145,7 @@ def pulses(folder: Path) -> None:
         print(f"{name:<40}{1e3 * seconds:>12.5g}{seconds / medians[base]:>10.3g}")
 
 
-def chain(count: int) -> Simulator:
+def chain(count: int, backend: str = "numpy") -> Simulator:
     """Masses in a row, springs between, each rubbing on the ground."""
     g = nx.DiGraph()
     g.add_nodes_from([bg.Se("force", "F")])
@@ -157,23 +157,28 @@ def chain(count: int) -> Simulator:
         g.add_edges_from([(f"j{i}", f"z{i}"), (f"z{i}", f"k{i}"), (f"z{i}", f"j{i + 1}")])
     g.add_edge("force", "j0")
     friction = {f"b{i}": bg.DryFriction("N") for i in range(count)}
-    return simulator(bg.derive(g), {"m": 2.0, "k": 50.0, "N": 1.0}, friction)
+    return simulator(bg.derive(g), {"m": 2.0, "k": 50.0, "N": 1.0}, friction, backend=backend)
 
 
 def chains() -> None:
     """Events per second of chains whose masses begin at speeds of their own."""
-    print(f"\n{'masses with friction':<24}{'events':>8}{'of them':>34}{'per second':>12}")
-    for count, end in ((10, 8.0), (100, 0.6)):
-        ready = chain(count)
-        start = {f"v{i}": 0.4 * float(np.sin(1 + 2.7 * i * i)) for i in range(count)}
-        asked = {"F": Sine(60, 1)}
-        ready.run([0.0, 1e-3], start, asked)
-        begin = time.process_time()
-        events = ready.run(np.linspace(0, end, 31), start, asked).events
-        seconds = time.process_time() - begin
-        kinds = [event.kind for event in events]
-        told = ", ".join(f"{kinds.count(kind)} {kind}" for kind in ("stick", "slip", "cross"))
-        print(f"{count:<24}{len(events):>8}{told:>34}{len(events) / seconds:>12.4g}")
+    print(f"\n{'masses with friction':<24}{'events':>8}{'of them':>34}{'per second':>12}{'ten':>8}")
+    for backend in ("numpy", "c"):
+        rates: list[float] = []
+        for count, end in ((10, 8.0), (100, 0.6)):
+            ready, asked = chain(count, backend), {"F": Sine(60, 1)}
+            start = {f"v{i}": 0.4 * float(np.sin(1 + 2.7 * i * i)) for i in range(count)}
+            for method in ("auto", "DOP853"):  # what either needs is compiled
+                ready.run([0.0, 1e-3], start, asked, method)
+            begin = time.process_time()
+            events = ready.run(np.linspace(0, end, 31), start, asked).events
+            rates.append(len(events) / (time.process_time() - begin))
+            kinds = [event.kind for event in events]
+            told = ", ".join(f"{kinds.count(kind)} {kind}" for kind in ("stick", "slip", "cross"))
+            of_ten = rates[0] / rates[-1]
+            print(
+                f"{f'{count}, {backend}':<24}{len(events):>8}{told:>34}{rates[-1]:>12.4g}{of_ten:>8.3g}"
+            )
 
 
 if __name__ == "__main__":

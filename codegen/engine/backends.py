@@ -46,7 +46,9 @@ def in_c(
     method, first = asked.settings.method, asked.begun.mode
     stopped = Stopped(f"C has no method {method!r}", limit=method != EXACT)
     if engine is not None and method in ("auto", EXACT):
-        found = engine.run(asked.times, asked.begun.s, asked.signals, first, asked.events)
+        found = engine.run(
+            asked.times, asked.begun.s, asked.signals, first, asked.events, patient=method == EXACT
+        )
         if found.track is not None:
             return _recorded(model, asked, found.track, "c")
         stopped = found.stopped

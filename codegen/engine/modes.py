@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 
 from bondgraph.errors import SimulationError
+from codegen.engine.filling import Filling
+from codegen.engine.kin import Kin
 from codegen.engine.motions import Motion, Motions
 from codegen.engine.places import FEWEST, Places
 from codegen.engine.sizes import DIGITS, Engine, view
@@ -13,10 +15,8 @@ from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.modes.keeping import impacts_of, keeping
 from codegen.numbers.arrays import Array
-from codegen.numbers.thin import thin
 from codegen.ports.refusals import SlopeNeededError
 from codegen.program.affine import AffineMap
-from codegen.program.layout import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, SHOT, STATES
 
 
 class Tables:
@@ -28,7 +28,8 @@ class Tables:
         self.places = Places(engine, self.record)
         self._motions, self._spectral = Motions(model.size), False
         moved = _slips_moved(model)
-        self._pushing = [thin(part) for part in moved]
+        self._fill_by = Filling(engine, model, moved)
+        self._kin = Kin(self.places, model)
         self.failed: BaseException | None = None
         with suppress(MemoryError):  # on machines that let no code be made, runs begin again
             self._answer = engine.ffi.callback("int(void *, const int *)", self._asked)
@@ -61,6 +62,21 @@ class Tables:
 
     def supply(self, mode: Mode) -> None:
         """Work out a mode."""
+        kin = self._kin.of(mode)
+        made = self._new(mode) if kin is None else self.engine.copy(kin)
+        if made.supported and self._kin.are_alike:
+            self._turn(made, mode)
+        self.places.put(mode, made)
+
+    def _turn(self, made: Any, mode: Mode) -> None:
+        """Write what friction's way of slipping moves: the same digits, whether from kin or not."""
+        model, columns = self.model, self._kin.columns
+        affine = model.maps.turned(mode, len(model.program.external), columns)
+        self._fill_by.shot(made, affine, columns)
+        if 0 in mode:
+            self._fill_by.left(made, model.hold(mode, model.constant), affine, columns)
+
+    def _new(self, mode: Mode) -> Any:
         made, inputs = self.engine.new("ex_mode"), len(self.model.program.external)
         try:
             affine = self.model.affine_map(mode, inputs)
@@ -74,9 +90,9 @@ class Tables:
             # What rules the slips does not depend on what holds them.
             slipping = self.model.affine_map(tuple(sign or 1 for sign in mode), inputs)
             if slipping is not None:
-                self._fill_shot(made, slipping)
+                self._fill_by.shot(made, slipping)
         self._join(made, mode)
-        self.places.put(mode, made)
+        return made
 
     def sharpen(self) -> None:
         """Tell rates that a run wants: without friction with 32 digits, else of all modes from now on."""
@@ -90,9 +106,8 @@ class Tables:
             return
         ((_, made),), rates = self.places.made(), self.model.sharp_rates
         if rates is not None:
-            size = self.engine.sizes.numbers
             for field, part in ((made.rate, rates.hi), (made.rest, rates.lo)):
-                view(self.engine, field, size["L"], size["N"])[:] = self._wide(part).T
+                self._fill_by.rows(field, part)
             made.sharp = 1
 
     def _tell_rates(self, made: Any, motion: Motion) -> None:
@@ -147,17 +162,9 @@ class Tables:
             for i in {*ports, *(i for i in held if made.joined[i] in before)}:
                 made.joined[i] = k
 
-    def _fill_shot(self, made: Any, affine: AffineMap) -> None:
-        parts, size = self._parts(affine), self.engine.sizes.numbers
-        at, lengths = 0, (size["X"], size["U"], *[size["PORTS"]] * 4, size["N"])
-        shot = view(self.engine, made.shot, size["L"], size["SHOT"])
-        for rows, length in zip(parts, lengths, strict=True):
-            shot[:, at : at + len(rows)] = self._wide(rows).T
-            at += length
-
     def _fill(self, made: Any, mode: Mode, affine: AffineMap) -> None:
         model, size = self.model, self.engine.sizes.numbers
-        self._fill_shot(made, affine)
+        self._fill_by.shot(made, affine)
         self._rule(made, mode)
         made.supported = 1
         motion = self._motions.of(affine)
@@ -168,19 +175,15 @@ class Tables:
             self._fill_switches(made, mode, affine)
         if 0 in mode:
             held = model.hold(mode, model.constant)
-            rest = held.slip_x @ affine.rows(STATES) + held.slip_u @ affine.rows(INPUTS)
-            made.held = len(rest)
-            view(self.engine, made.left, size["L"], -1)[:, : len(rest)] = self._wide(rest).T
+            self._fill_by.left(made, held, affine)
             away = view(self.engine, made.take_away, -1, size["N"])
-            away[: len(rest), : len(held.take_away)] = held.take_away.T
-            view(self.engine, made.mix, size["PORTS"], -1)[: len(rest), held.ports] = held.mix
+            away[: made.held, : len(held.take_away)] = held.take_away.T
+            view(self.engine, made.mix, size["PORTS"], -1)[: made.held, held.ports] = held.mix
 
     def _fill_switches(self, made: Any, mode: Mode, affine: AffineMap) -> None:
         """What keeps switches; where friction slips forwards also what they do as they come to hold."""
         model, size = self.model, self.engine.sizes.numbers
-        stay = view(self.engine, made.stay, size["L"], -1)
-        rows = keeping(model, mode, affine)
-        stay[:, : len(rows)] = self._wide(rows).T
+        self._fill_by.rows(made.stay, keeping(model, mode, affine))
         if any(sign != 1 and s is None for sign, s in zip(mode, model.switching, strict=True)):
             return
         found = impacts_of(model, mode)
@@ -189,27 +192,6 @@ class Tables:
         for name, part in (("jump", found.jump), ("shock", found.shock)):
             table = view(self.engine, getattr(made, name), size["PORTS"], -1)
             table[: part.shape[0], : part.shape[1]] = part
-
-    def _parts(self, affine: AffineMap) -> list[Array]:
-        """The rows of each part of the engine's snapshot, in their order."""
-        model = self.model
-        x, u, du = (affine.rows(part) for part in (STATES, INPUTS, RATES_OF_INPUTS))
-        pushes = sum(by @ part for by, part in zip(self._pushing, (x, u, du), strict=True))
-        efforts, slips = u[model.friction_inputs], affine.rows(READINGS)[model.friction_readings]
-        found = {
-            "x": x, "u": u, "slip": slips, "effort": efforts, "cap": affine.rows(CAPS), "push": pushes,
-            "rate": affine.rows(RATE),
-        }  # fmt: skip
-        return [found[part] for part in SHOT]
-
-    def _wide(self, rows: Array) -> Array:
-        """Rows over (s, w, w', 1), with columns for an input where there is none."""
-        n, w, W = self.model.size, len(self.model.program.external), self.engine.sizes.W
-        wide = np.zeros((len(rows), n + 2 * W + 1))
-        wide[:, : n + w] = rows[:, : n + w]
-        wide[:, n + W : n + W + w] = rows[:, n + w : n + 2 * w]
-        wide[:, -1] = rows[:, -1]
-        return wide
 
 
 def _slips_moved(model: ClosedModel) -> tuple[Array, Array, Array]:

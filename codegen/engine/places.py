@@ -10,6 +10,9 @@ from codegen.model.snapshot import Mode
 MOST_ROOM = 1 << 29
 """Bytes that the modes of a model may take at a time."""
 
+FEW_ROOM = 1 << 27
+"""Bytes of those of one run, beyond which steps to located events are quicker than working out more."""
+
 FEWEST = 16
 """Modes that there must be room for: what C has in hand is among those it asked for last."""
 
@@ -23,7 +26,9 @@ class Places:
 
     def __init__(self, engine: Engine, record: Any, most: int = MOST_ROOM) -> None:
         self.known: list[Mode] = []
-        self.most: int = most // engine.ffi.sizeof("ex_mode")
+        size = engine.ffi.sizeof("ex_mode")
+        self.most: int = most // size
+        self.few: int = max(FEW_ROOM // size, FEWEST)
         self._engine, self._record = engine, record
         self._at: dict[Mode, int] = {}
         self._made: dict[int, Any] = {}
@@ -41,6 +46,11 @@ class Places:
     def made(self) -> list[tuple[Mode, Any]]:
         """The modes that are kept, with their records."""
         return [(self.known[at], made) for at, made in self._made.items()]
+
+    def record_of(self, mode: Mode) -> Any:
+        """The record of a mode; None where it is not kept."""
+        at = self._at.get(mode)
+        return None if at is None else self._made.get(at)
 
     def put(self, mode: Mode, made: Any) -> None:
         """Tell C of a mode that it knows not, or no more."""

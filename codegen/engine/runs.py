@@ -46,10 +46,13 @@ MEANINGS = {
     Status.NOT_FINITE: "a number is not finite",
     Status.ENDLESS: "it would take too many steps to look for events in",
     Status.MISSING: "it comes to more friction modes than there is room for",
+    Status.CROWDED: "it comes to so many friction modes that steps are quicker than their tables",
 }
 """What a run of the engine says beside `Status.BLUNT`, which asks for more."""
 
-LIMITS = frozenset({Status.NOT_AFFINE, Status.STIFF, Status.EVENTS, Status.WORK, Status.MISSING})
+LIMITS = frozenset({
+    Status.NOT_AFFINE, Status.STIFF, Status.EVENTS, Status.WORK, Status.MISSING, Status.CROWDED,
+})  # fmt: skip
 """What is no fault of a model: C alone cannot go on."""
 
 
@@ -165,13 +168,15 @@ class CRuns:
 
     def run(
         self, times: Array, start: Array, signals: Sequence[Signal], first: Mode = (),
-        keeping: bool = True,
+        keeping: bool = True, patient: bool = True,
     ) -> Outcome:  # fmt: skip
         """Run and record; the status tells why there is no track, if there is none.
 
         ``first``: the mode before the run, all let go unless told. ``keeping``: whether events are kept.
+        ``patient``: whether to go on although tables of modes take longer than other ways.
         """
         prepared = self.prepare(times, start, signals, first, keeping)
+        prepared.tables.record.most = 0 if patient else prepared.tables.places.few
         status = prepared.call()
         # A run like this one need not begin again for want of room.
         self._capacity = min(prepared.capacity, MOST_AT_FIRST)

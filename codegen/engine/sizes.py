@@ -58,9 +58,11 @@ class Sizes:
         most = MOST_MODES if self.K <= FEW_PORTS else FEW_MODES
         row = -(-(self.N + self.G + 4 * self.K) // 4) * 4
         shot = -(-(self.X + self.U + 4 * ports + self.N) // 4) * 4
+        length = self.N + 2 * self.W + 1
         return {
             **vars(self), "MODES": min(3**self.K, most), "PORTS": ports, "ROW": row,
-            "SHOT": shot, "WORDS": -(-ports // DIGITS), "L": self.N + 2 * self.W + 1,
+            "SHOT": shot, "WORDS": -(-ports // DIGITS), "L": length,
+            "SHARP": 1 if self.K else length,
         }  # fmt: skip
 
 
@@ -89,11 +91,19 @@ class Engine:
         """A zeroed record, alive as long as it is referred to."""
         return self.ffi.new(f"{what} *")
 
+    def copy(self, record: Any) -> Any:
+        """A record like one that there is."""
+        room = self.ffi.new_allocator(should_clear_after_alloc=False)
+        made = room(self.ffi.typeof(record))
+        self.ffi.memmove(made, record, self.ffi.sizeof(record[0]))
+        return made
+
     def context(self) -> tuple[Array, Any]:
         """Room for runs, one at a time, and where it is."""
         room = self.ffi.new("unsigned long[5]")
         self.library.ex_sizes(room)
         context = aligned(room[0] // 8 + 1)
+        context[:] = 0.0
         pointer = self.ffi.cast("ex_context *", context.ctypes.data)
         self.library.ex_forget(pointer)
         return context, pointer

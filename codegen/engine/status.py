@@ -30,4 +30,5 @@ class Status(IntEnum):
     WORK = 21
     BLUNT = 22
     ENDLESS = 23
-    REFUSED = 24
+    CROWDED = 24
+    REFUSED = 25

@@ -1,7 +1,7 @@
 """Affine maps of friction modes, from that of one mode: only what ports give differs, and what it moves."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from codegen.numbers.arrays import Array
 from codegen.numbers.thin import product, thin
 from codegen.program.affine import AffineMap
 from codegen.program.layout import INPUTS, RATE, RATES_OF_INPUTS, READINGS, STATES
+from codegen.standalone.arrays import Places
 from codegen.standalone.holding import Hold
 from codegen.standalone.matrices import Numbers
 
@@ -27,6 +28,11 @@ class LetGo:
     rub: Array
     shown: Any
     pushed: Any
+
+    def at(self, columns: Places) -> "LetGo":
+        """Some columns of the same."""
+        base = AffineMap(self.base.sizes, self.base.matrix[:, columns], RATE)
+        return replace(self, base=base, rub=self.rub[:, columns])
 
 
 def let_go(forwards: AffineMap, numbers: Numbers, ports: Sequence[int]) -> LetGo:

@@ -14,25 +14,24 @@ import numpy as np
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece, are_same
-from codegen.model.affine_modes import LetGo, in_mode, let_go
 from codegen.model.commands import Command, commands
 from codegen.model.instant import Binding
 from codegen.model.moves import Moves, moves
 from codegen.model.numbers import assembled, check_values, exact_parameters, numbers
 from codegen.model.sharp import NotAffineError, sharp_rates
 from codegen.model.snapshot import Mode, Run, Snapshot
+from codegen.modes.maps import AffineMaps
 from codegen.numbers.arrays import Array
-from codegen.numbers.latest import Latest, room_for
+from codegen.numbers.latest import Latest
 from codegen.numbers.pairs import Pair, pair
 from codegen.ports.forming import formed, rubbing
 from codegen.ports.refusals import refusals
 from codegen.ports.slips import slip_rows
-from codegen.program.affine import AffineMap, check_finite, probed
+from codegen.program.affine import AffineMap, probed
 from codegen.program.driven import opposed_ports, timed_ports
 from codegen.program.gains import check_gains
 from codegen.program.layout import (
     CAPS,
-    INPUTS,
     RATE,
     READINGS,
     widths,
@@ -88,12 +87,10 @@ class ClosedModel:
         self.slips = slip_rows(program, self.equations, exact)
         self._form = formed(program, binding, self.numbers)
         self._friction = rubbing(program, binding, self._form, self.slips)
-        rows = sum(widths(program))
-        self._maps = Latest[Mode, AffineMap | None](room_for(rows * self.size))
+        #: Of affine models the maps of modes in which no load is shared.
+        self.maps = AffineMaps(program, self._form, self._friction, self._constant)
         self._guard_maps = Latest[Mode, Array]()
-        self._loose_maps = Latest[Mode, AffineMap | None](room_for(rows * self.size))
         self._mixing = Latest[Mode, bool]()
-        self._bases: dict[int, LetGo] = {}
         self._moves: tuple[Numbers, Moves] | None = None
         self._run: Run | None = None
         #: The latest time, pieces, external inputs and rates: an instant is looked at many times.
@@ -262,20 +259,11 @@ class ClosedModel:
 
     def affine_map(self, mode: Mode, inputs: int) -> AffineMap | None:
         """An affine mode's matrix; None for other models, and where redundant ports share a load."""
-        if not self.program.affine:
-            return None
-
-        def made() -> AffineMap | None:
-            redundant = 0 in mode and self.hold(mode, self.constant).shares
-            return None if redundant else self._affine_map(mode, inputs)
-
-        return self._maps.of(mode, made)
+        return self.maps.of(mode, inputs) if self.program.affine else None
 
     def let_go_map(self, mode: Mode, inputs: int) -> AffineMap | None:
         """The same with all that a mode holds let go, friction slipping forwards there."""
-        return self._loose_maps.of(
-            mode, lambda: self.affine_map(tuple(sign or 1 for sign in mode), inputs)
-        )
+        return self.maps.let_go(mode, inputs) if self.program.affine else None
 
     def stops(self, mode: Mode) -> bool:
         """Whether what a mode holds stops combinations of slips that states have."""
@@ -293,23 +281,3 @@ class ClosedModel:
             return sharp_rates(self.program, self.parameters)
         except NotAffineError:
             return pair(affine.rows(RATE))
-
-    def _affine_map(self, mode: Mode, inputs: int) -> AffineMap:
-        if inputs not in self._bases:
-            self._bases[inputs] = let_go(self._probed(inputs), self.constant, self.friction_inputs)
-        hold = self.hold(mode, self.constant) if 0 in mode else None
-        return in_mode(self._bases[inputs], mode, hold, self.program.law_rates)
-
-    def _probed(self, inputs: int) -> AffineMap:
-        """The map where all ports slip forwards; what laws give does not depend on friction."""
-
-        def point(v: Array) -> list[Array]:
-            s, w, dw = np.split(v, [self.size, self.size + inputs])
-            now = self.evaluate(
-                0.0, s, w, dw, tuple(1 for _ in self.friction_inputs), checked=False
-            )
-            return [now.x, now.z, now.u, now.du, now.y, now.rate, now.caps]
-
-        affine = probed(point, self.size + 2 * inputs, RATE)
-        check_finite(affine.rows(INPUTS), affine.matrix, self.program.inputs)
-        return affine

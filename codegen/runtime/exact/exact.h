@@ -23,6 +23,7 @@ enum {
     EX_TRIGGERS = 2 * EX_PORTS,
     EX_ROW = (EX_Z + 2 * EX_T + 3) / 4 * 4, /* a sample: state, triggers, a third of their change */
     EX_L = EX_N + 2 * EX_W + 1, /* what affine maps act on: s, w, their rates, 1 */
+    EX_SHARP = EX_K > 0 ? 1 : EX_L,
     /* where the rows of a snapshot begin */
     EX_AT_X = 0,
     EX_AT_U = EX_AT_X + EX_X,
@@ -65,15 +66,15 @@ typedef struct {
     double jump[EX_PORTS][EX_N], shock[EX_PORTS][EX_PORTS];
     int rates;                     /* how many of `spectrum` are known; below 0: none was asked for */
     double spectrum[EX_N][2];      /* rates of s by itself: magnitudes, and how fast they decay */
-    int sharp;                     /* whether `rate` and `rest` are known .. */
-    double rate[EX_L][EX_N], rest[EX_L][EX_N]; /* .. the rates of s as pairs, without friction */
+    int sharp;                     /* without ports: whether `rate` and `rest` are known .. */
+    double rate[EX_SHARP][EX_N], rest[EX_SHARP][EX_N]; /* .. the rates of s as pairs */
 } ex_mode;
 
 /* The `count` modes that have been worked out; `supply`: works out one more, or is NULL where the
- * caller does; `used`: when each was asked for last, or NULL. Magnitudes from which rounding is told,
- * rows of the ports by columns of states and inputs. */
+ * caller does; `used`: when each was asked for last, or NULL; `most`: that a run may come to, 0: any.
+ * Magnitudes from which rounding is told, rows of the ports by columns of states and inputs. */
 typedef struct {
-    int count;
+    int count, most;
     const ex_key *keys;
     const ex_mode *const *modes;
     unsigned long long *used;

@@ -165,6 +165,17 @@ static int step_on(ex_context *c, ex_place *p, const ex_recorder *to)
     return sample ? to->record(to->self, c, p) : BG_OK;
 }
 
+/* Whether leaps in an entry are worth their tables; told anew in each run, which so is the same
+ * whatever was before. */
+static int repays(const ex_context *c)
+{
+    ex_entry *const e = c->stretch.entry;
+    if (e->walking != c->runs)
+        e->walked = 0;
+    e->walking = c->runs;
+    return e->walked >= EX_WALKED || ++e->walked > EX_WALKED;
+}
+
 void ex_set_out(ex_context *c, ex_place *p, double stop)
 {
     p->t = c->run.at.t;
@@ -214,7 +225,8 @@ int ex_advance_by(ex_context *c, double stop, const ex_recorder *to)
            && (p.t < stop || p.at < p.last)) {
         double h = 0.0;
         const int count = p.base >= 0 ? alike(c, &p, &h) : 0;
-        if (count >= EX_STRIDE && armed(c, to->row ? to->row : c->task->rows[p.base]))
+        if (count >= EX_STRIDE && armed(c, to->row ? to->row : c->task->rows[p.base])
+            && repays(c))
             status = to->leap(to->self, c, &p, count, h);
         else
             status = step_on(c, &p, to);

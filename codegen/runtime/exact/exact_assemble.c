@@ -136,6 +136,7 @@ void ex_assemble(ex_context *c, ex_entry *e)
         e->cap[2 * i + 1] = ex_single(c, e->mode, i);
     balance(e);
     e->h = e->step = 0.0;
+    e->walked = 0;
     e->segment = -1;
     tell_moves(e);
 }

@@ -13,6 +13,9 @@
 enum {
     EX_RENEWAL = 16,      /* steps for which a bound on fourth derivatives holds */
     EX_VAIN = 63,         /* instants that are not looked at again while none is made again */
+    /* steps by series that an entry is walked through before it has tables for leaps, which cost as
+     * much as EX_Z such steps: an event may end its stretch before */
+    EX_WALKED = EX_K > 0 && EX_Z > 16 ? EX_Z / 4 - 4 : 0,
     EX_KEPT = EX_K > 0 ? 1 : BG_RUNGS,
     EX_F = EX_Z + EX_W + 1 /* state where nothing is watched */
 };
@@ -39,6 +42,8 @@ typedef struct {
     ex_chains chains;
     double norm;                        /* of M, in a sum weighted by `weight` */
     double h, step;                     /* between samples, and its part that is a step */
+    int walked;                         /* steps that might have been leaps, in which run */
+    unsigned walking;
     double weight[EX_Z], M[EX_Z][EX_Z];
     double trigger[EX_Z][EX_TRIGGERS];
     double gather[EX_Z][EX_Z];          /* the integral of the exponential over a step */
@@ -92,7 +97,8 @@ struct ex_context {
     ex_key where;                       /* the latest mode .. */
     int place;                          /* .. its place in the model's, -1 if none has been found, .. */
     int signs[EX_PORTS];                /* .. and what it was asked for as */
-    unsigned long long looks;
+    unsigned long long looks, began;    /* how often any mode was asked for, before this run, too */
+    int met;                            /* modes that this run has come to */
     double s[EX_N];
     int known, known_segment;           /* whether `given` holds, for `known_time` */
     double known_time, slots[EX_G], given[2 * EX_W];

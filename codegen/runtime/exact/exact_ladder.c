@@ -75,6 +75,13 @@ void ex_leap_by(ex_ladder *l, double h, ex_pair *z)
     memcpy(z, next, sizeof next);
 }
 
+/* Rates of s by a column of what maps act on; with ports none are told, nor asked for. */
+static ex_pair rate_by(const ex_mode *mode, int column, int row)
+{
+    const int j = EX_K > 0 ? 0 : column;
+    return (ex_pair){mode->rate[j][row], mode->rest[j][row]};
+}
+
 /* The columns of slots, as in over_slots and generate. */
 static void slots(ex_ladder *l, const ex_mode *mode)
 {
@@ -84,8 +91,7 @@ static void slots(ex_ladder *l, const ex_mode *mode)
         const int by_w = EX_N + j, by_dw = EX_N + EX_W + j;
         const ex_pair re = {chains->rate[c][0], 0.0}, im = {-chains->rate[c][1], 0.0};
         for (int r = 0; r < EX_N; r++) {
-            const ex_pair value = {mode->rate[by_w][r], mode->rest[by_w][r]};
-            const ex_pair slope = {mode->rate[by_dw][r], mode->rest[by_dw][r]};
+            const ex_pair value = rate_by(mode, by_w, r), slope = rate_by(mode, by_dw, r);
             l->M[first][r] = ex_plus(value, ex_times(re, slope));
             if (width == 2)
                 l->M[first + 1][r] = ex_times(im, slope);
@@ -110,10 +116,10 @@ void ex_build(ex_ladder *l, const ex_entry *e)
     memset(l->M, 0, sizeof l->M);
     for (int r = 0; r < EX_N; r++) {
         for (int j = 0; j < EX_N; j++)
-            l->M[j][r] = (ex_pair){mode->rate[j][r], mode->rest[j][r]};
+            l->M[j][r] = rate_by(mode, j, r);
         for (int j = 0; j < EX_W; j++)
-            l->M[EX_Z + j][r] = (ex_pair){mode->rate[EX_N + j][r], mode->rest[EX_N + j][r]};
-        l->M[EX_F - 1][r] = (ex_pair){mode->rate[EX_L - 1][r], mode->rest[EX_L - 1][r]};
+            l->M[EX_Z + j][r] = rate_by(mode, EX_N + j, r);
+        l->M[EX_F - 1][r] = rate_by(mode, EX_L - 1, r);
     }
     slots(l, mode);
     for (int j = EX_N; j < EX_Z; j++)

@@ -45,11 +45,15 @@ int ex_seek(ex_context *c, const int *mode, const ex_mode **found)
         at = known_place(c, &key);
     if (at < 0 || !m->modes[at])
         return BG_MISSING;
+    if (m->used) {
+        c->met += m->used[at] <= c->began;
+        m->used[at] = ++c->looks;
+        if (m->most && c->met > m->most)
+            return BG_CROWDED;
+    }
     c->place = at;
     for (int i = 0; i < EX_K; i++)
         c->signs[i] = mode[i];
-    if (m->used)
-        m->used[at] = ++c->looks;
     *found = m->modes[at];
     return (*found)->supported ? BG_OK : BG_NOT_AFFINE;
 }

@@ -63,7 +63,7 @@ static int couple(void *context, const int *mode, bg_set *touched)
     const ex_model *const m = c->model;
     const ex_mode *found;
     const int status = ex_find(c, mode, &found);
-    if (status == BG_MISSING || found->none)
+    if (!found || found->none)
         return status;
     for (int i = 0; i < EX_K; i++)
         for (int j = 0; j < EX_K; j++)
@@ -148,6 +148,8 @@ static void start_anew(ex_context *c)
     c->stridden = c->decided = c->chosen = c->looked = c->vain = 0;
     c->runs++;
     c->place = -1;
+    c->began = c->looks;
+    c->met = 0;
 }
 
 int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task,

@@ -121,7 +121,8 @@ static int gather(int port, bg_set *touched, bg_set *rest, int ports, int *to)
     return count;
 }
 
-int bg_partition(const bg_choice *choice, int count, int *ports, bg_port_block *found, int *blocks)
+int bg_partition(const bg_choice *choice, const int *mode, int count, int *ports,
+                 bg_port_block *found, int *blocks)
 {
     const bg_sight *const c = choice->sight;
     bg_set touched[BG_MOST_PORTS] = {{{0}}}, rest = choice->open;
@@ -130,8 +131,8 @@ int bg_partition(const bg_choice *choice, int count, int *ports, bg_port_block *
     *blocks = 1;
     if (count <= BG_FEW_OPEN)
         return BG_OK;
-    for (int i = 0; i < c->ports; i++)
-        together[i] = !bg_has(&choice->open, i);
+    for (int i = 0; i < c->ports; i++) /* as they are tried first, but for switches */
+        together[i] = bg_has(&choice->open, i) ? 0 : bg_has(&choice->switches, i) ? 1 : mode[i];
     const int status = c->couple(c->self, together, touched);
     if (status)
         return status >= BG_MISSING ? status : BG_OK;

@@ -164,7 +164,7 @@ static int stick(bg_choice *choice, int count, int *ports, int *found, int *hold
 {
     bg_port_block block[BG_MOST_PORTS];
     bg_set asked = bg_turned(choice->open, &choice->switches);
-    int blocks, status = bg_partition(choice, count, ports, block, &blocks);
+    int blocks, status = bg_partition(choice, found, count, ports, block, &blocks);
     if (status == BG_OK && blocks > 1) {
         status = search_blocks(choice, blocks, block, found, holds);
         if (status || !*holds || bg_is_empty(&choice->switches))

@@ -58,8 +58,9 @@ int bg_next_way(const bg_choice *choice, bg_port_block *block, bg_tried *tried,
                 const bg_finding *found, int *mode);
 
 /* Sorts the ports that may stick by the blocks they are in, and tells how many blocks there are;
- * few ports are one. A status that ends the search. */
-int bg_partition(const bg_choice *choice, int count, int *ports, bg_port_block *found, int *blocks);
+ * few ports are one. `mode`: what is not open, friction slipping. A status that ends the search. */
+int bg_partition(const bg_choice *choice, const int *mode, int count, int *ports,
+                 bg_port_block *found, int *blocks);
 
 /* port_choose.c: the first consistent mode with the switches of `mode`, if one holds; else switches
  * that would have to change over. A status that ends the search. */

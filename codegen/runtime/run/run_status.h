@@ -28,6 +28,7 @@ enum bg_status {
     BG_WORK,         /* a search for an event had no end */
     BG_BLUNT,        /* the rates of a mode are wanted: with 32 digits, or at all */
     BG_ENDLESS,      /* so many steps have no end */
+    BG_CROWDED,      /* a run comes to more modes than it may */
     BG_REFUSED       /* of many runs: the model refuses these numbers */
 };
 
