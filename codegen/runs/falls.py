@@ -3,6 +3,7 @@
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.model.snapshot import Mode
@@ -44,8 +45,7 @@ class Falls:
         shapes = powers @ to_bernstein(TUNING.degree).T
         if self._ready and all_of(shapes > 0):
             return None
-        least = shapes.min(axis=2)
-        suspects = (least <= 0) | ~self._armed
+        suspects = self._suspects(shapes)
         at = 0
         while at < len(powers):
             ahead = np.flatnonzero(suspects[at:].any(axis=1))
@@ -63,8 +63,16 @@ class Falls:
                 near = tau + TUNING.together * max(1.0, (t + at * step) / step)
                 return at, tau, frozenset(p for p, root in roots.items() if root <= near)
             at += 1
-            suspects[at:] = (least[at:] <= 0) | ~self._armed
+            suspects[at:] = self._suspects(shapes[at:])
         return None
+
+    def _suspects(self, shapes: Array) -> NDArray[np.bool_]:
+        """Triggers that may fall in a step, or rise from zero, by the bounds that their shapes are."""
+        least = shapes.min(axis=2)
+        if self._ready:
+            return np.asarray(least <= 0)
+        rests = (shapes.max(axis=2) < self._limits) & (least > -2 * self._limits)
+        return np.asarray(np.where(self._armed, least <= 0, ~rests), dtype=np.bool_)
 
     def _root(self, row: int, powers: Array, elapsed: float, step: float) -> float | None:
         """Where one trigger falls in a step; one that began at zero is armed when it has risen."""
