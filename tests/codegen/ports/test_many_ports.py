@@ -33,7 +33,6 @@ from codegen.standalone.ranks import SlipRows, held_set
 from codegen.sweeps.job import Job
 from codegen.sweeps.measuring import batch_of
 
-
 Made = tuple[Many, bg.StateEquations]
 
 
