@@ -1,5 +1,7 @@
 """Clutches side by side lock one relative speed: the load is shared by level, and they let go together."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from oracles.models import clutches
@@ -17,8 +19,19 @@ def _laws(breakaways) -> list[bg.DryFriction]:
 
 def _run(levels, breakaways, torque, start=None, times=TIMES) -> Result:
     """T on shaft 1, and on shaft 2 what keeps the sum of momenta at rest: the clutches carry all of T."""
-    run = simulator(bg.derive(clutches(*_laws(breakaways))), SHAFTS | _levels(levels))
+    run = simulator(_equations(breakaways), SHAFTS | _levels(levels))
     return run.run(times, start, {"T_1": torque, "T_2": _negative(torque)})
+
+
+@cache
+def _equations(breakaways) -> bg.StateEquations:
+    return bg.derive(clutches(*_laws(breakaways)))
+
+
+@cache
+def _rising(levels, breakaways, slope: float) -> Result:
+    """A run under a torque that rises from zero, of which several tests look at one side each."""
+    return _run(levels, breakaways, Ramp(0.0, slope))
 
 
 def _levels(levels) -> dict[str, float]:
@@ -44,7 +57,7 @@ THREE = ((4.0, 0.0, 6.0), (1.5, 1, 1.1))
 @pytest.mark.parametrize("slope", [12.0, -12.0])
 def test_shares_are_proportional_to_what_each_can_hold(levels, breakaways, slope: float) -> None:
     caps = np.array(levels) * np.array(breakaways)
-    result = _run(levels, breakaways, Ramp(0.0, slope))
+    result = _rising(levels, breakaways, slope)
     locked = np.abs(slope) * result.time < caps.sum() - 1e-9
     assert locked.sum() > 20
     for i, cap in enumerate(caps):
@@ -57,7 +70,7 @@ def test_shares_are_proportional_to_what_each_can_hold(levels, breakaways, slope
 def test_they_let_go_together_when_all_have_reached_their_breakaway(levels, breakaways) -> None:
     """Then w_1 - w_2 gathers from T - sum L, on the inertias 1/I_1 + 1/I_2."""
     release = (np.array(levels) * np.array(breakaways)).sum() / 12.0
-    result = _run(levels, breakaways, Ramp(0.0, 12.0))
+    result = _rising(levels, breakaways, 12.0)
     assert {event.kind for event in result.events} == {"slip"}
     assert [event.time for event in result.events] == pytest.approx(
         [release] * len(result.events), abs=1e-9
@@ -95,8 +108,7 @@ def test_they_lock_together_and_stay_locked(levels, breakaways) -> None:
 
 def test_shares_follow_a_level_that_changes_under_load() -> None:
     """Load 6; clutch 1's level falls from 20 to nothing: it gives up its share to clutch 0 in time."""
-    equations = bg.derive(clutches(bg.DryFriction("L_0"), bg.DryFriction("L_1")))
-    run = simulator(equations, SHAFTS | {"L_0": 10.0})
+    run = simulator(_equations((1, 1)), SHAFTS | {"L_0": 10.0})
     level = Sampled([0.0, 1.0, 3.0], [20.0, 20.0, 0.0])
     result = run.run(TIMES, inputs={"T_1": 6.0, "T_2": -6.0, "L_1": level})
     assert result.events == ()
@@ -106,8 +118,7 @@ def test_shares_follow_a_level_that_changes_under_load() -> None:
 
 
 def test_they_let_go_when_the_sum_of_falling_levels_meets_the_load() -> None:
-    equations = bg.derive(clutches(bg.DryFriction("L_0"), bg.DryFriction("L_1")))
-    run = simulator(equations, SHAFTS)
+    run = simulator(_equations((1, 1)), SHAFTS)
     fall = Ramp(0.5, -4.0, 10.0, end=2.9)
     result = run.run(TIMES, inputs={"T_1": 12.0, "T_2": -12.0, "L_0": fall, "L_1": fall})
     # 2 (10 - 4 (t - 1/2)) = 12 at t = 1.5; then slip'' = 8 (1/I_1 + 1/I_2) for as long as they fall.
@@ -128,8 +139,7 @@ def test_an_alternating_load_within_the_sum_of_levels_moves_nothing() -> None:
 
 
 def test_one_of_two_clutches_that_is_opened_by_a_step_leaves_the_load_to_the_other() -> None:
-    equations = bg.derive(clutches(bg.DryFriction("L_0"), bg.DryFriction("L_1")))
-    run = simulator(equations, SHAFTS | {"L_0": 10.0})
+    run = simulator(_equations((1, 1)), SHAFTS | {"L_0": 10.0})
     for torque, slips in ((6.0, False), (11.0, True)):
         opened = Step(2.0, 0.0, 20.0)
         result = run.run(TIMES, inputs={"T_1": torque, "T_2": -torque, "L_1": opened})

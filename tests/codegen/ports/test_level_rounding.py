@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -39,22 +40,29 @@ LEVELS: Mapping[str, tuple[dict[str, object], codegen.Signal]] = {
 """Brakes that come down from 1.3 to zero between 0.3 and 0.4 s."""
 
 
-def _case(level: str, speed: float) -> Case:
-    """A mass with a brake, which is pushed by 2 from 0.7 s on; what presses the pad brakes, too."""
+@cache
+def _equations(level: str) -> bg.StateEquations:
+    """A mass with a brake, which is pushed; what presses the pad brakes, too."""
     nodes = [
         bg.Se("push", "P"), bg.One("m"), bg.I("J", "J", flow="w"), bg.R("brake", effort="f"),
         bg.R("pad", effort="N"),
     ]  # fmt: skip
-    bonds, start = "push>m>J m>brake m>pad", {"w": speed}
+    bonds = "push>m>J m>brake m>pad"
     if level == "a state":
         nodes[3] = bg.R("brake", effort="f", law=bg.DryFriction("p"))
         nodes += [bg.Sf("pump", "n"), bg.Zero("tank"), bg.C("oil", 1, effort="p")]
-        bonds, start = f"{bonds} pump>tank>oil", start | {"p": 1.3}
+        bonds = f"{bonds} pump>tank>oil"
+    return bg.derive(bond_graph(nodes, bonds))
+
+
+def _case(level: str, speed: float) -> Case:
+    """It is pushed by 2 from 0.7 s on."""
+    start = {"w": speed} | ({"p": 1.3} if level == "a state" else {})
     laws, signal = LEVELS[level]
     inputs: dict[str, object] = {"P": Step(0.7, 2.0), "n": signal}
     if "pad" not in laws:
         laws = laws | {"pad": 0}
-    return Case(bg.derive(bond_graph(nodes, bonds)), {"J": 1.0}, laws, start, inputs, 1.0)
+    return Case(_equations(level), {"J": 1.0}, laws, start, inputs, 1.0)
 
 
 def _right(speed: float) -> np.ndarray:

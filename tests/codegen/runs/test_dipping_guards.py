@@ -6,6 +6,7 @@ over x is above zero, turns off and on where x passes the condition's two zeros.
 
 import shutil
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -94,15 +95,20 @@ def drawn(seed: int) -> Dips:
             return Dips(kind, c, d, r, a, w, p)
 
 
-def _run(dips: Dips, backend: str, method: str) -> list[tuple[float, str]]:
-    """The switch's events; the oscillator's spring has the effort x."""
-    condition = KINDS[dips.kind]
+@cache
+def _equations(condition: str) -> bg.StateEquations:
+    """The oscillator's spring has the effort x."""
     nodes = [bg.One("m"), bg.I("M", "1/w", flow="v"), bg.C("K", "1/w", effort="x"), bg.Se("u", 1),
              bg.One("j"), bg.R("r_u", 1), bg.Sw("k", on=condition.replace("y", "(x - c)"))]  # fmt: skip
-    equations = bg.derive(bond_graph(nodes, "m>M m>K u>j j>k j>r_u"))
+    return bg.derive(bond_graph(nodes, "m>M m>K u>j j>k j>r_u"))
+
+
+def _run(dips: Dips, backend: str, method: str) -> list[tuple[float, str]]:
+    """The switch's events."""
+    condition = KINDS[dips.kind]
     numbers = {name: getattr(dips, name) for name in ("cdrw" if "r*y" in condition else "cdw")}
     start = {"x": dips.a * np.sin(dips.p), "v": dips.a * np.cos(dips.p)}
-    ready = simulator(equations, numbers, backend=backend)
+    ready = simulator(_equations(condition), numbers, backend=backend)
     result = ready.run([0.0, END], start, method=method, initially_on=["k"])
     assert result.backend == backend
     return [(event.time, event.kind) for event in result.events]

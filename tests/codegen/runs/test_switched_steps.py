@@ -25,6 +25,7 @@ class Exported:
     """A case as C and as Python."""
 
     case: Switched
+    equations: bg.StateEquations
     pair: Pair
     module: ModuleType
 
@@ -51,7 +52,7 @@ def exported(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     case = CASES[str(request.param)]
     equations = bg.derive(case.graph)
     pair = Pair(tmp_path_factory.mktemp("switched"), equations, case.numbers, on=case.on)
-    return Exported(case, pair, loaded(to_python(equations, case.numbers)))
+    return Exported(case, equations, pair, loaded(to_python(equations, case.numbers)))
 
 
 def test_c_and_python_take_the_same_steps(exported: Exported) -> None:
@@ -78,7 +79,7 @@ def test_c_and_python_take_the_same_steps(exported: Exported) -> None:
 
 def test_steps_converge_to_located_events(exported: Exported) -> None:
     case = exported.case
-    ready = simulator(bg.derive(case.graph), case.numbers)
+    ready = simulator(exported.equations, case.numbers)
     times = np.arange(case.count + 1) * case.step
     expected = ready.run(times, case.initial, case.inputs, initially_on=case.on)
     assert len(expected.events) > 1
@@ -151,11 +152,11 @@ def test_a_start_is_completed_by_what_is_on(tmp_path: Path) -> None:
     given = {"tau": 0.0, "g": 0.0}
     module = loaded(to_python(equations, numbers))
     with pytest.warns(UserWarning, match=r"follow what switches hold: w_2 = 5"):
-        run = module.simulate([0.0, 0.1], {"w_1": 5.0}, given)
+        run = module.simulate([0.0, 0.1], {"w_1": 5.0}, given, step=1e-3)
     assert run["w_2"] == pytest.approx([5.0, 5.0], rel=1e-13)
     # Not on, it joins what it finds.
     start = {"w_1": 5.0, "w_2": 0.0}
-    run = module.simulate([0.0, 0.1], start, given, initially_on=["slack"])
+    run = module.simulate([0.0, 0.1], start, given, step=1e-3, initially_on=["slack"])
     assert run["w_1"] == pytest.approx(10.0 / 2.7, rel=1e-13)
     with pytest.raises(ValueError, match=r"no switch is called 'cog'; there is slack"):
         module.simulate([0.0, 0.1], {}, given, initially_on=["cog"])

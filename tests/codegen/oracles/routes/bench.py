@@ -21,6 +21,9 @@ EXACT, LOCATED, UNIT = 1e-7, 1e-6, 1e-5
 FEW, MANY = 2_500, 20_000
 """Fixed steps of a run in Python and in C."""
 
+CLOSE, WIDER = 1e-4, 1e-3
+"""How near to an instant its neighbours are, of the length of a run: for slopes, for their differences."""
+
 
 def stepped(count: int) -> float:
     """How far so many fixed steps may be off: each of a few events is late by up to a step.
@@ -38,12 +41,25 @@ class Bench:
     folder: Path
 
     @cached_property
-    def run(self) -> codegen.Result:
-        """By numpy: what the other routes find states and switches of."""
+    def ready(self) -> codegen.Simulator:
+        return codegen.simulator(self.kind.equations, self.kind.numbers, self.kind.laws)
+
+    def ran(self, times: Array) -> codegen.Result:
+        """By numpy."""
         kind = self.kind
-        return codegen.simulator(kind.equations, kind.numbers, kind.laws).run(
-            kind.times(), kind.initial, kind.signals, initially_on=kind.on
-        )
+        return self.ready.run(times, kind.initial, kind.signals, initially_on=kind.on)
+
+    @cached_property
+    def run(self) -> codegen.Result:
+        """What the other routes find states and switches of."""
+        return self.ran(self.kind.times())
+
+    @cached_property
+    def about(self) -> codegen.Result:
+        """The run at its start, and about its instant: wider twice, close, at it, close, wider twice."""
+        end = self.kind.end
+        near = np.array([-2 * WIDER, -WIDER, -CLOSE, 0, CLOSE, WIDER, 2 * WIDER])
+        return self.ran(np.array([0.0, *(self.kind.at + near * end)]))
 
     @cached_property
     def compiled(self) -> codegen.Simulator:
@@ -110,9 +126,9 @@ class Bench:
             assert (found[name] == self.run[name])[~near].all(), f"switch {name}"
 
 
-def same(first: nx.DiGraph, second: nx.DiGraph) -> None:
-    """Two graphs with the same equations, laws and switches, to the last sign."""
-    one, other = bg.derive(first), bg.derive(second)
+def same(graph: nx.DiGraph, other: bg.StateEquations) -> None:
+    """A graph has those equations, laws and switches, to the last sign."""
+    one = bg.derive(graph)
     for name in ("A", "J", "B", "E", "F", "D", "G", "states", "inputs", "outputs", "laws"):
         assert getattr(one, name) == getattr(other, name), name
     told = [[(s.name, s.on, s.off, s.guard, s.side) for s in e.switches] for e in (one, other)]

@@ -17,7 +17,18 @@ import bondgraph as bg
 import codegen
 from differentials.commands.app import app
 from oracles.exported import loaded
-from oracles.routes.bench import EXACT, FEW, LOCATED, MANY, UNIT, Bench, same, stepped
+from oracles.routes.bench import (
+    CLOSE,
+    EXACT,
+    FEW,
+    LOCATED,
+    MANY,
+    UNIT,
+    WIDER,
+    Bench,
+    same,
+    stepped,
+)
 from oracles.units import sampled, simulated
 
 Route = Callable[[Bench], None]
@@ -41,16 +52,13 @@ def explain(bench: Bench) -> None:
 def explicit(bench: Bench) -> None:
     """The rates, at what the run gives at one instant, are those of the run about it."""
     kind, rates = bench.kind, bg.explicit(bench.kind.equations, bench.kind.laws)
-    h = 1e-4 * kind.end
-    run = codegen.simulator(kind.equations, kind.numbers, kind.laws).run(
-        [0.0, kind.at - h, kind.at, kind.at + h], kind.initial, kind.signals, initially_on=kind.on
-    )
+    run, h = bench.about, CLOSE * kind.end
     numbers = {sp.Symbol(name): value for name, value in kind.numbers.items()}
     for state, rate in rates.items():
         found = rate.subs(numbers).subs(sp.Symbol("t"), kind.at)
         moving = {name: name.name.removeprefix("d_") for name in found.free_symbols}
         values = {name: _value(run, name.name, source, h) for name, source in moving.items()}
-        slope = (run[str(state)][3] - run[str(state)][1]) / (2 * h)
+        slope = (run[str(state)][5] - run[str(state)][3]) / (2 * h)
         scale = max(abs(slope), np.abs(bench.run[str(state)]).max() / kind.end)
         assert abs(float(found.subs(values)) - slope) < 1e-3 * scale, f"the rate of {state}"
 
@@ -58,7 +66,7 @@ def explicit(bench: Bench) -> None:
 def _value(run: codegen.Result, name: str, source: str, h: float) -> float:
     """A signal in the middle, or of ``d_...`` its slope."""
     values = run[source]
-    return float(values[2] if name == source else (values[3] - values[1]) / (2 * h))
+    return float(values[4] if name == source else (values[5] - values[3]) / (2 * h))
 
 
 def latex(bench: Bench) -> None:
@@ -79,11 +87,11 @@ def drawing(bench: Bench) -> None:
 
 
 def json(bench: Bench) -> None:
-    same(bg.from_json(bg.to_json(bench.kind.graph)), bench.kind.graph)
+    same(bg.from_json(bg.to_json(bench.kind.graph)), bench.kind.equations)
 
 
 def graphml(bench: Bench) -> None:
-    same(bg.from_graphml(bg.to_graphml(bench.kind.graph)), bench.kind.graph)
+    same(bg.from_graphml(bg.to_graphml(bench.kind.graph)), bench.kind.equations)
 
 
 def commands(bench: Bench) -> None:
@@ -203,11 +211,9 @@ def _fmu(version: str, how: str) -> Route:
 
 def linearize(bench: Bench) -> None:
     """In the mode of the run: along it, rates change as the linear model says."""
-    kind = bench.kind
-    h = 1e-3 * kind.end
-    run = codegen.simulator(kind.equations, kind.numbers, kind.laws).run(
-        [0.0, *(kind.at + h * np.arange(-2, 3))], kind.initial, kind.signals, initially_on=kind.on
-    )
+    kind, run, h = bench.kind, bench.about, WIDER * bench.kind.end
+    # Twice the distance before, once, at it, and the same after.
+    samples = [1, 2, 4, 6, 7]
     given = {*map(str, kind.equations.inputs)}
     outside = [name for name in kind.inputs if name not in given]
     # What a switch gives or receives, its mode tells, and the run but to rounding.
@@ -216,7 +222,7 @@ def linearize(bench: Bench) -> None:
     }
     names = {*map(str, kind.equations.signals), *run.states, *outside} - told
     read = {*map(str, set().union(*(law.free_symbols for law in kind.equations.laws.values())))}
-    point = {name: float(run[name][3]) for name in names} | {"t": kind.at}
+    point = {name: float(run[name][4]) for name in names} | {"t": kind.at}
     # On which side of a corner a law is, may depend on its numbers.
     point |= {name: value for name, value in kind.numbers.items() if name in read}
     model = bg.linearize(
@@ -232,22 +238,20 @@ def linearize(bench: Bench) -> None:
         np.array(getattr(model, one).subs(numbers), dtype=float).reshape(sizes[0], size)
         for one, size in zip("AJB", (sizes[0], *sizes), strict=True)
     )
-    x = np.array([run[str(name)] for name in model.states]).reshape(sizes[0], 6)
-    u = np.array([run[str(name)] for name in model.inputs]).reshape(sizes[1], 6)
-    change = A @ (x[:, 5] - 2 * x[:, 3] + x[:, 1]) / (4 * h * h)
-    expected = (J @ (x[:, 4] - x[:, 2]) + B @ (u[:, 4] - u[:, 2])) / (2 * h)
-    scale = (
-        np.abs(A) @ np.abs(x[:, 1:]).max(axis=1) / kind.end**2
-        + np.abs(J) @ np.ptp(x[:, 1:], axis=1) / h
+    x, u = (
+        np.array([run[str(name)][samples] for name in some]).reshape(len(some), 5)
+        for some in (model.states, model.inputs)
     )
+    change = A @ (x[:, 4] - 2 * x[:, 2] + x[:, 0]) / (4 * h * h)
+    expected = (J @ (x[:, 3] - x[:, 1]) + B @ (u[:, 3] - u[:, 1])) / (2 * h)
+    scale = np.abs(A) @ np.abs(x).max(axis=1) / kind.end**2 + np.abs(J) @ np.ptp(x, axis=1) / h
     assert (np.abs(change - expected) <= 2e-2 * scale + 1e-9).all(), (change, expected)
 
 
 def trim(bench: Bench) -> None:
     """A steady state, from which a run does not move."""
     kind = bench.kind
-    rest = kind.rest or {}
-    ready = codegen.simulator(kind.equations, kind.numbers, kind.laws)
+    rest, ready = kind.rest or {}, bench.ready
     point = codegen.trim(ready, rest.get("inputs"), rest.get("initial"))
     start = {name: point[name] for name in ready.states}
     run = ready.run([0.0, 0.01 * kind.end], start, rest.get("inputs"), initially_on=kind.on)
