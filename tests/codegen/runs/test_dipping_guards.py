@@ -104,12 +104,12 @@ def _equations(condition: str) -> bg.StateEquations:
 
 
 def _run(dips: Dips, backend: str, method: str) -> list[tuple[float, str]]:
-    """The switch's events."""
+    """The switch's events; steps as long as 1e-7 s of them allow pass over more than shorter ones."""
     condition = KINDS[dips.kind]
     numbers = {name: getattr(dips, name) for name in ("cdrw" if "r*y" in condition else "cdw")}
     start = {"x": dips.a * np.sin(dips.p), "v": dips.a * np.cos(dips.p)}
     ready = simulator(_equations(condition), numbers, backend=backend)
-    result = ready.run([0.0, END], start, method=method, initially_on=["k"])
+    result = ready.run([0.0, END], start, {}, method, 1e-8, 1e-9, initially_on=["k"])
     assert result.backend == backend
     return [(event.time, event.kind) for event in result.events]
 
