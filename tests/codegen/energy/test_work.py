@@ -24,8 +24,9 @@ def _sliding(samples: list[float], method: str) -> Result:
 
 
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("samples", [[0, 5], [0, 0.001, 5], [k / 20 for k in range(101)]])
+@pytest.mark.parametrize("samples", [[0, 0.6], [0, 0.001, 0.6], [0.006 * k for k in range(101)]])
 def test_a_damper_takes_what_the_mass_had(samples: list[float], method: str) -> None:
+    """In the end a part of 4e-11 of it is left."""
     result = _sliding(samples, method)
     times = np.array(samples)
     lost = 25 * (1 - np.exp(-40 * times))
@@ -152,7 +153,8 @@ def test_a_pendulum_turned_by_its_own_angle_closes() -> None:
     nodes = [bg.Se("torque", "T"), bg.One("shaft"), bg.I("J", "3 + 2*cos(theta)", flow="w"),
              bg.Df("angle", integrate="theta"), bg.R("b", "0.2")]  # fmt: skip
     graph = bond_graph(nodes, "torque>shaft>J shaft>angle shaft>b")
-    result = simulator(bg.derive(graph, []), {}).run([0, 7], {"w": 2.0}, {"T": Sine(1.0, 0.3)})
+    result = simulator(bg.derive(graph, []), {}).run([0, 4], {"w": 2.0}, {"T": Sine(1.0, 0.3)})
+    assert result["theta"][-1] > 2 * pi
     gained = result.audit().took["J"]
     assert gained == pytest.approx(result.work("J")[-1], rel=1e-8)
     assert open_part(result) < CLOSED

@@ -72,7 +72,10 @@ def stack(count: int) -> Many:
 
 
 def bridge(phases: int) -> Many:
-    """Sources in star, each behind a coil, and two diodes a phase; a choke with a resistance as the load."""
+    """Sources in star, each behind a coil, and two diodes a phase; a choke with a resistance as the load.
+
+    In a period and a third of 0.5 s each diode turns on and off.
+    """
     nodes = [
         bg.Zero("plus"),
         bg.Zero("minus"),
@@ -95,7 +98,7 @@ def bridge(phases: int) -> Many:
         bonds += [f"minus>b{k}>l{k}", f"b{k}>n{k}"]
     inputs = {f"U{k}": Sine(10.0, 2.0, 2 * np.pi * k / phases) for k in range(phases)}
     return Many(
-        bond_graph(nodes, " ".join(bonds)), inputs, np.linspace(0, 1, 101), ("i", "i0", "i1")
+        bond_graph(nodes, " ".join(bonds)), inputs, np.linspace(0, 0.65, 66), ("i", "i0", "i1")
     )
 
 

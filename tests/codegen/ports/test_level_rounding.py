@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -65,28 +66,42 @@ def _case(level: str, speed: float) -> Case:
     return Case(_equations(level), {"J": 1.0}, laws, start, inputs, 1.0)
 
 
+@cache
+def _ready(level: str, backend: str) -> codegen.Simulator:
+    case = _case(level, 0.0)
+    return simulator(case.equations, case.parameters, case.laws, backend)
+
+
+@cache
+def _module(level: str) -> ModuleType:
+    case = _case(level, 0.0)
+    return loaded(codegen.to_python(case.equations, case.parameters, case.laws))
+
+
 def _right(speed: float) -> np.ndarray:
     """A mass of 1: the brake takes 1.3 a second, and 0.065 while it lets go; at rest it holds."""
     braked = 1.3 * np.minimum(TIMES, 0.3) + 0.065 * (TIMES > 0.35)
     return (speed - braked if speed else np.zeros(11)) + 2 * np.maximum(TIMES - 0.7, 0)
 
 
-def _located(backend: str, method: str) -> Callable[[Case, Path], np.ndarray]:
-    def run(case: Case, folder: Path) -> np.ndarray:
-        ready = simulator(case.equations, case.parameters, case.laws, backend)
-        result = ready.run(TIMES, case.initial, case.inputs, method)
+Way = Callable[[str, Case, Path], np.ndarray]
+"""The speed by one route, of a case of a level; a folder for what it makes."""
+
+
+def _located(backend: str, method: str) -> Way:
+    def run(level: str, case: Case, folder: Path) -> np.ndarray:
+        result = _ready(level, backend).run(TIMES, case.initial, case.inputs, method)
         assert result.backend == backend
         return result["w"]
 
     return run
 
 
-def _in_python(case: Case, folder: Path) -> np.ndarray:
-    module = loaded(codegen.to_python(case.equations, case.parameters, case.laws))
-    return np.array(module.simulate(TIMES, case.initial, case.inputs, step=0.01)["w"])
+def _in_python(level: str, case: Case, folder: Path) -> np.ndarray:
+    return np.array(_module(level).simulate(TIMES, case.initial, case.inputs, step=0.01)["w"])
 
 
-def _in_c(case: Case, folder: Path) -> np.ndarray:
+def _in_c(level: str, case: Case, folder: Path) -> np.ndarray:
     pair = Pair(folder, case.equations, case.parameters, case.laws)
     signals = signals_for(case.inputs, [name.name for name in pair.program.external])
     w = np.array([[signal(k * 0.005) for signal in signals] for k in range(203)])
@@ -94,8 +109,8 @@ def _in_c(case: Case, folder: Path) -> np.ndarray:
     return pair.c.march(0.01, 100, 10, pair.c.vector(0.0, start, w[0]), w)[1]["w"]
 
 
-def _unit(kind: str, version: str) -> Callable[[Case, Path], np.ndarray]:
-    def run(case: Case, folder: Path) -> np.ndarray:
+def _unit(kind: str, version: str) -> Way:
+    def run(level: str, case: Case, folder: Path) -> np.ndarray:
         unit = case.written(folder / "unit.fmu", version)
         return sampled(simulated(unit, kind, case, ["w"], 11), case, 11)["w"]
 
@@ -105,7 +120,7 @@ def _unit(kind: str, version: str) -> Callable[[Case, Path], np.ndarray]:
 Told = tuple[type[Exception], str]
 NEGATIVE = r"negative|below zero"
 
-ROUTES: Mapping[str, tuple[Callable[[Case, Path], np.ndarray], float, Told]] = {
+ROUTES: Mapping[str, tuple[Way, float, Told]] = {
     "numpy": (_located("numpy", "auto"), 1e-9, (bg.SimulationError, NEGATIVE)),
     "numpy, DOP853": (_located("numpy", "DOP853"), 1e-9, (bg.SimulationError, NEGATIVE)),
     "C": (_located("c", "auto"), 1e-9, (bg.SimulationError, NEGATIVE)),
@@ -131,7 +146,7 @@ def test_a_level_that_rounds_below_zero_is_zero(
     route: str, level: str, speed: float, tmp_path: Path
 ) -> None:
     run, near, _ = ROUTES[route]
-    assert run(_case(level, speed), tmp_path) == pytest.approx(_right(speed), abs=near)
+    assert run(level, _case(level, speed), tmp_path) == pytest.approx(_right(speed), abs=near)
 
 
 @pytest.mark.parametrize("method", ["DOP853", "Radau"])
@@ -176,4 +191,4 @@ def test_a_level_that_is_below_zero_is_refused(route: str, level: str, tmp_path:
         case = replace(case, inputs={**case.inputs, "n": Step(0.4, end, 1.3 if end < 0 else 0.0)})
     run, _, (error, message) = ROUTES[route]
     with pytest.raises(error, match=message):
-        run(case, tmp_path)
+        run(level, case, tmp_path)
