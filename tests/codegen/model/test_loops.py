@@ -51,7 +51,9 @@ def test_rectifier_charges_a_capacitor_through_the_loop() -> None:
     equations = bg.derive(bond_graph(nodes, "s>n>r n>diode n>load>c load>bleed"))
     R, I_s, V_T, C, R_l = 50.0, 1e-3, 0.5, 1e-3, 400.0
     run = simulator(equations, DIODE | {"C": C, "R_l": R_l})
-    result = run.run(TIMES, inputs={"V": Sine(10.0, 3.0)})
+    # It charges, holds, and charges again.
+    times = TIMES[TIMES <= 0.5]
+    result = run.run(times, inputs={"V": Sine(10.0, 3.0)})
 
     def rate(t: float, y: np.ndarray) -> list[float]:
         drive = 10 * np.sin(6 * np.pi * t) - y[0]
@@ -59,7 +61,7 @@ def test_rectifier_charges_a_capacitor_through_the_loop() -> None:
         return [(V_T / R * w - I_s - y[0] / R_l) / C]
 
     expected = solve_ivp(
-        rate, (0, 1), [0.0], "DOP853", TIMES, rtol=1e-11, atol=1e-13, max_step=0.005
+        rate, (0, 0.5), [0.0], "DOP853", times, rtol=1e-11, atol=1e-13, max_step=0.005
     )
     assert result["v"] == pytest.approx(expected.y[0], abs=1e-7)
 

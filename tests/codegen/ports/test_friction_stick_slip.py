@@ -1,5 +1,7 @@
 """A block on a surface, pulled through a spring at constant speed: the stick-slip limit cycle."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from oracles.energy import misfit
@@ -45,11 +47,22 @@ class Cycle:
 LAW = bg.DryFriction("L", 1, "ratio")
 
 
+@cache
+def _equations() -> bg.StateEquations:
+    return bg.derive(pulled_block(LAW))
+
+
 def _cycle(values: dict[str, float]) -> tuple[Cycle, Result]:
+    return _ran(*values.items())
+
+
+@cache
+def _ran(*told: tuple[str, float]) -> tuple[Cycle, Result]:
+    values = dict(told)
     cycle = Cycle(**values)
     end = cycle.first + 4.4 * cycle.period
     numbers = {name: value for name, value in values.items() if name != "V"}
-    run = simulator(bg.derive(pulled_block(LAW)), numbers)
+    run = simulator(_equations(), numbers)
     return cycle, run.run(np.linspace(0, end, 301), inputs={"V": values["V"]})
 
 
@@ -78,7 +91,7 @@ def test_the_spring_force_follows_the_closed_form(values) -> None:
 def test_power_is_balanced(values) -> None:
     cycle = Cycle(**values)
     numbers = {name: value for name, value in values.items() if name != "V"}
-    run = simulator(bg.derive(pulled_block(LAW)), numbers)
+    run = simulator(_equations(), numbers)
     departure = misfit(
         lambda times: run.run(times, inputs={"V": values["V"]}),
         [0.0, cycle.first + 2.3 * cycle.period],

@@ -125,7 +125,7 @@ def test_a_coil_without_a_way_for_its_current_loses_it() -> None:
     for name in ("coil", "coil with diode"):
         case = CASES[name]
         module = loaded(to_python(bg.derive(case.graph), case.numbers))
-        run = module.simulate(times, case.initial, dict(case.inputs), step=1e-4, initially_on=["k"])
+        run = module.simulate(times, case.initial, dict(case.inputs), step=2e-4, initially_on=["k"])
         assert (("k", "d") if "diode" in name else ("k",)) == module.SWITCHES
         assert run["k"] == pytest.approx((times < 0.0313).astype(float))
         opened = times > 0.032
