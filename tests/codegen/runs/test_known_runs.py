@@ -81,10 +81,10 @@ def test_there_are_as_many_events_a_second_however_long_a_run_is(end: float) -> 
 
 @pytest.mark.parametrize("law", [bg.DryFriction("level"), CURVED])
 def test_as_many_in_numpy(law: bg.DryFriction) -> None:
-    """Steps with control take their time: a third of the run."""
-    half, periods = math.pi / 6.28, 60 if law is not CURVED else 20
-    result = _ready("1.05*sin(6.28*t)**3", law, "numpy").run([0, (periods + 0.1) * half])
-    assert len(result.events) == 2 * periods
+    """Half periods; steps with control take their time, so a third of them."""
+    half, count = math.pi / 6.28, 60 if law is not CURVED else 20
+    result = _ready("1.05*sin(6.28*t)**3", law, "numpy").run([0, (count + 0.1) * half])
+    assert len(result.events) == 2 * count
 
 
 P, T, B, D = sp.symbols("P t b d")
