@@ -15,9 +15,9 @@
 #define BG_ROOM(n) ((n) > 0 ? (n) : 1)
 #define BG_TABLE(rows, columns) (BG_ROOM(rows) * BG_ROOM(columns))
 
-/* Room to list which entries of a table are not zero: of a large one, up to a tenth of them, the sizes
- * from which numpy looks at that as well (numbers/thin.py). Begins
- * with where the columns of each row begin in the list; 0 in front where there is none. */
+/* Room to list which entries of a table are not zero: of a large one, up to a tenth of them (sizes
+ * from which numpy asks, too: numbers/thin.py). Begins with where the columns of each row begin in
+ * the list; 0 in front where there is none. */
 #define BG_LISTED(rows, columns) (BG_TABLE(rows, columns) >= 4096)
 #define BG_LIST(rows, columns) \
     (BG_LISTED(rows, columns) ? (rows) + 1 + BG_TABLE(rows, columns) / 10 : 1)
