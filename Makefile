@@ -44,11 +44,11 @@ types: $(READY)
 	$(BIN)/mypy
 
 unit: $(READY)
-	$(BIN)/python -m pytest -n $(JOBS)
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile
 
 # Slices of random families are a quarter of those of every run.
 quick: $(READY)
-	BONDGRAPH_SLICE=0.25 $(BIN)/python -m pytest -n $(JOBS) --quick
+	BONDGRAPH_SLICE=0.25 $(BIN)/python -m pytest -n $(JOBS) --dist loadfile --quick
 
 soak: $(READY)
 	PYTHONPATH=tests $(BIN)/python -m soak $(MINUTES) $(if $(FAMILY),--family $(FAMILY)) $(if $(AGAIN),--again)

@@ -4,6 +4,7 @@ import pytest
 
 pytest_plugins = [
     "rig.bytecode",
+    "rig.threads",
     "rig.examples",
     "rig.garbage",
     "rig.needs",
