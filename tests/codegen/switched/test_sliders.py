@@ -1,5 +1,6 @@
 """Dry friction that gives a flow: directly on a spring, side by side, two in series; on every route."""
 
+import pickle
 from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
@@ -175,7 +176,8 @@ def test_sweeps_tell_of_sliders_what_runs_do(backend: str) -> None:
         "F": final("F_a"), "slips": event_count("a", "slip"), "sticks": event_count("a", "stick")
     }  # fmt: skip
     levels = {"N_a": [2.0, 5.0, 20.0]}
-    done = sweep(family, levels, T, measures, inputs={"v": SPEED}, workers=0)
+    sent = pickle.loads(pickle.dumps(family))
+    done = sweep(sent, levels, T, measures, inputs={"v": SPEED}, workers=0)
     expected = [play(SWAY, 10.0, level)[-1] for level in (2.0, 5.0, 20.0)]
     assert done["F"] == pytest.approx(expected, abs=1e-9)
     assert done["slips"].tolist() == [3.0, 2.0, 0.0]
@@ -276,7 +278,8 @@ def test_friction_put_later_goes_every_way(tmp_path: Path) -> None:
     """Sweeps, exports, linear models, steady states, explicit rates: those of the graph with its law."""
     measures = {"F": final("F_a")}
     family, levels = Family(LATER, NUMBERS, FRICTION), {"N_a": [2.0, 5.0]}
-    done = sweep(family, levels, T, measures, inputs={"v": SPEED}, workers=0)
+    sent = pickle.loads(pickle.dumps(family))
+    done = sweep(sent, levels, T, measures, inputs={"v": SPEED}, workers=0)
     assert done["F"] == pytest.approx(
         [play(SWAY, 10.0, level)[-1] for level in (2.0, 5.0)], abs=1e-9
     )
