@@ -175,8 +175,7 @@ class CRuns:
         ``first``: the mode before the run, all let go unless told. ``keeping``: whether events are kept.
         ``patient``: whether to go on although tables of modes take longer than other ways.
         """
-        prepared = self.prepare(times, start, signals, first, keeping)
-        prepared.tables.record.most = 0 if patient else prepared.tables.places.few
+        prepared = self.prepare(times, start, signals, first, keeping, patient)
         status = prepared.call()
         # A run like this one need not begin again for want of room.
         self._capacity = min(prepared.capacity, MOST_AT_FIRST)
@@ -185,11 +184,12 @@ class CRuns:
 
     def prepare(
         self, times: Array, start: Array, signals: Sequence[Signal], first: Mode = (),
-        keeping: bool = True,
+        keeping: bool = True, patient: bool = True,
     ) -> Prepared:  # fmt: skip
         """Everything that a run needs."""
         made = segments(signals, float(times[0]), float(times[-1]))
         tables, context = self._tables(made)
+        tables.record.most = 0 if patient else tables.places.few
         return Prepared(
             tables.engine,
             tables,

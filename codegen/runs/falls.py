@@ -45,7 +45,8 @@ class Falls:
         shapes = powers @ to_bernstein(TUNING.degree).T
         if self._ready and all_of(shapes > 0):
             return None
-        suspects = self._suspects(shapes)
+        least, most = shapes.min(axis=2), shapes.max(axis=2)
+        suspects = self._suspects(least, most)
         at = 0
         while at < len(powers):
             ahead = np.flatnonzero(suspects[at:].any(axis=1))
@@ -63,15 +64,14 @@ class Falls:
                 near = tau + TUNING.together * max(1.0, (t + at * step) / step)
                 return at, tau, frozenset(p for p, root in roots.items() if root <= near)
             at += 1
-            suspects[at:] = self._suspects(shapes[at:])
+            suspects[at:] = self._suspects(least[at:], most[at:])
         return None
 
-    def _suspects(self, shapes: Array) -> NDArray[np.bool_]:
-        """Triggers that may fall in a step, or rise from zero, by the bounds that their shapes are."""
-        least = shapes.min(axis=2)
+    def _suspects(self, least: Array, most: Array) -> NDArray[np.bool_]:
+        """Triggers that may fall in a step, or rise from zero, by their bounds in it."""
         if self._ready:
             return np.asarray(least <= 0)
-        rests = (shapes.max(axis=2) < self._limits) & (least > -2 * self._limits)
+        rests = (most < self._limits) & (least > -2 * self._limits)
         return np.asarray(np.where(self._armed, least <= 0, ~rests), dtype=np.bool_)
 
     def _root(self, row: int, powers: Array, elapsed: float, step: float) -> float | None:

@@ -6,8 +6,8 @@
 
 enum { SQUARINGS = 8, PRODUCTS = 1 << SQUARINGS };
 
-/* How rates change with the states, by rows, from differences that stay where laws have values;
- * downwards where `side` is -1. */
+/* How rates change with the states, by rows, from differences that stay where laws have values, and
+ * are large where rates are affine: then slopes do not round; downwards where `side` is -1. */
 static int slopes(bg_located *c, double t, const double *s, double side, double *jacobian)
 {
     const double past = bg_longest_step(t - c->run.began);
@@ -16,7 +16,7 @@ static int slopes(bg_located *c, double t, const double *s, double side, double 
     memcpy(moved, s, sizeof moved);
     for (int j = 0; j < BG_SIZE && status == BG_OK; j++) {
         const double reach = BG_SLOPE_FLOOR * fabs(base[j]) * past + BG_SLOPE_FLOOR;
-        double step = side * (BG_SLOPE * fabs(s[j]) + reach);
+        double step = side * (BG_AFFINE ? BG_FAR : BG_SLOPE * fabs(s[j]) + reach);
         for (int tries = 0; tries < 12; tries++, step *= BG_SLOPE_SHORTER) {
             moved[j] = s[j] + step;
             status = bg_located_rate(c, t, moved, rate);

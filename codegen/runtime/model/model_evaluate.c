@@ -9,7 +9,8 @@ void bg_give(bg_model *m, int count, const int *columns, const double *values)
 {
     for (int k = 0; k < count; k++)
         m->now.u[columns[k]] += values[k];
-    if (BG_LISTED(ROWS, M) && m->numbers.D_list[0]) {
+    /* by the list only where it is shorter than the columns */
+    if (BG_LISTED(ROWS, M) && m->numbers.D_list[0] && count * ROWS > m->numbers.D_list[ROWS]) {
         memset(m->work.more, 0, sizeof m->work.more);
         for (int k = 0; k < count; k++)
             m->work.more[columns[k]] += values[k];
