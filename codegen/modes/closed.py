@@ -112,7 +112,7 @@ class ClosedModel:
     @property
     def size(self) -> int:
         """The length of the integrated vector; at least 1, so that integrators have something."""
-        return max(len(self.program.states) + len(self.program.law_states), 1)
+        return self.program.size
 
     def coupled_directly(self, port: int) -> bool:
         """Whether a friction port's slip depends at once on efforts of friction ports."""

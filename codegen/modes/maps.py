@@ -25,8 +25,7 @@ class AffineMaps:
     ) -> None:
         self._program, self._form = program, form
         self._friction, self._numbers = friction, numbers
-        self._size = max(len(program.states) + len(program.law_states), 1)
-        room = room_for(sum(widths(program)) * self._size)
+        room = room_for(sum(widths(program)) * program.size)
         self._maps = Latest[Mode, AffineMap | None](room)
         self._loose = Latest[Mode, AffineMap | None](room)
         self._bases: dict[int, LetGo] = {}
@@ -69,14 +68,14 @@ class AffineMaps:
     def _probed(self, inputs: int) -> AffineMap:
         """The map where all ports slip forwards; what laws give does not depend on friction."""
         contact = self._friction if self._program.friction else None
-        forwards = tuple(1 for _ in self._program.friction)
+        forwards, n = tuple(1 for _ in self._program.friction), self._program.size
 
         def point(v: Array) -> list[Array]:
-            s, w, dw = np.split(v, [self._size, self._size + inputs])
+            s, w, dw = np.split(v, [n, n + inputs])
             with refusals():
                 now = evaluated(self._form, contact, Point(0.0, s, w, dw), forwards, checked=False)
             return [now.x, now.z, now.u, now.du, now.y, now.rate, now.caps]
 
-        affine = probed(point, self._size + 2 * inputs, RATE)
+        affine = probed(point, n + 2 * inputs, RATE)
         check_finite(affine.rows(INPUTS), affine.matrix, self._program.inputs)
         return affine

@@ -139,6 +139,11 @@ class Program:
     equations: StateEquations = field(repr=False, compare=False)
 
     @property
+    def size(self) -> int:
+        """The length of the integrated vector; at least 1, so that integrators have something."""
+        return max(len(self.states) + len(self.law_states), 1)
+
+    @property
     def blocks(self) -> tuple[Block, ...]:
         """Every block that a target evaluates."""
         laws = (group.values for group in (self.known, *self.groups, self.coupled))
