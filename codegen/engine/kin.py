@@ -33,10 +33,8 @@ class Kin:
         held = tuple(sign == 0 for sign in mode)
         found = self._places.record_of(self._latest.of(held, lambda: mode))
         if found is None:
-            self._latest.drop(held)
-            self._latest.of(held, lambda: mode)
-            return None
-        return found if found.supported and self.are_alike else None
+            self._latest.put(held, mode)
+        return found if found is not None and found.supported and self.are_alike else None
 
     @cached_property
     def are_alike(self) -> bool:

@@ -98,8 +98,7 @@ class Choices:
         least, most = (np.concatenate([one[part] for one in told]) for part in (1, 3))
         key = before, tuple(asked)
         made = Choice(modes[-1], rows, least, most, GENEROUS * both, units)
-        self._kept.drop(key)
-        self._kept.of(key, lambda: made)
+        self._kept.put(key, made)
 
 
 def _told(

@@ -42,6 +42,11 @@ class Latest(Generic[Key, Value]):
         kept[key] = found
         return found
 
+    def put(self, key: Key, value: Value) -> None:
+        """Keep this for a key, in place of what was kept."""
+        self.drop(key)
+        self.of(key, lambda: value)
+
     def get(self, key: Key) -> Value | None:
         """What belongs to a key, if it is kept."""
         found = self._kept.pop(key, None)
