@@ -44,6 +44,10 @@ class Tuning:
     )
     tiny: float = _told(1e-300, "larger than nothing")
 
+    # Products with large tables
+    large_table: int = _told(4096, "entries from which it pays to look which are zero ..")
+    few_entries: int = _told(10, ".. the others are multiplied alone if they are one in so many")
+
     # How short a moment is
     look_ahead: float = _told(1e-4, "ties are decided this part of a time constant later")
     slowest: float = _told(100.0, "1/s, below which nothing is called fast while a run is young")

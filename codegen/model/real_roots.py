@@ -17,7 +17,8 @@ ENDS = (-100.0, -10.0, -1.0, 1.0, 10.0, 100.0)
 """Roots of what is no rational function are looked for in each stretch between two of these."""
 
 NONE = (SimulationError, ArithmeticError, KeyError, NotImplementedError, TypeError, ValueError)
-"""What is raised where an expression has no real value, or a function is not known."""
+"""What is raised where an expression has no real value, or a function is not known: by its fourth name sympy
+tells that it knows none; nothing of this module waits to be written."""
 
 
 @dataclass(frozen=True)

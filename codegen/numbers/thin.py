@@ -6,17 +6,13 @@ import numpy as np
 import scipy
 
 from codegen.numbers.arrays import Array
-
-LARGE = 4096
-"""Entries from which it pays to look at which are zero."""
-
-PART = 0.1
-"""The part of entries up to which those that are not zero are multiplied one by one."""
+from codegen.tuning import TUNING
 
 
 def thin(matrix: Array) -> Any:
     """The matrix as products with it are quickest."""
-    if matrix.size < LARGE or np.count_nonzero(matrix) > PART * matrix.size:
+    few = matrix.size / TUNING.few_entries
+    if matrix.size < TUNING.large_table or few < np.count_nonzero(matrix):
         return matrix
     return scipy.sparse.csr_array(matrix)
 

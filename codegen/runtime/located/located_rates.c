@@ -72,10 +72,8 @@ static double from_products(bg_located *c)
     double v[BG_SIZE], next[BG_SIZE], logarithm = 0.0;
     unsigned noise = 0;
     bg_list_entries(BG_SIZE, BG_SIZE, c->squares[0], BG_LIST(BG_SIZE, BG_SIZE), c->list);
-    for (int i = 0; i < BG_SIZE; i++) {
-        noise = (1664525u * noise + 1013904223u) & 0xffffffffu;
-        v[i] = noise / 2147483648.0 - 1.0;
-    }
+    for (int i = 0; i < BG_SIZE; i++)
+        v[i] = bg_stir(&noise);
     for (int k = 0; k < PRODUCTS; k++) {
         memset(next, 0, sizeof next);
         bg_multiply_listed(BG_SIZE, BG_SIZE, c->squares[0], c->list, v, next);

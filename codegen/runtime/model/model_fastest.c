@@ -83,10 +83,8 @@ static void keep_direction(bg_model *m, const fit *found, const double *next)
 {
     bg_fastest *const f = &m->fastest;
     double stir[BG_SIZE] = {0};
-    for (int i = 0; i < ALL; i++) {
-        f->noise = (1664525u * f->noise + 1013904223u) & 0xffffffffu;
-        stir[i] = f->noise / 2147483648.0 - 1.0;
-    }
+    for (int i = 0; i < ALL; i++)
+        stir[i] = bg_stir(&f->noise);
     normalised(m, stir);
     for (int i = 0; i < ALL; i++)
         f->direction[i] = next[i] + BG_STIRRED * stir[i];

@@ -83,6 +83,13 @@ int bg_finite(int count, const double *values);
 double bg_largest(int count, const double *values);
 double *bg_put(double *to, int count, const double *from);
 
+/* The next of a row of numbers between -1 and 1 that follow no structure; `noise` begins at 0. */
+static inline double bg_stir(unsigned *noise)
+{
+    *noise = (1664525u * *noise + 1013904223u) & 0xffffffffu;
+    return *noise / 2147483648.0 - 1.0;
+}
+
 /* model_numbers.c */
 int bg_assemble(bg_model *m);
 void bg_inverse_entries(bg_model *m, int count, const int *rows, const int *columns, double *out);

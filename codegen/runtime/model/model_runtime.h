@@ -10,17 +10,17 @@
 #include "layout.h"
 #include "port_set.h"
 #include "run_status.h"
+#include "tuning.h"
 
 /* Arrays of a length that may be zero have room for one. */
 #define BG_ROOM(n) ((n) > 0 ? (n) : 1)
 #define BG_TABLE(rows, columns) (BG_ROOM(rows) * BG_ROOM(columns))
 
-/* Room to list which entries of a table are not zero: of a large one, up to a tenth of them (sizes
- * from which numpy asks, too: numbers/thin.py). Begins with where the columns of each row begin in
- * the list; 0 in front where there is none. */
-#define BG_LISTED(rows, columns) (BG_TABLE(rows, columns) >= 4096)
+/* Room to list which entries of a table are not zero: of a large one, if they are few. Begins with
+ * where the columns of each row begin in the list; 0 in front where there is none. */
+#define BG_LISTED(rows, columns) (BG_TABLE(rows, columns) >= BG_LARGE_TABLE)
 #define BG_LIST(rows, columns) \
-    (BG_LISTED(rows, columns) ? (rows) + 1 + BG_TABLE(rows, columns) / 10 : 1)
+    (BG_LISTED(rows, columns) ? (rows) + 1 + BG_TABLE(rows, columns) / BG_FEW_ENTRIES : 1)
 
 enum {
     /* The integrated vector s: states less what driven dependent storages add, then law states. */
