@@ -43,6 +43,8 @@ class Tuning:
         1e-15, "of the largest effort: the least that a port's limit counts as"
     )
     tiny: float = _told(1e-300, "larger than nothing")
+    exchanged: float = _told(1e-14, "of its terms, by which a shared effort may be above its share")
+    exchanges: int = _told(10_000, "ports exchanged beyond which rounding alone would go on")
 
     # Products with large tables
     large_table: int = _told(4096, "entries from which it pays to look which are zero ..")

@@ -5,18 +5,20 @@ changes is a load that its ports carry, whatever they share: a circuit, if no po
 out. Its ports carry at least the fraction ``|load| / sum of |weight| cap``, and the circuit of
 the highest such fraction reaches it. Once its ports are settled the others share along what
 directions are left.
+
+That circuit is found by Stiefel's exchange (Numer. Math. 1, 1959; Cheney, Introduction to
+Approximation Theory, ch. 2), the simplex method on the dual of that linear program: a reference
+is one port more than there are directions, and the fraction of its load rises as one of its ports
+is exchanged for one that would carry more. Where the port that goes has no weight it stays; ports
+then come by their number until it rises (Bland, Math. Oper. Res. 2, 1977), so that none returns.
 """
 
-import math
-from itertools import combinations
+from dataclasses import dataclass
 
 import numpy as np
 
 from codegen.standalone.arrays import Array, EvaluationError, Places
 from codegen.tuning import TUNING
-
-MOST_WAYS = 20_000
-"""So many choices of ports that may carry a load together are looked at."""
 
 
 def fair_share(efforts: Array, share: Array, caps: Array) -> Array:
@@ -24,53 +26,146 @@ def fair_share(efforts: Array, share: Array, caps: Array) -> Array:
 
     Then the next largest of the ports that remain, and so on: there is one answer. So redundant
     ports hold whenever any way of sharing the load would hold. A port with no cap carries nothing,
-    if the others can carry its part.
+    if the others can carry its part. Raises `EvaluationError` where exchanges find no end.
 
     >>> fair_share(np.array([30.0, 0.0]), np.array([[1.0, -1.0]]), np.array([100.0, 200.0]))
     array([10., 20.])
     """
     caps = np.maximum(caps, TUNING.least_cap * np.abs(efforts).max(initial=0.0) + TUNING.tiny)
-    efforts = np.array(efforts, dtype=float)
-    while len(share):
-        least = TUNING.nothing * np.abs(share).max()
-        moved = np.flatnonzero(np.abs(share).max(axis=0) > least)
-        ports, fractions = _settled(efforts[moved], share[:, moved], caps[moved])
-        ports = moved[ports]
-        columns = share[:, ports].T
-        way = np.linalg.lstsq(
-            columns, fractions * caps[ports] - efforts[ports], rcond=TUNING.nothing
-        )[0]
-        efforts += way @ share
-        share = _unmoved(columns) @ share
+    efforts, rows = np.array(efforts, dtype=float), np.array(share, dtype=float)
+    left = np.arange(len(efforts))
+    while len(rows) and len(left):
+        rows, pivots = _reduced(rows, left)
+        left = left[np.abs(rows[:, left]).max(axis=0, initial=0.0) > TUNING.nothing]
+        found = Sharing(efforts, caps, left).settled(rows, pivots)
+        moves = found.weights[found.pivots] != 0.0
+        efforts = efforts + found.ways[moves] @ found.rows[moves]
+        left, rows = left[found.weights[left] == 0.0], found.rows[~moves]
     return efforts
 
 
-def _settled(efforts: Array, share: Array, caps: Array) -> tuple[Places, Array]:
-    """The ports of the circuit of highest fraction, and that fraction with each port's sign."""
-    free, count = share.shape
-    if math.comb(count, free + 1) > MOST_WAYS:
+def _reduced(rows: Array, ports: Places) -> tuple[Array, Places]:
+    """Gauss-Jordan elimination on the columns of these ports, each time by the largest pivot."""
+    rows, pivots = rows.copy(), []
+    least = TUNING.nothing * np.abs(rows).max()
+    for k in range(min(len(rows), len(ports))):
+        sizes = np.abs(rows[k:, ports])
+        at, place = divmod(int(sizes.argmax()), len(ports))
+        if not sizes[at, place] > least:
+            break
+        port = int(ports[place])
+        pivot = rows[k + at] / rows[k + at, port]
+        rows[k + at] = rows[k]
+        rows -= rows[:, port, None] * pivot
+        rows[k] = pivot
+        pivots.append(port)
+    return rows[: len(pivots)], np.array(pivots, dtype=np.intp)
+
+
+@dataclass(frozen=True)
+class Reference:
+    """Directions by rows, of which each has one of ``pivots`` to itself, and one port more.
+
+    ``weights``: of each port's effort in their load. ``ways``: how far to go along each direction
+    for these ports to carry the ``fraction`` of their caps, each on its side.
+    """
+
+    rows: Array
+    pivots: Places
+    weights: Array
+    fraction: float
+    sides: Array
+    ways: Array
+
+
+@dataclass(frozen=True)
+class Sharing:
+    """Efforts, what each port can hold, and the ports that are left to share and that move."""
+
+    efforts: Array
+    caps: Array
+    left: Places
+
+    def settled(self, rows: Array, pivots: Places) -> Reference:
+        """The reference with the highest fraction; ports that each move alone carry none."""
+        last = self._first(rows, pivots)
+        if last is None:
+            free = np.zeros(len(self.caps))
+            free[pivots] = 1.0
+            return Reference(rows, pivots, free, 0.0, free, -self.efforts[pivots])
+        found, stays = self._reference(rows, pivots, last, np.ones(len(self.caps))), False
+        for _ in range(TUNING.exchanges):
+            port, side = self._entering(found, last, stays)
+            if port is None:
+                return found
+            leaving, stays = _leaving(found, port, side, last)
+            ports = np.sort([port, *(one for one in (*pivots, last) if one != leaving)])
+            table, pivots = _reduced(rows, ports)
+            if len(pivots) < len(rows):
+                return found
+            last = next(one for one in ports if one not in pivots)
+            sides = found.sides.copy()
+            sides[port] = side
+            after = self._reference(table, pivots, last, sides)
+            if not stays and not after.fraction > found.fraction:
+                return found  # by rounding alone that port would carry more
+            found = after
         raise EvaluationError(
-            f"{count} ports that hold would share loads in too many ways to look at"
+            f"how {len(self.left)} ports that hold share a load was not found in "
+            f"{TUNING.exchanges} exchanges"
         )
-    chosen = np.array(list(combinations(range(count), free + 1)), dtype=int)
-    if count == free:
-        return np.arange(count), np.zeros(count)
-    _, sizes, right = np.linalg.svd(share[:, chosen].transpose(1, 0, 2))
-    weights = np.zeros((len(chosen), count))
-    np.put_along_axis(weights, chosen, right[:, -1], axis=1)
-    weights[np.abs(weights) <= TUNING.nothing] = 0.0
-    loads = weights @ efforts
-    fractions = np.abs(loads) / (np.abs(weights) @ caps)
-    fractions[sizes[:, -1] <= TUNING.nothing * sizes[:, 0]] = -1.0
-    worst = int(np.argmax(fractions))
-    ports = np.flatnonzero(weights[worst])
-    signed: Array = fractions[worst] * np.sign(loads[worst]) * np.sign(weights[worst, ports])
-    return ports, signed
+
+    def _first(self, rows: Array, pivots: Places) -> int | None:
+        """The port that has with pivots the load of the highest fraction; none if all are."""
+        beside = np.ones(len(self.caps), dtype=bool)
+        beside[pivots] = False
+        others = self.left[beside[self.left]]
+        if not len(others):
+            return None
+        loads = self.efforts[others] - self.efforts[pivots] @ rows[:, others]
+        most = self.caps[others] + self.caps[pivots] @ np.abs(rows[:, others])
+        return int(others[np.argmax(np.abs(loads) / most)])
+
+    def _reference(self, rows: Array, pivots: Places, last: int, sides: Array) -> Reference:
+        """Of pivots and one port more; ``sides``: those of ports without weight."""
+        weights = np.zeros(len(sides))
+        weights[pivots] = -_cleaned(rows[:, last])
+        weights[last] = 1.0
+        load = weights @ self.efforts
+        fraction = float(abs(load) / (np.abs(weights) @ self.caps))
+        sides = np.where(weights != 0.0, np.copysign(1.0, load) * np.sign(weights), sides)
+        ways = fraction * sides[pivots] * self.caps[pivots] - self.efforts[pivots]
+        return Reference(rows, pivots, weights, fraction, sides, ways)
+
+    def _entering(self, at: Reference, last: int, stays: bool) -> tuple[int | None, float]:
+        """The port that would carry the largest fraction above, or the first one; its side."""
+        sums = self.efforts + at.ways @ at.rows
+        terms = np.abs(self.efforts) + np.abs(at.ways) @ np.abs(at.rows)
+        above = np.abs(sums) - at.fraction * self.caps > TUNING.exchanged * terms
+        above[[*at.pivots, last]] = False
+        ports = self.left[above[self.left]]
+        if not len(ports):
+            return None, 0.0
+        port = int(ports[0 if stays else np.argmax(np.abs(sums[ports]) / self.caps[ports])])
+        return port, float(np.sign(sums[port]))
 
 
-def _unmoved(columns: Array) -> Array:
-    """Combinations of directions that move none of these ports."""
-    _, sizes, right = np.linalg.svd(columns)
-    rank = int((sizes > TUNING.nothing * sizes[0]).sum())
-    found: Array = right[rank:]
-    return found
+def _cleaned(column: Array) -> Array:
+    """Entries, less what is rounding beside one."""
+    sizes = np.abs(column)
+    return np.where(sizes > TUNING.nothing * max(1.0, sizes.max()), column, 0.0)
+
+
+def _leaving(at: Reference, port: int, side: float, last: int) -> tuple[int, bool]:
+    """The pivot that this port takes to its other side first; and whether it has no weight.
+
+    Where it takes none of them there the port beside the pivots leaves.
+    """
+    against = side * _cleaned(at.rows[:, port]) * at.sides[at.pivots]
+    turned = against > 0.0
+    if not turned.any():
+        return last, False
+    ports = at.pivots[turned]
+    ratios = np.abs(at.weights[ports]) / against[turned]
+    leaving = int(ports[ratios == ratios.min()].min())
+    return leaving, bool(at.weights[leaving] == 0.0)

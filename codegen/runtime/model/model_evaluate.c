@@ -120,8 +120,9 @@ static int rub_jointly(bg_model *m, const int *mode, bg_hold *held, int checked)
         efforts[r] = m->now.u[columns[r]];
         caps[r] = m->caps[held->ports[r]];
     }
-    if (!bg_fair_share(held, caps, efforts))
-        return BG_NO_HOLD;
+    status = bg_fair_share(held, caps, efforts);
+    if (status != BG_OK)
+        return status;
     for (int r = 0; r < held->count; r++)
         efforts[r] -= m->now.u[columns[r]];
     bg_give(m, held->count, columns, efforts);

@@ -163,7 +163,7 @@ int bg_held(bg_model *m, const bg_start *at);
  * rates of inputs are in m->work. */
 int bg_decide_step(bg_model *m, double t, double h, double *s, const double *w);
 
-/* port_share.c: 0 where there are too many ways to share. */
+/* port_share.c: efforts of redundant ports as they share. */
 int bg_fair_share(const bg_hold *held, const double *caps, double *efforts);
 
 /* model_roots.c: a root of f between a and b, unless its signs there are the same: then 0. */

@@ -11,6 +11,7 @@ enum bg_status {
     BG_NO_SOLUTION,  /* laws that depend on one another: no solution found */
     BG_BAD_FRICTION, /* a level or curve below zero, or a breakaway below the friction at rest */
     BG_NO_HOLD,      /* sticking ports have no unique holding efforts */
+    BG_NO_SHARE,     /* how redundant ports share a load was not found */
     BG_STRUCTURE,    /* parameters change which ports are redundant */
     BG_NEEDS_SLOPE,  /* holding would need the slope in time of an input that a law gives */
     BG_NOT_AFFINE,   /* the model, or this mode of it, is no affine map */
