@@ -9,8 +9,9 @@ directions are left.
 That circuit is found by Stiefel's exchange (Numer. Math. 1, 1959; Cheney, Introduction to
 Approximation Theory, ch. 2), the simplex method on the dual of that linear program: a reference
 is one port more than there are directions, and the fraction of its load rises as one of its ports
-is exchanged for one that would carry more. Where the port that goes has no weight it stays; ports
-then come by their number until it rises (Bland, Math. Oper. Res. 2, 1977), so that none returns.
+is exchanged for one that would carry more. Where the port that goes has no weight the fraction
+stays; which of several goes is told by their order, so that no reference comes twice (Dantzig,
+Orden, Wolfe, Pacific J. Math. 5, 1955).
 """
 
 from dataclasses import dataclass
@@ -72,6 +73,7 @@ class Reference:
 
     rows: Array
     pivots: Places
+    last: int
     weights: Array
     fraction: float
     sides: Array
@@ -92,22 +94,16 @@ class Sharing:
         if last is None:
             free = np.zeros(len(self.caps))
             free[pivots] = 1.0
-            return Reference(rows, pivots, free, 0.0, free, -self.efforts[pivots])
-        found, stays = self._reference(rows, pivots, last, np.ones(len(self.caps))), False
+            return Reference(rows, pivots, -1, free, 0.0, free, -self.efforts[pivots])
+        first = found = self._reference(rows, pivots, last, np.ones(len(self.caps)))
         for _ in range(TUNING.exchanges):
-            port, side = self._entering(found, last, stays)
+            port, side = self._entering(found)
             if port is None:
                 return found
-            leaving, stays = _leaving(found, port, side, last)
-            ports = np.sort([port, *(one for one in (*pivots, last) if one != leaving)])
-            table, pivots = _reduced(rows, ports)
-            if len(pivots) < len(rows):
-                return found
-            last = next(one for one in ports if one not in pivots)
-            sides = found.sides.copy()
-            sides[port] = side
-            after = self._reference(table, pivots, last, sides)
-            if not stays and not after.fraction > found.fraction:
+            leaving = _leaving(found, port, side, first)
+            after = self._exchanged(rows, found, leaving, port, side)
+            stays = found.weights[leaving] == 0.0
+            if after is None or not (stays or after.fraction > found.fraction):
                 return found  # by rounding alone that port would carry more
             found = after
         raise EvaluationError(
@@ -135,37 +131,70 @@ class Sharing:
         fraction = float(abs(load) / (np.abs(weights) @ self.caps))
         sides = np.where(weights != 0.0, np.copysign(1.0, load) * np.sign(weights), sides)
         ways = fraction * sides[pivots] * self.caps[pivots] - self.efforts[pivots]
-        return Reference(rows, pivots, weights, fraction, sides, ways)
+        return Reference(rows, pivots, last, weights, fraction, sides, ways)
 
-    def _entering(self, at: Reference, last: int, stays: bool) -> tuple[int | None, float]:
-        """The port that would carry the largest fraction above, or the first one; its side."""
+    def _entering(self, at: Reference) -> tuple[int | None, float]:
+        """The port that would carry the largest fraction above the reference's, and its side."""
         sums = self.efforts + at.ways @ at.rows
         terms = np.abs(self.efforts) + np.abs(at.ways) @ np.abs(at.rows)
         above = np.abs(sums) - at.fraction * self.caps > TUNING.exchanged * terms
-        above[[*at.pivots, last]] = False
+        above[at.pivots] = above[at.last] = False
         ports = self.left[above[self.left]]
         if not len(ports):
             return None, 0.0
-        port = int(ports[0 if stays else np.argmax(np.abs(sums[ports]) / self.caps[ports])])
+        port = int(ports[np.argmax(np.abs(sums[ports]) / self.caps[ports])])
         return port, float(np.sign(sums[port]))
 
+    def _exchanged(
+        self, rows: Array, at: Reference, leaving: int, port: int, side: float
+    ) -> Reference | None:
+        """One port for another on this side; None where those move in fewer directions."""
+        ports = np.sort([port, *(one for one in (*at.pivots, at.last) if one != leaving)])
+        table, pivots = _reduced(rows, ports)
+        if len(pivots) < len(rows):
+            return None
+        sides = at.sides.copy()
+        sides[port] = side
+        last = next(one for one in ports.tolist() if one not in pivots)
+        return self._reference(table, pivots, last, sides)
 
-def _cleaned(column: Array) -> Array:
-    """Entries, less what is rounding beside one."""
-    sizes = np.abs(column)
-    return np.where(sizes > TUNING.nothing * max(1.0, sizes.max()), column, 0.0)
+
+def _cleaned(columns: Array) -> Array:
+    """Entries, less what is rounding beside one and the largest of their column."""
+    sizes = np.abs(columns)
+    least = TUNING.nothing * np.maximum(1.0, sizes.max(axis=0))
+    return np.where(sizes > least, columns, 0.0)
 
 
-def _leaving(at: Reference, port: int, side: float, last: int) -> tuple[int, bool]:
-    """The pivot that this port takes to its other side first; and whether it has no weight.
-
-    Where it takes none of them there the port beside the pivots leaves.
-    """
+def _leaving(at: Reference, port: int, side: float, first: Reference) -> int:
+    """The pivot that a port on this side turns first; where it turns none, the port beside them."""
     against = side * _cleaned(at.rows[:, port]) * at.sides[at.pivots]
-    turned = against > 0.0
-    if not turned.any():
-        return last, False
-    ports = at.pivots[turned]
-    ratios = np.abs(at.weights[ports]) / against[turned]
-    leaving = int(ports[ratios == ratios.min()].min())
-    return leaving, bool(at.weights[leaving] == 0.0)
+    sizes = np.abs(at.weights[at.pivots])
+    turned = np.flatnonzero(against > 0.0)
+    if len(turned):
+        turned = turned[_least(sizes[turned] / against[turned])]
+        return int(at.pivots[_in_turn(at, turned, against[turned], first)])
+    kept = np.flatnonzero((against == 0.0) & (sizes > 0.0))
+    found = _in_turn(at, np.append(kept, -1), np.append(sizes[kept], np.inf), first)
+    return at.last if found < 0 else int(at.pivots[found])
+
+
+def _in_turn(at: Reference, rows: Places, by: Array, first: Reference) -> int:
+    """Of these rows, where -1 is none, that whose port is the first to turn, if the ports of the
+    first reference had loads of their own, on their sides and each far smaller than the one before.
+    """
+    if len(rows) == 1:
+        return int(rows[0])
+    scales = at.sides[at.pivots[rows]] / by
+    for port in np.sort([*first.pivots, first.last]):
+        near = _least(scales * _cleaned(at.rows[:, port])[rows] * first.sides[port])
+        rows, scales = rows[near], scales[near]
+        if len(rows) == 1:
+            break
+    return int(rows[0])
+
+
+def _least(values: Array) -> Array:
+    """Which are the least, but for rounding."""
+    least = float(values.min())
+    return np.asarray(values <= least + TUNING.nothing * abs(least))

@@ -29,6 +29,14 @@ typedef struct {
  * pivot; leaves as many directions as are independent there. */
 void bg_reduce(bg_directions *d, int size, const int *ports);
 
+/* port_reference.c: whether a port is a pivot; what of a port's column is rounding beside one and
+ * the largest entry; the port that has with pivots the load of the highest fraction, -1 if all are.
+ * at's load by its directions and last port, and at->sides of all ports that have a weight. */
+int bg_is_pivot(const bg_directions *d, int port);
+double bg_least_entry(const bg_directions *d, int port);
+int bg_first_port(const bg_load *load, const bg_directions *d);
+void bg_refer(const bg_load *load, bg_reference *at);
+
 /* port_exchange.c: that of the two references which has the highest fraction; ports that each move
  * alone carry none. NULL where exchanges find no end. */
 const bg_reference *bg_settle(const bg_load *load, const bg_directions *d, bg_reference *two);

@@ -29,8 +29,11 @@ class SharesInC:
         self.call.argtypes = [ctypes.c_int, ctypes.c_int, Numbers, Numbers, Numbers]
 
     def __call__(self, efforts: np.ndarray, share: np.ndarray, caps: np.ndarray) -> np.ndarray:
-        found = np.array(efforts, dtype=float)
-        rows, most = np.array(share, dtype=float), np.array(caps, dtype=float)
-        status = self.call(*rows.shape, *(one.ctypes.data_as(Numbers) for one in (rows, most, found)))
+        found, rows, most = (
+            np.array(one, dtype=float, order="C") for one in (efforts, share, caps)
+        )
+        status = self.call(
+            *rows.shape, *(one.ctypes.data_as(Numbers) for one in (rows, most, found))
+        )
         assert status == 0, status
         return found
