@@ -152,7 +152,8 @@ static int exchange(const bg_load *load, const bg_directions *d, const bg_refere
 }
 
 /* The first reference; where no port is beside the pivots these are to carry nothing. */
-static void begin(const bg_load *load, const bg_directions *d, bg_reference *at, port_order *first)
+static void first_reference(const bg_load *load, const bg_directions *d, bg_reference *at,
+                            port_order *first)
 {
     copy_directions(d, &at->by);
     at->last = bg_first_port(load, d);
@@ -174,7 +175,7 @@ const bg_reference *bg_settle(const bg_load *load, const bg_directions *d, bg_re
 {
     bg_reference *at = two, *after = two + 1;
     port_order first;
-    begin(load, d, at, &first);
+    first_reference(load, d, at, &first);
     for (int k = 0; k < BG_EXCHANGES; k++) {
         double side = 1.0;
         const int to = at->last < 0 ? -1 : entering(load, at, &side);

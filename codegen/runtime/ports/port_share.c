@@ -10,7 +10,7 @@
 
 #include "port_share.h"
 
-static void swap_rows(int count, double *a, double *b)
+static void swap(int count, double *a, double *b)
 {
     for (int i = 0; i < count; i++) {
         const double kept = a[i];
@@ -54,7 +54,7 @@ void bg_reduce(bg_directions *d, int size, const int *ports)
         if (!(largest > least))
             break;
         if (row != rank)
-            swap_rows(d->count, d->rows + rank * d->count, d->rows + row * d->count);
+            swap(d->count, d->rows + rank * d->count, d->rows + row * d->count);
         eliminate(d, rank, port);
     }
     d->free = rank;

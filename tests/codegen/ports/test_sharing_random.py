@@ -64,7 +64,7 @@ def test_many_ports_share_along_many_directions(shared: Share, seed: int) -> Non
 
 @pytest.mark.parametrize("seed", [3, 4, 9, 14])
 def test_references_of_one_load_end(seed: int) -> None:
-    """Sixty ports, many alike: without an order among those that may go, references come again."""
+    """Sixty ports, many alike, where most exchanges leave the load as it was."""
     efforts, share, caps = _case(seed, 60, 30)
     found = fair_share(efforts, share, caps)
     assert found == pytest.approx(by_linear_programs(efforts, share, caps), rel=0, abs=1e-9)
