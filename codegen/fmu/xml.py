@@ -97,6 +97,7 @@ def _about(at: int, variable: Variable) -> dict[str, str]:
         "causality": variable.causality,
         "variability": variable.variability,
     }
+    found |= {"description": variable.description} if variable.description else {}
     return found | ({"initial": variable.initial} if variable.initial else {})
 
 

@@ -28,6 +28,7 @@ from codegen.sweeps.design import Table, design
 from codegen.sweeps.drive import QUICK, STEADY, Pace, Work, drive
 from codegen.sweeps.job import Job, Model
 from codegen.sweeps.measuring import batch_of, sent
+from codegen.sweeps.resting import tell_all_resting
 from codegen.sweeps.result import Collected, Sweep, SweepInterrupted
 from codegen.sweeps.store import Store
 from codegen.tuning import TUNING
@@ -76,7 +77,8 @@ def sweep(
     tqdm is installed.
 
     Runs that backend "c" cannot do are done by numpy; one `BackendWarning` tells how many, and why. Starts
-    that were completed by what switches hold are in ``completed``; one `ModelWarning` tells of them.
+    that were completed by what switches hold are in ``completed``; one `ModelWarning` tells of them. One for
+    each switch tells in how many runs it stays on while its command rests at zero, and of the first.
 
     A run that is refused, or whose process ends, is told in ``failed``; the others go on. Interrupted, it
     raises `SweepInterrupted`, a `KeyboardInterrupt` whose ``sweep`` has what is done.
@@ -131,6 +133,7 @@ def sweep(
     tell_all(collected.fallen, len(runs))
     found = collected.sweep(runs, job.time, over_time)
     tell_all_completed(found.completed, len(runs))
+    tell_all_resting(job, runs)
     return found
 
 
