@@ -54,6 +54,7 @@ def sweep(
     progress: bool = True,
     chunk: int | None = None,
     initially_on: Iterable[Hashable] = (),
+    events: bool = True,
 ) -> Sweep:
     """Run a model once for each set of numbers and keep the measures of each run.
 
@@ -72,6 +73,10 @@ def sweep(
     ``if __name__ == "__main__":``. ``client``: a `distributed.Client` to run on instead. ``chunk``: how
     many runs are done together, by default what takes some seconds, in C one at most. None of these
     changes a number.
+
+    Events of a run are gone with it. They are kept for `first_event` and `event_count`, in C up to a fixed
+    number, and for functions of your own, where a run's memory grows with its switchings: ``events=False``
+    keeps none for these, as `Simulator.run` does.
 
     ``store``: a folder to keep finished runs in; the same call continues there. ``progress``: a bar, where
     tqdm is installed.
@@ -102,7 +107,7 @@ def sweep(
     settings = MappingProxyType({"method": method, "rtol": rtol, "atol": atol})
     asked = MappingProxyType(dict(measures))
     on = tuple(initially_on)
-    job = Job(model, runs.names, checked_times(time), asked, initial, inputs, settings, on)
+    job = Job(model, runs.names, checked_times(time), asked, initial, inputs, settings, on, events)
     _check(job)
     _check_count(workers, "workers", 0)
     _check_count(chunk, "chunk", 1)
@@ -221,6 +226,8 @@ def _check_measures(job: Job) -> None:
     for name, measure in job.measures.items():
         if not callable(measure):
             raise SignalError(f"measure {name!r}: {measure!r} is not a function of a run")
+    if not job.events and job.asking:
+        raise SignalError(f"measure {job.asking[0]!r} asks for events; leave events=False out")
     for name in RESERVED:
         if name in job.names or name in job.measures:
             raise SignalError(f"{name!r} names an axis; call the column something else")
