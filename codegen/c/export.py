@@ -194,9 +194,7 @@ def _head(program: Program, equations: StateEquations, name: str, prefix: str) -
     for one in equations.switches:
         if told := conditions_told(one):
             rows += comment(f"switch {one.name}: {told}")
-    names = "\n".join(
-        f" * {row.removeprefix('/* ').removeprefix(' * ').removesuffix(' */')}" for row in rows
-    )
+    names = "\n".join(f" * {row.removeprefix('/* ').removesuffix(' */')}" for row in rows)
     title = comment(name)[0].removeprefix("/* ").removesuffix(" */")
     count = sum(code.operations for code in program.blocks)
     text = _HEAD.format(

@@ -115,6 +115,17 @@ def test_what_turns_a_switch_is_in_the_files() -> None:
     assert "zero changes nothing" not in to_python(ideal, {}) + to_c(ideal, {})["model.c"]
 
 
+@pytest.mark.parametrize("length", range(1, 40))
+def test_the_head_is_one_comment_however_its_lines_break(length: int) -> None:
+    """Also where a line ends just before the mark that closes a comment."""
+    nodes = [bg.Se("u", 1), bg.One("j"), bg.Sw("s" * length, on="gate"), bg.R("R", 1), bg.C("C", 1)]
+    head, rest = to_c(bg.derive(bond_graph(nodes, f"u>j j>{'s' * length} j>R j>C")), {})[
+        "model.c"
+    ].split("*/", 1)
+    assert "turns on as gate rises" in head
+    assert rest.lstrip().startswith("#include <math.h>")
+
+
 @needs_compiler
 @pytest.mark.parametrize("version", ["2.0", "3.0"])
 def test_what_turns_a_switch_is_told_at_it_and_at_its_input(version: str, tmp_path: Path) -> None:
