@@ -2,10 +2,10 @@
 
 from bondgraph.algebra.expressions import expression
 from bondgraph.analyse.explicit import explicit
-from bondgraph.analyse.holding import holding_efforts
 from bondgraph.analyse.linear_model import LinearModel
 from bondgraph.analyse.linearize import linearize
 from bondgraph.analyse.loops import Loop, loops
+from bondgraph.analyse.sticking import holding_efforts
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.assignments import Assignment, assignments
 from bondgraph.causality.causal_graph import CausalGraph

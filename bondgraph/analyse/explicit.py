@@ -11,6 +11,7 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.tidy import tidy
 from bondgraph.analyse.closures import merged_laws
 from bondgraph.analyse.holding import balances_of
+from bondgraph.analyse.input_rates import rate_symbol
 from bondgraph.analyse.turned import turned
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
@@ -126,7 +127,7 @@ class _Explicit:
     def _input_rate(self, name: sp.Symbol) -> sp.Expr:
         """``d_u`` of an open input; a known law's own slope in time and along what it reads."""
         if name not in self._laws:
-            return sp.Symbol(f"d_{name}")
+            return rate_symbol(name)
         law = self._laws[name].expression
         inner = sorted(law.free_symbols & set(self._equations.inputs), key=str)
         slopes = [slope_of(law, other) * self._input_rate(other) for other in inner]

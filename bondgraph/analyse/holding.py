@@ -1,4 +1,4 @@
-"""Ports that stick: the efforts that hold them, and the system with their slips taken out."""
+"""Ports that stick: which are meant, and what they receive as rows that are solved for what holds them."""
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from types import MappingProxyType
@@ -7,49 +7,11 @@ import sympy as sp
 
 from bondgraph.algebra.exact import Row, SingularError, rows_of, solve
 from bondgraph.algebra.residues import is_zero
-from bondgraph.algebra.tidy import tidy
 from bondgraph.analyse.constrained import echelon
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, StructureError
-from bondgraph.reduce.rates import resolved
 from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.structure import Port
-
-
-def holding_efforts(
-    equations: StateEquations, stuck: Iterable[Hashable]
-) -> Mapping[sp.Symbol, sp.Expr]:
-    """What ports must give to keep what they receive at zero, over states and the other inputs.
-
-    From ``F_s A^-1 (J x + B u) = 0``, jointly for all ports of ``stuck`` (nodes, switches too), or, where a
-    resistance lies beside them, from ``F_s x + D_s u = 0`` (Deur, Hancock, Assadian 2008, eq. (8)
-    and the stiction torques of Fig. 9).
-
-    Raises `StructureError` for unknown ports and for redundant ones, whose efforts are not unique;
-    `DependentSourceError` where the rate of another input would be needed.
-
-    >>> import bondgraph as bg, networkx as nx
-    >>> g = nx.DiGraph()
-    >>> g.add_nodes_from([bg.Se("push", "P"), bg.One("block"), bg.I("m", "m"), bg.R("ground", effort="F")])
-    >>> g.add_edges_from([("push", "block"), ("block", "m"), ("block", "ground")])
-    >>> dict(holding_efforts(bg.derive(g), ["ground"]))
-    {F: P}
-    """
-    ports = stuck_ports(equations, stuck, {one.name: one.port for one in equations.switches})
-    if equations.varying:
-        raise StructureError(
-            "values of this graph change in time, and with them what a port must give: hold it in a run"
-        )
-    held = [equations.inputs.index(port.given) for port in ports]
-    rows = [equations.readings[port.received] for port in ports]
-    direct, bound, _ = split(rows, held)
-    rates = [_rate(equations, row, ports) for row in bound]
-    solved = solve_for([*direct, *rates], held, len(equations.states), ports)
-    variables = [*equations.states, *equations.inputs]
-    return MappingProxyType({
-        port.given: tidy(sp.Add(*(entry * variables[at] for at, entry in sorted(row.items()))))
-        for port, row in zip(ports, solved, strict=True)
-    })  # fmt: skip
 
 
 def stuck_ports(
@@ -105,19 +67,8 @@ def balances_of(equations: StateEquations) -> tuple[list[Row], list[Reading]]:
     return rows_of(equations.A), balances
 
 
-def _rate(equations: StateEquations, row: Reading, ports: Sequence[Port]) -> Reading:
-    """How fast a slip changes that efforts don't touch at once, as a row over states and inputs."""
-    if not (row.H or row.K or row.D):
-        rate = resolved(*balances_of(equations), Reading({}, {}, row.F, {}))
-        if not rate.K:
-            return rate
-    raise DependentSourceError(
-        f"what holds {_names(ports)} depends on the rate of an input or of what a law gives; put a storage "
-        "or a resistance between, or simulate it"
-    )
-
-
-def _names(ports: Sequence[Port]) -> str:
+def listed(ports: Sequence[Port]) -> str:
+    """The nodes of ports, for people."""
     return ", ".join(repr(port.element.name) for port in ports)
 
 
@@ -130,7 +81,7 @@ def solve_for(
     """
     if any(row.H or row.K for row in rows):
         raise DependentSourceError(
-            f"what holds {_names(ports)} depends on the rate of what drives a dependent storage; "
+            f"what holds {listed(ports)} depends on the rate of what drives a dependent storage; "
             "put a storage or a resistance between, or simulate it"
         )
     inside = [
@@ -146,5 +97,5 @@ def solve_for(
         return solve(inside, right) if held else []
     except SingularError:
         raise StructureError(
-            f"the ports {_names(ports)} hold one another: their efforts are not unique; name fewer of them"
+            f"the ports {listed(ports)} hold one another: their efforts are not unique; name fewer of them"
         ) from None

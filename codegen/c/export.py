@@ -4,7 +4,6 @@ from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
 from importlib.metadata import version
 from typing import Any
 
-from bondgraph.declare.switching import checked_modes
 from bondgraph.equations import StateEquations
 from codegen.c.blocks import function, places
 from codegen.c.prefix import external_symbols, renamed
@@ -14,12 +13,14 @@ from codegen.c.runtime import runtime_file, runtime_names
 from codegen.c.scenario import scenario_text
 from codegen.c.tables import config, group_tables, name_tables, program_tables, slip_tables
 from codegen.c.text import comment
+from codegen.model.commands import conditions_told
 from codegen.model.doubts import warn_of_doubts
+from codegen.model.resting import warn_of_rests
 from codegen.modes.closed import ClosedModel
 from codegen.ports.holds import check_sets
 from codegen.program.layout import layout_text
 from codegen.program.records import Program
-from codegen.runs.start import start_of
+from codegen.runs.start import Start, start_of
 from codegen.tuning import tuning_text
 
 STEPPED = ("model", "ports", "run")
@@ -89,7 +90,8 @@ def to_c(
     ``parameters``: name to number, the defaults of `bg_model_init`. ``laws``: as `simulator` takes them.
     ``name``: what the model calls itself. ``main``: with a main program that prints a run as CSV, from
     ``initial`` (states by name, others start at 0) under ``inputs`` (signals or numbers, others are 0)
-    unless it is told otherwise; `BG_LONGEST_STEP` of config.h is found there, too. ``prefix``: what every
+    unless it is told otherwise, and warned of if a command of a switch that is on rests at zero in it;
+    `BG_LONGEST_STEP` of config.h is found there, too. ``prefix``: what every
     external symbol begins with, such as "front_"; models with different ones link into one program.
     ``initially_on``: the switches that are on before a run, as far as their conditions let them; in the main
     program states that are not in ``initial`` then follow what these hold. The same arguments give the same
@@ -102,8 +104,13 @@ def to_c(
     that no name in C can begin with.
     """
     given = (main, initial, inputs, prefix, initially_on)
-    closed, files = exported(equations, parameters, laws, name, *given)
+    start, files = exported(equations, parameters, laws, name, *given)
+    closed = start.closed
     warn_of_doubts(closed.program, equations, closed.parameters)
+    if main:
+        names = [symbol.name for symbol in closed.program.external]
+        signals = dict(zip(names, start.signals, strict=True))
+        warn_of_rests(closed.equations, closed.parameters, signals, start.on)
     return files
 
 
@@ -117,19 +124,18 @@ def exported(
     inputs: Mapping[str, object] | None = None,
     prefix: str = "",
     initially_on: Iterable[Hashable] = (),
-) -> tuple[ClosedModel, dict[str, str]]:
-    """As `to_c`, with the model in numbers; who asks for it tells what there is to be told of that."""
-    start = start_of(equations, parameters, laws, initial, inputs)
+) -> tuple[Start, dict[str, str]]:
+    """As `to_c`, with where it begins; who asks for it tells what there is to be told of that."""
+    start = start_of(equations, parameters, laws, initial, inputs, initially_on)
     closed = start.closed
     defaults = [float(closed.parameters[symbol.name]) for symbol in closed.program.parameters]
-    on = checked_modes([port.name for port in closed.program.switches], initially_on)
-    files = texts(closed, name, defaults, prefix, start.longest, on)
+    files = texts(closed, name, defaults, prefix, start.longest, start.on)
     if main:
         states = [*closed.program.states, *closed.program.law_states]
         named = [state.name in {str(one) for one in initial or ()} for state in states]
         scenario = scenario_text(start.signals, start.states.tolist(), named)
         files |= {"main.c": runtime_file("main.c"), "scenario.h": scenario}
-    return closed, files
+    return start, files
 
 
 def texts(
@@ -153,7 +159,7 @@ def texts(
     check_sets(program, closed.slips)
     ports, fast = range(len(program.friction)), straight(program)
     lines = [
-        *_head(program, name, prefix),
+        *_head(program, equations, name, prefix),
         *name_tables(program, equations, name),
         "",
         *program_tables(program, defaults, [closed.coupled_directly(i) for i in ports], on),
@@ -175,7 +181,7 @@ def stepped(files: Mapping[str, str]) -> dict[str, str]:
     return {name: text for name, text in files.items() if name not in located}
 
 
-def _head(program: Program, name: str, prefix: str) -> list[str]:
+def _head(program: Program, equations: StateEquations, name: str, prefix: str) -> list[str]:
     parts = (
         ("states", (*program.states, *program.law_states)), ("inputs", program.external),
         ("outputs", program.outputs), ("parameters", program.parameters),
@@ -185,6 +191,9 @@ def _head(program: Program, name: str, prefix: str) -> list[str]:
         listed = ", ".join(symbol.name for symbol in symbols) or "none"
         # Less the marks of a comment of its own.
         rows += comment(f"{what}: {listed}")
+    for one in equations.switches:
+        if told := conditions_told(one):
+            rows += comment(f"switch {one.name}: {told}")
     names = "\n".join(f" * {row.removeprefix('/* ').removesuffix(' */')}" for row in rows)
     title = comment(name)[0].removeprefix("/* ").removesuffix(" */")
     count = sum(code.operations for code in program.blocks)

@@ -27,6 +27,7 @@ from codegen.fmu.xml import build_description, description
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, as_signal
 from codegen.model.doubts import warn_of_doubts
+from codegen.model.resting import warn_of_rests
 from codegen.modes.pace import time_constant
 from codegen.modes.steps import round_step, step_at_start
 from codegen.program.identifiers import identifiers
@@ -66,8 +67,10 @@ def write_fmu(
     the switches that are on before the start, as far as their conditions let them; states that neither
     ``initial`` names nor the importer sets then follow what these hold.
 
-    Each switch is an integer variable, 1 on and 0 off. Co-simulation locates events and keeps the
-    importer's tolerance; with the parameter ``fixed_internal_step`` above zero [s] it takes fixed steps.
+    Each switch is an integer variable, 1 on and 0 off, whose description tells when it turns, as does that of
+    an input that it goes by. Of sources inside that rest at zero while such a switch is on a `ModelWarning`
+    tells. Co-simulation locates events and keeps the importer's tolerance; with the parameter
+    ``fixed_internal_step`` above zero [s] it takes fixed steps.
 
     The same arguments and compilers give the same bytes. Raises what `to_c` raises, `SignalError` for
     unusable arguments, `MissingExtraError` without the extra ``export``, `WriteError` where the file cannot
@@ -81,8 +84,8 @@ def write_fmu(
     model = _model(
         name or target.stem, equations, parameters, laws, initial or {}, inputs or {}, initially_on
     )
-    closed, code = exported(equations, parameters, laws, name=model.name)
-    warn_of_doubts(closed.program, equations, closed.parameters)
+    start, code = exported(equations, parameters, laws, name=model.name)
+    warn_of_doubts(start.closed.program, equations, start.closed.parameters)
     own = [name for name in runtime_names("fmu") if not name.startswith(OTHERS[version])]
     sources = code | {name: runtime_file(name) for name in own}
     sources |= {"fmu_model.c": model_text(model), **official}
@@ -119,6 +122,8 @@ def _model(
     start = initial_values(initial, ready.states)
     named = named_numbers(initial, ready.states)
     on = checked_modes(ready.switches, initially_on)
+    own = {ready.inputs[at]: one for at, one in inside.items()}
+    warn_of_rests(equations, parameters, own, on)
     shortest = _shortest(told, start.tolist(), every)
     switches = switching(program)
     starts = Starts(

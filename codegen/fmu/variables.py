@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from bondgraph.equations import StateEquations
+from codegen.model.commands import conditions_told
 from codegen.program.records import Program
 from codegen.program.units import units
 
@@ -18,7 +19,7 @@ class Variable:
     """One variable; its place in the list is its value reference.
 
     ``kind`` and ``index``: what it is to the C glue (`enum fmu_kind`). ``derivative``: the value
-    reference of the state that it is the rate of.
+    reference of the state that it is the rate of. ``description``: for people.
     """
 
     name: str
@@ -30,6 +31,7 @@ class Variable:
     start: float | None = None
     unit: str = ""
     derivative: int | None = None
+    description: str = ""
 
     @property
     def integer(self) -> bool:
@@ -65,7 +67,27 @@ def variables(
     listing.known()
     listing.unknown()
     listing.made_up(indicators)
-    return tuple(listing.found)
+    return tuple(_described(one, program, equations) for one in listing.found)
+
+
+def _described(one: Variable, program: Program, equations: StateEquations) -> Variable:
+    """With when switches change over, at switches and at the inputs that they go by."""
+    told = {switch.name: conditions_told(switch) for switch in equations.switches}
+    texts: list[str] = []
+    if one.kind == "FMU_SWITCH":
+        texts = [
+            f"1 on, 0 off; {told[name]}"
+            for name in [program.friction[one.index].name]
+            if told[name]
+        ]
+    elif one.kind == "FMU_INPUT":
+        symbol = program.external[one.index]
+        texts = [
+            f"switch {switch.name} {told[switch.name]}"
+            for switch in equations.switches
+            if told[switch.name] and symbol in switch.on.free_symbols | switch.off.free_symbols
+        ]
+    return replace(one, description=plain(". ".join(texts))) if texts else one
 
 
 class _Listing:

@@ -29,7 +29,8 @@ def description(model: FmuModel, version: str, token: str, sources: Sequence[str
     _interfaces(root, model.identifier, second, sources)
     _units(root, model.variables)
     categories = _child(root, "LogCategories")
-    _child(categories, "Category", {"name": "logStatusError"})
+    for category in ("logStatusError", "logStatusWarning"):
+        _child(categories, "Category", {"name": category})
     _child(root, "DefaultExperiment", {
         "startTime": "0.0", "stopTime": "1.0", "tolerance": "1e-6",
         "stepSize": repr(model.starts.step),
@@ -97,6 +98,7 @@ def _about(at: int, variable: Variable) -> dict[str, str]:
         "causality": variable.causality,
         "variability": variable.variability,
     }
+    found |= {"description": variable.description} if variable.description else {}
     return found | ({"initial": variable.initial} if variable.initial else {})
 
 

@@ -32,8 +32,8 @@ class Piece:
 
     def __call__(self, t: float) -> float:
         """The value at one time."""
-        if self._constant is not None:
-            return self._constant
+        if self.level is not None:
+            return self.level
         tau = t - self.start
         total = 0.0
         for rate, polynomial in self.terms:
@@ -64,7 +64,7 @@ class Piece:
         return total
 
     @cached_property
-    def _constant(self) -> float | None:
+    def level(self) -> float | None:
         """What it is at all times, where it is a constant."""
         if len(self.terms) == 1 and not self.terms[0][0] and len(self.terms[0][1]) == 1:
             return 0.0 + complex(self.terms[0][1][0]).real

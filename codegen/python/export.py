@@ -5,6 +5,7 @@ from importlib.metadata import version
 from typing import Any
 
 from bondgraph.equations import StateEquations
+from codegen.model.commands import conditions_told
 from codegen.model.doubts import warn_of_doubts
 from codegen.ports.holds import all_plain, check_sets
 from codegen.program.records import Program
@@ -106,6 +107,10 @@ def _head(
         ] or ["none"]
         lines = filled([f"{one}, " for one in listed[:-1]] + listed[-1:], 4)
         rows += [f"{title}: {lines[0].strip()}"] if len(lines) == 1 else [f"{title}:", *lines]
+    for one in equations.switches:
+        if told := conditions_told(one):
+            words = plain(f"switch {one.name}: {told}").split(" ")
+            rows += [line.strip() for line in filled([f"{word} " for word in words], 4)]
     text = _HEAD.format(
         title=plain(name),
         version=version("bondgraph-toolkit"),

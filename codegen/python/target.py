@@ -6,6 +6,7 @@ from pathlib import Path
 
 from bondgraph.analyse.turned import turned
 from bondgraph.writing import write_all
+from codegen.model.resting import warn_of_rests
 from codegen.program.identifiers import module_name
 from codegen.program.lower import lower
 from codegen.python.export import to_python
@@ -31,6 +32,9 @@ class Python:
         program = lower(equations, export.laws, export.parameters, timed=True)
         own = module_name(export.name)
         run = script(own, export, [symbol.name for symbol in program.asked])
+        warn_of_rests(
+            equations, export.parameters, export.inputs, export.initially_on, export.times
+        )
         texts = {folder / f"{own}.py": module, folder / f"run_{own}.py": run}
         write_all(texts)
         return [*texts]

@@ -1,10 +1,11 @@
 """Where a run of an export begins: a model in numbers, its states and signals there, its longest step."""
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from bondgraph.analyse.turned import turned
+from bondgraph.declare.switching import checked_modes
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from codegen.inputs.signal import Signal
@@ -17,12 +18,16 @@ from codegen.runs.arguments import initial_values, signals_for
 
 @dataclass(frozen=True)
 class Start:
-    """``states`` and ``signals`` in the program's order; ``longest``: the longest stable step there [s]."""
+    """``states`` and ``signals`` in the program's order; ``longest``: the longest stable step there [s].
+
+    ``on``: the switches that are on before.
+    """
 
     closed: ClosedModel
     states: Array
     signals: tuple[Signal, ...]
     longest: float
+    on: frozenset[Hashable] = frozenset()
 
 
 def start_of(
@@ -31,6 +36,7 @@ def start_of(
     laws: Mapping[Any, object] | None,
     initial: Mapping[str, float] | None,
     inputs: Mapping[str, object] | None,
+    initially_on: Iterable[Hashable] = (),
 ) -> Start:
     """Arguments as of `to_c`: states and inputs that are not named are zero.
 
@@ -45,4 +51,5 @@ def start_of(
     external = [symbol.name for symbol in program.external]
     signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)
     states = initial_values(initial or {}, names)
-    return Start(closed, states, tuple(signals), step_at_start(closed, states, signals))
+    on = checked_modes([port.name for port in program.switches], initially_on)
+    return Start(closed, states, tuple(signals), step_at_start(closed, states, signals), on)

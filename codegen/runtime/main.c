@@ -3,7 +3,8 @@
  * A row every SAMPLE seconds, by fixed steps of SAMPLE or, with `step=H`, of a part of it that is
  * about H; `band=B` is the dead band of every friction port. With the word `located` steps are
  * adaptive and events located; they are told on the error stream. An input named is constant;
- * others are as in scenario.h. */
+ * others are as in scenario.h. States that follow what switches hold at the start are told there,
+ * too. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -147,22 +148,36 @@ static void print_sample(void *to, int sample, const double *w, const int *mode,
     print_row(((const double *)to)[sample], mode, shot);
 }
 
+/* Tells of states at a start that was completed, from what each gained. */
+static void tell_completed(const command *asked, const double *gained)
+{
+    int told = 0;
+    for (int i = 0; i < STATES; i++)
+        if (gained[i] != 0.0)
+            fprintf(stderr, "%s %s = %.9g", told++ ? "," : "states that were not named follow what "
+                    "switches hold:", bg_state_names[i], asked->states[i] + gained[i]);
+    if (told)
+        fprintf(stderr, "\n");
+}
+
 /* Rows by adaptive steps. The samples are the only memory that is asked for. */
 static int run_located(bg_model *m, const command *asked, const bg_signals *signals)
 {
     static const char *const kinds[] = {"stick", "slip", "cross", "on", "off"};
     static bg_located run;
     static bg_event events[EVENTS];
+    static double gained[BG_ROOM(STATES)];
     const int count = (int)floor(asked->end / asked->sample * (1 + BG_TOGETHER)) + 1;
     double *const times = calloc((size_t)count, sizeof *times);
     bg_request request = {times, asked->states, count, BG_AUTO, BG_RTOL, BG_ATOL,
                           times, print_sample, events, EVENTS, 0, 0.0, NULL,
-                          m->mode, asked->named, NULL};
+                          m->mode, asked->named, gained};
     if (!times)
         return 1;
     for (int k = 0; k < count; k++)
         times[k] = k * asked->sample;
     const int status = bg_model_run(&run, m, signals, &request);
+    tell_completed(asked, gained);
     for (int k = 0; k < request.count; k++)
         fprintf(stderr, "%.17g,%s,%s\n", events[k].time, bg_friction_names[events[k].port],
                 kinds[events[k].kind]);
@@ -197,7 +212,7 @@ int main(int count, char **words)
 {
     static bg_model model;
     static command asked;
-    static double s[BG_SIZE], w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
+    static double s[BG_SIZE], w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)], gained[BG_SIZE];
     if (!read_command(count, words, &asked))
         return 1;
     const bg_signals signals = {
@@ -211,8 +226,13 @@ int main(int count, char **words)
     inputs_at(&signals, 0.0, w, dw);
     if (failed(bg_model_vector(&model, 0.0, asked.states, w, s)))
         return 1;
+    for (int i = 0; i < STATES; i++)
+        gained[i] = -s[i];
     if (!asked.located && failed(bg_model_complete(&model, 0.0, w, asked.named, s)))
         return 1;
+    for (int i = 0; i < STATES; i++)
+        gained[i] += s[i];
+    tell_completed(&asked, gained);
     print_head();
     return asked.located ? run_located(&model, &asked, &signals)
                          : run_stepped(&model, &asked, &signals, s);

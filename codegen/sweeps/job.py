@@ -57,7 +57,10 @@ class Model(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """A model and all that its runs share; ``names`` are what each run has numbers for."""
+    """A model and all that its runs share; ``names`` are what each run has numbers for.
+
+    ``events``: whether functions that are no ready measures find what happened in a run.
+    """
 
     model: Model
     names: tuple[str, ...]
@@ -67,6 +70,7 @@ class Job:
     inputs: Given = None
     settings: Mapping[str, Any] = field(default_factory=dict)
     initially_on: tuple[Hashable, ...] = ()
+    events: bool = True
 
     def run(
         self, row: Sequence[float], fallen: list[str] | None = None,
@@ -112,8 +116,13 @@ class Job:
     def _eventful(self) -> bool:
         """Whether a measure may ask for events."""
         ready = (isinstance(m, Measure) and m.function in READY for m in self.measures.values())
-        asking = (getattr(m, "function", None) in EVENTFUL for m in self.measures.values())
-        return not all(ready) or any(asking)
+        return (self.events and not all(ready)) or bool(self.asking)
+
+    @property
+    def asking(self) -> list[str]:
+        """The ready measures that events are kept for."""
+        every = self.measures.items()
+        return [name for name, m in every if getattr(m, "function", None) in EVENTFUL]
 
     @property
     def _settings(self) -> dict[str, Any]:
@@ -131,6 +140,7 @@ class Job:
             "settings": {name: _described(value) for name, value in self.settings.items()},
             "names": list(self.names),
             **({"initially_on": list(map(repr, self.initially_on))} if self.initially_on else {}),
+            **({} if self.events else {"events": False}),
             "measures": [[name, _described(measure)] for name, measure in self.measures.items()],
         }
 

@@ -51,7 +51,8 @@ class Store:
             raise StoreError(f"{place} cannot be read: {error}") from None
         if not isinstance(found, dict) or found.get("format") != FORMAT["format"]:
             raise StoreError(f"{place} does not belong to a sweep; choose another folder")
-        other = [name for name, value in about.items() if found.get(name) != value]
+        names = [*about, *(name for name in found if name not in about)]
+        other = [name for name in names if found.get(name) != about.get(name)]
         if other:
             raise StoreError(
                 f"{self._folder} holds another sweep, which differs in {', '.join(other)}; choose "

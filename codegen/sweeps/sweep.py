@@ -28,6 +28,7 @@ from codegen.sweeps.design import Table, design
 from codegen.sweeps.drive import QUICK, STEADY, Pace, Work, drive
 from codegen.sweeps.job import Job, Model
 from codegen.sweeps.measuring import batch_of, sent
+from codegen.sweeps.resting import tell_all_resting
 from codegen.sweeps.result import Collected, Sweep, SweepInterrupted
 from codegen.sweeps.store import Store
 from codegen.tuning import TUNING
@@ -53,6 +54,7 @@ def sweep(
     progress: bool = True,
     chunk: int | None = None,
     initially_on: Iterable[Hashable] = (),
+    events: bool = True,
 ) -> Sweep:
     """Run a model once for each set of numbers and keep the measures of each run.
 
@@ -72,11 +74,16 @@ def sweep(
     many runs are done together, by default what takes some seconds, in C one at most. None of these
     changes a number.
 
+    Events of a run are gone with it. They are kept for `first_event` and `event_count`, in C up to a fixed
+    number, and for functions of your own, where a run's memory grows with its switchings: ``events=False``
+    keeps none for these, as `Simulator.run` does.
+
     ``store``: a folder to keep finished runs in; the same call continues there. ``progress``: a bar, where
     tqdm is installed.
 
     Runs that backend "c" cannot do are done by numpy; one `BackendWarning` tells how many, and why. Starts
-    that were completed by what switches hold are in ``completed``; one `ModelWarning` tells of them.
+    that were completed by what switches hold are in ``completed``; one `ModelWarning` tells of them. One for
+    each switch tells in how many runs it stays on while its command rests at zero, and of the first.
 
     A run that is refused, or whose process ends, is told in ``failed``; the others go on. Interrupted, it
     raises `SweepInterrupted`, a `KeyboardInterrupt` whose ``sweep`` has what is done.
@@ -100,7 +107,7 @@ def sweep(
     settings = MappingProxyType({"method": method, "rtol": rtol, "atol": atol})
     asked = MappingProxyType(dict(measures))
     on = tuple(initially_on)
-    job = Job(model, runs.names, checked_times(time), asked, initial, inputs, settings, on)
+    job = Job(model, runs.names, checked_times(time), asked, initial, inputs, settings, on, events)
     _check(job)
     _check_count(workers, "workers", 0)
     _check_count(chunk, "chunk", 1)
@@ -131,6 +138,7 @@ def sweep(
     tell_all(collected.fallen, len(runs))
     found = collected.sweep(runs, job.time, over_time)
     tell_all_completed(found.completed, len(runs))
+    tell_all_resting(job, runs)
     return found
 
 
@@ -218,6 +226,8 @@ def _check_measures(job: Job) -> None:
     for name, measure in job.measures.items():
         if not callable(measure):
             raise SignalError(f"measure {name!r}: {measure!r} is not a function of a run")
+    if not job.events and job.asking:
+        raise SignalError(f"measure {job.asking[0]!r} asks for events; leave events=False out")
     for name in RESERVED:
         if name in job.names or name in job.measures:
             raise SignalError(f"{name!r} names an axis; call the column something else")

@@ -83,7 +83,13 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c)
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c)
 {
-    return fmu2_tell(c, fmu_finish(CORE(c)));
+    fmu2 *const f = c;
+    const fmi2Status status = fmu2_tell(f, fmu_finish(&f->core));
+    const char *const told = status == fmi2OK ? fmu_completed(&f->core) : NULL;
+    if (told && f->call.logger)
+        f->call.logger(f->call.componentEnvironment, f->name, fmi2Warning, "logStatusWarning", "%s",
+                       told);
+    return status;
 }
 
 fmi2Status fmi2Terminate(fmi2Component c)

@@ -94,7 +94,12 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean limited, fmi3
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c)
 {
-    return fmu3_tell(c, fmu_finish(CORE(c)));
+    fmu3 *const f = c;
+    const fmi3Status status = fmu3_tell(f, fmu_finish(&f->core));
+    const char *const told = status == fmi3OK ? fmu_completed(&f->core) : NULL;
+    if (told && f->log)
+        f->log(f->environment, fmi3Warning, "logStatusWarning", told);
+    return status;
 }
 
 fmi3Status fmi3Terminate(fmi3Instance c)

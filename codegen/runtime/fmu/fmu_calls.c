@@ -1,4 +1,5 @@
 /* What a unit's calls do, for FMI 2 and 3 alike: which is allowed when, and arrays of values. */
+#include <stdio.h>
 #include <string.h>
 
 #include "fmu_common.h"
@@ -22,6 +23,17 @@ fmu_error fmu_begin(fmu_instance *f, double start)
 fmu_error fmu_finish(fmu_instance *f)
 {
     return f->at.phase == FMU_INITIALIZING ? fmu_initialize(f) : "not in initialization mode";
+}
+
+const char *fmu_completed(fmu_instance *f)
+{
+    size_t used = 0;
+    for (int i = 0; i < FMU_STATES && used < sizeof f->text; i++)
+        if (f->completed[i] != 0.0)
+            used += (size_t)snprintf(f->text + used, sizeof f->text - used, "%s %s = %.9g",
+                                     used ? "," : "states that were not set follow what switches "
+                                     "hold:", bg_state_names[i], f->at.start[i] + f->completed[i]);
+    return used ? f->text : NULL;
 }
 
 fmu_error fmu_enter(fmu_instance *f, int phase)

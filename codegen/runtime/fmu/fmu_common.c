@@ -72,13 +72,17 @@ fmu_error fmu_apply(fmu_instance *f)
 /* The vector and the mode at the start values, which those that were not set follow. */
 static fmu_error start(fmu_instance *f)
 {
+    double before[BG_SIZE];
     int mode[BG_ROOM(BG_FRICTION)];
     memcpy(mode, fmu_first, sizeof(int) * BG_FRICTION);
     int status = bg_model_vector(&f->model, f->at.time, f->at.start, f->w, f->at.s);
+    memcpy(before, f->at.s, sizeof before);
     if (status == BG_OK)
         status = bg_complete(&f->model, f->at.time, f->w, f->at.named, mode, f->at.s);
     if (status != BG_OK || f->frozen)
         return message(status);
+    for (int i = 0; i < FMU_STATES; i++)
+        f->completed[i] = f->at.s[i] - before[i];
     memcpy(f->at.mode, mode, sizeof(int) * BG_FRICTION);
     f->at.decided = 0;
     return fmu_decide(f);

@@ -203,12 +203,11 @@ def test_what_holds_a_port_is_an_output_of_a_linear_model() -> None:
     assert differences(both.transfer_function(), [[0, 1], [1, -1]]) == {}
 
 
-def test_port_that_needs_the_rate_of_an_input_is_refused() -> None:
-    """The slip between a driven shaft and an inertia is w - v."""
+def test_port_that_needs_the_rate_of_an_input_is_told_over_it() -> None:
+    """The slip between a driven shaft and an inertia is w - v, so n w' holds it."""
     nodes = [bg.Sf("w", "w"), bg.Zero("z"), bg.R("p"), bg.One("k"), bg.I("n", "n", flow="v")]
     equations = bg.derive(bond_graph(nodes, "w>z z>p z>k>n"))
-    with pytest.raises(bg.DependentSourceError, match="what holds 'p' depends on the rate of an"):
-        bg.holding_efforts(equations, ["p"])
+    _holds(equations, ["p"], e_p=n * sp.Symbol("d_w"))
 
 
 def test_port_that_holds_against_an_imposed_speed_makes_it_that_of_the_inertia() -> None:

@@ -11,12 +11,17 @@ import bondgraph as bg
 m, n, a, r, w, u, e_a = sp.symbols("m n a r w u e_a")
 
 
-def test_a_port_on_a_driven_capacitance_is_not_held_without_its_rate() -> None:
-    """w = e_p/r + c e_p': holding e_p needs its own history."""
-    nodes = [bg.Sf("w", "w"), bg.Zero("z"), bg.R("r", "r"), bg.C("c", "c"), bg.R("p")]
-    equations = bg.derive(bond_graph(nodes, "w>z>r z>c z>p"))
+def test_a_port_on_a_capacitance_is_held_by_its_effort() -> None:
+    """w = f_p + e_c/r + c e_c', and f_p = 0: what holds it is e_c, a state once the port is turned.
+
+    Under a law that gives the effort it cannot turn, and c e_p' would be needed.
+    """
+    nodes = [bg.Sf("w", "w"), bg.Zero("z"), bg.R("r", "r"), bg.C("c", "c")]
+    equations = bg.derive(bond_graph([*nodes, bg.R("p")], "w>z>r z>c z>p"))
+    assert dict(bg.holding_efforts(equations, ["p"])) == {sp.Symbol("e_p"): sp.Symbol("e_c")}
+    ruled = bg.derive(bond_graph([*nodes, bg.R("p", law="3*t")], "w>z>r z>c z>p"))
     with pytest.raises(bg.DependentSourceError, match="'p' depends on the rate"):
-        bg.holding_efforts(equations, ["p"])
+        bg.holding_efforts(ruled, ["p"])
 
 
 def _mixed() -> bg.StateEquations:

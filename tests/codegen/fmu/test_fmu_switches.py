@@ -176,6 +176,25 @@ def test_a_start_is_completed_unless_the_importer_sets_it(tmp_path: Path) -> Non
     unit.free(made, other)
 
 
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("kind", ["ModelExchange", "CoSimulation"])
+def test_a_start_that_is_completed_is_logged_once(
+    version: str, kind: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """As a warning, which changes no status; nothing where the importer names what would follow."""
+    unit = Unit(joined(), version, tmp_path)
+    categories = [one.name for one in unit.description.logCategories or []]
+    capfd.readouterr()
+    made = unit.started(kind)
+    told = capfd.readouterr().out
+    assert told.count("states that were not set follow what switches hold: w2 = 1") == 1
+    assert "warning" in told.lower()
+    other = unit.started(kind, w2=0.0)
+    assert "follow" not in capfd.readouterr().out
+    unit.free(made, other)
+    assert not categories or "logStatusWarning" in categories
+
+
 def test_a_condition_of_time_alone_is_an_event_at_its_instant(tmp_path: Path) -> None:
     unit = Unit(joined(), "2.0", tmp_path)
     made = unit.started("ModelExchange")

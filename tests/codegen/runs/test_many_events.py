@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from references.build import bond_graph
 
 import bondgraph as bg
-from codegen import Family, Simulator, final, simulator
+from codegen import Family, Result, Simulator, event_count, final, simulator, sweep
 from codegen.numbers.latest import Latest
 from codegen.runs.track import Track
 from codegen.sweeps.job import Job
@@ -110,6 +110,68 @@ def test_without_events_memory_does_not_grow_with_their_number(
     assert abs(many - few) < 10_000
     few, many = (_kept(monkeypatch, halves) for halves in (200, 800))
     assert many - few > 60_000
+
+
+def _seen(result: Result) -> float:
+    return len(result.events)
+
+
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_functions_of_a_sweep_find_events_unless_they_are_not_kept(backend: str) -> None:
+    """Two at each half period, as it begins another."""
+    family, times = Family(BUCK, P, backend=backend), np.linspace(0, 20.5 / F2, 3)
+    for events, count in ((True, 40.0), (False, 0.0)):
+        done = sweep(family, {"R": [4.0, 5.0]}, times, {"seen": _seen, "end": final("i")},
+                     events=events, workers=0, progress=False)  # fmt: skip
+        assert done["seen"].tolist() == [count] * 2
+        assert (done["end"] > 0).all()
+    asking = {"count": event_count("q", "on"), "seen": _seen}
+    with pytest.raises(bg.SignalError, match="'count' asks for events; leave events=False out"):
+        sweep(family, {"R": [4.0]}, times, asking, events=False, workers=0)
+
+
+def _held_by_a_sweep(monkeypatch: pytest.MonkeyPatch, halves: int, **asked: Any) -> int:
+    """As `_kept`, of the last of two runs of a sweep by numpy."""
+    family, times, held = Family(BUCK, P), np.linspace(0, halves / F2, 11), list[int]()
+    record = Track.record
+
+    def last(self: Track, *sample: Any) -> None:
+        gc.collect()
+        held.append(tracemalloc.get_traced_memory()[0])
+        record(self, *sample)
+
+    def run() -> None:
+        sweep(family, {"R": [4.0, 5.0]}, times, workers=0, progress=False, **asked)
+
+    run()
+    monkeypatch.setattr(Track, "record", last)
+    tracemalloc.start()
+    try:
+        run()
+    finally:
+        tracemalloc.stop()
+        monkeypatch.undo()
+    return held[-1]
+
+
+@pytest.mark.parametrize(
+    ("asked", "grows"),
+    [
+        ({"measures": {"end": final("i")}}, False),
+        ({"measures": {"seen": _seen}, "events": False}, False),
+        ({"measures": {"seen": _seen}}, True),
+    ],
+    ids=["ready", "own without", "own"],
+)
+def test_what_a_sweep_keeps_of_switchings(
+    asked: dict[str, Any], grows: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """300 more half periods: of the run that is being done, not of the one before."""
+    few, many = (_held_by_a_sweep(monkeypatch, halves, **asked) for halves in (100, 400))
+    if grows:
+        assert 30_000 < many - few < 90_000
+    else:
+        assert abs(many - few) < 5_000
 
 
 def test_what_is_worked_out_by_mode_is_kept_for_so_many_only() -> None:

@@ -173,6 +173,24 @@ def test_a_start_is_completed_by_what_is_on(tmp_path: Path) -> None:
         to_c(equations, numbers, initially_on=["cog"])
 
 
+@pytest.mark.parametrize("words", [(), ("located",)])
+def test_the_main_program_tells_of_a_start_that_was_completed(
+    words: tuple[str, ...], tmp_path: Path
+) -> None:
+    """Once, on the error stream, and not of one whose states are named."""
+    more = {"main": True, "initial": {"w_1": 5.0}, "inputs": {"g": 0.0}}
+    files = to_c(_joined(), {"J_1": 2.0, "J_2": 0.7}, **more)
+    program = compiled(tmp_path, written(tmp_path, files))
+    told = []
+    for named in ((), ("w_2=5",), ("w_2=0",)):
+        line = [str(program), "0.1", "0.05", *words, *named]
+        told.append(subprocess.run(line, capture_output=True, text=True, check=True).stderr)
+    assert (
+        told[0].splitlines()[0] == "states that were not named follow what switches hold: w_2 = 5"
+    )
+    assert [text.count("follow") for text in told] == [1, 0, 0]
+
+
 @pytest.mark.parametrize("on", [(), ("relay",)])
 def test_between_two_thresholds_a_relay_stays_as_it_was_at_first(
     on: tuple[str, ...], tmp_path: Path

@@ -181,6 +181,14 @@ def test_arrays_are_told_by_every_number(tmp_path) -> None:
     assert _swept(tmp_path, measures={"end": partial(longest, np.zeros(3000))}).complete
 
 
+@pytest.mark.parametrize("events", [True, False])
+def test_runs_with_events_and_without_are_kept_apart(events: bool, tmp_path) -> None:
+    _swept(tmp_path, measures={"twice": twice}, events=events)
+    with pytest.raises(bg.StoreError, match="another sweep, which differs in events;"):
+        _swept(tmp_path, measures={"twice": twice}, events=not events)
+    assert _swept(tmp_path, measures={"twice": twice}, events=events).complete
+
+
 def test_the_folder_of_another_model_is_refused(tmp_path) -> None:
     _swept(tmp_path)
     other = Family(spring_mass().equations, {"m": 2.0, "k": 8.5})

@@ -169,3 +169,38 @@ def test_a_start_that_was_completed_is_told_in_one_line_and_once(dog: str, call:
         capture_output=True, text=True, check=True,
     )  # fmt: skip
     assert silent.stderr == ""
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("export", "dog.json", "--to", "python"),
+        ("export", "dog.json", "--to", "c"),
+        (
+            "sweep",
+            "dog.json",
+            "--grid",
+            "d=0:1:2",
+            "--final",
+            "v_1",
+            "--workers",
+            "0",
+            "-o",
+            "out.csv",
+        ),
+    ],
+    ids=["python", "c", "sweep"],
+)
+def test_a_command_that_rests_at_zero_is_told_in_one_line_and_once(
+    words: tuple[str, ...], dog: str, call: Call
+) -> None:
+    """A gate of -1 turns the dog on at once, and from 1 s on it is zero."""
+    free = () if words[0] == "sweep" else ("--set", "d=0")
+    done = call(
+        *words, *free, "--input", "gate=step(1, 0, -1)", "--until", "2", "--initial", "v_1=4"
+    )
+    assert done.exit_code == 0, done.stderr
+    lines = [line for line in done.stderr.splitlines() if "warning" in line]
+    told = [line for line in lines if "switch 'dog' stays on while its command -gate rests" in line]
+    assert len(told) == 1
+    assert "from t = 1 on" in told[0]
