@@ -130,7 +130,7 @@ void bg_shocks(bg_model *m, const int *mode, const double *given, const double *
                double *ways);
 
 /* Whether slips are more than those `near`, one for each port that is held; and what stops them at
- * once, by the impulses per unit of each. */
+ * once, by the impulses per unit of each; `ways` grow by how far these go. */
 int bg_have_slips(const bg_hold *held, const double *slips, const double *near);
 void bg_stop(bg_model *m, const int *mode, const bg_hold *held, const double *impulses,
              const double *slips, double *s, double *ways);
