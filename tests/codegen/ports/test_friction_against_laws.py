@@ -97,3 +97,58 @@ def test_it_sticks_to_what_a_law_lets_move(belt: tuple, backend: str, method: st
     assert run["v"] == pytest.approx(v, abs=2e-9)
     assert [event.time for event in run.events] == pytest.approx(events, abs=1e-8)
     assert len(events) >= 2
+
+
+STORED = {
+    "affine": ("p_a/2", lambda p: p / 2, lambda p: 0.5),
+    "nonlinear": ("p_a/2 + p_a**3/10", lambda p: p / 2 + p**3 / 10, lambda p: 0.5 + 0.3 * p**2),
+}
+"""Speeds by a momentum, and their slopes."""
+
+
+def _two_masses(speed: Callable, slope: Callable) -> tuple[np.ndarray, list]:
+    """p' = P - F, w' = F: F = v'(p) P/(1 + v'(p)) as they stick, while that is at most 1/2."""
+
+    def push(t: float) -> float:
+        return 2 * np.sin(2 * np.pi * t)
+
+    def held(t: float, p: float) -> float:
+        return slope(p) * push(t) / (1 + slope(p))
+
+    t, y, way, found, events = 0.0, [0.0, 0.0], 0.0, [0.0], []
+    while t < T[-1]:
+
+        def rate(t: float, y: Sequence[float], way: float = way) -> list[float]:
+            F = way / 2 or held(t, y[0])
+            return [push(t) - F, F]
+
+        def gone(t: float, y: Sequence[float], way: float = way) -> float:
+            return speed(y[0]) - y[1] if way else 0.5 - abs(held(t, y[0]))
+
+        gone.terminal, gone.direction = True, -way if way else -1
+        run = solve_ivp(rate, (t, T[-1]), y, "DOP853", T[t + 1e-12 < T], events=gone, rtol=1e-12,
+                        atol=1e-13, max_step=2e-3)  # fmt: skip
+        found += run.y[1].tolist()
+        if run.status != 1:
+            break
+        t, y = float(run.t_events[0][0]), run.y_events[0][0].tolist()
+        events.append(t)
+        load = held(t, y[0])
+        way = 0.0 if way and abs(load) <= 0.5 else float(np.sign(load))
+    return np.array(found), events
+
+
+@pytest.mark.parametrize(("backend", "method"), ENGINES)
+@pytest.mark.parametrize("name", STORED)
+def test_a_nonlinear_inertia_rubs_on_another_mass(name: str, backend: str, method: str) -> None:
+    law, speed, slope = STORED[name]
+    nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("a", flow="v", law=law), bg.Zero("z"),
+             bg.R("rub", law=bg.DryFriction("L")), bg.One("other"), bg.I("b", 1, flow="w")]  # fmt: skip
+    equations = bg.derive(bond_graph(nodes, "push>n n>a n>z z>rub z>other>b"))
+    run = simulator(equations, {"L": 0.5}, backend=backend).run(
+        T, {}, {"P": Sine(2.0, 1.0)}, method, 1e-11, 1e-13
+    )
+    w, events = _two_masses(speed, slope)
+    assert run["w"] == pytest.approx(w, abs=2e-9)
+    assert [event.time for event in run.events] == pytest.approx(events, abs=1e-8)
+    assert len(events) > 4
