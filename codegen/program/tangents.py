@@ -135,14 +135,13 @@ class _Tangents:
             return None
         by_x = {name: slopes.pop(name) for name in equations.states if name in slopes}
         straight = sp.Add(*(factor * name for name, factor in by_x.items()))
-        rest = sp.expand(total - straight) if not straight.free_symbols & signals - {*by_x} else law
-        constant = not any(factor.free_symbols & signals for factor in by_x.values())
-        moving = rest.free_symbols & {law, *equations.states, *closing.law_states}
         places = {equations.states.index(name): factor for name, factor in by_x.items()}
-        if constant and not moving:
-            return _Tangent(
-                places, self._add(law, self._of_inputs(rest), known=True), Reading({}, {}, {}, {})
-            )
+        constant = not any(factor.free_symbols & signals for factor in by_x.values())
+        rest = sp.expand(total - straight) if constant else law
+        if not rest.free_symbols & {law, *equations.states, *closing.law_states}:
+            # The rest is known, and so is its rate.
+            beyond = self._add(law, self._of_inputs(rest), known=True)
+            return _Tangent(places, beyond, Reading({}, {}, {}, {}))
         return _Tangent(places, self._add(law, law - straight), self._moved(law, slopes))
 
     def _of_inputs(self, expr: sp.Expr) -> sp.Expr:
