@@ -125,15 +125,12 @@ def program_tables(
 ) -> list[str]:
     """Places of laws, friction ports, readings and outputs in the arrays; ``on``: switches at first."""
     readings = list(program.readings)
-    friction, known = program.friction, set(program.known.inputs)
-    rubbed = {port.input for port in friction}
-    differentiable = [
-        int(j in known | rubbed | {*program.given}) for j in range(len(program.inputs))
-    ]
+    friction, rated = program.friction, program.rated_inputs
     tables: list[tuple[str, Sequence[int]]] = [
         ("bg_law_rates", program.law_rates),
         ("bg_friction_inputs", [port.input for port in friction]),
         ("bg_friction_readings", [port.reading for port in friction]),
+        ("bg_received_readings", [port.received for port in friction]),
         ("bg_moving", [-1 if port.moving is None else port.moving for port in friction]),
         (
             "bg_first_modes",
@@ -141,7 +138,7 @@ def program_tables(
         ),
         ("bg_beside", [int(one) for one in beside]),
         ("bg_outside_inputs", program.given),
-        ("bg_differentiable", differentiable),
+        ("bg_differentiable", [int(j in rated) for j in range(len(program.inputs))]),
         ("bg_output_readings", [readings.index(one) for one in program.outputs]),
     ]
     lines = doubles("bg_defaults", defaults)

@@ -33,7 +33,7 @@ def _of_time(size: sp.Expr, program: Program) -> bool:
 
 
 def _sizes(program: Program) -> tuple[sp.Expr, ...]:
-    slips = {program.readings[port.reading] for port in program.friction}
+    slips = {program.readings[port.received] for port in program.friction}
     blocks = [program.known.values, *(group.values for group in program.groups)]
     blocks += [program.coupled.values, program.friction_values, program.coefficients]
     found: dict[sp.Expr, None] = {}

@@ -134,9 +134,10 @@ class _Listing:
     def unknown(self) -> None:
         """Readings, outputs among them, and what laws and sources give."""
         program = self._program
-        slides = {port.reading for port in program.friction if port.slides}
+        hidden = {port.received for port in program.friction if port.slides}
+        hidden |= {port.reading for port in program.friction if port.plain is not None}
         for at, symbol in enumerate(program.readings):
-            if at in slides:
+            if at in hidden:
                 continue
             shown = "output" if symbol in program.outputs else "local"
             place = self._places.get(symbol)

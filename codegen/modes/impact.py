@@ -7,11 +7,11 @@ and ``D_SS p = 0``. Friction takes no part: what it gives is finite.
 
 import numpy as np
 
-from codegen.model.snapshot import Impact, Mode
+from codegen.model.snapshot import Impact, Mode, Snapshot
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.trials import Sight
 from codegen.modes.verdicts import Look
-from codegen.standalone.striking import shocks, struck
+from codegen.standalone.striking import Strike, shocks, struck
 from codegen.tuning import TUNING
 
 
@@ -24,7 +24,28 @@ def impact(here: Sight, mode: Mode, peaks: Peaks | None = None) -> Impact | None
     )
     if 0 not in held:
         return None
-    slipping, now = here.evaluated((1,) * len(mode))
+    first = _struck(here, held, peaks)
+    if first is None:
+        return None
+    slipping, now, strike = first
+    after = here.s + strike.gained(len(here.s), model.law_rates)
+    # Where rows turn as states jump, each strike leaves what is bent of its way.
+    for _ in range(TUNING.impacts if model.program.varying else 0):
+        more = _struck(Sight(model, here.t, after, here.pieces), held, peaks)
+        if more is None:
+            break
+        after = after + more[2].gained(len(after), model.law_rates)
+        strike = strike.followed(more[2])
+    later = model.at(here.t, after, here.pieces, slipping)
+    # An impulse works on the mean of what its port receives before and after.
+    mean = 0.5 * (now.y + later.y)[model.friction_readings]
+    return Impact(after, strike, float(strike.given[model.friction_inputs] @ mean))
+
+
+def _struck(here: Sight, held: Mode, peaks: Peaks | None) -> tuple[Mode, Snapshot, Strike] | None:
+    """What stops the slips of what is held, by its rows as they are; None where that is nothing."""
+    model = here.model
+    slipping, now = here.evaluated((1,) * len(held))
     hold = model.hold(held, now.numbers)
     if not len(hold.mix):
         return None
@@ -32,12 +53,7 @@ def impact(here: Sight, mode: Mode, peaks: Peaks | None = None) -> Impact | None
     near = np.abs(hold.mix) @ scales(model, now, here.t, peaks).slip[hold.ports]
     if (np.abs(slips) <= TUNING.wide * near).all():
         return None
-    strike = struck(hold, now.numbers, slips)
-    after = here.s + strike.gained(len(here.s), model.law_rates)
-    later = model.at(here.t, after, here.pieces, slipping)
-    # An impulse works on the mean of what its port receives before and after.
-    mean = 0.5 * (now.y + later.y)[model.friction_readings]
-    return Impact(after, strike, float(strike.given[model.friction_inputs] @ mean))
+    return slipping, now, struck(hold, now.numbers, slips)
 
 
 def pushed(look: Look, t: float, jump: Impact) -> list[int]:

@@ -25,6 +25,7 @@ def formed(program: Program, binding: Binding, matrices: Callable[[Instant], Num
         given=np.array(program.given, dtype=int),
         known=_laws(program.known, binding),
         known_rates=binding.function(program.known_rates) if program.rated else None,
+        beyond=np.array(program.beyond, dtype=int),
         matrices=matrices,
         laws=[_laws(group, binding) for group in program.groups],
         law_rates=np.array(program.law_rates, dtype=int),
@@ -38,6 +39,7 @@ def rubbing(program: Program, binding: Binding, form: Form, slips: ExactSlips) -
         names=[port.name for port in program.friction],
         inputs=np.array([port.input for port in program.friction], dtype=int),
         readings=np.array([port.reading for port in program.friction], dtype=int),
+        received=np.array([port.received for port in program.friction], dtype=int),
         moving=np.array(
             [-1 if p.moving is None else p.moving for p in program.friction], dtype=int
         ),

@@ -40,7 +40,7 @@ def slip_rows(
 ) -> ExactSlips:
     """The rows of a program at these parameters."""
     readings = list(equations.readings.values())
-    rows = [readings[port.reading] for port in program.friction]
+    rows = [readings[port.received] for port in program.friction]
     return ExactSlips(
         tuple(residue_rows((row.F for row in rows), parameters)),
         tuple(residue_rows((row.D for row in rows), parameters)),
@@ -51,7 +51,7 @@ def slip_rows(
             {
                 at: port.name
                 for at, port in enumerate(program.friction)
-                if _bends(equations, program.readings[port.reading])
+                if _bends(equations, program.readings[port.received])
             }
         ),
     )

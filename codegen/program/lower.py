@@ -16,6 +16,7 @@ from codegen.program.gains import check_gains
 from codegen.program.moving import with_moving_slips
 from codegen.program.records import Program, block
 from codegen.program.sections import coefficients, friction, group, known_rates, switches, uses
+from codegen.program.tangents import with_tangents
 from codegen.program.timed import Sources
 
 
@@ -44,7 +45,8 @@ def lower(
     conditions = (c for p in equations.ports if (s := p.element.switch) for c in (s.on, s.off))
     watched = frozenset[sp.Symbol]().union(*(condition.free_symbols for condition in conditions))
     closing = close_ports(equations, {} if laws is None else laws, given, watched)
-    closing, moving = with_moving_slips(closing)
+    closing, tangents = with_tangents(closing)
+    closing, moving = with_moving_slips(closing, tangents.moved)
     equations = closing.equations
     _check_varying(closing)
     taken = _all_names(equations, closing) | watched
@@ -56,7 +58,8 @@ def lower(
         guards = [sources.parted(guard) for guard in guards]
         closing = sources.told(closing)
         taken |= set(closing.external)
-    rubbing, values = friction(closing, moving)
+    varying = any(name.name not in given for entry in expressions for name in entry.free_symbols)
+    rubbing, values = friction(closing, moving, tangents.along)
     readings = tuple(equations.readings)
     external_rates = _rate_names(closing.external, taken)
     program = Program(
@@ -83,8 +86,9 @@ def lower(
         read=_read(closing),
         guards=block(guards, taken),
         guards_affine=is_affine(guards, given),
-        varying=bool(equations.varying),
-        affine=_is_affine(closing, values, given),
+        varying=varying,
+        affine=not (varying or moving) and _is_affine(closing, values, given),
+        beyond=tuple(equations.inputs.index(name) for name in tangents.beyond),
         equations=equations,
     )
     check_gains(program)
@@ -125,7 +129,7 @@ def _read(closing: Closing) -> tuple[int, ...]:
 
 def _is_affine(closing: Closing, friction: list[sp.Expr], parameters: set[str]) -> bool:
     """Whether all laws are affine and none has to be solved for; curves must be constant."""
-    if closing.equations.varying or closing.joint or any(loop for _, loop in closing.order):
+    if closing.joint or any(loop for _, loop in closing.order):
         return False
     given = [law.expression for law in closing.laws.values() if isinstance(law, ExpressionLaw)]
     rubbing = [law for law in closing.laws.values() if isinstance(law, DryFriction)]

@@ -4,6 +4,7 @@ Of ``y = F x + D u`` with factors that change in time the rate is ``F x' + D u' 
 terms (``F' x`` behind a crank) are one more signal over states and inputs, their rates put in.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -18,21 +19,27 @@ PREFIX = "moving_"
 """What such a reading is called, with the slip; no result shows it."""
 
 
-def with_moving_slips(closing: Closing) -> tuple[Closing, dict[sp.Symbol, sp.Symbol]]:
+def with_moving_slips(
+    closing: Closing, moved: Mapping[sp.Symbol, Reading]
+) -> tuple[Closing, dict[sp.Symbol, sp.Symbol]]:
     """The laws over equations that know these readings; and these, by the input that each port gives.
+
+    ``moved``: what laws that a slip sees add to that beside their tangents.
 
     Raises `StructureError` where a factor moves with what a law gives.
     """
     equations, motion = closing.equations, closing.equations.reduction.motion
-    if motion is None:
-        return closing, {}
     readings, found = dict(equations.readings), dict[sp.Symbol, sp.Symbol]()
     for given in closing.friction:
         received = closing.received[given]
-        reading = _rate_of_factors(closing, motion, equations.readings[received])
+        result = ReadingSum(moved.get(given))
+        if motion is not None:
+            factors = _rate_of_factors(closing, motion, equations.readings[received])
+            _check(closing, given, factors)
+            result.add(factors, sp.Integer(1))
+        reading = result.whole()
         if not any(reading.parts):
             continue
-        _check(closing, given, reading)
         name = sp.Symbol(f"{PREFIX}{received}")
         while name in readings or name in equations.signals:
             name = sp.Symbol(f"{name}_")

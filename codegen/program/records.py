@@ -55,8 +55,9 @@ class FrictionPort:
 
     ``switch``: of an ideal switch, when it changes over; None where it is dry friction. ``moving``: the
     reading that tells how fast the slip changes by its factors, None where these are constant.
-    ``level``, ``slip``: of one way of friction that gives a flow (backwards follows forwards), the input
-    that is its level and the reading that is its whole slip.
+    ``plain``: the reading that it receives as the graph has it, where ``reading`` is the same along the
+    tangents of laws; else None. ``level``, ``slip``: of one way of friction that gives a flow (backwards
+    follows forwards), the input that is its level and the reading that is its whole slip.
     """
 
     name: Hashable
@@ -66,6 +67,12 @@ class FrictionPort:
     moving: int | None = None
     level: int | None = None
     slip: int | None = None
+    plain: int | None = None
+
+    @property
+    def received(self) -> int:
+        """The reading that it receives as the graph has it."""
+        return self.reading if self.plain is None else self.plain
 
     @property
     def in_c(self) -> tuple[int, int, int, int, int]:
@@ -135,6 +142,8 @@ class Program:
     varying: bool
     #: Whether each friction mode is an affine system with constant coefficients.
     affine: bool
+    #: Inputs that held ports' readings along tangents of laws are written with.
+    beyond: tuple[int, ...]
     #: The equations over these inputs, which know all of these readings.
     equations: StateEquations = field(repr=False, compare=False)
 
@@ -158,13 +167,15 @@ class Program:
     def shown(self) -> tuple[int, ...]:
         """The readings that results show."""
         hidden = {port.moving for port in self.friction}
-        hidden |= {port.reading for port in self.friction if port.slides}
+        hidden |= {port.received for port in self.friction if port.slides}
+        hidden |= {port.reading for port in self.friction if port.plain is not None}
         return tuple(at for at in range(len(self.readings)) if at not in hidden)
 
     @property
     def shown_inputs(self) -> tuple[int, ...]:
-        """The inputs that results show: not the ways in which friction slips that gives a flow."""
+        """The inputs that results show: not a slider's ways of slipping and level, nor ``beyond``."""
         hidden = {at for p in self.friction if p.slides for at in (p.input, p.level)}
+        hidden |= {*self.beyond}
         return tuple(at for at in range(len(self.inputs)) if at not in hidden)
 
     @property
@@ -183,6 +194,12 @@ class Program:
             1 if port.switch is None else port.switch.sign(port.name in on)
             for port in self.friction
         )
+
+    @property
+    def rated_inputs(self) -> frozenset[int]:
+        """The inputs whose rates are known, or told by what moves a slip."""
+        told = {port.input for port in self.friction}
+        return frozenset({*self.given, *self.known.inputs, *told, *self.beyond})
 
     @property
     def given(self) -> list[int]:

@@ -11,6 +11,7 @@ from bondgraph.equations import StateEquations
 from codegen.program.closing import Closing
 from codegen.program.records import FrictionPort, Group, Pattern, block
 from codegen.program.sliding import Slider, halves_of
+from codegen.program.slopes import slope
 from codegen.standalone.switchings import Switching
 
 
@@ -64,10 +65,10 @@ def known_rates(closing: Closing, rates: Sequence[sp.Symbol]) -> list[sp.Expr]:
     result = []
     for name in closing.known:
         law = expression(closing.laws[name])
-        slope = sp.diff(law, TIME)
+        signals = {*closing.external, TIME}
+        result.append(slope(law, TIME, signals))
         for external, rate in zip(closing.external, rates, strict=True):
-            slope += sp.diff(law, external) * rate
-        result.append(slope)
+            result[-1] += slope(law, external, signals) * rate
     return result
 
 
@@ -79,13 +80,16 @@ def expression(law: Law) -> sp.Expr:
 
 
 def friction(
-    closing: Closing, moving: Mapping[sp.Symbol, sp.Symbol]
+    closing: Closing,
+    moving: Mapping[sp.Symbol, sp.Symbol],
+    along: Mapping[sp.Symbol, sp.Symbol],
 ) -> tuple[tuple[FrictionPort, ...], list[sp.Expr]]:
     """Ports that are held or let go; level, breakaway level, curve and curve at rest of each in turn.
 
     Those of switches, which have no limit and let go give nothing, are zero and one; of friction that
     gives a flow the limit is its level, so that it is seen not to be negative. ``moving``: of ports
-    whose slips' factors move the reading that tells how fast, by the input that each gives.
+    whose slips' factors move the reading that tells how fast, by the input that each gives; ``along``: the
+    readings along tangents of laws.
     """
     readings, inputs = list(closing.equations.readings), closing.equations.inputs
     switching, _ = switches(closing)
@@ -102,11 +106,12 @@ def friction(
             FrictionPort(
                 closing.port_names[name] if switch is None else switch.name,
                 inputs.index(name),
-                readings.index(received),
+                readings.index(along.get(name, received)),
                 switching.get(name),
                 readings.index(moving[name]) if name in moving else None,
                 None if slider is None else inputs.index(slider.level),
                 None if slider is None else readings.index(slider.port.given),
+                readings.index(received) if name in along else None,
             )
         )
         curves = [law.curve.subs(SLIP, slip) for slip in (sp.Abs(received), 0)]

@@ -68,8 +68,8 @@ def _halved(
     names = [
         f"{way}_{of}" for of in (port.given, port.received) for way in ("forwards", "backwards")
     ]
-    a, b, over, under = (_unused(name, taken) for name in names)
-    level = _unused(f"level_{port.received}", taken)
+    a, b, over, under = (unused(name, taken) for name in names)
+    level = unused(f"level_{port.received}", taken)
     told, rest = _told(equations, law.level * law.curve)
     equations = equations.with_readings({*told, port.received})
     inputs = (*equations.inputs[:own], a, *equations.inputs[own + 1 :], b, level)
@@ -136,7 +136,7 @@ def _told(equations: StateEquations, level: sp.Expr) -> tuple[dict[sp.Symbol, sp
     return found, left
 
 
-def _unused(name: str, taken: set[sp.Symbol]) -> sp.Symbol:
+def unused(name: str, taken: set[sp.Symbol]) -> sp.Symbol:
     """A symbol of this name, or a longer one, that nothing else has; it is taken then."""
     symbol = sp.Symbol(name)
     while symbol in taken:

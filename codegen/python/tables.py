@@ -32,9 +32,11 @@ def places(program: Program) -> list[str]:
     lines += _names("SHOWN", tuple(dict.fromkeys([*program.outputs, *efforts])))
     lines += [
         "",
-        "# Places in u of what is given and of what known laws give; in y of law states' rates.",
+        "# Places in u of what is given, of what known laws give, of what laws have beyond tangents; in y of",
+        "# law states' rates.",
     ]
     lines += [*_places("GIVEN", program.given), *_places("KNOWN", program.known.inputs)]
+    lines += _places("BEYOND", program.beyond)
     return [*lines, *_places("LAW_RATES", program.law_rates)]
 
 
@@ -53,11 +55,12 @@ def friction_tables(program: Program, slips: SlipRows) -> list[str]:
     return [
         *(["", "# Ports that are ideal switches.", *switches] if program.switched else ()),
         "",
-        "# Friction ports, the inputs they give, the slips they receive, what tells how the factors of",
-        "# these move; is a resistance beside?",
+        "# Friction ports, the inputs they give, the slips they receive, by tangents of laws and as they",
+        "# are, what tells how the factors of these move; is a resistance beside?",
         *names_tuple("FRICTION", [str(port.name) for port in program.friction]),
         *_places("FRICTION_INPUTS", [port.input for port in program.friction]),
         *_places("FRICTION_READINGS", [port.reading for port in program.friction]),
+        *_places("FRICTION_RECEIVED", [port.received for port in program.friction]),
         *_places(
             "FRICTION_MOVING", [-1 if p.moving is None else p.moving for p in program.friction]
         ),

@@ -12,7 +12,7 @@ from codegen.inputs.present import Inputs, Present
 from codegen.inputs.signal import Signal
 from codegen.model.snapshot import Impact, Mode
 from codegen.modes.choices import Choices
-from codegen.modes.choose import Occasion, decide
+from codegen.modes.choose import Decision, Occasion, decide
 from codegen.modes.closed import ClosedModel
 from codegen.modes.glances import Glances
 from codegen.modes.pace import hardly_apart, look_ahead, time_constant
@@ -122,7 +122,7 @@ class _Course:
         occasion = Occasion(
             model, t, pieces, self.mode, ahead, peaks, loose, self._touched, *self._first_looks
         )
-        new, after, impacts, self._clear = decide(occasion, here)
+        new, after, impacts, self._clear = self._decided(occasion, here)
         if self._settled is not None:
             changes = self._changes.of((self.mode, new), lambda: _changes(model, self.mode, new))
             self.track.note([Event(t, port, kind) for port, kind in changes])
@@ -133,6 +133,19 @@ class _Course:
         self._come_to_rest(here, new, impacts)
         self.mode, self._touched, self._settled = new, frozenset(), t
         self._here = here if self.s is here.s else Sight(model, t, self.s, pieces)
+
+    def _decided(self, now: Occasion, here: Sight) -> Decision:
+        """The mode just after an instant; the last one where a run ends so soon that none needs to go on.
+
+        As where a level comes down to zero at the end: what would follow, a level below, does not.
+        """
+        try:
+            return decide(now, here)
+        except SimulationError:
+            if self.t + now.ahead < self.end or self._settled is None:
+                raise
+            here.at(self.mode)
+            return Decision(self.mode, here.s, ())
 
     def _fastest(self, here: Sight, present: Present) -> float:
         """The largest rate [1/s] of what can be evaluated here, and of the inputs."""

@@ -58,9 +58,10 @@ class Form:
 
     ``states``: how many. ``inputs``, ``readings``: names. ``given``: the places in u of the
     external inputs. ``known``: laws of time and external inputs; ``known_rates``: how fast these
-    change, None where nothing asks for it. ``laws``: the others, in an order in which each can be
-    evaluated. ``law_rates``: the places in y of the rates of laws' states. ``varying``: whether the
-    matrices change.
+    change, None where nothing asks for it. ``beyond``: the places of what laws have beyond their
+    tangents, whose rates are with what moves slips. ``laws``: the others, in an order in which each
+    can be evaluated. ``law_rates``: the places in y of the rates of laws' states. ``varying``:
+    whether the matrices change.
     """
 
     states: int
@@ -69,6 +70,7 @@ class Form:
     given: Places
     known: Laws
     known_rates: Formula | None
+    beyond: Places
     matrices: Callable[[Instant], Numbers]
     laws: Sequence[Laws]
     law_rates: Places

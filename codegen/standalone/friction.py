@@ -19,6 +19,7 @@ from codegen.tuning import TUNING
 class Ports:
     """Friction ports: names, inputs they give, slips they receive, and what holds sets of them.
 
+    ``received``: the slips as the graph has them, where ``readings`` are along tangents of laws.
     ``moving``: for each port the reading that tells how fast the slip changes by its factors, or -1
     where these are constant. ``beside``: whether a slip depends at once on friction, or on laws
     that friction moves. ``held``: from a set of sticking ports to its ranks. ``values``: level,
@@ -29,6 +30,7 @@ class Ports:
     names: Sequence[Hashable]
     inputs: Places
     readings: Places
+    received: Places
     moving: Places
     beside: Sequence[bool]
     held: Callable[[tuple[int, ...]], HeldSet]
@@ -54,7 +56,7 @@ class Friction:
         self._holds: dict[tuple[int, ...], Hold] = {}
         self._ranks: dict[tuple[int, ...], HeldSet] = {}
         self._laws = (form.known, *form.laws, *coupled)
-        self._differentiable = {*form.given, *form.known.inputs, *ports.inputs}
+        self._rated = {*form.given, *form.known.inputs, *ports.inputs, *form.beyond}
 
     def __call__(self, now: Instant, mode: Mode, checked: bool) -> Correction:
         """Complete an instant as the mode says; what rounding must be added to the rates of x."""
@@ -79,7 +81,7 @@ class Friction:
 
     def _hold(self, stuck: list[int], numbers: Numbers) -> Hold:
         ports, names = self.ports, ", ".join(repr(self.ports.names[i]) for i in stuck)
-        places = (ports.inputs, ports.readings, ports.moving)
+        places = (ports.inputs, ports.readings, ports.received, ports.moving)
         if (chosen := tuple(stuck)) not in self._ranks:
             if len(self._ranks) >= MOST_KEPT:
                 del self._ranks[next(iter(self._ranks))]
@@ -96,10 +98,10 @@ class Friction:
         for j in np.flatnonzero(
             np.abs(found.V).max(axis=0, initial=0.0) > TUNING.nothing_held
         ).tolist():
-            if j not in self._differentiable:
+            if j not in self._rated:
                 raise HoldError(
                     f"holding {names} would need the slope in time of {self.form.inputs[j]}, which "
-                    "a law gives; put a storage between"
+                    "a law gives of more than states and inputs; put a storage between"
                 )
         return found
 

@@ -113,6 +113,7 @@ def hold(
     ports: Sequence[int],
     inputs: Places,
     rows: Places,
+    received: Places,
     moving: Places,
     numbers: Numbers,
     varying: bool,
@@ -120,7 +121,8 @@ def hold(
 ) -> Hold:
     """The holding equations of ports of these, which give these inputs and receive these rows of y.
 
-    ``moving``: the rows that tell how fast those change by their factors, -1 where not.
+    ``received``: the same as the graph has them, whose ranks count. ``moving``: the rows that tell
+    how fast those change by their factors, -1 where not.
     ``varying``: whether x itself is integrated. ``exact``: whether these are the numbers for which
     the ranks were decided. Raises `HoldError` where they have others, `EvaluationError` where there
     are no unique efforts.
@@ -128,23 +130,24 @@ def hold(
     stuck = np.array(ports, dtype=np.intp)
     chosen = inputs[stuck]
     F, D, G = (matrix[rows[stuck]] for matrix in (numbers.F, numbers.D, numbers.G))
+    plain = numbers.F[received[stuck]]
     on = moving[stuck]
     moved = [np.where(on[:, None] >= 0, m[on], 0.0) for m in (numbers.F, numbers.D, numbers.G)]
     answers, kept, direct = D[:, [*chosen, *held.moved]], list(held.kept), list(held.direct)
     free = [k for k in range(len(held.null)) if k not in held.kept]
     try:
         null = vanishing(answers, held.direct, held.direct_columns, held.null)
-        seen = null @ F
+        seen = null @ plain
         share = vanishing(seen, held.kept, held.kept_columns, free)
     except np.linalg.LinAlgError:
         raise HoldError from None
     if not exact:
-        sizes = np.abs(answers), np.abs(null) @ np.abs(F)
+        sizes = np.abs(answers), np.abs(null) @ np.abs(plain)
         _check(
             ((null, answers, sizes[0]), (share, seen, sizes[1])),
             (answers[direct], seen[kept] * scales(numbers.A)),
         )
-    slip_x, slip_u, share = seen[kept], null[kept] @ D, share @ null
+    slip_x, slip_u, share = null[kept] @ F, null[kept] @ D, share @ null
     by_x, by_u, by_rates = (null[kept] @ matrix for matrix in moved)
     U = np.vstack([D[direct], slip_x @ numbers.Q + by_u])
     return Hold(
@@ -230,6 +233,6 @@ def _inverse(matrix: Array) -> Array:
         return np.asarray(np.linalg.inv(matrix), dtype=float)
     except np.linalg.LinAlgError:
         raise EvaluationError(
-            "sticking ports have no unique holding efforts: the storages behind them cancel; "
-            "check the signs of their values"
+            "sticking ports have no unique holding efforts: the storages or laws behind them "
+            "cancel; check the signs of their values"
         ) from None

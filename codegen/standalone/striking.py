@@ -35,6 +35,12 @@ class Strike:
         found[:n], found[n : n + len(law_rates)] = self.jump, self.received[law_rates]
         return found
 
+    def followed(self, other: "Strike") -> "Strike":
+        """This one and another just after it."""
+        return Strike(
+            self.given + other.given, self.received + other.received, self.jump + other.jump
+        )
+
 
 def struck(held: Hold, numbers: Numbers, slips: Array) -> Strike:
     """The least impulses of ports that stop these slips, or, by columns, each of several such."""

@@ -13,7 +13,7 @@ from codegen.standalone.friction import Friction, slip_rates
 from codegen.standalone.instant import Formula, Instant
 from codegen.standalone.levels import level_terms
 from codegen.standalone.stepping import Chosen, Names
-from codegen.standalone.striking import completing, effort_terms, shocks, struck
+from codegen.standalone.striking import Strike, completing, effort_terms, shocks, struck
 from codegen.standalone.switchings import Broken, Switching, flipped, switchings
 from codegen.tuning import TUNING
 
@@ -156,8 +156,25 @@ class SwitchedSteps(DeadBand):
     ) -> tuple[Array, Sequence[int]]:
         """s after the impulses of the switches that are held, and how these go with the mode."""
         held = tuple(np.where(self.rubs, 1, switched).tolist())
-        if 0 not in held:
+        whole, s, begun = None, at.s, None
+        # Where rows turn as states jump, each strike leaves what is bent of its way.
+        for _ in range(TUNING.impacts if 0 in held else 0):
+            now, found = self.struck(at._replace(s=s), held, previous, h)
+            if found is None:
+                break
+            whole, begun = (found, now) if whole is None else (whole.followed(found), begun)
+            s = s + found.gained(len(s), self.form.law_rates)
+            if not self.form.varying:
+                break
+        if whole is None or begun is None:
             return at.s, [0] * len(held)
+        places = self.efforts, self.slips
+        return s, shocks(whole, begun, switched, self.switching, places, self.told)
+
+    def struck(
+        self, at: Point, held: Mode, previous: Chosen, h: float
+    ) -> tuple[Instant, Strike | None]:
+        """What stops the slips of what is held, by its rows as they are; None for nothing."""
         now = self.any_of(at, (1,) * len(held))
         hold = self.friction.hold(held, now.numbers)
         near = TUNING.step_rounding * self.terms(now)
@@ -166,12 +183,8 @@ class SwitchedSteps(DeadBand):
             drift = TUNING.step_drift * h * self.rate_terms(now)
             near += np.where(np.equal(previous, 0), drift, 0.0)
         slips = hold.slips(now.x, now.u)
-        if (np.abs(slips) <= np.abs(hold.mix) @ near[hold.ports]).all():
-            return at.s, [0] * len(held)
-        found = struck(hold, now.numbers, slips)
-        s = at.s + found.gained(len(at.s), self.form.law_rates)
-        places = self.efforts, self.slips
-        return s, shocks(found, now, switched, self.switching, places, self.told)
+        still = (np.abs(slips) <= np.abs(hold.mix) @ near[hold.ports]).all()
+        return now, None if still else struck(hold, now.numbers, slips)
 
     def contrary(
         self, at: Point, now: Instant, mode: Mode, signs: Sequence[int], h: float

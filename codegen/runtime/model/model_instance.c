@@ -135,10 +135,11 @@ const char *bg_model_message(int status)
         "a law or a rate has no finite value",
         "laws that depend on one another have no solution; check them, or put a storage between",
         "a friction level or curve is negative, or a breakaway is below the friction at standstill",
-        "sticking ports have no unique holding efforts: the storages behind them cancel",
+        "sticking ports have no unique holding efforts: the storages or laws behind cancel",
         "how redundant ports that stick share a load was not found: exchanges of ports have no end",
         "these parameters change which friction ports are redundant; generate the model at them",
-        "holding a port would need the slope in time of an input that a law gives",
+        "holding a port would need the slope in time of what a law gives of more than "
+        "states and inputs",
         "this model, or this mode of it, is not one affine map",
         "a friction mode must be -1, 0 or 1",
         "no way of sticking and slipping is consistent",

@@ -55,6 +55,8 @@ extern const int bg_slip_begins[], bg_slip_places[], bg_moved_begins[], bg_moved
 extern const unsigned long long bg_slip_residues[], bg_prime, bg_prime_inverse; /* -1/p mod 2^64 */
 extern const int bg_law_rates[], bg_friction_inputs[], bg_friction_readings[];
 extern const int bg_outside_inputs[], bg_differentiable[], bg_output_readings[], bg_beside[];
+/* The slips as the graph has them, where bg_friction_readings are along the tangents of laws. */
+extern const int bg_received_readings[];
 extern const int bg_moving[]; /* readings of how fast slips change by their factors; -1: none */
 extern const bg_switch bg_switches[];
 extern const int bg_first_modes[]; /* before the first step, of friction anything */
@@ -128,7 +130,7 @@ void bg_shocks(bg_model *m, const int *mode, const double *given, const double *
                double *ways);
 
 /* Whether slips are more than those `near`, one for each port that is held; and what stops them at
- * once, by the impulses per unit of each. */
+ * once, by the impulses per unit of each; `ways` grow by how far these go. */
 int bg_have_slips(const bg_hold *held, const double *slips, const double *near);
 void bg_stop(bg_model *m, const int *mode, const bg_hold *held, const double *impulses,
              const double *slips, double *s, double *ways);

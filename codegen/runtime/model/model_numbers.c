@@ -71,7 +71,7 @@ static void show_rates(bg_numbers *a, const double *entries)
 static void note_slips(bg_numbers *a)
 {
     for (int i = 0; i < BG_FRICTION; i++) {
-        const int row = bg_friction_readings[i];
+        const int row = bg_received_readings[i];
         for (int j = 0; j < BG_STATES; j++)
             a->slip_F[i * BG_STATES + j] = a->F[row * BG_STATES + j];
         double *const slip = a->slip_D + i * (BG_FRICTION + BG_COUPLED);

@@ -194,10 +194,12 @@ int bg_have_slips(const bg_hold *held, const double *slips, const double *near)
 void bg_stop(bg_model *m, const int *mode, const bg_hold *held, const double *impulses,
              const double *slips, double *s, double *ways)
 {
-    double given[PORTS] = {0}, received[BG_ROOM(ROWS)];
+    double given[PORTS] = {0}, received[BG_ROOM(ROWS)], gone[PORTS];
     for (int k = 0; k < held->kept; k++)
         for (int i = 0; i < K; i++)
             given[i] += impulses[k * K + i] * slips[k];
     bg_pass_on(m, given, s, received);
-    bg_shocks(m, mode, given, received, ways);
+    bg_shocks(m, mode, given, received, gone);
+    for (int i = 0; i < K; i++)
+        ways[i] += gone[i];
 }

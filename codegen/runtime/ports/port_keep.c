@@ -70,23 +70,30 @@ int bg_view_strike(void *view, const bg_instant *at, const int *mode, double *s,
                    int *struck)
 {
     bg_view *const v = view;
-    double impulses[PORTS * PORTS], slips[PORTS], ways[PORTS];
+    double impulses[PORTS * PORTS], slips[PORTS], ways[PORTS] = {0};
     bg_port ports[PORTS];
     bg_hold *held = NULL;
     int loose[BG_MOST_PORTS];
-    *struck = 0;
-    for (int i = 0; i < K; i++)
-        loose[i] = 1;
+    bg_instant now = *at;
     const bg_sight sight = bg_view_sight(v);
-    int status = bg_evaluated(&sight, at, 1, loose);
-    if (status == BG_OK) {
-        bg_view_ports(v, loose, at->time, ports);
-        status = bg_impulses(v->model, mode, &held, impulses);
+    *struck = 0;
+    /* Where rows turn as states jump, each strike leaves what is bent of its way. */
+    for (int strikes = BG_VARYING ? BG_IMPACTS : 1; strikes > 0; strikes--) {
+        for (int i = 0; i < K; i++)
+            loose[i] = 1;
+        int status = bg_evaluated(&sight, &now, 1, loose);
+        if (status == BG_OK) {
+            bg_view_ports(v, loose, at->time, ports);
+            status = bg_impulses(v->model, mode, &held, impulses);
+        }
+        if (status)
+            return status;
+        if (!held || !have_to_jump(held, &v->shot, ports, slips))
+            break;
+        *struck = 1;
+        bg_stop(v->model, mode, held, impulses, slips, s, ways);
+        now.s = s;
     }
-    if (status || !held || !have_to_jump(held, &v->shot, ports, slips))
-        return status;
-    *struck = 1;
-    bg_stop(v->model, mode, held, impulses, slips, s, ways);
     for (int i = 0; i < K; i++)
         shocks[i] = ways[i] == 0.0 ? 0 : ways[i] > 0.0 ? 1 : -1;
     return BG_OK;

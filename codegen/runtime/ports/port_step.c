@@ -39,16 +39,20 @@ static int strike(step_search *c, const int *mode, double *ways)
     bg_model *const m = c->m;
     bg_hold *held = NULL;
     int loose[BG_MOST_PORTS];
-    for (int i = 0; i < BG_MOST_PORTS; i++)
-        loose[i] = 1;
-    int status = bg_look_slipping(m, &c->at, loose);
-    if (status == BG_OK)
-        status = bg_impulses(m, mode, &held, impulses);
-    if (status || !held)
-        return status;
-    bg_held_slips(held, &m->shot, slips);
-    if (is_struck(c, held, slips))
+    /* Where rows turn as states jump, each strike leaves what is bent of its way. */
+    for (int strikes = BG_VARYING ? BG_IMPACTS : 1; strikes > 0; strikes--) {
+        for (int i = 0; i < BG_MOST_PORTS; i++)
+            loose[i] = 1;
+        int status = bg_look_slipping(m, &c->at, loose);
+        if (status == BG_OK)
+            status = bg_impulses(m, mode, &held, impulses);
+        if (status || !held)
+            return status;
+        bg_held_slips(held, &m->shot, slips);
+        if (!is_struck(c, held, slips))
+            return BG_OK;
         bg_stop(m, mode, held, impulses, slips, c->s, ways);
+    }
     return BG_OK;
 }
 

@@ -30,6 +30,23 @@ static int come_to_end(const bg_engine *e, bg_course *c, int *undecided)
     return BG_OK;
 }
 
+/* The mode just after an instant; the last one where a run ends so soon that none needs to go on:
+ * as where a level comes down to zero at the end, what would follow, a level below, does not. */
+static int decide(const bg_engine *e, bg_course *c, int started)
+{
+    const bg_sight *const sight = &e->sight;
+    int before[BG_MOST_PORTS];
+    memcpy(before, c->mode, sizeof before);
+    const int status =
+        e->choose ? e->choose(e->self, sight) : bg_choose(sight, &c->at, c->mode);
+    const double ahead = bg_look_ahead(c->at.time, c->at.t, c->at.following);
+    if (!started || c->at.t + ahead < c->end
+        || (status != BG_UNDECIDED && status != BG_BAD_FRICTION && status != BG_NEGATIVE))
+        return status;
+    memcpy(c->mode, before, sizeof before);
+    return sight->look(sight->self, c->at.t, c->at.s, c->mode);
+}
+
 /* Takes the present instant into account, decides the mode there and removes slips that stick. */
 static int settle(const bg_engine *e, bg_course *c, int started)
 {
@@ -48,7 +65,7 @@ static int settle(const bg_engine *e, bg_course *c, int started)
     if (status)
         return status;
     c->at.time = bg_time_constant(fastest, c->at.t - c->began);
-    status = e->choose ? e->choose(e->self, sight) : bg_choose(sight, &c->at, c->mode);
+    status = decide(e, c, started);
     for (int i = 0; i < sight->ports; i++)
         touched |= c->at.touched[i];
     if (status == BG_OK && started) {

@@ -52,6 +52,7 @@ const double bg_defaults[] = {
 const int bg_law_rates[] = {0};
 const int bg_friction_inputs[] = {1};
 const int bg_friction_readings[] = {1};
+const int bg_received_readings[] = {1};
 const int bg_moving[] = {-1};
 const int bg_first_modes[] = {1};
 const int bg_beside[] = {0};

@@ -8,6 +8,7 @@ from oracles.routes.kind import Kind
 from oracles.routes.kinds import KINDS
 from oracles.routes.lawful import LAWFUL
 from oracles.routes.plain import PLAIN
+from oracles.routes.sloped import SLOPED
 from oracles.routes.switches import SWITCHES
 from oracles.routes.table import REFUSALS, REFUSED
 
@@ -40,7 +41,7 @@ def page() -> str:
     """The text of the page."""
     parts = [HEAD]
     for title, kinds in (
-        ("Dry friction", FRICTION),
+        ("Dry friction", (*FRICTION, *SLOPED)),
         ("Switches", SWITCHES),
         ("No port that switches", (*PLAIN, *LAWFUL)),
     ):
