@@ -90,7 +90,7 @@ def _seen(closing: Closing, given: sp.Symbol) -> list[int]:
 
 def _shape(row: Reading, number: int) -> Reading:
     """The row with numbers as factors that no other row has: which ports bind states together."""
-    return Reading({j: sp.Integer(sp.prime(31 * number + j + 5)) for j in row.F}, {}, {}, {})
+    return Reading({j: sp.Integer(sp.prime(31 * number + j + 5)) for j in row.F}, row.D, {}, {})
 
 
 def _along(
