@@ -1,6 +1,6 @@
 """Which law closes which port, and in which order laws can be evaluated."""
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import networkx as nx
@@ -12,6 +12,7 @@ from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError
 from bondgraph.reduce.readings import depends_on_signals
+from codegen.program.jumps import Jump, Smooth, jumps_of
 from codegen.program.sliding import Slider, sliders_of
 
 
@@ -41,6 +42,9 @@ class Closing:
     joint: bool
     #: Dry friction that gives a flow; what its halves give is among ``friction``.
     sliders: tuple[Slider, ...] = ()
+    #: Jumps of laws; their mixtures are among ``friction``.
+    jumps: tuple[Jump, ...] = ()
+    smooth: tuple[Smooth, ...] = ()
 
 
 def close_ports(
@@ -57,6 +61,7 @@ def close_ports(
     _check_assumptions(equations, by_port)
     read = {name for closed in by_port.values() for name in closed.free_symbols} | watched
     equations = equations.with_readings({*read, *equations.integrals.values()})
+    equations, jumps, smooth = jumps_of(equations, by_port, parameters)
     equations, sliders = sliders_of(equations, by_port)
     ports = {port.element.name: port for port in equations.ports}
     _check_parameters(equations, by_port, parameters)
@@ -72,6 +77,7 @@ def close_ports(
             raise StructureError(f"input {ports[name].given} is closed by two different laws")
     owner = {ports[name].given: name for name in by_port}
     received = {given: ports[name].received for given, name in owner.items()}
+    _put_in_jumps(jumps, smooth, laws, owner, received)
     for slider in sliders:
         _put_in_halves(slider, laws, owner, received)
         switching |= {half.given for half in slider.halves}
@@ -96,7 +102,28 @@ def close_ports(
         coupled,
         joint,
         sliders,
+        jumps,
+        smooth,
     )
+
+
+def _put_in_jumps(
+    jumps: Iterable[Jump],
+    smooth: Iterable[Smooth],
+    laws: dict[sp.Symbol, Law],
+    owner: dict[sp.Symbol, Hashable],
+    received: dict[sp.Symbol, sp.Symbol],
+) -> None:
+    """Smooth laws instead of those that jump, and of each jump the friction that it is."""
+    for one in smooth:
+        for table in (laws, owner, received):
+            del table[one.port.given]
+        laws[one.given], received[one.given] = one.law, one.port.received
+        owner[one.given] = one.port.element.name
+    for jump in jumps:
+        laws[jump.mixture], laws[jump.offset] = DryFriction(1), ExpressionLaw(jump.law)
+        received |= dict.fromkeys([jump.mixture, jump.offset], jump.depends)
+        owner |= dict.fromkeys([jump.mixture, jump.offset], jump.node)
 
 
 def _put_in_halves(

@@ -59,7 +59,7 @@ def lower(
         closing = sources.told(closing)
         taken |= set(closing.external)
     varying = any(name.name not in given for entry in expressions for name in entry.free_symbols)
-    rubbing, values = friction(closing, moving, tangents.along)
+    rubbing, values = friction(closing, moving, tangents.along, tangents.shapes)
     readings = tuple(equations.readings)
     external_rates = _rate_names(closing.external, taken)
     program = Program(
@@ -88,6 +88,8 @@ def lower(
         guards_affine=is_affine(guards, given),
         varying=varying,
         affine=not (varying or moving) and _is_affine(closing, values, given),
+        smooth=tuple(equations.inputs.index(one.given) for one in closing.smooth),
+        hung=tuple(readings.index(one.depends) for one in closing.jumps),
         beyond=tuple(equations.inputs.index(name) for name in tangents.beyond),
         equations=equations,
     )

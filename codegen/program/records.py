@@ -57,7 +57,8 @@ class FrictionPort:
     reading that tells how fast the slip changes by its factors, None where these are constant.
     ``plain``: the reading that it receives as the graph has it, where ``reading`` is the same along the
     tangents of laws; else None. ``level``, ``slip``: of one way of friction that gives a flow (backwards
-    follows forwards), the input that is its level and the reading that is its whole slip.
+    follows forwards), the input that is its level and the reading that is its whole slip. ``offset``: of
+    a jump of a law, which is friction, too, the input that is part of what it hangs on.
     """
 
     name: Hashable
@@ -68,6 +69,7 @@ class FrictionPort:
     level: int | None = None
     slip: int | None = None
     plain: int | None = None
+    offset: int | None = None
 
     @property
     def received(self) -> int:
@@ -82,6 +84,16 @@ class FrictionPort:
             return 0, 0, 0, 0, 0
         kind = 1 if one.side else 2
         return kind, int(one.on), one.side, max(one.guard, 0), self.way
+
+    @property
+    def words(self) -> tuple[str, str, str]:
+        """What it is when it comes to hold, lets go, and goes the other way at once; "" is not told."""
+        return ("slide", "leave", "") if self.jumps else ("stick", "slip", "cross")
+
+    @property
+    def jumps(self) -> bool:
+        """Whether it is the jump of a law."""
+        return self.offset is not None
 
     @property
     def slides(self) -> bool:
@@ -144,6 +156,10 @@ class Program:
     affine: bool
     #: Inputs that held ports' readings along tangents of laws are written with.
     beyond: tuple[int, ...]
+    #: Inputs that are what laws with jumps give beside these.
+    smooth: tuple[int, ...]
+    #: Readings that jumps hang on.
+    hung: tuple[int, ...]
     #: The equations over these inputs, which know all of these readings.
     equations: StateEquations = field(repr=False, compare=False)
 
@@ -167,7 +183,8 @@ class Program:
     def shown(self) -> tuple[int, ...]:
         """The readings that results show."""
         hidden = {port.moving for port in self.friction}
-        hidden |= {port.received for port in self.friction if port.slides}
+        hidden |= {port.received for port in self.friction if port.slides or port.jumps}
+        hidden |= {*self.hung}
         hidden |= {port.reading for port in self.friction if port.plain is not None}
         return tuple(at for at in range(len(self.readings)) if at not in hidden)
 
@@ -175,7 +192,8 @@ class Program:
     def shown_inputs(self) -> tuple[int, ...]:
         """The inputs that results show: not a slider's ways of slipping and level, nor ``beyond``."""
         hidden = {at for p in self.friction if p.slides for at in (p.input, p.level)}
-        hidden |= {*self.beyond}
+        hidden |= {*self.beyond, *self.smooth}
+        hidden |= {at for p in self.friction if p.jumps for at in (p.input, p.offset)}
         return tuple(at for at in range(len(self.inputs)) if at not in hidden)
 
     @property

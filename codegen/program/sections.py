@@ -83,18 +83,20 @@ def friction(
     closing: Closing,
     moving: Mapping[sp.Symbol, sp.Symbol],
     along: Mapping[sp.Symbol, sp.Symbol],
+    shapes: Mapping[sp.Symbol, sp.Symbol],
 ) -> tuple[tuple[FrictionPort, ...], list[sp.Expr]]:
     """Ports that are held or let go; level, breakaway level, curve and curve at rest of each in turn.
 
     Those of switches, which have no limit and let go give nothing, are zero and one; of friction that
     gives a flow the limit is its level, so that it is seen not to be negative. ``moving``: of ports
     whose slips' factors move the reading that tells how fast, by the input that each gives; ``along``: the
-    readings along tangents of laws.
+    readings along tangents of laws; ``shapes``: those whose ranks count instead of jumps' own.
     """
     readings, inputs = list(closing.equations.readings), closing.equations.inputs
     switching, _ = switches(closing)
     called = {port.given: port.element.switch for port in closing.equations.ports}
     sliders = {half.given: one for one in closing.sliders for half in one.halves}
+    mixed = {jump.mixture: inputs.index(jump.offset) for jump in closing.jumps}
     ports: list[FrictionPort] = []
     values: list[sp.Expr] = []
     for name in closing.friction:
@@ -111,7 +113,8 @@ def friction(
                 readings.index(moving[name]) if name in moving else None,
                 None if slider is None else inputs.index(slider.level),
                 None if slider is None else readings.index(slider.port.given),
-                readings.index(received) if name in along else None,
+                readings.index(shapes.get(name, received)) if name in along else None,
+                mixed.get(name),
             )
         )
         curves = [law.curve.subs(SLIP, slip) for slip in (sp.Abs(received), 0)]

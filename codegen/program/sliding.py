@@ -70,7 +70,7 @@ def _halved(
     ]
     a, b, over, under = (unused(name, taken) for name in names)
     level = unused(f"level_{port.received}", taken)
-    told, rest = _told(equations, law.level * law.curve)
+    told, rest = told_of(equations, law.level * law.curve)
     equations = equations.with_readings({*told, port.received})
     inputs = (*equations.inputs[:own], a, *equations.inputs[own + 1 :], b, level)
     readings = {name: _spread(row, own, count) for name, row in equations.readings.items()}
@@ -79,7 +79,7 @@ def _halved(
         total = ReadingSum(readings[port.received])
         total.add(Reading({}, {count + 1: sp.Integer(1)}, {}, {}), sp.Integer(sign))
         for signal, factor in told.items():
-            total.add(_row(equations, signal, own, count), sign * factor)
+            total.add(_spread(row_of(equations, signal), own, count), sign * factor)
         readings[name] = total.whole()
     halves = Half(a, over, 1), Half(b, under, -1)
     return _over(equations, inputs, readings, own), Slider(
@@ -113,18 +113,18 @@ def _spread(row: Reading, own: int, count: int) -> Reading:
     return Reading(row.F, fixed(D), row.H, fixed(K))
 
 
-def _row(equations: StateEquations, name: sp.Symbol, own: int, count: int) -> Reading:
+def row_of(equations: StateEquations, name: sp.Symbol) -> Reading:
     """A signal over states and inputs."""
     one = sp.Integer(1)
     if name in equations.states:
         return Reading({equations.states.index(name): one}, {}, {}, {})
     if name in equations.inputs:
-        return _spread(Reading({}, {equations.inputs.index(name): one}, {}, {}), own, count)
-    return _spread(equations.readings[name], own, count)
+        return Reading({}, {equations.inputs.index(name): one}, {}, {})
+    return equations.readings[name]
 
 
-def _told(equations: StateEquations, level: sp.Expr) -> tuple[dict[sp.Symbol, sp.Expr], sp.Expr]:
-    """What a level has of each signal, constant factors, and what is left of it."""
+def told_of(equations: StateEquations, level: sp.Expr) -> tuple[dict[sp.Symbol, sp.Expr], sp.Expr]:
+    """What an expression has of each signal, constant factors, and what is left of it."""
     signals = {*equations.signals, *equations.states}
     found: dict[sp.Symbol, sp.Expr] = {}
     left = sp.expand(level)

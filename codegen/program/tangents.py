@@ -32,6 +32,8 @@ class Tangents:
     along: Mapping[sp.Symbol, sp.Symbol]
     moved: Mapping[sp.Symbol, Reading]
     beyond: tuple[sp.Symbol, ...]
+    #: Of jumps that hang on laws readings with other factors where those have theirs, for ranks alone.
+    shapes: Mapping[sp.Symbol, sp.Symbol]
 
 
 @dataclass(frozen=True)
@@ -47,12 +49,13 @@ def with_tangents(closing: Closing) -> tuple[Closing, Tangents]:
     """The laws over equations that know these readings."""
     seen = {given: columns for given in closing.friction if (columns := _seen(closing, given))}
     if not seen:
-        return closing, Tangents({}, {}, ())
+        return closing, Tangents({}, {}, (), {})
     made = _Tangents(closing)
     found = {j: one for j in sorted(set().union(*seen.values())) if (one := made.of(j)) is not None}
     told = made.told()
     readings, along = dict(told.equations.readings), dict[sp.Symbol, sp.Symbol]()
-    moved = dict[sp.Symbol, Reading]()
+    moved, shapes = dict[sp.Symbol, Reading](), dict[sp.Symbol, sp.Symbol]()
+    jumps = {jump.mixture for jump in closing.jumps}
     for given, columns in seen.items():
         mine = {j: found[j] for j in columns if j in found}
         if mine:
@@ -60,8 +63,11 @@ def with_tangents(closing: Closing) -> tuple[Closing, Tangents]:
             along[given] = unused(f"along_{received}", made.taken)
             row = closing.equations.readings[received]
             readings[along[given]], moved[given] = _along(row, mine, told.equations.inputs)
+            if given in jumps:
+                shapes[given] = unused(f"shape_{received}", made.taken)
+                readings[shapes[given]] = _shape(readings[along[given]], len(shapes))
     equations = replace(told.equations, readings=MappingProxyType(readings))
-    return replace(told, equations=equations), Tangents(along, moved, tuple(made.added))
+    return replace(told, equations=equations), Tangents(along, moved, tuple(made.added), shapes)
 
 
 def _seen(closing: Closing, given: sp.Symbol) -> list[int]:
@@ -76,9 +82,15 @@ def _seen(closing: Closing, given: sp.Symbol) -> list[int]:
     own = {equations.inputs.index(name) for name in (given, *closing.coupled)}
     others = [equations.readings[closing.received[one]] for one in closing.friction if one != given]
     direct = bool(own & set(row.D))
-    if not row.F or (direct and not any(answering & set(row.D) & set(o.D) for o in others)):
+    jumps = any(given == jump.mixture for jump in closing.jumps)
+    if not (row.F or jumps) or (direct and not any(answering & set(row.D) & set(o.D) for o in others)):
         return []
     return [j for j in row.D if equations.inputs[j] in laws]
+
+
+def _shape(row: Reading, number: int) -> Reading:
+    """The row with numbers as factors that no other row has: which ports bind states together."""
+    return Reading({j: sp.Integer(sp.prime(31 * number + j + 5)) for j in row.F}, row.D, {}, {})
 
 
 def _along(

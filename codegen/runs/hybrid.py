@@ -270,8 +270,8 @@ def _changes(model: ClosedModel, old: Mode, new: Mode) -> list[tuple[Hashable, s
         if port.switch is not None and not port.slides:
             switching.append((port.name, port.switch.word(after)))
         else:
-            kind = "stick" if after == 0 else ("slip" if before == 0 else "cross")
-            rubbing.append((port.name, kind))
+            kind = port.words[0 if after == 0 else (1 if before == 0 else 2)]
+            rubbing += [(port.name, kind)] if kind else []
     return switching + rubbing
 
 

@@ -1,0 +1,231 @@
+"""Laws that jump: the sign of what a jump hangs on, as dry friction of level 1 that stands by itself.
+
+``sign(v - w)`` is 1 on one side and -1 on the other; a motion that is pushed back from both sides slides
+along ``v = w``, by that mixture of both which keeps it there (Filippov, Differential Equations with
+Discontinuous Righthand Sides, section 4). That is what friction of level 1 does whose slip is ``v - w``: it
+gives 1 or -1, or holds its slip at zero by what that takes in between. So a jump is one more port: it gives
+its mixture, an input with the columns of what the law gives, and receives what it hangs on.
+"""
+
+from collections.abc import Hashable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import sympy as sp
+from sympy.core.relational import Ge, Gt, Le, Lt
+
+from bondgraph.algebra.exact import fixed
+from bondgraph.algebra.expressions import TIME
+from bondgraph.declare.laws import ExpressionLaw, Law
+from bondgraph.equations import StateEquations
+from bondgraph.reduce.record import Reading, ReadingSum
+from bondgraph.reduce.structure import Port
+from codegen.program.sliding import row_of, told_of, unused
+
+Columns = Mapping[int, Mapping[int, sp.Expr]]
+"""Of inputs that are added, by their places, the columns that each has, with factors."""
+
+
+@dataclass(frozen=True)
+class Jump:
+    """``mixture``: the input from -1 to 1 that it gives; ``depends``: the reading that it is the sign of.
+
+    ``offset``: the input that is what no sum of signals makes up of that, and ``law`` gives it.
+    """
+
+    node: Hashable
+    mixture: sp.Symbol
+    depends: sp.Symbol
+    offset: sp.Symbol
+    law: sp.Expr
+
+
+@dataclass(frozen=True)
+class Smooth:
+    """A port whose law jumps: the input that is the rest of what it gives, and the law of that."""
+
+    port: Port
+    given: sp.Symbol
+    law: ExpressionLaw
+
+
+def jumps_of(
+    equations: StateEquations, laws: Mapping[Hashable, Law], still: Iterable[str]
+) -> tuple[StateEquations, tuple[Jump, ...], tuple[Smooth, ...]]:
+    """Equations over what jumps give; what laws with jumps give are readings then.
+
+    ``still``: the names of parameters. A law whose jump has a factor that moves, or hangs on time and inputs
+    alone, stays as it is.
+    """
+    steps = _Steps(equations, set(still))
+    found: dict[Port, tuple[sp.Expr, dict[sp.Expr, sp.Expr]]] = {}
+    driven = _driving(equations)
+    for port in equations.ports:
+        law = laws.get(port.element.name)
+        if not isinstance(law, ExpressionLaw) or law.state is not None or port.given in driven:
+            continue
+        rest, factors = steps.parted(law.expression)
+        if factors:
+            found[port] = rest, factors
+    if not found:
+        return equations, (), ()
+    return _with_jumps(equations, found)
+
+
+def _driving(equations: StateEquations) -> set[sp.Symbol]:
+    """The inputs whose rates count: they may not jump by themselves."""
+    columns = {j for row in equations.readings.values() for j in row.K}
+    columns |= {j for _, j in equations.E.todok()}
+    return {equations.inputs[j] for j in columns}
+
+
+class _Steps:
+    """Which parts of laws jump, by what they hang on."""
+
+    def __init__(self, equations: StateEquations, still: set[str]) -> None:
+        self._equations, self._still = equations, still
+        outer = set(equations.inputs) - {port.given for port in equations.ports}
+        self._moving = {*equations.signals, *equations.states, *equations.integrals} - outer
+
+    def parted(self, law: sp.Expr) -> tuple[sp.Expr, dict[sp.Expr, sp.Expr]]:
+        """A law without its jumps, and half of each jump by what it hangs on."""
+        marks: dict[sp.Expr, sp.Dummy] = {}
+        marked = law.replace(
+            lambda part: isinstance(part, sp.sign | sp.Piecewise), lambda part: self._marked(part, marks)
+        )
+        if not marks:
+            return law, {}
+        marked = sp.expand(marked)
+        factors = {argument: marked.coeff(mark) for argument, mark in marks.items()}
+        rest = marked.xreplace(dict.fromkeys(marks.values(), sp.Integer(0)))
+        whole = rest + sp.Add(*(factors[argument] * mark for argument, mark in marks.items()))
+        if sp.expand(marked - whole) != 0 or any(self._changes(f) for f in factors.values()):
+            return law, {}
+        return rest, {argument: f for argument, f in factors.items() if f != 0}
+
+    def _marked(self, part: sp.Expr, marks: dict[sp.Expr, sp.Dummy]) -> sp.Expr:
+        argument, above, below = _sides(part)
+        if argument is None or not argument.free_symbols & self._moving:
+            return part
+        turned = sp.Integer(1)
+        for known in marks:
+            ratio = sp.cancel(argument / known)
+            if ratio.is_number and ratio.is_finite and ratio != 0:
+                argument, turned = known, sp.sign(ratio)
+        mark = marks.setdefault(argument, sp.Dummy())
+        return (above + below) / 2 + turned * (above - below) / 2 * mark
+
+    def _changes(self, factor: sp.Expr) -> bool:
+        return any(name.name not in self._still for name in factor.free_symbols)
+
+
+def _sides(part: sp.Expr) -> tuple[sp.Expr | None, sp.Expr, sp.Expr]:
+    """What a sign, or a value by one comparison, hangs on, and its values above and below."""
+    one = sp.Integer(1)
+    if isinstance(part, sp.sign):
+        return part.args[0], one, -one
+    if len(part.args) == 2 and part.args[1][1] is sp.true:
+        (value, condition), (other, _) = part.args
+        if isinstance(condition, Gt | Ge):
+            return condition.lhs - condition.rhs, value, other
+        if isinstance(condition, Lt | Le):
+            return condition.rhs - condition.lhs, value, other
+    return None, one, one
+
+
+def _with_jumps(
+    equations: StateEquations, found: Mapping[Port, tuple[sp.Expr, Mapping[sp.Expr, sp.Expr]]]
+) -> tuple[StateEquations, tuple[Jump, ...], tuple[Smooth, ...]]:
+    """The equations with an input for each jump and each offset, and smooth laws in place of the others."""
+    arguments, owners = dict[sp.Expr, dict[int, sp.Expr]](), dict[sp.Expr, Hashable]()
+    for port, (_, factors) in found.items():
+        for argument, factor in factors.items():
+            key, turned = _known(argument, arguments)
+            columns = arguments.setdefault(key, {})
+            columns[equations.inputs.index(port.given)] = turned * factor
+            owners.setdefault(key, port.element.name)
+    taken = {*equations.signals, *equations.inputs, *equations.readings, *equations.parameters}
+    taken |= {*equations.integrals, TIME}
+    told = {argument: told_of(equations, argument) for argument in arguments}
+    named = {name for parts, _ in told.values() for name in parts}
+    equations = equations.with_readings(named)
+    smooth = tuple(
+        Smooth(port, unused(f"smooth_{port.given}", taken), ExpressionLaw(rest))
+        for port, (rest, _) in found.items()
+    )
+    jumps = tuple(
+        Jump(owners[argument], unused(f"jump_{at}", taken), unused(f"hangs_{at}", taken),
+             unused(f"offset_{at}", taken), told[argument][1])
+        for at, argument in enumerate(arguments, 1)
+    )  # fmt: skip
+    parts = [told[argument][0] for argument in arguments]
+    return _widened(equations, tuple(arguments.values()), parts, jumps, smooth), jumps, smooth
+
+
+def _known(argument: sp.Expr, arguments: Iterable[sp.Expr]) -> tuple[sp.Expr, sp.Expr]:
+    """What is the same but for a factor, and which way that turns."""
+    for known in arguments:
+        ratio = sp.cancel(argument / known)
+        if ratio.is_number and ratio.is_finite and ratio != 0:
+            return known, sp.sign(ratio)
+    return argument, sp.Integer(1)
+
+
+def _widened(
+    equations: StateEquations, columns: tuple[Mapping[int, sp.Expr], ...],
+    told: Iterable[Mapping[sp.Symbol, sp.Expr]], jumps: tuple[Jump, ...], smooth: tuple[Smooth, ...],
+) -> StateEquations:  # fmt: skip
+    count = len(equations.inputs)
+    renamed = {one.port.given: one.given for one in smooth}
+    inputs = tuple(renamed.get(name, name) for name in equations.inputs)
+    inputs += tuple(name for jump in jumps for name in (jump.mixture, jump.offset))
+    copies = {count + 2 * at: own for at, own in enumerate(columns)}
+    rows = {name: _spread(row, copies) for name, row in equations.readings.items()}
+    for one in smooth:
+        own = {equations.inputs.index(one.port.given): sp.Integer(1)}
+        rows[one.port.given] = _spread(Reading({}, own, {}, {}), copies)
+    for at, (jump, parts) in enumerate(zip(jumps, told, strict=True)):
+        rows[jump.depends] = _sum(
+            [(Reading({}, {count + 2 * at + 1: sp.Integer(1)}, {}, {}), sp.Integer(1))]
+            + [(_spread(row_of(equations, name), copies), factor) for name, factor in parts.items()]
+        )
+    reduction = equations.reduction
+    own_columns = {k: _spread(reading, copies) for k, reading in reduction.columns.items()}
+    return replace(
+        equations, inputs=inputs, readings=MappingProxyType(rows), **_matrices(equations, copies, len(inputs)),
+        reduction=replace(reduction, inputs=inputs, columns=MappingProxyType(own_columns)),
+    )  # fmt: skip
+
+
+def _sum(parts: Iterable[tuple[Reading, sp.Expr]]) -> Reading:
+    total = ReadingSum()
+    for row, factor in parts:
+        total.add(row, factor)
+    return total.whole()
+
+
+def _matrices(equations: StateEquations, copies: Columns, width: int) -> dict[str, sp.ImmutableSparseMatrix]:
+    matrices = {}
+    for letter in "BEDG":
+        matrix = getattr(equations, letter)
+        wider = sp.SparseMatrix(matrix.rows, width, dict(matrix.todok()))
+        for new, parts in copies.items():
+            for i in range(matrix.rows):
+                wider[i, new] = sp.Add(*(factor * matrix[i, old] for old, factor in parts.items()))
+        matrices[letter] = sp.ImmutableSparseMatrix(wider)
+    return matrices
+
+
+def _spread(row: Reading, copies: Columns) -> Reading:
+    """A row with entries for the inputs that are added."""
+    D, K = (_more(part, copies) for part in (row.D, row.K))
+    return Reading(row.F, fixed(D), row.H, fixed(K))
+
+
+def _more(part: Mapping[int, sp.Expr], copies: Columns) -> dict[int, sp.Expr]:
+    result = dict(part)
+    for new, own in copies.items():
+        total = sp.Add(*(factor * part[old] for old, factor in own.items() if old in part))
+        if total != 0:
+            result[new] = total
+    return result
