@@ -54,7 +54,7 @@ class SwitchedSteps(DeadBand):
     def shown(self, mode: Mode) -> list[float]:
         """For each switch 1 while it is on, 0 while it is off."""
         named = [(i, one) for i, one in enumerate(self.switching) if one and not one.slides]
-        return [float(one.word(mode[i]) == "on") for i, one in named]
+        return [float(one.is_on(mode[i])) for i, one in named]
 
     def begin(self, at: Point, on: Collection[str], named: Collection[str]) -> Array:
         """The vector s with which a run begins, states that are not ``named`` completed.
