@@ -32,7 +32,7 @@ class Switch:
     on: sp.Expr
     off: sp.Expr
     gives: str
-    restitution: sp.Expr = sp.Integer(0)
+    restitution: sp.Expr = sp.S.Zero
     stops: bool = False
 
 
