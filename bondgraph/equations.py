@@ -82,7 +82,9 @@ class StateEquations:
     def starts(self) -> dict[sp.Symbol, sp.Expr]:
         """The values with which runs begin, of states that have one declared."""
         elements = (port.element for port in self.reduction.structure.ports)
-        return {e.integral: e.start for e in elements if e.integral is not None and e.start is not None}
+        return {
+            e.integral: e.start for e in elements if e.integral is not None and e.start is not None
+        }
 
     @property
     def varying(self) -> tuple[sp.Symbol, ...]:

@@ -58,7 +58,9 @@ class Rows:
                 except Exception:  # noqa: BLE001 - told by whoever does the run then
                     usable[k] = False
                     continue
-                states[k] = [numbers.get(name, begun) for name, begun in zip(names, states[k], strict=True)]
+                states[k] = [
+                    numbers.get(name, begun) for name, begun in zip(names, states[k], strict=True)
+                ]
         else:
             numbers = named_numbers(asked.initial or {}, names)
             for name, value in numbers.items():

@@ -11,9 +11,7 @@ from codegen.model.numbers import exact_parameters
 from codegen.numbers.arrays import Array
 
 
-def told_starts(
-    equations: StateEquations, parameters: Mapping[str, object]
-) -> dict[str, float]:
+def told_starts(equations: StateEquations, parameters: Mapping[str, object]) -> dict[str, float]:
     """The declared start of each state that has one; `ParameterError` where it is no finite number."""
     if not equations.starts:
         return {}

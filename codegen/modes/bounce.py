@@ -1,9 +1,7 @@
 """Stops: which are met at an instant, and the impulses that throw back what closes on those that bounce.
 
-All stops that close and bounce are struck together, what is joined staying joined: their impulses p and the
-slips y before and after, counted as gaps open, have ``p >= 0``, ``y+ + e y- >= 0``, and one of them zero, a
-linear complementarity problem. What merely touches takes no part. So energy never grows (Newton's law of
-impact; Brogliato, Nonsmooth Mechanics, chapter 4).
+What merely touches takes no part. What closes more slowly than the model's own scales tell, or would not leap
+higher than displacements are known, stays where it is.
 """
 
 from collections.abc import Collection, Mapping
@@ -15,7 +13,8 @@ from codegen.model.snapshot import Impact, Mode
 from codegen.modes.rounding import Peaks, guard_rounding, scales, slip_rates
 from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
-from codegen.standalone.striking import Strike, struck
+from codegen.ports.refusals import refusals
+from codegen.standalone.bouncing import Meeting, thrown
 from codegen.tuning import TUNING
 
 
@@ -97,72 +96,22 @@ def thrown_back(here: Sight, mode: Mode, wanted: Mapping[int, float]) -> Impact 
     """
     model = here.model
     slipping, now = here.evaluated((1,) * len(mode))
-    search = _Search(here, mode, wanted)
-    strike = search.run()
+    switching = list(zip(mode, model.switching, strict=True))
+    meeting = Meeting(
+        now.instant(here.t), tuple(1 if one is None else sign for sign, one in switching), wanted,
+        {i: one.side for i, one in enumerate(model.switching) if one is not None},
+        np.array(model.friction_inputs), np.array(model.friction_readings),
+    )  # fmt: skip
+    with refusals():
+        strike = thrown(meeting, lambda held: model.hold(held, now.numbers))
     if strike is None:
         return None
     after = here.s + strike.gained(len(here.s), model.law_rates)
     later = model.at(here.t, after, here.pieces, slipping)
     mean = 0.5 * (now.y + later.y)[model.friction_readings]
     given = strike.given[model.friction_inputs]
-    thrown = tuple(i for i in wanted if given[i] != 0)
-    return Impact(after, strike, float(given @ mean), thrown)
-
-
-class _Search:
-    """Which of the stops take part, by Murty's rule: those that would pull, or not bounce enough, change."""
-
-    def __init__(self, here: Sight, mode: Mode, wanted: Mapping[int, float]) -> None:
-        self._model, self._t, self._wanted = here.model, here.t, wanted
-        self._held = [
-            sign if one is not None else 1
-            for sign, one in zip(mode, here.model.switching, strict=True)
-        ]
-        _, self._now = here.evaluated((1,) * len(mode))
-        self._ways = {i: one.side for i in wanted if (one := here.model.switching[i]) is not None}
-
-    def run(self) -> Strike | None:
-        """The impulses; None where there are none."""
-        active = set(self._wanted)
-        for _ in range(TUNING.bounces):
-            strike = self._struck(active)
-            if strike is None:
-                return None
-            wrong = self._contrary(strike, active)
-            if not wrong:
-                return strike
-            active ^= {min(wrong & active or wrong)}
-        names = ", ".join(repr(self._model.program.friction[i].name) for i in self._wanted)
-        raise SimulationError(f"at t = {self._t:.9g} no impulses of {names} are consistent")
-
-    def _struck(self, active: set[int]) -> Strike | None:
-        model, now = self._model, self._now
-        held = tuple(0 if i in active else sign for i, sign in enumerate(self._held))
-        if 0 not in held:
-            return None
-        hold = model.hold(held, now.numbers)
-        if not len(hold.mix):
-            return None
-        ports = np.asarray(hold.ports).tolist()
-        wanted = np.array([self._ways[i] * self._wanted[i] if i in active else 0.0 for i in ports])
-        return struck(hold, now.numbers, hold.slips(now.x, now.u) - hold.mix @ wanted)
-
-    def _contrary(self, strike: Strike, active: set[int]) -> set[int]:
-        """The stops that would pull, that bounce faster than they ought to, or not enough."""
-        model, before = self._model, self._now.y[self._model.friction_readings]
-        given = strike.given[model.friction_inputs]
-        moved = strike.received[model.friction_readings]
-        least = TUNING.rounding * np.abs(given).max(initial=0.0)
-        wrong = set()
-        for i, speed in self._wanted.items():
-            way = self._ways[i]
-            over = way * (before[i] + moved[i]) - speed
-            near = TUNING.rounding * (abs(before[i]) + abs(moved[i]) + speed)
-            if i in active:
-                wrong |= {i} if over > near or way * given[i] > least else set()
-            elif over < -near:
-                wrong.add(i)
-        return wrong
+    struck = tuple(i for i in wanted if given[i] != 0)
+    return Impact(after, strike, float(given @ mean), struck)
 
 
 def closed_up(here: Sight, mode: Mode, stops: Collection[int]) -> Array:

@@ -9,8 +9,8 @@ import numpy as np
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Impact, Mode, Snapshot
-from codegen.modes.bounce import closed_up, closing, met, thrown_back
 from codegen.modes.blocks import blocks_of, slipping_as, turned_to, ways_to_rub
+from codegen.modes.bounce import closed_up, closing, met, thrown_back
 from codegen.modes.choices import Choices
 from codegen.modes.closed import ClosedModel
 from codegen.modes.glances import Glances

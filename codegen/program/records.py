@@ -177,6 +177,11 @@ class Program:
         """Whether any port is a switch, or slips one way as one."""
         return any(port.switch is not None for port in self.friction)
 
+    @property
+    def stopped(self) -> bool:
+        """Whether any port is a stop."""
+        return any(port.switch is not None and port.switch.stops for port in self.friction)
+
     def before(self, on: Container[Hashable]) -> tuple[int, ...]:
         """The mode of each port before a run: these switches on, the others off, friction let go.
 

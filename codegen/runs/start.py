@@ -45,5 +45,7 @@ def start_of(
     names = [symbol.name for symbol in (*program.states, *program.law_states)]
     external = [symbol.name for symbol in program.external]
     signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)
-    states = initial_values({**told_starts(program.equations, parameters), **(initial or {})}, names)
+    states = initial_values(
+        {**told_starts(program.equations, parameters), **(initial or {})}, names
+    )
     return Start(closed, states, tuple(signals), step_at_start(closed, states, signals))

@@ -49,6 +49,13 @@ class Switching:
         return self.place >= 0
 
     @property
+    def guards(self) -> tuple[str, ...]:
+        """What its guards tell."""
+        if self.stops:
+            return "gap", "restitution"
+        return () if self.side else ("on", "off")
+
+    @property
     def words(self) -> tuple[str, str]:
         """What it is while it is on, and while it is off."""
         if self.slides:
