@@ -14,6 +14,7 @@ from bondgraph.declare.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw,
 from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.declare.one_way import CheckValve, Diode, Freewheel
+from bondgraph.declare.stops import Stop
 from bondgraph.declare.switching import in_mode, switches
 from bondgraph.declare.validate import validate
 from bondgraph.derive import derive, state_equations

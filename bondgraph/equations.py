@@ -79,6 +79,14 @@ class StateEquations:
         return tuple(sorted((self._names | self._read) - self._moving, key=str))
 
     @property
+    def starts(self) -> dict[sp.Symbol, sp.Expr]:
+        """The values with which runs begin, of states that have one declared."""
+        elements = (port.element for port in self.reduction.structure.ports)
+        return {
+            e.integral: e.start for e in elements if e.integral is not None and e.start is not None
+        }
+
+    @property
     def varying(self) -> tuple[sp.Symbol, ...]:
         """The names in the matrices that change in time, sorted; none where all values are constant."""
         return tuple(sorted(self._names & self._moving, key=str))

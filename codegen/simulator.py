@@ -17,6 +17,7 @@ from codegen.engine.runs import CRuns
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
+from codegen.model.starts import told_starts
 from codegen.model.sources import source_signals
 from codegen.modes.closed import ClosedModel
 from codegen.modes.rates import rates
@@ -145,7 +146,7 @@ class Simulator:
         refuse_impulses(self.closed, signals, times)
         at_start = np.array([signal(times[0]) for signal in signals])
         on = checked_modes(self.switches, initially_on)
-        initial = {} if initial is None else initial
+        initial = self.starting({} if initial is None else initial)
         states = initial_values(initial, self.states)
         begin = float(times[0])
         start = self.vector(begin, states, at_start)
@@ -194,7 +195,13 @@ class Simulator:
         pieces = [constant_piece(0.0, signal(0.0)) for signal in signals]
         pieces += [signal.piece(0.0) for signal in self.sources(0.0, 0.0)]
         given = np.array([piece(0.0) for piece in pieces])
-        return pieces, self.vector(0.0, initial_values(initial, self.states), given)
+        return pieces, self.vector(0.0, initial_values(self.starting(initial), self.states), given)
+
+    def starting(self, initial: Mapping[str, float]) -> Mapping[str, float]:
+        """These initial values, with declared ones where nothing else is told."""
+        if not self.closed.equations.starts or not isinstance(initial, Mapping):
+            return initial
+        return {**told_starts(self.closed.equations, self.closed.parameters), **initial}
 
     def sources(self, begin: float, end: float) -> list[Signal]:
         """What known sources do from ``begin`` to ``end`` [s]; their pieces follow those of the inputs."""

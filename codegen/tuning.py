@@ -58,6 +58,11 @@ class Tuning:
     stalled: int = _told(60, "so many events within a moment are a run that goes nowhere")
     together: float = _told(1e-12, "events so close, of the time, are one")
 
+    # Stops
+    bounce: float = _told(10.0, "of what counts as zero of a slip: what closes no faster stays")
+    leap: float = _told(4.0, "of what counts as zero of a gap: what leaps no higher stays")
+    bounces: int = _told(2000, "so often stops are struck in one instant, at most")
+
     # Laws that determine one another
     residual: float = _told(1e-9, "part of their magnitude to which laws are solved")
     residual_floor: float = _told(1e-3, "added to that magnitude")

@@ -25,6 +25,7 @@ from bondgraph.declare.attributes import (
 from bondgraph.declare.elements import OTHER, Element
 from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw, law
+from bondgraph.declare.stops import stop_elements
 from bondgraph.errors import StructureError
 
 
@@ -34,6 +35,8 @@ def elements_of(name: Hashable, attributes: Mapping[str, Any]) -> dict[Hashable,
     Raises `StructureError` or `ExpressionError`, naming the node.
     """
     if attributes.get("ports") is None:
+        if attributes.get("kind") == Kind.STOP:
+            return {element.name: element for element in _stop(name, attributes)}
         made = [_element(name, attributes)]
         if made[0].kind.joins and (attributes.keys() & {"on", "off"}):
             made.append(_control(made[0], attributes))
@@ -115,6 +118,12 @@ def _element(name: Hashable, attributes: Mapping[str, Any]) -> Element:
         switch = switch_of(name, attributes, "effort")
         return Element(name, kind, None, effort, flow, switch=switch)
     return _passive(name, kind, attributes, unit)
+
+
+def _stop(name: Hashable, attributes: Mapping[str, Any]) -> list[Element]:
+    check_node_name(name)
+    check_keys(Kind.STOP, attributes, f"node {name!r}")
+    return stop_elements(name, attributes)
 
 
 def _source(name: Hashable, kind: Kind, attributes: Mapping[str, Any], unit: str | None) -> Element:

@@ -23,12 +23,17 @@ class Switch:
 
     Off, it turns on as ``on`` rises above zero; on, it turns off as ``off`` does. While on, its port has
     zero effort, or zero flow, as ``gives`` says; while off it has zero of the other.
+
+    ``stops``: whether it is a bound of a `Stop`; ``restitution``: the part of its speed that what meets the
+    bound keeps.
     """
 
     name: Hashable
     on: sp.Expr
     off: sp.Expr
     gives: str
+    restitution: sp.Expr = sp.S.Zero
+    stops: bool = False
 
 
 @dataclass(frozen=True)
@@ -41,7 +46,8 @@ class Element:
     it has per unit of each port's variable, by the ports' names; ``owner``: the field's node.
     ``energy``: of a storage with an energy function, that function. ``inverse``: of one with a law, its
     state as a function of what the law gives, so that it may have derivative causality. ``switch``: of an
-    ideal switch, when it turns on and off.
+    ideal switch, when it turns on and off. ``whole``: of a part of a stop, the stop's node. ``start``: of what
+    makes a state, the value with which runs begin.
     """
 
     name: Hashable
@@ -59,6 +65,13 @@ class Element:
     energy: sp.Expr | None = None
     inverse: sp.Expr | None = None
     switch: Switch | None = None
+    whole: Hashable | None = None
+    start: sp.Expr | None = None
+
+    @property
+    def absorbs(self) -> bool:
+        """Whether power counts into it whichever way the arrow points."""
+        return self.kind.absorbs or (self.whole is not None and self.whole == self.name)
 
     @property
     def one_port(self) -> bool:

@@ -8,6 +8,11 @@ Role = Literal[
     "source", "storage", "resistance", "switch", "detector", "transformer", "gyrator", "junction"
 ]
 
+_BOUNDED = ("low", "high", "restitution", "start", "stiffness", "damping")
+
+EXPRESSIONS = ("value", "energy", "inverse", "on", "off", *_BOUNDED)
+"""The attributes that are numbers or expressions."""
+
 _NAMED = frozenset({"value", "effort", "flow", "law", "unit", "ports"})
 _STORED = _NAMED | {"inverse", "energy", "priority"}
 
@@ -54,6 +59,10 @@ class Kind(StrEnum):
     ONE = "One", Nature("junction", frozenset({"flow", "on", "off"}), common="flow", digit="1")
     DE = "De", Nature("detector", frozenset({"effort", "integrate", "unit"}), gives="flow", place=4)
     DF = "Df", Nature("detector", frozenset({"flow", "integrate", "unit"}), gives="effort", place=3)
+    STOP = (
+        "Stop",
+        Nature("junction", frozenset({"flow", *_BOUNDED}), common="flow", digit="1"),
+    )
     SW = "Sw", Nature("switch", frozenset({"effort", "flow", "on", "off"}), place=2)
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":

@@ -7,8 +7,9 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME, expression, normal
-from bondgraph.declare.kinds import Kind
+from bondgraph.declare.kinds import EXPRESSIONS, Kind
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw
+from bondgraph.declare.stops import stop_parts
 from bondgraph.errors import StructureError
 
 Part: TypeAlias = "nx.DiGraph[Hashable]"
@@ -17,7 +18,7 @@ Part: TypeAlias = "nx.DiGraph[Hashable]"
 Names = Mapping[str, str]
 """Old names of signals and parameters to new ones."""
 
-_READ = ("value", "law", "energy", "inverse", "on", "off")
+_READ = ("law", *EXPRESSIONS)
 """The attributes that read names; the others own them, or hold none."""
 
 _OWN_SLIP = sp.Dummy("slip of a curve")
@@ -54,6 +55,10 @@ def _further(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str, s
             yield kind.letter, ending, None
     if kind.joins and (attributes.keys() & {"on", "off"}):
         yield from (("e", "_switch", None), ("f", "_switch", None))
+    if kind is Kind.STOP:
+        yield "q", "", None
+        for part in stop_parts(attributes):
+            yield from (("e", f"_{part}", None), ("f", f"_{part}", None))
     if attributes.get("integrate") is not None:
         yield "", "", name_text(attributes["integrate"])
 

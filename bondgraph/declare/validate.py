@@ -154,8 +154,8 @@ def _ends(graph: _Validated, fields: set[Hashable], bond: Bond, attributes: dict
 
 def _oriented(graph: "nx.DiGraph[Hashable]", tail: Hashable, head: Hashable) -> Bond:
     """The bond turned so that it points into I, C or R, unless its other end needs its direction."""
-    kinds = [graph.nodes[name]["element"].kind for name in (tail, head)]
-    if kinds[0].absorbs and not kinds[1].absorbs and not kinds[1].two_port:
+    first, last = (graph.nodes[name]["element"] for name in (tail, head))
+    if first.absorbs and not last.absorbs and not last.kind.two_port:
         return head, tail
     return tail, head
 

@@ -9,7 +9,7 @@ from sympy.core.relational import Relational
 from sympy.logic.boolalg import BooleanAtom, BooleanFunction
 
 from bondgraph.algebra.expressions import MAX_DIGITS, expression, number
-from bondgraph.declare.kinds import Kind
+from bondgraph.declare.kinds import EXPRESSIONS, Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.declare.validate import validate
 from bondgraph.errors import ExpressionError, FileFormatError
@@ -77,7 +77,7 @@ def _plain(key: str, value: Any, kind: object, where: str) -> Any:
         return _priority(value, where)
     if key == "law":
         return _law(value, kind, where)
-    if key in ("value", "energy", "inverse", "on", "off"):
+    if key in EXPRESSIONS:
         rows = value.tolist() if isinstance(value, sp.MatrixBase) else value
         if isinstance(rows, Sequence) and not isinstance(rows, str):
             return [[_written(entry, where) for entry in row] for row in rows]

@@ -6,6 +6,7 @@ from typing import Any
 import networkx as nx
 
 from bondgraph.algebra.expressions import expression, symbol
+from bondgraph.declare.kinds import EXPRESSIONS
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.declare.validate import validate
 from bondgraph.errors import BondGraphError, FileFormatError
@@ -13,11 +14,8 @@ from bondgraph.files.declarations import FRICTION, Declaration, check_text
 
 SCALARS = (str, int, float)
 TYPES: Mapping[str, tuple[type, ...]] = {
+    **dict.fromkeys(EXPRESSIONS, SCALARS),
     "value": (*SCALARS, list),
-    "energy": SCALARS,
-    "inverse": SCALARS,
-    "on": SCALARS,
-    "off": SCALARS,
     "law": (*SCALARS, dict),
     "priority": (int, float),
     "effort": (str, dict),

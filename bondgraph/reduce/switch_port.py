@@ -9,8 +9,8 @@ import sympy as sp
 from bondgraph.declare.elements import Switch
 from bondgraph.reduce.structure import Port
 
-Guard = Literal["one-sided", "commanded", "general"]
-"""What changes a switch over: its own two sides, a signal from outside, or any expression."""
+Guard = Literal["one-sided", "stop", "commanded", "general"]
+"""What changes a switch over: its own two sides, these at a bound, a signal from outside, or any expression."""
 
 
 @dataclass(frozen=True)
@@ -19,6 +19,8 @@ class SwitchPort:
 
     ``guard``: "one-sided" if ``on`` is a positive multiple of the port's own effort and ``off`` of its own
     flow reversed, or both with the other sign (a flow and an effort for a controlled 0-junction);
+    "stop" if ``off`` is instead the negative of a gap, a displacement beyond a bound, which is the integral of
+    its own flow: apart from the bound it is on, there its own two sides tell;
     "commanded" if both hold time, parameters and open sources' inputs alone; else "general".
 
     ``side``, of a one-sided port 1 or -1, else 0: let go, it receives ``side * received >= 0``; held, it
@@ -29,6 +31,11 @@ class SwitchPort:
     port: Port
     guard: Guard
     side: int = 0
+    #: Of a stop the gap, which changes at the rate of its flow or of that reversed; and the displacement.
+    gap: sp.Expr | None = None
+    displacement: sp.Symbol | None = None
+    #: How fast the gap opens along the displacement, 1 or -1.
+    opening: int = 0
 
     @property
     def name(self) -> Hashable:

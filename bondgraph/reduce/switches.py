@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 import sympy as sp
 
 from bondgraph.algebra.exact import FixedRow
+from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.residues import is_zero
 from bondgraph.declare.elements import OTHER, Switch
 from bondgraph.errors import DependentSourceError
@@ -32,6 +33,10 @@ def switch_ports(
         if switch is None:
             continue
         side = _side(switch, port, reduction, signals)
+        stop = None if side else _stop(switch, port, reduction, signals)
+        if stop is not None:
+            found.append(stop)
+            continue
         guard: Guard = "one-sided" if side else "general"
         if not (switch.on.free_symbols | switch.off.free_symbols) & inside:
             guard = "commanded"
@@ -50,6 +55,38 @@ def _side(
     if on == 0 or off != -on:
         return 0
     return on if port.gives == switch.gives else -on
+
+
+def _stop(
+    switch: Switch, port: Port, reduction: Reduction, signals: Mapping[sp.Symbol, PortRow]
+) -> SwitchPort | None:
+    """The switch as a stop, if it is one: with a gap that its own flow opens or closes."""
+    element, moving = port.element, _moving(reduction, signals)
+    way = _sign(switch.on, element.effort, reduction, signals) if switch.gives == "effort" else 0
+    own = switch.off.free_symbols & moving
+    if way == 0 or len(own) != 1 or element.flow is None:
+        return None
+    (place,) = own
+    integrated = [p for p in reduction.structure.ports if p.element.integral == place]
+    if not integrated:
+        return None
+    ratio = _ratio(
+        reduction.reading(signals[integrated[0].received]), reduction.reading(signals[element.flow])
+    )
+    slope = -slope_of(switch.off, place)
+    if ratio not in (1, -1) or slope.free_symbols & moving:
+        return None
+    opens = slope * ratio
+    if int(bool(opens.is_positive)) - int(bool(opens.is_negative)) != way:
+        return None
+    gap = sp.expand(-switch.off / (slope * way * ratio))
+    side = way if port.gives == "effort" else -way
+    return SwitchPort(switch, port, "stop", side, gap, place, way * int(ratio))
+
+
+def _moving(reduction: Reduction, signals: Mapping[sp.Symbol, PortRow]) -> set[sp.Symbol]:
+    """Everything but parameters."""
+    return {*signals, *reduction.structure.states_of_laws, *reduction.inputs, TIME}
 
 
 def _sign(

@@ -13,6 +13,7 @@ from codegen.inputs.signal import Signal
 from codegen.inputs.swept import Swept, settled
 from codegen.model.numbers import exact_parameters
 from codegen.model.sources import source_signals
+from codegen.model.starts import starts_of_runs
 from codegen.numbers.arrays import Array
 from codegen.runs.arguments import named_numbers, signals_for
 
@@ -47,6 +48,9 @@ class Rows:
         """The states at the start of each run, and which of them can be used."""
         asked, names = self.asked, self.asked.family.states
         states, usable = np.zeros((len(table), len(names))), np.ones(len(table), dtype=bool)
+        equations = self.model.program.equations
+        for name, start in starts_of_runs(equations, self.numbers(table), len(table)).items():
+            states[:, names.index(name)] = start
         if callable(asked.initial):
             for k, values in enumerate(self._named(table)):
                 try:
@@ -54,10 +58,13 @@ class Rows:
                 except Exception:  # noqa: BLE001 - told by whoever does the run then
                     usable[k] = False
                     continue
-                states[k] = [numbers.get(name, 0.0) for name in names]
+                states[k] = [
+                    numbers.get(name, begun) for name, begun in zip(names, states[k], strict=True)
+                ]
         else:
             numbers = named_numbers(asked.initial or {}, names)
-            states[:] = [numbers.get(name, 0.0) for name in names]
+            for name, value in numbers.items():
+                states[:, names.index(name)] = value
         for column, name in enumerate(asked.names):
             if name in names:
                 states[:, names.index(name)] = table[:, column]

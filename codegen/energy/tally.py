@@ -105,11 +105,14 @@ class Tally:
     ) -> None:
         """Switches that come to hold: impulses, and what the impact took.
 
-        An impulse works on what there is after it; in storages on the mean of before and after.
+        An impulse works on what there is after it; in storages on the mean of before and after. What a stop
+        loses as it throws back is what the impact took.
         """
         slipping = tuple(sign or 1 for sign in mode)
         a = self.model.at(t, before, pieces, slipping)
         b = self.model.at(t, struck.s, pieces, slipping)
+        for i in struck.thrown:
+            b.y[self.model.friction_readings[i]] = 0.0
         jump = np.zeros(_length(b))
         inputs = len(b.x) + len(b.z)
         readings = inputs + 2 * len(b.u)

@@ -119,6 +119,7 @@ def _model(
     inside = {at: one for at, one in enumerate(signals) if not isinstance(one, float)}
     every = [Constant(one) if isinstance(one, float) else one for one in signals]
     refuse_impulses(ready.closed, every, np.array([0.0, math.inf]))
+    initial = ready.starting(initial)
     start = initial_values(initial, ready.states)
     named = named_numbers(initial, ready.states)
     on = checked_modes(ready.switches, initially_on)

@@ -46,9 +46,10 @@ class Snapshot(NamedTuple):
 class Impact:
     """An instant at which states jump: the integrated vector after it, and the impulses.
 
-    ``taken`` [J]: the energy that the ports take.
+    ``taken`` [J]: the energy that the ports take. ``thrown``: the stops that threw back what met them.
     """
 
     s: Array
     strike: Strike
     taken: float
+    thrown: tuple[int, ...] = ()

@@ -10,6 +10,7 @@ from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Impact, Mode, Snapshot
 from codegen.modes.blocks import blocks_of, slipping_as, turned_to, ways_to_rub
+from codegen.modes.bounce import closed_up, closing, met, thrown_back
 from codegen.modes.choices import Choices
 from codegen.modes.closed import ClosedModel
 from codegen.modes.glances import Glances
@@ -45,6 +46,8 @@ class Occasion(NamedTuple):
     glances: Glances | None = None
     #: What it has come to.
     choices: Choices | None = None
+    #: Stops that are apart, or about to throw back what meets them, and so let go.
+    barred: frozenset[int] = frozenset()
 
     def seen(self, s: Array) -> Sight:
         """The model at this instant with another integrated vector."""
@@ -104,6 +107,8 @@ def decide(now: Occasion, here: Sight) -> Decision:
         if previous != now.previous:
             now = now._replace(previous=previous)
         free = [i for i in free if i not in known]
+    if now.model.stopping:
+        return _struck(now, here, free)
     found = _decided(now, here, free)
     impacts = found.impacts
     if not impacts:
@@ -115,6 +120,35 @@ def decide(now: Occasion, here: Sight) -> Decision:
             break
         impacts += found.impacts
     return found._replace(impacts=impacts)
+
+
+def _struck(now: Occasion, here: Sight, free: Sequence[int]) -> Decision:
+    """The same where stops are met: what joins comes first, then what closes is thrown back; and again.
+
+    Raises `SimulationError` where that does not end.
+    """
+    met_now = met(here, now.previous, now.touched, now.peaks)
+    apart = frozenset(now.model.stopping) - met_now
+    impacts: tuple[Impact, ...] = ()
+    joined = 0
+    for _ in range(TUNING.bounces):
+        wanted = closing(here, now.previous, met_now, now.peaks)
+        now = now._replace(barred=apart | wanted.keys())
+        found = _decided(now, here, [i for i in free if i not in now.barred])
+        impacts += found.impacts
+        joined += len(found.impacts)
+        here, now = now.seen(found.s), now._replace(previous=found.mode, touched=frozenset())
+        wanted = closing(here, found.mode, wanted.keys(), now.peaks)
+        thrown = thrown_back(here, found.mode, wanted) if wanted else None
+        if thrown is not None:
+            impacts += (thrown,)
+            here = now.seen(thrown.s)
+        elif not found.impacts or joined > TUNING.impacts:
+            s = closed_up(here, found.mode, met_now)
+            return found._replace(s=s, impacts=impacts, clear=found.clear and not met_now)
+    raise SimulationError(
+        f"at t = {now.t:.9g} stops were struck {TUNING.bounces} times, and what meets them still closes"
+    )
 
 
 def _decided(now: Occasion, here: Sight, switches: list[int]) -> Decision:
@@ -136,10 +170,11 @@ def _decided(now: Occasion, here: Sight, switches: list[int]) -> Decision:
         try:
             mode = tries.send(found.broken)
         except StopIteration:
-            if now.glances is not None or len(switches) < len(now.model.switches):
+            every = [i for i in now.model.switches if i not in now.barred]
+            if now.glances is not None or len(switches) < len(every):
                 # Why not is told by a closer look, at what time alone tells, too.
                 closer = now._replace(glances=None, choices=None)
-                return _decided(closer, here, now.model.switches)
+                return _decided(closer, here, every)
             raise _none_consistent(now, refused) from None
 
 
@@ -159,7 +194,7 @@ def _none_consistent(now: Occasion, refused: dict[Mode, str]) -> SimulationError
     for mode, reason in list(refused.items())[:8]:
         on = [
             repr(port.name) for port, sign in zip(ports, mode, strict=True)
-            if port.switch is not None and port.switch.word(sign) == "on"
+            if port.switch is not None and port.switch.is_on(sign)
         ]  # fmt: skip
         told.append(f"on {', '.join(on) or 'none'}: {reason}")
     return SimulationError(

@@ -74,6 +74,8 @@ class ClosedModel:
         self.guarded = frozenset(
             i for i, switch in enumerate(self.switching) if switch is not None and not switch.side
         )
+        #: The places of stops.
+        self.stopping = [i for i, switch in enumerate(self.switching) if switch and switch.stops]
         self.timed = timed_ports(program)
         self.opposed = opposed_ports(program, self.timed)
         self.rubbing = len(self.switches) < len(program.friction)
@@ -101,6 +103,14 @@ class ClosedModel:
         made = copy(self)
         made._run = run
         return made
+
+    def place_name(self, place: int) -> str:
+        """What a place in the integrated vector is called."""
+        return str((*self.program.states, *self.program.law_states)[place])
+
+    def largest(self, s: Array) -> Array:
+        """The magnitudes that the integrated vector's components have reached, of a run; else these."""
+        return np.abs(s) if self._run is None else np.maximum(np.abs(s), self._run.largest)
 
     @property
     def constant(self) -> Numbers:
@@ -149,8 +159,7 @@ class ClosedModel:
             if affine is not None:
                 x, z, u, du, y, rate, caps = affine(s, w, dw)
                 if affine.limited and caps.min() < 0:
-                    most = s if self._run is None else np.maximum(np.abs(s), self._run.largest)
-                    caps = without_rounding(caps, affine.terms(CAPS, most, w, dw))
+                    caps = without_rounding(caps, affine.terms(CAPS, self.largest(s), w, dw))
                 if not affine.limited or caps.min() >= 0:
                     return Snapshot(x, z, u, du, y, rate, caps, w, self.constant)
         return self.evaluate(t, s, w, dw, mode)

@@ -25,6 +25,14 @@ def kept_by(model: ClosedModel, mode: Mode, port: int) -> tuple[int, int, int]:
     return (SLIPS, port, switch.side) if sign else (EFFORTS, port, -switch.side)
 
 
+def watched_by(model: ClosedModel, mode: Mode, port: int) -> tuple[int, int, int]:
+    """The same of what is watched while the mode lasts: of a stop that is apart its gap."""
+    switch = model.switching[port]
+    if switch is not None and switch.stops and switch.is_on(mode[port]):
+        return GUARDS, switch.guard, 1
+    return kept_by(model, mode, port)
+
+
 @dataclass(frozen=True)
 class Impacts:
     """What an affine mode begins with, per unit of the slips that its switches stop.

@@ -57,7 +57,8 @@ def _words(port: FrictionPort) -> dict[str, tuple[int, ...]]:
     if port.slides:
         # Told to slip, it does either way: which, what it receives tells.
         return {"stick": (1,), "slip": (1, 0)}
-    return {"on": (port.switch.sign(True),), "off": (port.switch.sign(False),)}
+    on, off = port.switch.words
+    return {on: (port.switch.sign(True),), off: (port.switch.sign(False),)}
 
 
 def steady_modes(

@@ -8,7 +8,7 @@ import numpy as np
 
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.keeping import GUARDS, SLIPS, kept_by
+from codegen.modes.keeping import GUARDS, SLIPS, kept_by, watched_by
 from codegen.modes.rounding import Peaks, Scales, guard_rounding, holding, scales, slip_rates
 from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
@@ -64,7 +64,13 @@ class Look:
 
     def least(self, port: int) -> float:
         """Below this that counts as zero."""
-        part, at, _ = kept_by(self.model, self.mode, port)
+        return self._zero(*kept_by(self.model, self.mode, port))
+
+    def watched_least(self, port: int) -> float:
+        """The same of what is watched of it."""
+        return self._zero(*watched_by(self.model, self.mode, port))
+
+    def _zero(self, part: int, at: int, _: int) -> float:
         if part == GUARDS:
             return float(self.near[at])
         return float((self.size.slip if part == SLIPS else self.size.effort)[at])
@@ -146,12 +152,12 @@ def look_at(here: Sight, mode: Mode, peaks: Peaks | None = None) -> Look:
 
 
 def limits_of(look: Look) -> Array:
-    """Below these what keeps a port in its mode counts as zero."""
+    """Below these what is watched of a port in its mode counts as zero."""
     size, mode = look.size, look.mode
     limits = np.where(np.array(mode, dtype=int) == 0, size.effort, size.slip)
     for i, switch in enumerate(look.model.switching):
         if switch is not None:
-            limits[i] = look.least(i)
+            limits[i] = look.watched_least(i)
     return limits
 
 

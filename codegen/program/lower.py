@@ -42,7 +42,9 @@ def lower(
         raise ParameterError(
             f"missing parameter(s) {', '.join(missing)}; give each a number in parameters"
         )
-    conditions = (c for p in equations.ports if (s := p.element.switch) for c in (s.on, s.off))
+    conditions = (
+        c for p in equations.ports if (s := p.element.switch) for c in (s.on, s.off, s.restitution)
+    )
     watched = frozenset[sp.Symbol]().union(*(condition.free_symbols for condition in conditions))
     closing = close_ports(equations, {} if laws is None else laws, given, watched)
     closing, tangents = with_tangents(closing)

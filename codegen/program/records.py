@@ -206,10 +206,18 @@ class Program:
         """Whether any port is a switch, or slips one way as one."""
         return any(port.switch is not None for port in self.friction)
 
+    @property
+    def stopped(self) -> bool:
+        """Whether any port is a stop."""
+        return any(port.switch is not None and port.switch.stops for port in self.friction)
+
     def before(self, on: Container[Hashable]) -> tuple[int, ...]:
-        """The mode of each port before a run: these switches on, the others off, friction let go."""
+        """The mode of each port before a run: these switches on, the others off, friction let go.
+
+        What stops do their gaps tell; before they do, they are apart.
+        """
         return tuple(
-            1 if port.switch is None else port.switch.sign(port.name in on)
+            1 if (one := port.switch) is None else one.sign(one.stops or port.name in on)
             for port in self.friction
         )
 

@@ -134,12 +134,22 @@ def _checked_level(closing: Closing, slider: Slider) -> sp.Expr:
 
 
 def switches(closing: Closing) -> tuple[dict[sp.Symbol, Switching], list[sp.Expr]]:
-    """When each switch changes over, by the input that it gives; and the conditions of those that say."""
+    """When each switch changes over, by the input that it gives; and the conditions of those that say.
+
+    Of a stop these are its gap and its restitution.
+    """
     found: dict[sp.Symbol, Switching] = {}
     conditions: list[sp.Expr] = []
     for one in closing.equations.switches:
         on = one.held == "on"
-        if one.side:
+        if one.gap is not None:
+            own = list(closing.law_states).index(one.displacement)
+            found[one.port.given] = Switching(
+                on, one.side, len(conditions), place=len(closing.equations.states) + own,
+                opening=one.opening, bound=one.switch.stops,
+            )  # fmt: skip
+            conditions += [one.gap, one.switch.restitution]
+        elif one.side:
             found[one.port.given] = Switching(on, one.side)
         else:
             found[one.port.given] = Switching(on, 0, len(conditions))

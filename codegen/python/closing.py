@@ -5,6 +5,7 @@ from codegen.python.blocks import law_names
 from codegen.python.tables import slip_rows
 from codegen.python.text import RULE, listing, quoted
 from codegen.standalone.ranks import SlipRows
+from codegen.standalone.switchings import Switching
 
 _FORM = '''def form(parameters):
     """The formulas with these parameters, and where everything stands."""
@@ -94,7 +95,8 @@ def needed(program: Program, slips: SlipRows | None) -> list[str]:
     """
     also = {
         "deadband": bool(program.friction) and not program.switched,
-        "switched": program.switched,
+        "switched": program.switched and not program.stopped,
+        "stopping": program.stopped,
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
         "ranks": slips is not None,
@@ -115,7 +117,8 @@ def closing(program: Program, slips: SlipRows | None) -> list[str]:
         base, arguments = "DeadBand", "NAMES, friction(self.parameters)"
         lines += [] if slips is None else slip_rows(slips)
     if program.switched:
-        base, arguments = "SwitchedSteps", f"{arguments}, switches(self.parameters)"
+        base = "StoppedSteps" if program.stopped else "SwitchedSteps"
+        arguments = f"{arguments}, switches(self.parameters)"
         lines += _switching(program)
     lines += ["", "", *_form(program)]
     lines += _friction(program, slips) if program.friction else []
@@ -131,10 +134,17 @@ def _switching(program: Program) -> list[str]:
         "When ports change over that are ideal switches: on while held?; side; place of conditions."
     )
     rows = [
-        f"    {None if s is None else f'Switching({s.on}, {s.side}, {s.guard}{_SLIDES * s.slides})'},"
-        for s in (port.switch for port in program.friction)
+        f"    {None if port.switch is None else _told(port.switch)}," for port in program.friction
     ]
     return ["", f"# {note}", "SWITCHING = (", *rows, ")"]
+
+
+def _told(one: Switching) -> str:
+    """A switch as text."""
+    more = _SLIDES * one.slides
+    if one.stops:
+        more = f", place={one.place}, opening={one.opening}"
+    return f"Switching({one.on}, {one.side}, {one.guard}{more})"
 
 
 def _form(program: Program) -> list[str]:

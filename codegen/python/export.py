@@ -137,7 +137,7 @@ def _functions(program: Program, names: Names) -> list[str]:
         lines += values_function("friction_values", doc, program.friction_values, rows, names)
     if program.switched:
         rows = [f"{plain(str(p.name))}: {way}" for p in program.switches
-                if p.switch is not None and not p.switch.side for way in ("on", "off")]  # fmt: skip
+                if p.switch is not None for way in p.switch.guards]  # fmt: skip
         doc = "Conditions of switches: to turn on and to turn off in turn, each above zero."
         lines += values_function("switch_conditions", doc, program.guards, rows, names)
     if program.joint:

@@ -66,6 +66,6 @@ def with_switches(
     found = dict(columns)
     for at, port in enumerate(program.friction):
         if port.switch is not None and not port.slides:
-            told = {sign: float(port.switch.word(sign) == "on") for sign in (-1, 0, 1)}
+            told = {sign: float(port.switch.is_on(sign)) for sign in (-1, 0, 1)}
             found[str(port.name)] = read_only(np.array([told[mode[at]] for mode in modes]))
     return MappingProxyType(found)

@@ -10,6 +10,7 @@ import numpy as np
 from bondgraph.errors import ModelWarning
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
+from codegen.modes.bounce import check_gaps
 from codegen.modes.closed import ClosedModel
 from codegen.modes.keeping import kept_by
 from codegen.modes.trials import Sight
@@ -43,7 +44,9 @@ def beginning(
     mode: Mode = model.program.before(on)
     if not model.program.switches:
         return Beginning(s, mode, NOTHING, still)
-    _, now = Sight(model, t, s, pieces).evaluated((1,) * len(mode))
+    here = Sight(model, t, s, pieces)
+    _, now = here.evaluated((1,) * len(mode))
+    check_gaps(here, mode)
     mode = _as_told(model, model.guards(t, now), mode)
     if 0 not in mode:
         return Beginning(s, mode, NOTHING, still)

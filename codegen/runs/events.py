@@ -7,7 +7,7 @@ import numpy as np
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.keeping import kept_by
+from codegen.modes.keeping import watched_by
 from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks
 from codegen.modes.trials import Sight
@@ -124,7 +124,7 @@ class Watch:
                 # Its instants are known before.
                 found[:, i] = np.inf
                 continue
-            part, at, sign = kept_by(self._model, self._mode, i)
+            part, at, sign = watched_by(self._model, self._mode, i)
             found[:, i] = sign * (slips, efforts, guards)[part][:, at]
         return found
 

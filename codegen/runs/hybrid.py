@@ -125,8 +125,8 @@ class _Course:
         new, after, impacts, self._clear = self._decided(occasion, here)
         if self._settled is not None:
             changes = self._changes.of((self.mode, new), lambda: _changes(model, self.mode, new))
-            self.track.note([Event(t, port, kind) for port, kind in changes])
-        if self._settled is not None and self._touched:
+            self.track.note(_told(model, t, changes, impacts))
+        if self._settled is not None and self._touched and not any(i.thrown for i in impacts):
             _check_progress(self._rounds, t, hardly_apart(peaks.time), self.track.events)
         if after is not here.s:
             here = Sight(model, t, after, pieces)
@@ -273,6 +273,29 @@ def _changes(model: ClosedModel, old: Mode, new: Mode) -> list[tuple[Hashable, s
             kind = port.words[0 if after == 0 else (1 if before == 0 else 2)]
             rubbing += [(port.name, kind)] if kind else []
     return switching + rubbing
+
+
+def _told(
+    model: ClosedModel, t: float, changes: Sequence[tuple[Hashable, str]], impacts: Sequence[Impact]
+) -> list[Event]:
+    """What has happened at an instant: first what was thrown back, impact by impact."""
+    if not impacts:
+        return [Event(t, port, kind) for port, kind in changes]
+    ports, given = (
+        model.program.friction,
+        [one.strike.given[model.friction_inputs] for one in impacts],
+    )
+    hits = [
+        Event(t, ports[i].name, "hit", float(struck[i]))
+        for one, struck in zip(impacts, given, strict=True)
+        for i in one.thrown
+    ]
+    whole = {
+        port.name: float(sum(struck[i] for struck in given))
+        for i, port in enumerate(ports)
+        if port.switch is not None
+    }
+    return hits + [Event(t, port, kind, whole.get(port, 0.0)) for port, kind in changes]
 
 
 def _check_progress(rounds: deque[float], t: float, least: float, events: list[Event]) -> None:

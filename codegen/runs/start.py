@@ -9,6 +9,7 @@ from bondgraph.declare.switching import checked_modes
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from codegen.inputs.signal import Signal
+from codegen.model.starts import told_starts
 from codegen.modes.closed import ClosedModel
 from codegen.modes.steps import step_at_start
 from codegen.numbers.arrays import Array
@@ -50,6 +51,8 @@ def start_of(
     names = [symbol.name for symbol in (*program.states, *program.law_states)]
     external = [symbol.name for symbol in program.external]
     signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)
-    states = initial_values(initial or {}, names)
+    states = initial_values(
+        {**told_starts(program.equations, parameters), **(initial or {})}, names
+    )
     on = checked_modes([port.name for port in program.switches], initially_on)
     return Start(closed, states, tuple(signals), step_at_start(closed, states, signals), on)

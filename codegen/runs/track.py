@@ -18,12 +18,14 @@ Dense = Callable[[float | Array], Array]
 class Event(NamedTuple):
     """What happened: at a friction port "stick", "slip" (it was released) or "cross" (through zero).
 
-    At a switch or a controlled junction "on" or "off".
+    At a switch or a controlled junction "on" or "off"; at a `Stop` "touch", "apart", or "hit" where what met
+    it is thrown back. ``impulse``: of an impact, that of what the port gives.
     """
 
     time: float
     port: Hashable
     kind: str
+    impulse: float = 0.0
 
 
 Ended = tuple[float, Array, frozenset[int]]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from codegen.inputs.generators import Generator
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
-from codegen.modes.keeping import GUARDS, kept_by
+from codegen.modes.keeping import GUARDS, watched_by
 from codegen.numbers.arrays import Array, read_only
 from codegen.numbers.latest import Latest
 from codegen.program.affine import AffineMap, balanced_norm
@@ -72,7 +72,7 @@ def inputs_of(model: ClosedModel, affine: AffineMap, mode: Mode, n: int) -> list
     ]  # fmt: skip
     guards = model.guard_rows(mode, m)
     for i in model.switches:
-        part, at, _ = kept_by(model, mode, i)
+        part, at, _ = watched_by(model, mode, i)
         if guards is not None and part == GUARDS and i not in model.timed:
             asked.append(guards[[at]])
     used: Array = np.abs(np.vstack(asked)[:, n : n + 2 * m]).max(axis=0, initial=0.0)
@@ -111,7 +111,7 @@ def watched(
         if i in model.timed:
             continue
         if model.switching[i] is not None and not np.isfinite(rest[i]):
-            part, at, way = kept_by(model, mode, i)
+            part, at, way = watched_by(model, mode, i)
             triggers.append(way * (slips, efforts, conditions)[part][[at]])
             ports.append(i)
             continue

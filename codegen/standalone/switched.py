@@ -54,7 +54,7 @@ class SwitchedSteps(DeadBand):
     def shown(self, mode: Mode) -> list[float]:
         """For each switch 1 while it is on, 0 while it is off."""
         named = [(i, one) for i, one in enumerate(self.switching) if one and not one.slides]
-        return [float(one.word(mode[i]) == "on") for i, one in named]
+        return [float(one.is_on(mode[i])) for i, one in named]
 
     def begin(self, at: Point, on: Collection[str], named: Collection[str]) -> Array:
         """The vector s with which a run begins, states that are not ``named`` completed.
@@ -121,12 +121,18 @@ class SwitchedSteps(DeadBand):
     def chosen(self, at: Point, previous: Chosen, dead_band: float, h: float) -> tuple[Mode, Array]:
         """The first consistent mode from the one so far on, and s after its impulses."""
         first = self.first if previous is None else previous
-        tries = switchings(first, self.places, self.guarded)
+        return self.among(at, self.places, first, previous, dead_band, h)
+
+    def among(
+        self, at: Point, asked: list[int], first: Mode, previous: Chosen, dead_band: float, h: float
+    ) -> tuple[Mode, Array]:
+        """The same where these switches may change over, and no others."""
+        tries = switchings(first, asked, self.guarded)
         mode, refused = next(tries), None
         while True:
             broken: Broken = frozenset()
             try:
-                found, s, broken = self.tried(at, mode, previous, dead_band, h)
+                found, s, broken = self.tried(at, mode, asked, previous, dead_band, h)
                 if not broken:
                     return found, s
             except EvaluationError as error:
@@ -141,14 +147,16 @@ class SwitchedSteps(DeadBand):
                 ) from refused
 
     def tried(
-        self, at: Point, switched: Mode, previous: Chosen, dead_band: float, h: float
-    ) -> tuple[Mode, Array, Broken]:
+        self, at: Point, switched: Mode, asked: list[int], previous: Chosen, dead_band: float,
+        h: float,
+    ) -> tuple[Mode, Array, Broken]:  # fmt: skip
         """The mode with the switches so, s after its impulses, and the switches that contradict."""
         s, signs = self.strike(at, switched, previous, h)
         after, mode = at._replace(s=s), switched
         if self.rubs.any():
             mode = self.rubbing(after, switched, previous, dead_band, h)
         now = self.consistent(after, mode, dead_band)
+        signs = [sign if i in asked else 1 for i, sign in enumerate(signs)]
         return mode, s, self.contrary(after, now, mode, signs, h)
 
     def strike(

@@ -29,19 +29,46 @@ class Switching:
     ``on``: whether it is on while it is held. ``side``: of a one-sided switch, which is let go
     while ``side * y >= 0`` and held while ``side * u <= 0``; 0: of one that is told by the two
     guards from ``guard`` on, its conditions to turn on and off. ``slides``: of one way in which dry
-    friction slips that gives a flow: held it slips.
+    friction slips that gives a flow: held it slips. ``place``: of a stop the place in s of its
+    displacement; ``guard`` is its gap then, which changes by ``opening`` with that, and after that its
+    restitution: it is on while it is apart, and has the two sides of a one-sided switch where the gap is closed. ``bound``: whether
+    it is declared as a stop, which touches and is apart.
     """
 
     on: bool
     side: int
     guard: int = -1
     slides: bool = False
+    place: int = -1
+    opening: int = 0
+    bound: bool = False
+
+    @property
+    def stops(self) -> bool:
+        """Whether it is a stop."""
+        return self.place >= 0
+
+    @property
+    def guards(self) -> tuple[str, ...]:
+        """What its guards tell."""
+        if self.stops:
+            return "gap", "restitution"
+        return () if self.side else ("on", "off")
+
+    @property
+    def words(self) -> tuple[str, str]:
+        """What it is while it is on, and while it is off."""
+        if self.slides:
+            return ("slip", "stick") if self.on else ("stick", "slip")
+        return ("apart", "touch") if self.bound else ("on", "off")
 
     def word(self, sign: int) -> str:
         """What it is in a mode, held being 0: "on" or "off", of friction "slip" or "stick"."""
-        if self.slides:
-            return "slip" if sign == 0 else "stick"
-        return "on" if self.on == (sign == 0) else "off"
+        return self.words[self.on != (sign == 0)]
+
+    def is_on(self, sign: int) -> bool:
+        """Whether it is on in a mode."""
+        return self.on == (sign == 0)
 
     def condition(self, sign: int) -> int:
         """The guard that changes it over in a mode."""

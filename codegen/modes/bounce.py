@@ -1,0 +1,127 @@
+"""Stops: which are met at an instant, and the impulses that throw back what closes on those that bounce.
+
+What merely touches takes no part. What closes more slowly than the model's own scales tell, or would not leap
+higher than displacements are known, stays where it is.
+"""
+
+from collections.abc import Collection, Mapping
+
+import numpy as np
+
+from bondgraph.errors import SimulationError
+from codegen.model.snapshot import Impact, Mode
+from codegen.modes.rounding import Peaks, guard_rounding, scales, slip_rates
+from codegen.modes.trials import Sight
+from codegen.numbers.arrays import Array
+from codegen.ports.refusals import refusals
+from codegen.standalone.bouncing import Meeting, thrown
+from codegen.tuning import TUNING
+
+
+def met(here: Sight, mode: Mode, touched: frozenset[int], peaks: Peaks | None) -> frozenset[int]:
+    """The stops whose gap is closed: whose event it is, that were held, or to rounding."""
+    model = here.model
+    if not model.stopping:
+        return frozenset()
+    known, now = here.evaluated(mode, slipping=False)
+    gaps, near = model.guards(here.t, now), gap_rounding(here, known, peaks)
+    found = set()
+    for i in model.stopping:
+        one = model.switching[i]
+        assert one is not None
+        if i in touched or not one.is_on(mode[i]) or gaps[one.guard] <= near[one.guard]:
+            found.add(i)
+    return frozenset(found)
+
+
+def check_gaps(here: Sight, mode: Mode) -> None:
+    """Refuse a start beyond a bound: a `SimulationError` naming the stop."""
+    model = here.model
+    if not model.stopping:
+        return
+    known, now = here.evaluated(mode, slipping=False)
+    gaps, near = model.guards(here.t, now), gap_rounding(here, known, None)
+    for i in model.stopping:
+        one, port = model.switching[i], model.program.friction[i]
+        assert one is not None
+        if gaps[one.guard] < -near[one.guard]:
+            raise SimulationError(
+                f"at t = {here.t:.9g} stop {port.name!r} begins {-gaps[one.guard]:.6g} beyond its bound; give "
+                f"{model.place_name(one.place)} in initial, or start, within it"
+            )
+
+
+def gap_rounding(here: Sight, mode: Mode, peaks: Peaks | None) -> Array:
+    """Below these gaps count as closed, from what displacements have been, too."""
+    near = guard_rounding(here, mode, peaks)
+    largest = here.model.largest(here.s)
+    for one in here.model.switching:
+        if one is not None and one.stops:
+            near[one.guard] += TUNING.together * largest[one.place]
+    return near
+
+
+def closing(
+    here: Sight, mode: Mode, stops: Collection[int], peaks: Peaks | None
+) -> Mapping[int, float]:
+    """Of these stops those that bounce as they are met, and how fast slips, opening, are to be after that.
+
+    Those that would hardly leave again, as all that has bounced long enough, do not bounce.
+    """
+    model = here.model
+    if not stops:
+        return {}
+    known, now = here.evaluated(mode)
+    told = model.guards(here.t, now)
+    size = scales(model, now, here.t, peaks)
+    near, rates = gap_rounding(here, known, peaks), slip_rates(model, now)
+    found = {}
+    for i in sorted(stops):
+        one = model.switching[i]
+        assert one is not None
+        back, slip = float(told[one.guard + 1]), one.side * float(now.y[model.friction_readings[i]])
+        least = TUNING.bounce * float(size.slip[i])
+        if one.on or not one.is_on(mode[i]) or back <= 0 or slip >= -least:
+            continue
+        pressed = max(-one.side * float(rates[i]), 0.0)
+        if (back * slip) ** 2 > 2 * TUNING.leap * pressed * float(near[one.guard]):
+            found[i] = -back * slip
+    return found
+
+
+def thrown_back(here: Sight, mode: Mode, wanted: Mapping[int, float]) -> Impact | None:
+    """The impact of the stops that are ``wanted`` to bounce, what switches hold in the mode staying held.
+
+    None where no states move what closes.
+    """
+    model = here.model
+    slipping, now = here.evaluated((1,) * len(mode))
+    switching = list(zip(mode, model.switching, strict=True))
+    meeting = Meeting(
+        now.instant(here.t), tuple(1 if one is None else sign for sign, one in switching), wanted,
+        {i: one.side for i, one in enumerate(model.switching) if one is not None},
+        np.array(model.friction_inputs), np.array(model.friction_readings),
+    )  # fmt: skip
+    with refusals():
+        strike = thrown(meeting, lambda held: model.hold(held, now.numbers))
+    if strike is None:
+        return None
+    after = here.s + strike.gained(len(here.s), model.law_rates)
+    later = model.at(here.t, after, here.pieces, slipping)
+    mean = 0.5 * (now.y + later.y)[model.friction_readings]
+    given = strike.given[model.friction_inputs]
+    struck = tuple(i for i in wanted if given[i] != 0)
+    return Impact(after, strike, float(given @ mean), struck)
+
+
+def closed_up(here: Sight, mode: Mode, stops: Collection[int]) -> Array:
+    """The integrated vector with the gaps of these stops closed, as far as they are rounding."""
+    model = here.model
+    if not stops:
+        return here.s
+    gaps, s = model.guards(here.t, here.evaluated(mode, slipping=False)[1]), here.s.copy()
+    for i in sorted(stops):
+        one = model.switching[i]
+        assert one is not None
+        s[one.place] -= one.opening * gaps[one.guard]
+    return s

@@ -1,0 +1,118 @@
+"""Stops in fixed steps: at the start of the step that finds a gap closed its stop is met.
+
+It stops what closes, or throws it back, unless that would return within a step: so what bounces
+comes to rest and does not chatter. Displacements are put back to the bound.
+"""
+
+from collections.abc import Collection, Sequence
+
+import numpy as np
+
+from codegen.standalone.arrays import Array, EvaluationError, Mode
+from codegen.standalone.bouncing import Meeting, thrown
+from codegen.standalone.evaluation import Point
+from codegen.standalone.friction import slip_rates
+from codegen.standalone.instant import Instant
+from codegen.standalone.levels import level_terms
+from codegen.standalone.stepping import Chosen
+from codegen.standalone.switched import SwitchedSteps
+from codegen.standalone.switchings import Switching
+from codegen.tuning import TUNING
+
+Stop = tuple[int, Switching]
+"""The place of a stop among the ports, and what it is."""
+
+
+class StoppedSteps(SwitchedSteps):
+    """A model in fixed steps some of whose switches are stops."""
+
+    def mode_of(self, on: Collection[str]) -> Mode:
+        """The mode in which these switches are on, and all stops are apart."""
+        told = super().mode_of(on)
+        apart = {i: one.sign(True) for i, one in self.stops()}
+        return tuple(apart.get(i, sign) for i, sign in enumerate(told))
+
+    def stops(self) -> list[Stop]:
+        """The ports that are stops."""
+        return [(i, one) for i, one in enumerate(self.switching) if one and one.stops]
+
+    def begin(self, at: Point, on: Collection[str], named: Collection[str]) -> Array:
+        """As of switches. Raises `EvaluationError` for a start beyond a bound."""
+        now = self.any_of(at, (1,) * len(self.rubs))
+        gaps, near = self.told(now), self.gap_rounding(now)
+        for i, one in self.stops():
+            if gaps[one.guard] < -near[one.guard]:
+                raise EvaluationError(
+                    f"stop {self.switches.names[i]} begins {-gaps[one.guard]:g} beyond its bound"
+                )
+        return super().begin(at, on, named)
+
+    def chosen(self, at: Point, previous: Chosen, dead_band: float, h: float) -> tuple[Mode, Array]:
+        """The first consistent mode after what stops do, and s then: joining first, then throwing."""
+        first = self.first if previous is None else previous
+        met = self.met(at, first)
+        apart = {i for i, _ in self.stops()} - {i for i, _ in met}
+        for _ in range(TUNING.impacts):
+            wanted = self.closing(at, first, met, h)
+            asked = [i for i in self.places if i not in apart and i not in wanted]
+            mode, s = self.among(at, asked, first, previous, dead_band, h)
+            joined = not np.array_equal(s, at.s)
+            at, first = at._replace(s=s), tuple(np.where(self.rubs, first, mode).tolist())
+            wanted = self.closing(at, mode, [(i, one) for i, one in met if i in wanted], h)
+            if wanted:
+                at = at._replace(s=self.thrown(at, mode, wanted))
+            elif not joined:
+                break
+        return mode, self.closed_up(at, mode, met)
+
+    def met(self, at: Point, mode: Mode) -> list[Stop]:
+        """The stops whose gap is closed, or that were held."""
+        now = self.any_of(at, mode)
+        gaps, near = self.told(now), self.gap_rounding(now)
+        return [
+            (i, one) for i, one in self.stops()
+            if not one.is_on(mode[i]) or gaps[one.guard] <= near[one.guard]
+        ]  # fmt: skip
+
+    def gap_rounding(self, now: Instant) -> Array:
+        """Gaps below these are closed."""
+        terms = level_terms(now, (), self.switches.guards)
+        return np.asarray(TUNING.step_rounding * terms, dtype=float)
+
+    def closing(self, at: Point, mode: Mode, met: Sequence[Stop], h: float) -> dict[int, float]:
+        """How fast these open after they throw back what closes; without those that do not."""
+        if not met:
+            return {}
+        now = self.any_of(at, mode)
+        told, near = self.told(now), TUNING.step_rounding * self.terms(now)
+        slips, rates = now.y[self.slips], slip_rates(now, self.slips, self.moving)
+        found = {}
+        for i, one in met:
+            slip, back = one.side * slips[i], told[one.guard + 1]
+            pressed = max(-one.side * rates[i], 0.0)
+            if one.on or not one.is_on(mode[i]) or slip >= -near[i]:
+                continue
+            # What it gained beyond the bound it had not where it met it.
+            beyond = 2 * pressed * max(-told[one.guard], 0.0)
+            speed = float(back * np.sqrt(max(slip**2 - beyond, 0.0)))
+            if 2 * speed > h * pressed:
+                found[i] = speed
+        return found
+
+    def thrown(self, at: Point, mode: Mode, wanted: dict[int, float]) -> Array:
+        """The vector s after the impulses of stops that throw back."""
+        now = self.any_of(at, (1,) * len(mode))
+        held = tuple(np.where(self.rubs, 1, mode).tolist())
+        ways = {i: one.side for i, one in self.stops()}
+        meeting = Meeting(now, held, wanted, ways, self.efforts, self.slips)
+        strike = thrown(meeting, lambda tried: self.friction.hold(tried, now.numbers))
+        return at.s if strike is None else at.s + strike.gained(len(at.s), self.form.law_rates)
+
+    def closed_up(self, at: Point, mode: Mode, met: Sequence[Stop]) -> Array:
+        """The vector s with the displacements of these at their bounds."""
+        if not met:
+            return at.s
+        gaps, s = self.told(self.any_of(at, mode)), at.s.copy()
+        for _, one in met:
+            s[one.place] -= one.opening * gaps[one.guard]
+        return s
