@@ -150,7 +150,8 @@ static void print_sample(void *to, int sample, const double *w, const int *mode,
 /* Rows by adaptive steps. The samples are the only memory that is asked for. */
 static int run_located(bg_model *m, const command *asked, const bg_signals *signals)
 {
-    static const char *const kinds[] = {"stick", "slip", "cross", "on", "off"};
+    static const char *const kinds[] = {"stick", "slip", "cross", "on", "off", "hit",
+                                        "touch", "apart"};
     static bg_located run;
     static bg_event events[EVENTS];
     const int count = (int)floor(asked->end / asked->sample * (1 + BG_TOGETHER)) + 1;
@@ -164,8 +165,8 @@ static int run_located(bg_model *m, const command *asked, const bg_signals *sign
         times[k] = k * asked->sample;
     const int status = bg_model_run(&run, m, signals, &request);
     for (int k = 0; k < request.count; k++)
-        fprintf(stderr, "%.17g,%s,%s\n", events[k].time, bg_friction_names[events[k].port],
-                kinds[events[k].kind]);
+        fprintf(stderr, "%.17g,%s,%s,%.17g\n", events[k].time, bg_friction_names[events[k].port],
+                kinds[events[k].kind], events[k].impulse);
     free(times);
     return failed(status);
 }

@@ -15,6 +15,11 @@ void bg_view_keep(const bg_view *v, const int *mode, bg_port *ports)
         if (bg_switches[i].kind != BG_RUBS)
             ports[i].stay =
                 bg_stay(bg_switches + i, mode[i], ports[i].slip, ports[i].effort, guards);
+    for (int i = 0; i < K; i++)
+        if (bg_switches[i].kind == BG_STOPS) {
+            ports[i].gap = guards[bg_switches[i].guard];
+            ports[i].back = guards[bg_switches[i].guard + 1];
+        }
 }
 
 /* Of efforts that hold: the rounding of the equations that they follow from. */
@@ -32,6 +37,19 @@ static void round_held(const bg_view *v, const int *mode, const double *x, const
     for (int c = 0; c < held->count; c++) {
         bg_port *const port = ports + held->ports[c];
         port->near_effort = fmax(port->near_effort, BG_ROUNDING * terms[c]);
+    }
+}
+
+/* Below these gaps count as closed, from what displacements have been, too. */
+static void round_gaps(const bg_view *v, double spacing, bg_port *ports)
+{
+    for (int i = 0; i < K; i++) {
+        const bg_switch *const s = bg_switches + i;
+        if (s->kind != BG_STOPS)
+            continue;
+        const double place = v->shot.z[s->place - N], seen = v->model->seen[s->place];
+        ports[i].near_gap =
+            bg_gap_rounding(s, ports[i].gap, place, v->shot.rate[s->place], seen, spacing);
     }
 }
 
@@ -53,6 +71,7 @@ void bg_view_stay(bg_view *v, const int *mode, double time, const double *x, con
         else
             ports[i].near_stay = mode[i] ? ports[i].near_slip : ports[i].near_effort;
     }
+    round_gaps(v, spacing, ports);
 }
 
 /* The slips that a mode would stop, and whether they are more than rounding; all is let go. */
@@ -66,15 +85,15 @@ static int have_to_jump(const bg_hold *held, const bg_snapshot *shot, const bg_p
     return bg_have_slips(held, slips, near);
 }
 
-int bg_view_strike(void *view, const bg_instant *at, const int *mode, double *s, int *shocks,
-                   int *struck)
+int bg_view_strike(void *view, const bg_instant *at, const int *mode, const double *speeds,
+                   double *s, bg_blow *blow)
 {
     bg_view *const v = view;
     double impulses[PORTS * PORTS], slips[PORTS], ways[PORTS];
     bg_port ports[PORTS];
     bg_hold *held = NULL;
     int loose[BG_MOST_PORTS];
-    *struck = 0;
+    blow->struck = 0;
     for (int i = 0; i < K; i++)
         loose[i] = 1;
     const bg_sight sight = bg_view_sight(v);
@@ -83,11 +102,16 @@ int bg_view_strike(void *view, const bg_instant *at, const int *mode, double *s,
         bg_view_ports(v, loose, at->time, ports);
         status = bg_impulses(v->model, mode, &held, impulses);
     }
-    if (status || !held || !have_to_jump(held, &v->shot, ports, slips))
+    if (status || !held || held->kept == 0)
         return status;
-    *struck = 1;
-    bg_stop(v->model, mode, held, impulses, slips, s, ways);
+    const int jumps = have_to_jump(held, &v->shot, ports, slips);
+    if (!jumps && !speeds)
+        return BG_OK;
+    if (speeds)
+        bg_less_speeds(held, speeds, slips);
+    blow->struck = 1;
+    bg_stop(v->model, mode, held, impulses, slips, s, blow->given, ways);
     for (int i = 0; i < K; i++)
-        shocks[i] = ways[i] == 0.0 ? 0 : ways[i] > 0.0 ? 1 : -1;
+        blow->shocks[i] = ways[i] == 0.0 ? 0 : ways[i] > 0.0 ? 1 : -1;
     return BG_OK;
 }
