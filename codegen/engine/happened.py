@@ -11,7 +11,8 @@ from codegen.runs.track import Event
 KINDS = ("stick", "slip", "cross", "on", "off", "hit", "touch", "apart")
 
 EVENT = np.dtype(
-    [("time", np.float64), ("port", np.intc), ("kind", np.intc), ("impulse", np.float64)], align=True
+    [("time", np.float64), ("port", np.intc), ("kind", np.intc), ("impulse", np.float64)],
+    align=True,
 )
 """``bg_event``."""
 

@@ -159,8 +159,7 @@ static int try_in_step(void *self, const bg_set *held, int *holds, bg_set *broke
     return BG_OK;
 }
 
-/* Where some ports are switches; a step that has no mode leaves all as it was. */
-static int search_ways(step_search *c, const int *before)
+int bg_search_ways(step_search *c, const int *before)
 {
     bg_set switches = {{0}}, guarded = {{0}}, first = {{0}};
     int holds;
@@ -179,37 +178,6 @@ static int search_ways(step_search *c, const int *before)
     return status ? status : c->why ? c->why : BG_UNDECIDED;
 }
 
-/* The same where stops are met: what joins first, then what closes is thrown back; again until
- * nothing closes. */
-static int search_struck(step_search *c)
-{
-    bg_set met;
-    bg_throw wanted;
-    int thrown = 1, status = bg_meet_in_step(c, &met);
-    const bg_set apart = c->barred;
-    if (status == BG_OK)
-        status = bg_closing_in_step(c, &met, &wanted);
-    for (int turn = 0; turn < BG_BOUNCES && status == BG_OK; turn++) {
-        int before[BG_ROOM(K)];
-        memcpy(before, c->m->mode, sizeof before);
-        c->barred = bg_turned(apart, &wanted.ports);
-        status = search_ways(c, before);
-        if (status == BG_OK)
-            status = bg_closing_in_step(c, &met, &wanted);
-        if (status == BG_OK && bg_is_empty(&wanted.ports))
-            return BG_OK;
-        if (status == BG_OK)
-            status = bg_throw_in_step(c, &wanted, &thrown);
-        if (status == BG_OK && !thrown)
-            return BG_OK;
-        memcpy(c->begun, c->s, sizeof c->begun);
-        memset(&wanted, 0, sizeof wanted);
-        if (status == BG_OK)
-            status = bg_closing_in_step(c, &met, &wanted);
-    }
-    return status ? status : BG_STRUCK;
-}
-
 int bg_decide_step(bg_model *m, double t, double h, double *s, const double *w)
 {
     int before[BG_ROOM(K)];
@@ -218,8 +186,8 @@ int bg_decide_step(bg_model *m, double t, double h, double *s, const double *w)
     double begun[BG_SIZE];
     memcpy(c.begun, s, sizeof c.begun);
     memcpy(begun, s, sizeof begun);
-    const int status = BG_STOPPING ? search_struck(&c)
-        : BG_SWITCHES              ? search_ways(&c, before)
+    const int status = BG_STOPPING ? bg_search_struck(&c)
+        : BG_SWITCHES              ? bg_search_ways(&c, before)
                                    : bg_stick(m, &c.at);
     if (status == BG_OK) {
         m->started = 1;

@@ -16,10 +16,11 @@ typedef struct {
     int why;
 } step_search;
 
-/* port_step_stop.c: the stops that are met, with their gaps closed; the others are barred. Those of
- * them that bounce. What these throw back. Statuses. */
-int bg_meet_in_step(step_search *c, bg_set *met);
-int bg_closing_in_step(step_search *c, const bg_set *met, bg_throw *wanted);
-int bg_throw_in_step(step_search *c, const bg_throw *wanted, int *thrown);
+/* port_step.c: a mode, where some ports are switches; a step that has none leaves all as it was. */
+int bg_search_ways(step_search *c, const int *before);
+
+/* port_step_stop.c: the same where stops may be met: what joins first, then what closes is thrown
+ * back; again until nothing closes. */
+int bg_search_struck(step_search *c);
 
 #endif

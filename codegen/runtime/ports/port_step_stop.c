@@ -48,7 +48,8 @@ static int throw_in_step(void *self, const bg_instant *at, const int *mode, cons
     return BG_OK;
 }
 
-int bg_meet_in_step(step_search *c, bg_set *met)
+/* The stops that are met, their gaps closed; the others are barred. */
+static int meet_in_step(step_search *c, bg_set *met)
 {
     double guards[BG_ROOM(BG_GUARDS)] = {0};
     bg_model *const m = c->m;
@@ -76,7 +77,8 @@ int bg_meet_in_step(step_search *c, bg_set *met)
     return BG_OK;
 }
 
-int bg_closing_in_step(step_search *c, const bg_set *met, bg_throw *wanted)
+/* Those of them that bounce. */
+static int closing_in_step(step_search *c, const bg_set *met, bg_throw *wanted)
 {
     double guards[BG_ROOM(BG_GUARDS)] = {0}, terms, moves;
     bg_model *const m = c->m;
@@ -101,7 +103,8 @@ int bg_closing_in_step(step_search *c, const bg_set *met, bg_throw *wanted)
     return BG_OK;
 }
 
-int bg_throw_in_step(step_search *c, const bg_throw *wanted, int *thrown)
+/* What these throw back. */
+static int give_back(step_search *c, const bg_throw *wanted, int *thrown)
 {
     const bg_sight sight = {
         .self = c, .size = BG_SIZE, .ports = K, .switches = bg_switches, .stopping = 1,
@@ -114,4 +117,33 @@ int bg_throw_in_step(step_search *c, const bg_throw *wanted, int *thrown)
         memcpy(c->s, c->struck, sizeof c->struck);
     memset(c->depth, 0, sizeof c->depth);
     return status;
+}
+
+int bg_search_struck(step_search *c)
+{
+    bg_set met;
+    bg_throw wanted;
+    int thrown = 1, status = meet_in_step(c, &met);
+    const bg_set apart = c->barred;
+    if (status == BG_OK)
+        status = closing_in_step(c, &met, &wanted);
+    for (int turn = 0; turn < BG_BOUNCES && status == BG_OK; turn++) {
+        int before[BG_ROOM(K)];
+        memcpy(before, c->m->mode, sizeof before);
+        c->barred = bg_turned(apart, &wanted.ports);
+        status = bg_search_ways(c, before);
+        if (status == BG_OK)
+            status = closing_in_step(c, &met, &wanted);
+        if (status == BG_OK && bg_is_empty(&wanted.ports))
+            return BG_OK;
+        if (status == BG_OK)
+            status = give_back(c, &wanted, &thrown);
+        if (status == BG_OK && !thrown)
+            return BG_OK;
+        memcpy(c->begun, c->s, sizeof c->begun);
+        memset(&wanted, 0, sizeof wanted);
+        if (status == BG_OK)
+            status = closing_in_step(c, &met, &wanted);
+    }
+    return status ? status : BG_STRUCK;
 }
