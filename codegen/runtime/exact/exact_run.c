@@ -143,8 +143,7 @@ static int advance(void *context, double stop)
 /* What is kept of strides and choices is of one run, which so is the same whatever was before. */
 static void start_anew(ex_context *c)
 {
-    /* Where stops are met, or how far from it, choices do not tell. */
-    c->glancing = c->model->switched && !c->model->stopping;
+    c->glancing = c->model->switched;
     for (int i = 0; i < EX_K; i++)
         c->glancing &= ex_switches(c, i);
     c->stridden = c->decided = c->chosen = c->looked = c->vain = 0;
