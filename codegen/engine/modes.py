@@ -43,16 +43,17 @@ class Tables:
             self.record.switches[at] = port.in_c
 
     def _fill_stops(self) -> None:
-        """The gaps where all states are zero, and the restitutions."""
-        model, numbers = self.model, self.engine.sizes.numbers
+        """The gaps of stops where all states are zero, and their restitutions."""
+        model = self.model
         if not model.stopping:
             return
         program = model.program
-        at = [np.zeros(n) for n in (len(program.states), len(program.law_states))]
-        u, w = np.zeros(len(program.inputs)), np.zeros(len(program.external))
-        y = np.zeros(len(program.readings))
-        told = model.guards(0.0, Snapshot(*at, u, u, y, w, w, w, model.constant))
-        assert numbers["PORTS"] == len(model.switching)
+        x, z, u, y = map(
+            np.zeros,
+            map(len, (program.states, program.law_states, program.inputs, program.readings)),
+        )
+        w = np.zeros(len(program.external))
+        told = model.guards(0.0, Snapshot(x, z, u, u, y, w, w, w, model.constant))
         for i in model.stopping:
             one = model.switching[i]
             assert one is not None

@@ -71,7 +71,8 @@ class FrictionPort:
     def in_c(self) -> tuple[int, int, int, int, int, int, int, int]:
         """The fields of its ``bg_switch``: kind, on while held?, side, first condition, way of slipping.
 
-        Then those of a stop: the place of its displacement, how its gap opens with that, whether it is told as one.
+        Then those of a stop: the place of its displacement, how its gap opens with that, whether it is
+        declared as one.
         """
         one = self.switch
         if one is None:

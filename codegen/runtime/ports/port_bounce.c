@@ -1,11 +1,11 @@
-/* One consistent mode where stops may be met: what joins comes first, then what closes is thrown back;
- * again until nothing closes. As codegen/modes/choose.py and bounce.py. */
+/* One consistent mode where stops may be met: what joins comes first, then what closes is thrown
+ * back; again until nothing closes. As codegen/modes/choose.py and bounce.py. */
 #include <math.h>
 #include <string.h>
 
 #include "port_choosing.h"
 
-/* The stops whose gap is closed: whose event it is, that were held, or to rounding; and the others. */
+/* The stops whose gap is closed: whose event it is, that were held, or to rounding; the others. */
 static int find_met(const bg_sight *c, const bg_instant *at, const int *mode, bg_set *met,
                     bg_set *apart)
 {

@@ -1,5 +1,5 @@
-/* How a run begins: stops apart, other switches off unless they are told, and states that were not named
- * completed by what these hold. */
+/* How a run begins: stops apart, other switches off unless they are told, and states that were not
+ * named completed by what these hold. */
 #include <math.h>
 #include <stddef.h>
 
@@ -26,9 +26,10 @@ static int check_gaps(bg_model *m, double t, const double *s)
         const bg_switch *const one = bg_switches + i;
         if (one->kind != BG_STOPS)
             continue;
-        const double gap = guards[one->guard], seen = m->seen[one->place];
+        const double gap = guards[one->guard], place = s[one->place];
+        const double rate = m->shot.rate[one->place], seen = m->seen[one->place];
         m->where = i;
-        if (gap < -bg_gap_rounding(one, gap, s[one->place], m->shot.rate[one->place], seen, spacing))
+        if (gap < -bg_gap_rounding(one, gap, place, rate, seen, spacing))
             return BG_BEYOND;
     }
     m->where = -1;

@@ -6,8 +6,8 @@
 #include "port_choosing.h"
 
 /* A search: the start of the step, with s after the impulses of the way that is tried; s before
- * them; switches that stay as they are; why there is no mode. Of stops that are met `depth`: how far
- * beyond their bounds displacements were. */
+ * them; stops that stay apart; why there is no mode. Of those that are met `depth`: how far beyond
+ * their bounds displacements were. */
 typedef struct {
     bg_model *m;
     bg_start at;

@@ -1,6 +1,6 @@
-/* Stops at the start of a step: one is met where its gap is closed, or would be within the step at its
- * present rate. The gap is closed then, at the speed that what meets it will have there; what would be
- * back within two steps stays. Times of impacts are those of steps. */
+/* Stops at the start of a step: one is met where its gap is closed, or would be within the step at
+ * its present rate. The gap is closed then, at the speed that what meets it will have there; what
+ * would be back within a step stays. Times of impacts are those of steps. */
 #include <math.h>
 #include <string.h>
 
@@ -95,7 +95,7 @@ static int closing_in_step(step_search *c, const bg_set *met, bg_throw *wanted)
         const double push = one->side * bg_slip_rate(m, &m->shot, i, &moves);
         const double square = fmax(0.0, slip * slip + 2.0 * push * c->depth[i]);
         const double speed = guards[one->guard + 1] * sqrt(square);
-        if (slip >= -BG_STEP_ROUNDING * terms || speed <= c->at.h * fmax(0.0, -push))
+        if (slip >= -BG_STEP_ROUNDING * terms || 2.0 * speed <= c->at.h * fmax(0.0, -push))
             continue;
         bg_add(&wanted->ports, i);
         wanted->speed[i] = speed;

@@ -1,4 +1,4 @@
-/* Ideal switches: ports that are held or let go, as a side, conditions or a bound of theirs tell. */
+/* Ideal switches: ports that are held or let go, as a side, conditions or a bound tell. */
 #ifndef BG_PORT_SWITCH_H
 #define BG_PORT_SWITCH_H
 

@@ -1,5 +1,5 @@
-/* The impulses that throw back what closes on stops: with p those and y the slips as gaps open, p >= 0,
- * y+ + e y- >= 0, and one of them zero, which Murty's rule solves. As codegen/modes/bounce.py. */
+/* The impulses that throw back what closes on stops: with p those and y the slips as gaps open,
+ * p >= 0, y+ + e y- >= 0, and one of them zero, which Murty's rule solves. */
 #include <math.h>
 #include <string.h>
 
