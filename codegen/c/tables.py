@@ -13,7 +13,7 @@ from codegen.program.records import FrictionPort, Group, Program
 from codegen.program.units import units
 from codegen.standalone.ranks import SlipRows
 
-WAYS = ("BG_RUBS", "BG_ONE_SIDED", "BG_TOLD")
+WAYS = ("BG_RUBS", "BG_ONE_SIDED", "BG_TOLD", "BG_STOPS")
 """What makes a port change over, by the names of C."""
 
 MOST_HOLDS = 16
@@ -87,6 +87,7 @@ def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:
         "FRICTION": ports,
         "PORTS": max(ports, 1),
         "SWITCHES": sum(port.switch is not None for port in program.friction),
+        "STOPPING": int(program.stopping),
         "GUARDS": len(program.guards.results),
         "COUPLED": coupled,
         "HOLDS": min(FEW_HOLDS if program.varying or ports > LARGE else MOST_HOLDS, 2**ports),
@@ -132,10 +133,7 @@ def program_tables(
         ("bg_friction_readings", [port.reading for port in friction]),
         ("bg_received_readings", [port.received for port in friction]),
         ("bg_moving", [-1 if port.moving is None else port.moving for port in friction]),
-        (
-            "bg_first_modes",
-            [1 if p.switch is None else p.switch.sign(p.name in on) for p in friction],
-        ),
+        ("bg_first_modes", program.before(on)),
         ("bg_beside", [int(one) for one in beside]),
         ("bg_outside_inputs", program.given),
         ("bg_differentiable", [int(j in rated) for j in range(len(program.inputs))]),
@@ -145,7 +143,7 @@ def program_tables(
     for name, numbers in tables:
         lines += integers(name, numbers)
     rows = [_switch(port) for port in friction]
-    lines += array("const bg_switch bg_switches[]", rows, "{0, 0, 0, 0, 0}")
+    lines += array("const bg_switch bg_switches[]", rows, f"{{{', '.join('0' * 8)}}}")
     return [*lines, "", *_layout(program)]
 
 

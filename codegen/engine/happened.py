@@ -8,9 +8,12 @@ import numpy as np
 
 from codegen.runs.track import Event
 
-KINDS = ("stick", "slip", "cross", "on", "off")
+KINDS = ("stick", "slip", "cross", "on", "off", "hit", "touch", "apart")
 
-EVENT = np.dtype([("time", np.float64), ("port", np.intc), ("kind", np.intc)], align=True)
+EVENT = np.dtype(
+    [("time", np.float64), ("port", np.intc), ("kind", np.intc), ("impulse", np.float64)],
+    align=True,
+)
 """``bg_event``."""
 
 
@@ -22,5 +25,5 @@ def told_events(ffi: Any, events: Any, count: int, names: Sequence[Hashable]) ->
     ports = map(names.__getitem__, told["port"].tolist())
     kinds = map(KINDS.__getitem__, told["kind"].tolist())
     # A tuple's own constructor takes half the time of the record's, and there may be many.
-    rows = zip(told["time"].tolist(), ports, kinds, strict=True)
+    rows = zip(told["time"].tolist(), ports, kinds, told["impulse"].tolist(), strict=True)
     return list(map(tuple.__new__, repeat(Event), rows))

@@ -11,7 +11,7 @@ from codegen.engine.kin import Kin
 from codegen.engine.motions import Motion, Motions
 from codegen.engine.places import FEWEST, Places
 from codegen.engine.sizes import DIGITS, Engine, view
-from codegen.model.snapshot import Mode
+from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.modes.keeping import impacts_of, keeping
 from codegen.numbers.arrays import Array
@@ -36,9 +36,28 @@ class Tables:
             self.record.supply = self._answer
         self._magnitudes(*moved[:2])
         self.record.switched = model.program.switched
+        self.record.stopping = model.program.stopping
+        self._fill_stops()
         for at, port in enumerate(model.program.friction):
             self.record.own[at] = port.input
             self.record.switches[at] = port.in_c
+
+    def _fill_stops(self) -> None:
+        """The gaps of stops where all states are zero, and their restitutions."""
+        model = self.model
+        if not model.stopping:
+            return
+        program = model.program
+        x, z, u, y = map(
+            np.zeros,
+            map(len, (program.states, program.law_states, program.inputs, program.readings)),
+        )
+        w = np.zeros(len(program.external))
+        told = model.guards(0.0, Snapshot(x, z, u, u, y, w, w, w, model.constant))
+        for i in model.stopping:
+            one = model.switching[i]
+            assert one is not None
+            self.record.room[i], self.record.back[i] = told[one.guard], told[one.guard + 1]
 
     @property
     def room(self) -> bool:
@@ -189,7 +208,7 @@ class Tables:
         found = impacts_of(model, mode)
         if found is None:
             return
-        for name, part in (("jump", found.jump), ("shock", found.shock)):
+        for name, part in (("jump", found.jump), ("shock", found.shock), ("blow", found.given)):
             table = view(self.engine, getattr(made, name), size["PORTS"], -1)
             table[: part.shape[0], : part.shape[1]] = part
 

@@ -41,6 +41,7 @@ MEANINGS = {
     Status.NEGATIVE: "a friction level falls below zero",
     Status.UNDECIDED: "no way of sticking and slipping is consistent",
     Status.STALLS: "events follow one another and time makes no progress",
+    Status.STRUCK: "stops were struck too often in one instant, and what meets them still closes",
     Status.STIFF: "time constants are too short for the span",
     Status.EVENTS: "more events than there is room for",
     Status.WORK: "the search for an event has no end",
@@ -218,6 +219,8 @@ def not_affine(program: Program) -> str | None:
     """Why a model is not affine in each friction mode; None if it is."""
     if not program.guards_affine:
         return "a condition of a switch is not affine"
+    if not program.restitution_given:
+        return "the restitution of a stop is not told by parameters alone"
     if program.affine:
         return None
     if program.varying:

@@ -37,11 +37,13 @@ def watched_by(model: ClosedModel, mode: Mode, port: int) -> tuple[int, int, int
 class Impacts:
     """What an affine mode begins with, per unit of the slips that its switches stop.
 
-    ``jump``: what s gains; ``shock``: how far the impulse goes with each switch's way.
+    ``jump``: what s gains; ``shock``: how far the impulse goes with each switch's way; ``given``: what each
+    port gives.
     """
 
     jump: Array
     shock: Array
+    given: Array
 
 
 def impacts_of(model: ClosedModel, mode: Mode) -> Impacts | None:
@@ -51,7 +53,8 @@ def impacts_of(model: ClosedModel, mode: Mode) -> Impacts | None:
     hold = model.hold(mode, model.constant)
     found = struck(hold, model.constant, np.eye(len(hold.mix)))
     jump = found.gained(model.size, model.law_rates)
-    return Impacts(jump.T, _shocks(model, mode, found.given, found.received).T)
+    ways = _shocks(model, mode, found.given, found.received)
+    return Impacts(jump.T, ways.T, found.given[model.friction_inputs].T)
 
 
 def _shocks(model: ClosedModel, mode: Mode, given: Array, received: Array) -> Array:

@@ -77,13 +77,19 @@ class FrictionPort:
         return self.reading if self.plain is None else self.plain
 
     @property
-    def in_c(self) -> tuple[int, int, int, int, int]:
-        """The fields of its ``bg_switch``: kind, on while held?, side, first condition, way of slipping."""
+    def in_c(self) -> tuple[int, int, int, int, int, int, int, int]:
+        """The fields of its ``bg_switch``: kind, on while held?, side, first condition, way of slipping.
+
+        Then those of a stop: the place of its displacement, how its gap opens with that, whether it is
+        declared as one.
+        """
         one = self.switch
         if one is None:
-            return 0, 0, 0, 0, 0
-        kind = 1 if one.side else 2
-        return kind, int(one.on), one.side, max(one.guard, 0), self.way
+            return 0, 0, 0, 0, 0, 0, 0, 0
+        kind = 3 if one.stops else 1 if one.side else 2
+        place = max(one.place, 0)
+        guard = max(one.guard, 0)
+        return kind, int(one.on), one.side, guard, self.way, place, one.opening, int(one.bound)
 
     @property
     def words(self) -> tuple[str, str, str]:
@@ -207,9 +213,15 @@ class Program:
         return any(port.switch is not None for port in self.friction)
 
     @property
-    def stopped(self) -> bool:
+    def stopping(self) -> bool:
         """Whether any port is a stop."""
         return any(port.switch is not None and port.switch.stops for port in self.friction)
+
+    @property
+    def restitution_given(self) -> bool:
+        """Whether parameters alone tell the restitutions of stops."""
+        told = [one.switch.restitution for one in self.equations.switches if one.gap is not None]
+        return all(one.free_symbols <= {*self.parameters} for one in told)
 
     def before(self, on: Container[Hashable]) -> tuple[int, ...]:
         """The mode of each port before a run: these switches on, the others off, friction let go.

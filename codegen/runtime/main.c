@@ -100,10 +100,15 @@ static void print_head(void)
     printf("\n");
 }
 
-static int failed(int status)
+/* Whether a call failed, which is told; of a stop that begins beyond its bound, which one. */
+static int failed(const bg_model *m, int status)
 {
+    if (status == BG_BEYOND)
+        fprintf(stderr, "%s: stop %s: ", bg_model_name, bg_friction_names[m->where]);
+    else if (status != BG_OK)
+        fprintf(stderr, "%s: ", bg_model_name);
     if (status != BG_OK)
-        fprintf(stderr, "%s: %s\n", bg_model_name, bg_model_message(status));
+        fprintf(stderr, "%s\n", bg_model_message(status));
     return status != BG_OK;
 }
 
@@ -124,10 +129,10 @@ static int run_stepped(bg_model *m, const command *asked, const bg_signals *sign
         const double t = (double)(k / parts) * asked->sample + (double)(k % parts) * h;
         for (int i = 2; i >= 0; i--)
             inputs_at(signals, t + 0.5 * i * h, w + i * BG_EXTERNAL, dw);
-        if (failed(bg_model_settle(m, t, h, s, w)))
+        if (failed(m, bg_model_settle(m, t, h, s, w)))
             return 1;
         if (k % parts == 0) {
-            if (failed(bg_model_evaluate(m, t, s, w, dw, m->mode, &shot)))
+            if (failed(m, bg_model_evaluate(m, t, s, w, dw, m->mode, &shot)))
                 return 1;
             print_row(t, m->mode, &shot);
         }
@@ -135,7 +140,7 @@ static int run_stepped(bg_model *m, const command *asked, const bg_signals *sign
         if (status == BG_UNSTABLE)
             fprintf(stderr, "%s: at t = %.9g step=%.6g; the longest stable one is %.4g\n",
                     bg_model_name, t, h, m->fastest.step);
-        if (failed(status))
+        if (failed(m, status))
             return 1;
     }
     return 0;
@@ -163,7 +168,8 @@ static void tell_completed(const command *asked, const double *gained)
 /* Rows by adaptive steps. The samples are the only memory that is asked for. */
 static int run_located(bg_model *m, const command *asked, const bg_signals *signals)
 {
-    static const char *const kinds[] = {"stick", "slip", "cross", "on", "off"};
+    static const char *const kinds[] = {"stick", "slip", "cross", "on", "off", "hit",
+                                        "touch", "apart"};
     static bg_located run;
     static bg_event events[EVENTS];
     static double gained[BG_ROOM(STATES)];
@@ -179,10 +185,10 @@ static int run_located(bg_model *m, const command *asked, const bg_signals *sign
     const int status = bg_model_run(&run, m, signals, &request);
     tell_completed(asked, gained);
     for (int k = 0; k < request.count; k++)
-        fprintf(stderr, "%.17g,%s,%s\n", events[k].time, bg_friction_names[events[k].port],
-                kinds[events[k].kind]);
+        fprintf(stderr, "%.17g,%s,%s,%.17g\n", events[k].time, bg_friction_names[events[k].port],
+                kinds[events[k].kind], events[k].impulse);
     free(times);
-    return failed(status);
+    return failed(m, status);
 }
 
 /* The command, read; 0 if it cannot be. */
@@ -219,16 +225,17 @@ int main(int count, char **words)
         SCENARIO_SEGMENTS, scenario_breaks, scenario_begins, asked.terms,
         (const double(*)[2])asked.coefficients, scenario_fastest,
     };
-    if (failed(bg_model_init(&model, asked.parameters)))
+    if (failed(&model, bg_model_init(&model, asked.parameters)))
         return 1;
     for (int i = 0; i < BG_FRICTION; i++)
         model.band[i] = asked.band;
     inputs_at(&signals, 0.0, w, dw);
-    if (failed(bg_model_vector(&model, 0.0, asked.states, w, s)))
+    if (failed(&model, bg_model_vector(&model, 0.0, asked.states, w, s)))
         return 1;
     for (int i = 0; i < STATES; i++)
         gained[i] = -s[i];
-    if (!asked.located && failed(bg_model_complete(&model, 0.0, w, asked.named, s)))
+    if (!asked.located
+        && failed(&model, bg_model_complete(&model, 0.0, w, asked.named, s)))
         return 1;
     for (int i = 0; i < STATES; i++)
         gained[i] += s[i];

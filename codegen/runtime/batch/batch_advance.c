@@ -14,6 +14,7 @@ static int record_signals(void *self, ex_context *c, ex_place *p)
 {
     recording *const to = self;
     batch_sample(c->caller, &to->table, p->z, p->at);
+    ex_see_places(c, p->z);
     memcpy(to->row, p->z, sizeof p->z);
     ex_fill(&c->stretch, to->row);
     p->base = p->at++;

@@ -45,7 +45,8 @@ static inline int batch_column_of(int j)
 }
 
 /* batch_mode_switches.c: what keeps switches, and where friction slips forwards what they do as they
- * come to hold. */
+ * come to hold; gaps and restitutions of stops. */
+void batch_fill_stops(ex_model *record, bg_model *m);
 void batch_fill_switches(ex_mode *made, const double *map, bg_model *m, const int *mode);
 
 /* batch_fastest.c: the largest magnitude of an eigenvalue, nearly, and one over the scales that balance

@@ -32,6 +32,21 @@ static void forget_instant(bg_model *m)
     memcpy(m->now.p, p, sizeof p);
 }
 
+void batch_fill_stops(ex_model *record, bg_model *m)
+{
+    double guards[BG_ROOM(BG_GUARDS)] = {0};
+    if (!BG_STOPPING)
+        return;
+    forget_instant(m);
+    bg_guards(&m->now, guards);
+    record->stopping = 1;
+    for (int k = 0; k < EX_K; k++)
+        if (bg_switches[k].kind == BG_STOPS) {
+            record->room[k] = guards[bg_switches[k].guard];
+            record->back[k] = guards[bg_switches[k].guard + 1];
+        }
+}
+
 void batch_fill_switches(ex_mode *made, const double *map, bg_model *m, const int *mode)
 {
     double constant[BG_ROOM(BG_GUARDS)] = {0}, guards[BG_ROOM(BG_GUARDS)] = {0};
@@ -58,5 +73,6 @@ void batch_fill_switches(ex_mode *made, const double *map, bg_model *m, const in
     for (int k = 0; k < held->kept; k++) {
         bg_pass_on(m, impulses + k * K, made->jump[k], received);
         bg_shocks(m, mode, impulses + k * K, received, made->shock[k]);
+        memcpy(made->blow[k], impulses + k * K, sizeof(double) * K);
     }
 }

@@ -61,9 +61,9 @@ typedef struct {
     double take_away[EX_PORTS][EX_N]; /* .. and what to add to s per unit of each */
     double mix[EX_PORTS][EX_PORTS]; /* what those slips are of the ports' own */
     double stay[EX_L][EX_PORTS];   /* what keeps switches */
-    /* where friction slips forwards, as switches come to hold: what s gains per unit of each slip, and
-     * how far the impulse goes with each switch's way */
-    double jump[EX_PORTS][EX_N], shock[EX_PORTS][EX_PORTS];
+    /* where friction slips forwards, as switches come to hold: what s gains per unit of each slip,
+     * how far the impulse goes with each switch's way, and what each port gives */
+    double jump[EX_PORTS][EX_N], shock[EX_PORTS][EX_PORTS], blow[EX_PORTS][EX_PORTS];
     int rates;                     /* how many of `spectrum` are known; below 0: none was asked for */
     double spectrum[EX_N][2];      /* rates of s by itself: magnitudes, and how fast they decay */
     int sharp;                     /* without ports: whether `rate` and `rest` are known .. */
@@ -84,7 +84,8 @@ typedef struct {
     double P[EX_X][EX_X], Q[EX_U][EX_X], inertia[EX_PORTS];
     int coupled[EX_PORTS];          /* whether the slip depends at once on friction */
     int own[EX_PORTS];              /* the input that each port gives */
-    int switched;                   /* whether any port is a switch */
+    int switched, stopping;         /* whether any port is a switch; a stop */
+    double room[EX_PORTS], back[EX_PORTS]; /* of stops: the gap where s is zero; restitution */
     bg_switch switches[EX_PORTS];
 } ex_model;
 

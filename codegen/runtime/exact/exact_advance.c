@@ -41,6 +41,7 @@ static int record(void *self, ex_context *c, ex_place *p)
     (void)self;
     double *row = c->task->rows[p->at];
     memcpy(row, p->z, sizeof p->z);
+    ex_see_places(c, row);
     ex_fill(&c->stretch, row);
     c->task->modes[p->at] = c->stretch.entry->place;
     p->base = p->at++;
@@ -140,8 +141,10 @@ static int leap_on(void *self, ex_context *c, ex_place *p, int count, double h)
     long long done;
     const int status = steps(c, p, count, &done), made = (int)(done / c->stretch.entry->parts);
     const int until = p->at + made;
-    for (; p->at < until && p->at < p->last; p->at++)
+    for (; p->at < until && p->at < p->last; p->at++) {
         c->task->modes[p->at] = c->stretch.entry->place;
+        ex_see_places(c, c->task->rows[p->at]);
+    }
     if (status || !bg_is_empty(&p->ports))
         return status;
     p->base = p->at - 1;

@@ -117,7 +117,7 @@ static void tell_moves(ex_entry *e)
 
 void ex_assemble(ex_context *c, ex_entry *e)
 {
-    double slots[EX_G][EX_SHOT], keeping[EX_G][EX_PORTS];
+    double slots[EX_G][EX_SHOT], keeping[EX_G][EX_PORTS], stay[EX_PORTS];
     memset(e->M, 0, sizeof e->M);
     memset(slots, 0, sizeof slots);
     memset(keeping, 0, sizeof keeping);
@@ -129,7 +129,9 @@ void ex_assemble(ex_context *c, ex_entry *e)
         const double *shot = j < EX_N ? e->mode->shot[j] : slots[j - EX_N];
         for (int i = 0; i < EX_N; i++)
             e->M[j][i] = shot[EX_AT_RATE + i];
-        ex_triggers(c, e->mode, shot, j < EX_N ? e->mode->stay[j] : keeping[j - EX_N], e->trigger[j]);
+        memcpy(stay, j < EX_N ? e->mode->stay[j] : keeping[j - EX_N], sizeof stay);
+        ex_watch_gaps(c, j, stay);
+        ex_triggers(c, e->mode, shot, stay, e->trigger[j]);
     }
     memset(e->cap, 0, sizeof e->cap);
     for (int i = 0; i < EX_K; i++)

@@ -18,6 +18,8 @@ static int in_bounds(const ex_context *c, const ex_choice *k, const double *v)
         in &= c->peaks.u[i] <= k->most_u[i];
     for (int j = 0; j < EX_N; j++)
         in &= fabs(v[j]) <= k->most[j];
+    for (int i = 0; i < EX_K && c->model->stopping; i++)
+        in &= c->farthest[i] <= k->farthest[i];
     if (k->steady == c->run.segment)
         return in;
     ex_input_sizes(c->inputs, c->run.segment, c->run.at.t, w);
@@ -103,6 +105,12 @@ static void allow(ex_glance *g)
         to->most[j] = 2.0 * fabs(g->v[j]);
     for (int j = 0; j < EX_N && j < EX_X; j++)
         to->most[j] = bg_greater(to->most[j], to->most_x[j]);
+    for (int i = 0; i < EX_K && c->model->stopping; i++) {
+        double *const own = to->most + c->model->switches[i].place;
+        to->farthest[i] = 2.0 * c->farthest[i];
+        if (c->model->switches[i].kind == BG_STOPS)
+            *own = bg_greater(*own, to->farthest[i]);
+    }
     for (int j = 0; j < EX_W; j++) {
         to->low[j] = 0.5 * w[j];
         later[j] = bg_greater(to->steady < 0 ? 0.0 : later[j], w[j]);
@@ -124,9 +132,32 @@ static int look_loose(ex_glance *g)
     ex_limit(g, loose, g->to->most, &limits);
     for (int i = 0; i < EX_K; i++) {
         g->near[i] = limits.ports[i].near_slip;
+        g->rate[i] = limits.shot[EX_AT_RATE + g->c->model->switches[i].place];
         g->low[i] = 0.0;
         for (int j = 0; j < EX_X; j++)
             g->low[i] += BG_ROUNDING * g->c->model->F[j][i] * g->c->peaks.x[j];
+    }
+    return 1;
+}
+
+/* Whether all stops were apart and stay so, for sure; these are not asked. */
+static int bar_stops(ex_glance *g, const int *before)
+{
+    const ex_model *const m = g->c->model;
+    for (int i = 0; i < EX_K && m->stopping; i++) {
+        const bg_switch *const one = m->switches + i;
+        double row[EX_L] = {0};
+        if (one->kind != BG_STOPS)
+            continue;
+        row[one->place] = one->opening;
+        row[EX_L - 1] = m->room[i];
+        const double most = g->to->most[one->place];
+        const double near = bg_gap_rounding(one, m->room[i] + one->opening * most, most, g->rate[i],
+                                            most, nextafter(g->to->until, INFINITY) - g->to->until);
+        if (!bg_is_apart(one, before[i]) || g->c->run.at.touched[i]
+            || !ex_ask(g, row, 1.0, near * (1.0 + BG_BOUND_SLACK)))
+            return 0;
+        bg_add(&g->barred, i);
     }
     return 1;
 }
@@ -146,14 +177,18 @@ static void keep(ex_context *c, const int *before)
     to->time = c->run.at.time;
     ex_vector(c, c->run.at.t, c->s, g.v);
     allow(&g);
-    if (!is_as_late(c, to) || !look_loose(&g))
+    if (!is_as_late(c, to) || !look_loose(&g) || !bar_stops(&g, before))
         return;
     for (int i = 0; i < EX_K; i++) {
+        if (bg_has(&g.barred, i))
+            continue;
         bg_add(&switches, i);
         if (c->model->switches[i].kind == BG_TOLD)
             bg_add(&guarded, i);
     }
-    const bg_set first = bg_held_in(EX_K, before);
+    bg_set first = bg_held_in(EX_K, before);
+    for (int k = 0; k < BG_SET_WORDS; k++)
+        first.bits[k] &= switches.bits[k];
     if (bg_try_ways(EX_K, &switches, &guarded, first, ex_glance_at, &g, &found) || !found
         || !ex_is_alike(g.mode, c->run.mode))
         return;

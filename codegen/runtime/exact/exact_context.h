@@ -103,6 +103,7 @@ struct ex_context {
     int known, known_segment;           /* whether `given` holds, for `known_time` */
     double known_time, slots[EX_G], given[2 * EX_W];
     ex_peaks peaks;
+    double farthest[EX_PORTS];          /* that the displacements of stops have been */
     ex_stretch stretch;
     double work[6][EX_Z][EX_Z];
     double terms[BG_DEGREE + 1][EX_Z], powers[EX_TRIGGERS][BG_DEGREE + 1];

@@ -114,6 +114,8 @@ static int contradicted(ex_glance *g, const ex_mode *mode, double (*stay)[EX_POR
     ex_limit(g, mode, most, &limits);
     for (int i = 0; i < EX_K && sure; i++) {
         keeper *const k = tied + count;
+        if (bg_has(&g->barred, i))
+            continue;
         const double near = limits.ports[i].near_stay;
         const int known = keeper_of(g, mode, stay, i, &limits, most, k);
         const double value = ex_row(k->row, g->v), way = value > 0.0 ? 1.0 : -1.0;
@@ -166,7 +168,7 @@ int ex_glance_at(void *self, const bg_set *held, int *holds, bg_set *broken)
     double stay[EX_L][EX_PORTS], most[EX_L];
     int tried[BG_MOST_PORTS] = {0}, shocks[EX_PORTS] = {0}, struck = 0;
     for (int i = 0; i < EX_K; i++)
-        tried[i] = !bg_has(held, i);
+        tried[i] = bg_has(&g->barred, i) ? !g->c->model->switches[i].on : !bg_has(held, i);
     const int status = ex_find(g->c, tried, &mode);
     if (status == BG_NOT_AFFINE && !bg_is_empty(held))
         return BG_OK;

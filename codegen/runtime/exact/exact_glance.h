@@ -5,12 +5,13 @@
 #include "exact_internal.h"
 
 /* `v`: what maps act on at the instant; `most`: its bounds while the choice is kept; `loose`: all let
- * go, of which `near` is no less than what slips count as zero below, nor `low` more. `mode`: what is
- * found. */
+ * go, of which `near` is no less than what slips count as zero below, nor `low` more; `rate`: of the
+ * displacements of stops. `barred`: stops that are apart. `mode`: what is found. */
 typedef struct {
     ex_context *c;
     ex_choice *to;
-    double v[EX_L], near[EX_PORTS], low[EX_PORTS];
+    double v[EX_L], near[EX_PORTS], low[EX_PORTS], rate[EX_PORTS];
+    bg_set barred;
     int mode[EX_PORTS];
 } ex_glance;
 

@@ -39,8 +39,18 @@ void ex_round_stay(const ex_context *c, const ex_mode *mode, const double *v, co
                    double t, bg_port *ports);
 void ex_limit_stay(const ex_context *c, const ex_mode *mode, const double *most, const double *shot,
                    double t, bg_port *ports);
-int ex_strike(void *context, const bg_instant *at, const int *mode, double *s, int *shocks,
-              int *struck);
+int ex_strike(void *context, const bg_instant *at, const int *mode, const double *speeds,
+              double *s, bg_blow *blow);
+
+/* exact_stop.c: whether a port is a stop that is apart in the context's mode; gaps and restitutions at
+ * s, and below what gaps count as closed, where s changes at these rates; where displacements have
+ * been. What is watched of switches, in a column of a stretch's state; -1: in its
+ * constant part. */
+int ex_is_apart(const ex_context *c, int port);
+void ex_gaps(const ex_context *c, const double *s, bg_port *ports);
+void ex_round_gaps(const ex_context *c, const double *s, const double *rate, double t, bg_port *ports);
+void ex_see_places(ex_context *c, const double *s);
+void ex_watch_gaps(const ex_context *c, int column, double *stay);
 
 /* The mode that was looked for last is at hand. */
 static inline int ex_find(ex_context *c, const int *mode, const ex_mode **found)

@@ -91,6 +91,7 @@ static void see(void *context, const int *slipping)
         c->peaks.x[i] = bg_greater(c->peaks.x[i], fabs(c->shot[EX_AT_X + i]));
     for (int i = 0; i < EX_U; i++)
         c->peaks.u[i] = bg_greater(c->peaks.u[i], terms[i]);
+    ex_see_places(c, c->s);
 }
 
 static int fastest(void *context, double *fastest)
@@ -155,9 +156,9 @@ static void start_anew(ex_context *c)
 int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task,
               ex_advancing *how, void *caller)
 {
-    const bg_sight sight = {c, EX_N, EX_K, model->switched ? model->switches : NULL, model->coupled,
-                            c->shot + EX_AT_RATE, c->point, c->struck, look, tell, ex_strike,
-                            couple};
+    const bg_sight sight = {c, EX_N, EX_K, model->switched ? model->switches : NULL,
+                            model->stopping, model->coupled, c->shot + EX_AT_RATE, c->point,
+                            c->struck, look, tell, ex_strike, couple};
     const bg_engine engine = {sight, c, see, fastest, ex_choose, rest, advance};
     c->model = model;
     c->inputs = inputs;
@@ -168,13 +169,14 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
     c->known = c->next = 0;
     c->run.segments = inputs->segments;
     c->run.breaks = inputs->breaks;
-    c->run.events = task->events;
-    c->run.capacity = task->capacity;
+    c->run.log.events = task->events;
+    c->run.log.capacity = task->capacity;
     memcpy(c->s, task->start, sizeof c->s);
     memset(&c->peaks, 0, sizeof c->peaks);
+    memset(c->farthest, 0, sizeof c->farthest);
     bg_set_out(&c->run, task->times[0], task->times[task->samples - 1], c->s, task->first);
     int status = bg_run(&engine, &c->run);
-    task->count = c->run.count;
+    task->count = c->run.log.count;
     if (status != BG_NEGATIVE)
         task->time = c->run.at.t;
     if (status)

@@ -159,10 +159,12 @@ int ex_series(ex_context *c, double t, double length, double *z, double *end, bg
             return status;
         if (!bg_is_empty(ports)) {
             state(c, tau, z);
+            ex_see_places(c, z);
             *end = from + tau * step;
             return BG_OK;
         }
         state(c, 1.0, z);
+        ex_see_places(c, z);
     }
     return BG_OK;
 }

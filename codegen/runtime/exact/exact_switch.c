@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 int ex_switches(const ex_context *c, int port)
 {
@@ -18,6 +19,7 @@ void ex_keep(const ex_context *c, const ex_mode *mode, const double *v, bg_port 
         for (int j = 0; j < EX_L; j++)
             ports[i].stay += mode->stay[j][i] * v[j];
     }
+    ex_gaps(c, v, ports);
 }
 
 /* How large what maps act on has been; at rest a state is rounding itself, of what moves it within a
@@ -67,6 +69,7 @@ void ex_round_stay(const ex_context *c, const ex_mode *mode, const double *v, co
             slope += mode->stay[EX_N + j][i] * v[EX_N + EX_W + j];
         ports[i].near_stay = near_of(mode, i, terms, slope, t);
     }
+    ex_round_gaps(c, v, shot + EX_AT_RATE, t, ports);
 }
 
 void ex_limit_stay(const ex_context *c, const ex_mode *mode, const double *most, const double *shot,
@@ -122,30 +125,44 @@ static int would_jump(ex_context *c, const bg_instant *at, const int *mode, cons
     return any;
 }
 
-int ex_strike(void *context, const bg_instant *at, const int *mode, double *s, int *shocks,
-              int *struck)
+/* The slips that are to be stopped: what ports have beyond the speeds that they are to have. */
+static void slips_beyond(const ex_mode *holding, const double *v, const double *speeds, double *slips)
+{
+    for (int k = 0; k < holding->held; k++) {
+        slips[k] = 0.0;
+        for (int j = 0; j < EX_L; j++)
+            slips[k] += holding->left[j][k] * v[j];
+        for (int i = 0; i < EX_K && speeds; i++)
+            slips[k] -= holding->mix[k][i] * speeds[i];
+    }
+}
+
+int ex_strike(void *context, const bg_instant *at, const int *mode, const double *speeds,
+              double *s, bg_blow *blow)
 {
     ex_context *const c = context;
     const ex_mode *holding;
     double v[EX_L], slips[EX_PORTS] = {0}, real[EX_PORTS] = {0};
-    *struck = 0;
+    blow->struck = 0;
     int status = find_way(c, mode, 0, &holding);
     if (status)
         return status;
     ex_vector(c, at->t, at->s, v);
-    for (int k = 0; k < holding->held; k++)
-        for (int j = 0; j < EX_L; j++)
-            slips[k] += holding->left[j][k] * v[j];
-    if (!would_jump(c, at, mode, holding, slips, real, &status))
+    slips_beyond(holding, v, speeds, slips);
+    if (holding->held == 0 || (!speeds && !would_jump(c, at, mode, holding, slips, real, &status)))
         return status;
-    *struck = 1;
+    if (speeds)
+        memcpy(real, slips, sizeof real);
+    blow->struck = 1;
     for (int i = 0; i < EX_K; i++) {
         double way = 0.0, terms = 0.0;
+        blow->given[i] = 0.0;
         for (int k = 0; k < holding->held; k++) {
+            blow->given[i] += holding->blow[k][i] * slips[k];
             way += holding->shock[k][i] * real[k];
             terms += fabs(holding->shock[k][i] * real[k]);
         }
-        shocks[i] = fabs(way) <= BG_ROUNDING * terms ? 0 : way > 0.0 ? 1 : -1;
+        blow->shocks[i] = fabs(way) <= BG_ROUNDING * terms ? 0 : way > 0.0 ? 1 : -1;
     }
     for (int k = 0; k < holding->held; k++)
         for (int i = 0; i < EX_N; i++)

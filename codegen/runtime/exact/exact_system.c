@@ -70,6 +70,7 @@ static void constants(const ex_context *c, ex_entry *e)
         e->b[i] = sum[EX_AT_RATE + i];
     for (int i = EX_N; i < EX_Z; i++)
         e->b[i] = 0.0;
+    ex_watch_gaps(c, -1, stay);
     ex_triggers(c, mode, sum, stay, e->level);
     e->segment = c->run.segment;
     e->run = c->runs;
@@ -136,7 +137,8 @@ int ex_begin(ex_context *c, double stop)
         stretch->limit[i] = c->run.mode[port] || rests ? ports[port].near_slip
                                                     : ports[port].near_effort;
         if (ex_switches(c, port) && !rests)
-            stretch->limit[i] = ports[port].near_stay;
+            stretch->limit[i] = ex_is_apart(c, port) ? ports[port].near_gap
+                                                     : ports[port].near_stay;
         stretch->level[i] += rests ? BG_LEFT * ports[port].near_slip : 0.0;
         /* caps need not be */
         stretch->armed[i] = i % 2 && ex_single(c, stretch->entry->mode, port);

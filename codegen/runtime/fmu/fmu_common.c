@@ -1,5 +1,6 @@
 /* An instance: its variables by value reference, and its values brought up to date when asked for. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "fmu_common.h"
@@ -69,6 +70,16 @@ fmu_error fmu_apply(fmu_instance *f)
     return message(status);
 }
 
+/* The same of a start; of a stop that begins beyond its bound, which one. */
+static fmu_error message_of_start(fmu_instance *f, int status)
+{
+    if (status != BG_BEYOND)
+        return message(status);
+    snprintf(f->text, sizeof f->text, "stop %.120s: %s", bg_friction_names[f->model.where],
+             bg_model_message(status));
+    return f->text;
+}
+
 /* The vector and the mode at the start values, which those that were not set follow. */
 static fmu_error start(fmu_instance *f)
 {
@@ -80,7 +91,7 @@ static fmu_error start(fmu_instance *f)
     if (status == BG_OK)
         status = bg_complete(&f->model, f->at.time, f->w, f->at.named, mode, f->at.s);
     if (status != BG_OK || f->frozen)
-        return message(status);
+        return message_of_start(f, status);
     for (int i = 0; i < FMU_STATES; i++)
         f->completed[i] = f->at.s[i] - before[i];
     memcpy(f->at.mode, mode, sizeof(int) * BG_FRICTION);

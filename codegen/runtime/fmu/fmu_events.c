@@ -32,13 +32,14 @@ static void keep_switches(fmu_instance *f, const bg_snapshot *now, double *value
     bg_view_keep(&f->located.view, f->at.mode, ports);
     for (int i = 0; i < K; i++)
         if (bg_switches[i].kind != BG_RUBS) {
-            values[2 * i] = ports[i].stay + f->at.margin[i];
+            const int apart = bg_is_apart(bg_switches + i, f->at.mode[i]);
+            values[2 * i] = (apart ? ports[i].gap : ports[i].stay) + f->at.margin[i];
             values[2 * i + 1] = 1.0;
         }
 }
 
 /* Two for each friction port: its slip in its direction; margins to breakaway where it sticks. Two for
- * each switch, too: what keeps it, and none. Then one for each expression at whose zero a law switches.
+ * each switch, too: what keeps it, of a stop that is apart its gap, and none. Then one for each expression at whose zero a law switches.
  * A little below zero still counts as holding. */
 void fmu_indicators_of(fmu_instance *f, const bg_snapshot *now, double *values)
 {

@@ -36,14 +36,16 @@ void fmu_note_stays(fmu_instance *f)
     bg_view_ports(&f->located.view, f->at.mode, FMU_SHORTEST, ports);
     for (int i = 0; i < K; i++)
         if (bg_switches[i].kind != BG_RUBS)
-            f->at.margin[i] = BG_HYSTERESIS * ports[i].near_stay;
+            f->at.margin[i] = BG_HYSTERESIS
+                * (bg_is_apart(bg_switches + i, f->at.mode[i]) ? ports[i].near_gap
+                                                               : ports[i].near_stay);
 }
 
 /* The mode just after the instance's time; ports at rest, or that crossed it, stick if they can. */
 fmu_error fmu_decide(fmu_instance *f)
 {
     const bg_sight sight = bg_view_sight(&f->located.view);
-    bg_instant at = {f->at.time, FMU_SHORTEST, INFINITY, f->at.s, {0}};
+    bg_instant at = {f->at.time, FMU_SHORTEST, INFINITY, f->at.s, {0}, NULL};
     int slipping[BG_MOST_PORTS] = {0};
     if (K == 0)
         return NULL;

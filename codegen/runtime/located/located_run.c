@@ -162,8 +162,8 @@ void bg_located_set_out(bg_located *c, bg_model *m, const bg_signals *signals, b
     c->known = 0;
     c->run.segments = signals->segments;
     c->run.breaks = signals->breaks;
-    c->run.events = asked->events;
-    c->run.capacity = asked->capacity;
+    c->run.log.events = asked->events;
+    c->run.log.capacity = asked->capacity;
     bg_set_out(&c->run, t, end, c->s, first);
     c->view.model = m;
     c->view.peaks = &c->peaks;
@@ -210,7 +210,7 @@ int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_reque
         status = bg_located_go(c);
     if (status == BG_OK)
         status = hand_over(c, c->s); /* the last sample shows the instant after all events */
-    asked->count = c->run.count;
+    asked->count = c->run.log.count;
     asked->time = c->run.at.t;
     return status;
 }

@@ -148,6 +148,8 @@ const char *bg_model_message(int status)
         "more events than there is room for",
         "the step is too long: beyond the stability of its method at the model's fastest rates",
         "a step must be a positive finite number",
+        "a stop begins beyond its bound; start its displacement within",
+        "stops were struck too often in one instant, and what meets them still closes",
     };
     const int count = (int)(sizeof messages / sizeof *messages);
     return status >= 0 && status < count ? messages[status] : "unknown status";

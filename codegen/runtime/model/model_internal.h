@@ -129,11 +129,13 @@ void bg_pass_on(const bg_model *m, const double *given, double *s, double *recei
 void bg_shocks(bg_model *m, const int *mode, const double *given, const double *received,
                double *ways);
 
-/* Whether slips are more than those `near`, one for each port that is held; and what stops them at
- * once, by the impulses per unit of each; `ways` grow by how far these go. */
+/* Whether slips are more than those `near`, one for each port that is held; what they are beyond
+ * those that ports are to have; and what stops them at once, by the impulses per unit of each:
+ * `given` and `ways` grow by these and by how far they go. */
 int bg_have_slips(const bg_hold *held, const double *slips, const double *near);
+void bg_less_speeds(const bg_hold *held, const double *speeds, double *slips);
 void bg_stop(bg_model *m, const int *mode, const bg_hold *held, const double *impulses,
-             const double *slips, double *s, double *ways);
+             const double *slips, double *s, double *given, double *ways);
 
 /* port_start.c: all switches off. From how switches are told to be before a run, to how conditions
  * let them; states that are not `named` follow what they hold. */

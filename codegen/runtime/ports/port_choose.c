@@ -146,11 +146,12 @@ static int find_open(bg_choice *choice, const bg_port *now, const int *mode, int
         const int loose = touched || mode[i] == 0, passed = touched == BG_PASSED;
         if (c->switches && c->switches[i].kind != BG_RUBS) {
             slipping[i] = mode[i];
-            bg_add(&choice->switches, i);
+            if (!bg_has(&choice->barred, i))
+                bg_add(&choice->switches, i);
             continue;
         }
         slipping[i] = now[i].slip > 0 ? 1 : -1;
-        if (c->coupled[i] || slip <= near || (passed && !choice->struck)
+        if (c->coupled[i] || slip <= near || (passed && !choice->blow.struck)
             || (loose && slip <= BG_WIDE * near)) {
             ports[count++] = i;
             bg_add(&choice->open, i);

@@ -4,6 +4,7 @@
 #define BG_PORT_CHOOSE_H
 
 #include "config.h"
+#include "port_log.h"
 #include "port_set.h"
 #include "port_switch.h"
 #include "run_status.h"
@@ -14,9 +15,11 @@
 enum { BG_UNTOUCHED, BG_TOUCHED, BG_PASSED };
 
 /* One port at one instant in one mode. `push`: how fast the slip changes; `stay`: what keeps a
- * switch from changing over; `near_..`: below these slip, margin, push and stay count as zero. */
+ * switch from changing over; `gap`, `back`: of a stop, its restitution the latter; `near_..`: below
+ * these slip, margin, push, stay and gap count as zero. */
 typedef struct {
-    double slip, effort, cap, push, stay, near_slip, near_effort, near_push, near_stay;
+    double slip, effort, cap, push, stay, gap, back;
+    double near_slip, near_effort, near_push, near_stay, near_gap;
 } bg_port;
 
 /* Combinations of the slips of `width` ports, those of `ports` (NULL: the first), by rows. `count`
@@ -30,34 +33,44 @@ typedef struct {
     const double *rows, *mix;
 } bg_ruling;
 
-/* An instant: the shortest time constant there, and the inputs' next breakpoint. */
+/* An instant: the shortest time constant there, and the inputs' next breakpoint; `log`: where to
+ * tell of impacts, or NULL. */
 typedef struct {
     double t, time, following;
     double *s;
     int touched[BG_MOST_PORTS];
+    bg_log *log;
 } bg_instant;
+
+/* An impact: whether there is one; what each port gives; 1 where that goes with its switch's mode,
+ * -1 where against it, else 0. */
+typedef struct {
+    int struck, shocks[BG_MOST_PORTS];
+    double given[BG_MOST_PORTS];
+} bg_blow;
 
 /* What can be looked at; `coupled`: whether a port's slip depends at once on friction. `look`
  * evaluates everything at t, s in a mode and leaves the rate of s in `rate`; its status tells why
  * the mode is none, or ends the search. `tell` tells of the latest look: of every port what there
  * is and, unless `at` is NULL, what counts as zero there; and unless that is NULL of the ruling,
  * which comes with no rows. `strike` puts s, which is that of `at` before, to what it is once the
- * switches of a mode hold: 1 in `shocks` where the impulse goes with the switch's mode, -1 where
- * against it, else 0; *struck: whether there is one. `couple` tells of each port that is held in a
+ * switches of a mode hold, by an impact if more than rounding has to stop; or, unless `speeds` is
+ * NULL, once those have these slips. `couple` tells of each port that is held in a
  * mode which ports it touches: those that its effort moves at once or accelerates, and those with
  * which it has part in what none of them rules alone; its status tells that this is not known. */
 typedef struct {
     void *self;
     int size, ports;
     const bg_switch *switches; /* NULL where no port is one */
+    int stopping;              /* whether any is a stop */
     const int *coupled;
     const double *rate;
     double *point, *struck; /* room for s, twice */
     int (*look)(void *self, double t, const double *s, const int *mode);
     void (*tell)(void *self, const int *mode, const bg_instant *at, bg_port *ports,
                  bg_ruling *ruling);
-    int (*strike)(void *self, const bg_instant *at, const int *mode, double *s, int *shocks,
-                  int *struck);
+    int (*strike)(void *self, const bg_instant *at, const int *mode, const double *speeds,
+                  double *s, bg_blow *blow);
     int (*couple)(void *self, const int *mode, bg_set *touched);
 } bg_sight;
 

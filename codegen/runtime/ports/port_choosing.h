@@ -4,16 +4,17 @@
 
 #include "port_choose.h"
 
-/* `s`: that of the instant, or what it is after an impact, if it is `struck`; `shocks`: the signs
- * of its impulses. `open`: the friction ports that may stick. `why` there is no mode: as none could
- * be looked at so far, or as those are not consistent. */
+/* `s`: that of the instant, or what it is after an impact, which `blow` tells. `open`: the friction
+ * ports that may stick; `switches`: those that may change over, which `barred` ones may not. `why`
+ * there is no mode: as none could be looked at so far, or as those are not consistent. */
 typedef struct {
     const bg_sight *sight;
     const bg_instant *at;
     double *s;
     const int *before;
-    int shocks[BG_MOST_PORTS], struck, why;
-    bg_set open, switches;
+    int why;
+    bg_blow blow;
+    bg_set open, switches, barred;
 } bg_choice;
 
 /* What is found of a mode: whether it holds, or else whether friction or which switches contradict
@@ -65,5 +66,24 @@ int bg_partition(const bg_choice *choice, const int *mode, int count, int *ports
 /* port_choose.c: the first consistent mode with the switches of `mode`, if one holds; else switches
  * that would have to change over. A status that ends the search. */
 int bg_choose_rubbing(bg_choice *choice, int *mode, int *holds, bg_set *broken);
+
+/* port_switch.c: the first consistent mode, at most one impact later, which goes to *blow; switches
+ * that are barred stay as they are. */
+int bg_choose_once(const bg_sight *sight, const bg_instant *at, const bg_set *barred, int *mode,
+                   bg_blow *blow);
+
+/* port_bounce.c: the mode where stops may be met, as bg_choose tells it. */
+int bg_choose_struck(const bg_sight *sight, const bg_instant *at, int *mode);
+
+/* Stops that throw back what meets them, and how fast slips are to open after that. */
+typedef struct {
+    bg_set ports;
+    double speed[BG_MOST_PORTS];
+} bg_throw;
+
+/* port_throw.c: the impact of stops that throw back what closes, what switches hold in the mode
+ * staying held; s after it goes to sight->struck. None where no states move what closes. */
+int bg_throw_back(const bg_sight *sight, const bg_instant *at, const int *mode,
+                  const bg_throw *wanted, bg_blow *blow);
 
 #endif

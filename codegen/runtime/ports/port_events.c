@@ -1,7 +1,8 @@
 /* What happens at ports, in order. */
-#include "port_events.h"
-
 #include <stddef.h>
+#include <string.h>
+
+#include "port_log.h"
 
 int bg_slides(const int *mode)
 {
@@ -23,23 +24,43 @@ static int happened(const bg_switch *with, int switched, const int *before, cons
         return rubbed(bg_slides(before), bg_slides(now));
     if (!switched || *now == *before)
         return switched ? -1 : rubbed(*before, *now);
-    return with->on == (*now == 0) ? BG_ON : BG_OFF;
+    const int on = with->on == (*now == 0);
+    return with->bound ? (on ? BG_APART : BG_TOUCH) : on ? BG_ON : BG_OFF;
 }
 
-int bg_note(bg_event *events, int *count, int capacity, double t, int ports,
-            const bg_switch *switches, const int *before, const int *mode)
+/* The impulse that a switch has given; both ways of friction that gives a flow are one. */
+static double given_by(const bg_log *log, const bg_switch *with, int port)
+{
+    if (with == NULL || with->kind == BG_RUBS)
+        return 0.0;
+    return log->given[port] + (with->slides ? log->given[port + 1] : 0.0);
+}
+
+void bg_begin_log(bg_log *log)
+{
+    log->thrown = 0;
+    memset(log->given, 0, sizeof log->given);
+}
+
+int bg_append(bg_log *log, bg_event event)
+{
+    if (log->count >= log->capacity)
+        return -1;
+    if (log->events)
+        log->events[log->count] = event;
+    log->count++;
+    return 0;
+}
+
+int bg_note(bg_log *log, double t, int ports, const bg_switch *switches, const int *before,
+            const int *mode)
 {
     for (int switched = switches != NULL; switched >= 0; switched--)
         for (int i = 0; i < ports; i++) {
-            const int kind =
-                happened(switches ? switches + i : NULL, switched, before + i, mode + i);
-            if (kind < 0)
-                continue;
-            if (*count >= capacity)
+            const bg_switch *const with = switches ? switches + i : NULL;
+            const int kind = happened(with, switched, before + i, mode + i);
+            if (kind >= 0 && bg_append(log, (bg_event){t, i, kind, given_by(log, with, i)}))
                 return -1;
-            if (events)
-                events[*count] = (bg_event){t, i, kind};
-            ++*count;
         }
     return 0;
 }

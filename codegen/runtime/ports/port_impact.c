@@ -191,15 +191,24 @@ int bg_have_slips(const bg_hold *held, const double *slips, const double *near)
     return 0;
 }
 
-void bg_stop(bg_model *m, const int *mode, const bg_hold *held, const double *impulses,
-             const double *slips, double *s, double *ways)
+void bg_less_speeds(const bg_hold *held, const double *speeds, double *slips)
 {
-    double given[PORTS] = {0}, received[BG_ROOM(ROWS)], gone[PORTS];
+    for (int k = 0; k < held->kept; k++)
+        for (int c = 0; c < held->count; c++)
+            slips[k] -= held->mix[k * held->count + c] * speeds[held->ports[c]];
+}
+
+void bg_stop(bg_model *m, const int *mode, const bg_hold *held, const double *impulses,
+             const double *slips, double *s, double *given, double *ways)
+{
+    double struck[PORTS] = {0}, received[BG_ROOM(ROWS)], gone[PORTS];
     for (int k = 0; k < held->kept; k++)
         for (int i = 0; i < K; i++)
-            given[i] += impulses[k * K + i] * slips[k];
-    bg_pass_on(m, given, s, received);
-    bg_shocks(m, mode, given, received, gone);
-    for (int i = 0; i < K; i++)
+            struck[i] += impulses[k * K + i] * slips[k];
+    bg_pass_on(m, struck, s, received);
+    bg_shocks(m, mode, struck, received, gone);
+    for (int i = 0; i < K; i++) {
+        given[i] += struck[i];
         ways[i] += gone[i];
+    }
 }

@@ -15,6 +15,11 @@ void bg_view_keep(const bg_view *v, const int *mode, bg_port *ports)
         if (bg_switches[i].kind != BG_RUBS)
             ports[i].stay =
                 bg_stay(bg_switches + i, mode[i], ports[i].slip, ports[i].effort, guards);
+    for (int i = 0; i < K; i++)
+        if (bg_switches[i].kind == BG_STOPS) {
+            ports[i].gap = guards[bg_switches[i].guard];
+            ports[i].back = guards[bg_switches[i].guard + 1];
+        }
 }
 
 /* Of efforts that hold: the rounding of the equations that they follow from. */
@@ -32,6 +37,19 @@ static void round_held(const bg_view *v, const int *mode, const double *x, const
     for (int c = 0; c < held->count; c++) {
         bg_port *const port = ports + held->ports[c];
         port->near_effort = fmax(port->near_effort, BG_ROUNDING * terms[c]);
+    }
+}
+
+/* Below these gaps count as closed, from what displacements have been, too. */
+static void round_gaps(const bg_view *v, double spacing, bg_port *ports)
+{
+    for (int i = 0; i < K; i++) {
+        const bg_switch *const s = bg_switches + i;
+        if (s->kind != BG_STOPS)
+            continue;
+        const double place = v->shot.z[s->place - N], seen = v->model->seen[s->place];
+        ports[i].near_gap =
+            bg_gap_rounding(s, ports[i].gap, place, v->shot.rate[s->place], seen, spacing);
     }
 }
 
@@ -53,21 +71,25 @@ void bg_view_stay(bg_view *v, const int *mode, double time, const double *x, con
         else
             ports[i].near_stay = mode[i] ? ports[i].near_slip : ports[i].near_effort;
     }
+    round_gaps(v, spacing, ports);
 }
 
-/* The slips that a mode would stop, and whether they are more than rounding; all is let go. */
+/* The slips that a mode would stop, or, unless `speeds` is NULL, what they are beyond these; and
+ * whether that is more than rounding. All is let go. */
 static int have_to_jump(const bg_hold *held, const bg_snapshot *shot, const bg_port *ports,
-                        double *slips)
+                        const double *speeds, double *slips)
 {
     double near[PORTS];
     for (int c = 0; c < held->count; c++)
         near[c] = BG_WIDE * ports[held->ports[c]].near_slip;
     bg_held_slips(held, shot, slips);
+    if (speeds)
+        bg_less_speeds(held, speeds, slips);
     return bg_have_slips(held, slips, near);
 }
 
-int bg_view_strike(void *view, const bg_instant *at, const int *mode, double *s, int *shocks,
-                   int *struck)
+int bg_view_strike(void *view, const bg_instant *at, const int *mode, const double *speeds,
+                   double *s, bg_blow *blow)
 {
     bg_view *const v = view;
     double impulses[PORTS * PORTS], slips[PORTS], ways[PORTS] = {0};
@@ -76,7 +98,8 @@ int bg_view_strike(void *view, const bg_instant *at, const int *mode, double *s,
     int loose[BG_MOST_PORTS];
     bg_instant now = *at;
     const bg_sight sight = bg_view_sight(v);
-    *struck = 0;
+    blow->struck = 0;
+    memset(blow->given, 0, sizeof blow->given);
     /* Where rows turn as states jump, each strike leaves what is bent of its way. */
     for (int strikes = BG_VARYING ? BG_IMPACTS : 1; strikes > 0; strikes--) {
         for (int i = 0; i < K; i++)
@@ -88,13 +111,13 @@ int bg_view_strike(void *view, const bg_instant *at, const int *mode, double *s,
         }
         if (status)
             return status;
-        if (!held || !have_to_jump(held, &v->shot, ports, slips))
+        if (!held || !have_to_jump(held, &v->shot, ports, speeds, slips))
             break;
-        *struck = 1;
-        bg_stop(v->model, mode, held, impulses, slips, s, ways);
+        blow->struck = 1;
+        bg_stop(v->model, mode, held, impulses, slips, s, blow->given, ways);
         now.s = s;
     }
     for (int i = 0; i < K; i++)
-        shocks[i] = ways[i] == 0.0 ? 0 : ways[i] > 0.0 ? 1 : -1;
+        blow->shocks[i] = ways[i] == 0.0 ? 0 : ways[i] > 0.0 ? 1 : -1;
     return BG_OK;
 }

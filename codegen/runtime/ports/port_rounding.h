@@ -54,4 +54,14 @@ static inline void bg_round_ports(int states, int inputs, int count, const bg_ma
     }
 }
 
+/* Below this the gap of a stop counts as closed, where its displacement, which changes at a rate,
+ * has been as far as `seen`; `spacing`: of the time. */
+static inline double bg_gap_rounding(const bg_switch *s, double gap, double displacement,
+                                     double rate, double seen, double spacing)
+{
+    const double size = fabs(displacement), fixed = fabs(gap - s->opening * displacement);
+    return BG_ROUNDING * (size + fixed) + BG_LATE * spacing * fabs(rate)
+        + BG_TOGETHER * bg_greater(size, seen) + DBL_MIN;
+}
+
 #endif

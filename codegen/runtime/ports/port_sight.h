@@ -41,8 +41,8 @@ void bg_view_ports(bg_view *v, const int *mode, double time, bg_port *ports);
 void bg_view_keep(const bg_view *v, const int *mode, bg_port *ports);
 void bg_view_stay(bg_view *v, const int *mode, double time, const double *x, const double *u,
                   bg_port *ports);
-int bg_view_strike(void *view, const bg_instant *at, const int *mode, double *s, int *shocks,
-                   int *struck);
+int bg_view_strike(void *view, const bg_instant *at, const int *mode, const double *speeds,
+                   double *s, bg_blow *blow);
 
 /* Takes the latest look, at s, into the peaks, friction slipping so; it stays the latest. */
 void bg_view_see(bg_view *v, const double *s, const int *slipping);

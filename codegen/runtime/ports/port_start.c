@@ -1,13 +1,39 @@
-/* How a run begins: switches that are off unless they are told, and states that were not named
- * completed by what these hold. */
+/* How a run begins: stops apart, other switches off unless they are told, and states that were not
+ * named completed by what these hold. */
+#include <math.h>
 #include <stddef.h>
 
 #include "model_internal.h"
+#include "port_rounding.h"
 
 void bg_all_off(int *mode)
 {
     for (int i = 0; i < K; i++)
-        mode[i] = bg_switches[i].kind == BG_RUBS ? 1 : bg_switches[i].on;
+        mode[i] = bg_switches[i].kind == BG_RUBS ? 1
+            : bg_switches[i].kind == BG_STOPS    ? !bg_switches[i].on
+                                                 : bg_switches[i].on;
+}
+
+/* A status: BG_BEYOND where a stop, which `m->where` tells, is beyond its bound. */
+static int check_gaps(bg_model *m, double t, const double *s)
+{
+    double guards[BG_ROOM(BG_GUARDS)] = {0};
+    const double spacing = nextafter(fabs(t), INFINITY) - fabs(t);
+    if (!BG_STOPPING)
+        return BG_OK;
+    bg_guards(&m->now, guards);
+    for (int i = 0; i < K; i++) {
+        const bg_switch *const one = bg_switches + i;
+        if (one->kind != BG_STOPS)
+            continue;
+        const double gap = guards[one->guard], place = s[one->place];
+        const double rate = m->shot.rate[one->place], seen = m->seen[one->place];
+        m->where = i;
+        if (gap < -bg_gap_rounding(one, gap, place, rate, seen, spacing))
+            return BG_BEYOND;
+    }
+    m->where = -1;
+    return BG_OK;
 }
 
 /* Switches whose conditions say so at `m->now` change over. */
@@ -60,6 +86,8 @@ int bg_complete(bg_model *m, double t, const double *w, const int *named, int *m
     for (int i = 0; i < K; i++)
         loose[i] = 1;
     int status = bg_evaluate(m, t, s, w, NULL, loose, 1, &m->shot);
+    if (status == BG_OK)
+        status = check_gaps(m, t, s);
     if (status != BG_OK)
         return status;
     as_told(m, mode);

@@ -3,18 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "model_internal.h"
-#include "port_choose.h"
+#include "port_step.h"
 #include "port_ways.h"
-
-/* A search: the start of the step, with s after the impulses of the way that is tried; s before
- * them; why there is no mode. */
-typedef struct {
-    bg_model *m;
-    bg_start at;
-    double *s, begun[BG_SIZE];
-    int why;
-} step_search;
 
 /* Whether impulses are more than rounding and what a step leaves of slips that were held before. */
 static int is_struck(const step_search *c, const bg_hold *held, const double *slips)
@@ -35,7 +25,7 @@ static int is_struck(const step_search *c, const bg_hold *held, const double *sl
 /* s after the impulses of what the switches of a mode hold; how far these go with the mode. */
 static int strike(step_search *c, const int *mode, double *ways)
 {
-    double impulses[PORTS * PORTS], slips[PORTS];
+    double impulses[PORTS * PORTS], slips[PORTS], given[PORTS] = {0};
     bg_model *const m = c->m;
     bg_hold *held = NULL;
     int loose[BG_MOST_PORTS];
@@ -51,7 +41,7 @@ static int strike(step_search *c, const int *mode, double *ways)
         bg_held_slips(held, &m->shot, slips);
         if (!is_struck(c, held, slips))
             return BG_OK;
-        bg_stop(m, mode, held, impulses, slips, c->s, ways);
+        bg_stop(m, mode, held, impulses, slips, c->s, given, ways);
     }
     return BG_OK;
 }
@@ -130,7 +120,10 @@ static bg_set contrary(step_search *c, const double *ways)
     bg_set found = {{0}};
     find_slack(c, slack);
     for (int i = 0; i < K; i++) {
-        const int sided = bg_switches[i].kind == BG_ONE_SIDED && ways[i] == 0.0;
+        const int kind = bg_switches[i].kind;
+        const int sided = (kind == BG_ONE_SIDED || kind == BG_STOPS) && ways[i] == 0.0;
+        if (bg_has(&c->barred, i))
+            continue;
         if (ways[i] < 0.0 || (sided && turns_over(c, i, slack[i])))
             bg_add(&found, i);
     }
@@ -151,6 +144,8 @@ static int try_in_step(void *self, const bg_set *held, int *holds, bg_set *broke
     for (int i = 0; i < K; i++) {
         const int is_switch = bg_switches[i].kind != BG_RUBS;
         m->mode[i] = is_switch ? !bg_has(held, i) : c->at.before[i];
+        if (bg_has(&c->barred, i))
+            m->mode[i] = !bg_switches[i].on;
         rubbing |= !is_switch;
     }
     if (!bg_is_empty(held))
@@ -168,13 +163,12 @@ static int try_in_step(void *self, const bg_set *held, int *holds, bg_set *broke
     return BG_OK;
 }
 
-/* Where some ports are switches; a step that has no mode leaves all as it was. */
-static int search_ways(step_search *c, const int *before)
+int bg_search_ways(step_search *c, const int *before)
 {
     bg_set switches = {{0}}, guarded = {{0}}, first = {{0}};
     int holds;
     for (int i = 0; i < K; i++)
-        if (bg_switches[i].kind != BG_RUBS) {
+        if (bg_switches[i].kind != BG_RUBS && !bg_has(&c->barred, i)) {
             bg_add(&switches, i);
             if (bg_switches[i].kind == BG_TOLD)
                 bg_add(&guarded, i);
@@ -193,11 +187,17 @@ int bg_decide_step(bg_model *m, double t, double h, double *s, const double *w)
     int before[BG_ROOM(K)];
     step_search c = {.m = m, .s = s, .at = {t, h, s, w, m->work.rates[0], before, m->started}};
     memcpy(before, m->mode, sizeof before);
+    double begun[BG_SIZE];
     memcpy(c.begun, s, sizeof c.begun);
-    const int status = BG_SWITCHES ? search_ways(&c, before) : bg_stick(m, &c.at);
-    if (status == BG_OK)
+    memcpy(begun, s, sizeof begun);
+    const int status = BG_STOPPING ? bg_search_struck(&c)
+        : BG_SWITCHES              ? bg_search_ways(&c, before)
+                                   : bg_stick(m, &c.at);
+    if (status == BG_OK) {
         m->started = 1;
-    else
-        memcpy(m->mode, before, sizeof before);
+        return BG_OK;
+    }
+    memcpy(s, begun, sizeof begun);
+    memcpy(m->mode, before, sizeof before);
     return status;
 }

@@ -16,6 +16,11 @@ double bg_stay(const bg_switch *s, int sign, double slip, double effort, const d
     return sign ? s->side * slip : -s->side * effort;
 }
 
+int bg_is_apart(const bg_switch *s, int sign)
+{
+    return s->kind == BG_STOPS && s->on == (sign == 0);
+}
+
 /* A search among the ways of the switches. `mode`: what is found. */
 typedef struct {
     bg_choice choice;
@@ -33,13 +38,14 @@ static int try_way(void *self, const bg_set *held, int *holds, bg_set *broken)
     int tried[BG_MOST_PORTS];
     for (int i = 0; i < c->ports; i++)
         tried[i] = bg_has(&search->switches, i) ? !bg_has(held, i) : search->before[i];
-    memset(choice->shocks, 0, sizeof choice->shocks);
+    choice->blow = (bg_blow){0};
     choice->s = c->struck;
     memcpy(choice->s, choice->at->s, sizeof(double) * (size_t)c->size);
-    choice->struck = 0;
-    int status = BG_OK;
-    if (!bg_is_empty(held))
-        status = c->strike(c->self, choice->at, tried, choice->s, choice->shocks, &choice->struck);
+    int status = BG_OK, any = 0;
+    for (int i = 0; i < c->ports; i++)
+        any |= tried[i] == 0 && c->switches[i].kind != BG_RUBS;
+    if (any)
+        status = c->strike(c->self, choice->at, tried, NULL, choice->s, &choice->blow);
     if (status) {
         choice->why = choice->why ? choice->why : status;
         return status != BG_NOT_AFFINE && bg_ends_search(status) ? status : BG_OK;
@@ -56,7 +62,7 @@ static int choose_switched(bg_search *search, int *holds)
     const bg_sight *const c = search->choice.sight;
     bg_set first = {{0}}, guarded = {{0}};
     for (int i = 0; i < c->ports; i++) {
-        if (c->switches[i].kind == BG_RUBS)
+        if (c->switches[i].kind == BG_RUBS || bg_has(&search->choice.barred, i))
             continue;
         bg_add(&search->switches, i);
         if (c->switches[i].kind == BG_TOLD)
@@ -67,32 +73,38 @@ static int choose_switched(bg_search *search, int *holds)
     return bg_try_ways(c->ports, &search->switches, &guarded, first, try_way, search, holds);
 }
 
-/* The first consistent mode, at most one impact later: *struck. */
-static int choose_once(const bg_sight *c, const bg_instant *at, int *mode, int *struck)
+int bg_choose_once(const bg_sight *c, const bg_instant *at, const bg_set *barred, int *mode,
+                   bg_blow *blow)
 {
     int before[BG_MOST_PORTS], holds = 0;
     bg_set broken;
     bg_search search = {
-        .choice = {.sight = c, .at = at, .s = at->s}, .before = before, .mode = mode};
+        .choice = {.sight = c, .at = at, .s = at->s, .barred = *barred},
+        .before = before, .mode = mode};
     memcpy(before, mode, sizeof(int) * (size_t)c->ports);
     const int status = c->switches ? choose_switched(&search, &holds)
                                    : bg_choose_rubbing(&search.choice, mode, &holds, &broken);
     if (status || !holds)
         return status ? status : search.choice.why;
-    *struck = search.choice.struck;
-    if (*struck)
+    *blow = search.choice.blow;
+    if (blow->struck)
         memcpy(at->s, search.choice.s, sizeof(double) * (size_t)c->size);
+    for (int i = 0; i < c->ports && blow->struck && at->log; i++)
+        at->log->given[i] += blow->given[i];
     return BG_OK;
 }
 
 int bg_choose(const bg_sight *c, const bg_instant *at, int *mode)
 {
+    const bg_set none = {{0}};
     bg_instant again = *at;
-    int struck = 0;
-    int status = choose_once(c, at, mode, &struck);
+    bg_blow blow = {0};
+    if (c->stopping)
+        return bg_choose_struck(c, at, mode);
+    int status = bg_choose_once(c, at, &none, mode, &blow);
     memset(again.touched, 0, sizeof again.touched);
     /* What passed an impulse may well not stay as it was for that. */
-    for (int k = 0; k < BG_IMPACTS && status == BG_OK && struck; k++)
-        status = choose_once(c, &again, mode, &struck);
+    for (int k = 0; k < BG_IMPACTS && status == BG_OK && blow.struck; k++)
+        status = bg_choose_once(c, &again, &none, mode, &blow);
     return status;
 }

@@ -1,15 +1,18 @@
-/* Ideal switches: ports that are held or let go, as a side or conditions of theirs tell. */
+/* Ideal switches: ports that are held or let go, as a side, conditions or a bound tell. */
 #ifndef BG_PORT_SWITCH_H
 #define BG_PORT_SWITCH_H
 
-/* What makes a port change over: friction, a side, or conditions. */
-enum bg_way { BG_RUBS, BG_ONE_SIDED, BG_TOLD };
+/* What makes a port change over: friction, a side, conditions, or a bound that it stops at. */
+enum bg_way { BG_RUBS, BG_ONE_SIDED, BG_TOLD, BG_STOPS };
 
 /* `on`: whether it is on while it is held. `side`: let go while side * y >= 0, held while side * u
  * <= 0. `guard`: the place of its condition to turn on, before that to turn off. `slides`: 1 or -1
- * for the ways in which friction slips that gives a flow, one after the other: held it slips. */
+ * for the ways in which friction slips that gives a flow, one after the other: held it slips. Of a
+ * stop, which is on while it is apart and has its sides where the gap is closed: `guard`: the place
+ * of its gap, before its restitution; `place`: that of its displacement in s, with which the gap
+ * changes by `opening`; `bound`: whether it is told as one, that touches and is apart. */
 typedef struct {
-    int kind, on, side, guard, slides;
+    int kind, on, side, guard, slides, place, opening, bound;
 } bg_switch;
 
 /* The place of the condition that changes a switch over in its mode. */
@@ -17,5 +20,8 @@ int bg_condition(const bg_switch *s, int sign);
 
 /* What keeps a switch from changing over in its mode: positive as long as it stays. */
 double bg_stay(const bg_switch *s, int sign, double slip, double effort, const double *guards);
+
+/* Whether it is a stop that is apart in its mode: its gap is watched as long as that lasts. */
+int bg_is_apart(const bg_switch *s, int sign);
 
 #endif

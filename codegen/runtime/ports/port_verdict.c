@@ -179,7 +179,8 @@ int bg_find(bg_choice *choice, const int *mode, const bg_set *asked, bg_finding 
         if (!bg_has(asked, i))
             continue;
         if (!rubs(c, i))
-            sure = choice->shocks[i] ? choice->shocks[i] : sign_of(now[i].stay, now[i].near_stay);
+            sure = choice->blow.shocks[i] ? choice->blow.shocks[i]
+                                          : sign_of(now[i].stay, now[i].near_stay);
         else
             sure = verdict(now + i, c->coupled[i], mode[i]);
         if (sure == 0)

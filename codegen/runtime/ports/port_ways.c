@@ -130,6 +130,8 @@ int bg_try_ways(int ports, const bg_set *switches, const bg_set *guarded, bg_set
         if (bg_has(switches, i))
             s.switches[s.count++] = i;
     s.turns = TURNS * s.count < MOST_TURNS ? TURNS * s.count : MOST_TURNS;
+    if (s.count == 0)
+        s.turns = 1; /* all stay as they are */
     *holds = 0;
     int status = follow_both(&s, first, holds);
     for (int last_of_all = 0; last_of_all < 2 && !status && !*holds; last_of_all++)

@@ -19,7 +19,9 @@ static int come_to_end(const bg_engine *e, bg_course *c, int *undecided)
         return status;
     sight->tell(sight->self, c->mode, &c->at, now, NULL);
     for (int i = 0; i < sight->ports; i++) {
-        if (sight->switches && sight->switches[i].kind != BG_RUBS)
+        if (sight->switches && bg_is_apart(sight->switches + i, c->mode[i]))
+            c->at.touched[i] |= now[i].gap <= now[i].near_gap;
+        else if (sight->switches && sight->switches[i].kind != BG_RUBS)
             c->at.touched[i] |= now[i].stay <= BG_WIDE * now[i].near_stay;
         else if (c->mode[i] == 0)
             c->at.touched[i] |= now[i].cap - fabs(now[i].effort) <= BG_WIDE * now[i].near_effort;
@@ -65,14 +67,16 @@ static int settle(const bg_engine *e, bg_course *c, int started)
     if (status)
         return status;
     c->at.time = bg_time_constant(fastest, c->at.t - c->began);
+    bg_begin_log(&c->log);
+    c->at.log = started ? &c->log : NULL;
     status = decide(e, c, started);
+    c->at.log = NULL;
     for (int i = 0; i < sight->ports; i++)
         touched |= c->at.touched[i];
     if (status == BG_OK && started) {
-        if (bg_note(c->events, &c->count, c->capacity, c->at.t, sight->ports, sight->switches,
-                    before, c->mode))
+        if (bg_note(&c->log, c->at.t, sight->ports, sight->switches, before, c->mode))
             status = BG_EVENTS;
-        else if (touched && bg_stalls(&c->rounds, c->at.t, c->at.time))
+        else if (touched && !c->log.thrown && bg_stalls(&c->rounds, c->at.t, c->at.time))
             status = BG_STALLS;
     }
     return status ? status : e->rest(e->self);
@@ -84,14 +88,14 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
     c->began = t;
     c->end = end;
     c->segment = bg_segment(c->segments, c->breaks, t);
-    c->count = c->rounds.next = c->rounds.full = 0;
+    c->log.count = c->rounds.next = c->rounds.full = 0;
     for (int i = 0; i < BG_MOST_PORTS; i++)
         c->mode[i] = first ? first[i] : 1;
 }
 
 int bg_run(const bg_engine *e, bg_course *c)
 {
-    const double most = 16.0 * c->capacity + c->segments + 1000.0;
+    const double most = 16.0 * c->log.capacity + c->segments + 1000.0;
     int status = BG_OK;
     for (double turns = 0.0; turns < most; turns += 1.0) {
         int undecided = 1;

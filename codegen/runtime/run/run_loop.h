@@ -8,14 +8,13 @@
 #include "run_pace.h"
 
 /* Where a run is. `began`, `end` [s]: of all of it; segment k of the inputs lasts to breaks[k], the
- * last one for ever. `count` of `capacity` events have happened. */
+ * last one for ever. */
 typedef struct {
     bg_instant at;
     double began, end;
     int segments, segment, mode[BG_MOST_PORTS];
     const double *breaks;
-    bg_event *events;
-    int capacity, count;
+    bg_log log;
     bg_rounds rounds;
 } bg_course;
 

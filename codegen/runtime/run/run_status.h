@@ -22,6 +22,8 @@ enum bg_status {
     BG_EVENTS,       /* more events than there is room for */
     BG_UNSTABLE,     /* a step is beyond the stability of its method */
     BG_BAD_STEP,     /* a step is no positive number */
+    BG_BEYOND,       /* a stop begins beyond its bound */
+    BG_STRUCK,       /* stops are struck in one instant, and what meets them still closes */
     /* of exact steps alone */
     BG_MISSING,      /* a mode is not in the table */
     BG_NEGATIVE,     /* a friction level falls below zero */

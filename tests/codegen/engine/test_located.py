@@ -263,7 +263,7 @@ def test_the_main_program_runs_a_scenario_with_events_located(tmp_path: Path) ->
     table, names, told = _rows(program, "1", "0.001", "located")
     run = simulator(*arguments).run(case.times, case.initial, case.inputs)
     events = [line.split(",") for line in told.splitlines()]
-    assert [(port, kind) for _, port, kind in events] == [(e.port, e.kind) for e in run.events]
+    assert [(port, kind) for _, port, kind, _ in events] == [(e.port, e.kind) for e in run.events]
     assert [float(time) for time, *_ in events] == pytest.approx(
         [e.time for e in run.events], abs=1e-9
     )
