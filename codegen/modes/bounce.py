@@ -72,7 +72,8 @@ def closing(
     model = here.model
     if not stops:
         return {}
-    known, now = here.evaluated(mode)
+    # What is held is pressed with what holds it.
+    known, now = here.evaluated(mode, slipping=False)
     told = model.guards(here.t, now)
     size = scales(model, now, here.t, peaks)
     near, rates = gap_rounding(here, known, peaks), slip_rates(model, now)
@@ -90,52 +91,96 @@ def closing(
     return found
 
 
+def hardly_leaving(
+    here: Sight, mode: Mode, stops: Collection[int], peaks: Peaks | None
+) -> Mapping[int, float]:
+    """Of these stops those that a shock has opened, and that would close again before a gap could be seen.
+
+    What is joined to them came to rest and they go on; unless they were stopped, too, the two might take
+    turns for ever below what is seen of gaps.
+    """
+    model = here.model
+    # What is held is pressed with what holds it.
+    known, now = here.evaluated(mode, slipping=False)
+    size = scales(model, now, here.t, peaks)
+    near, rates = gap_rounding(here, known, peaks), slip_rates(model, now)
+    found = {}
+    for i in sorted(stops):
+        one = model.switching[i]
+        assert one is not None
+        slip = one.side * float(now.y[model.friction_readings[i]])
+        pressed = max(-one.side * float(rates[i]), 0.0)
+        apart = not one.on and one.is_on(mode[i]) and slip > float(size.slip[i])
+        if apart and slip**2 <= 2 * TUNING.leap * pressed * float(near[one.guard]):
+            found[i] = 0.0
+    return found
+
+
+def stopped(here: Sight, mode: Mode, wanted: Mapping[int, float]) -> Impact | None:
+    """The impact that stops these, what is held in the mode staying held; None where no states move them."""
+    search = _Search(here, mode, wanted)
+    strike = search.struck(search.all)
+    return None if strike is None else _impact(here, mode, strike, ())
+
+
 def thrown_back(here: Sight, mode: Mode, wanted: Mapping[int, float]) -> Impact | None:
     """The impact of the stops that are ``wanted`` to bounce, what switches hold in the mode staying held.
 
     None where no states move what closes.
     """
-    model = here.model
-    slipping, now = here.evaluated((1,) * len(mode))
-    search = _Search(here, mode, wanted)
-    strike = search.run()
+    strike = _Search(here, mode, wanted).run()
     if strike is None:
         return None
+    given = strike.given[here.model.friction_inputs]
+    return _impact(here, mode, strike, tuple(i for i in wanted if given[i] != 0))
+
+
+def _impact(here: Sight, mode: Mode, strike: Strike, thrown: tuple[int, ...]) -> Impact:
+    """What a strike leads to, and what its ports take: impulses times the means of slips."""
+    model = here.model
+    slipping, now = here.evaluated((1,) * len(mode))
     after = here.s + strike.gained(len(here.s), model.law_rates)
     later = model.at(here.t, after, here.pieces, slipping)
     mean = 0.5 * (now.y + later.y)[model.friction_readings]
-    given = strike.given[model.friction_inputs]
-    thrown = tuple(i for i in wanted if given[i] != 0)
-    return Impact(after, strike, float(given @ mean), thrown)
+    return Impact(after, strike, float(strike.given[model.friction_inputs] @ mean), thrown)
 
 
 class _Search:
     """Which of the stops take part, by Murty's rule: those that would pull, or not bounce enough, change."""
 
     def __init__(self, here: Sight, mode: Mode, wanted: Mapping[int, float]) -> None:
-        self._model, self._t, self._wanted = here.model, here.t, wanted
-        self._held = [
-            sign if one is not None else 1
-            for sign, one in zip(mode, here.model.switching, strict=True)
-        ]
-        _, self._now = here.evaluated((1,) * len(mode))
-        self._ways = {i: one.side for i in wanted if (one := here.model.switching[i]) is not None}
+        self._model, self._here = here.model, here
+        switching = list(zip(mode, here.model.switching, strict=True))
+        self._held = [sign if one is not None and not one.side else 1 for sign, one in switching]
+        self._free, self._now = here.evaluated((1,) * len(mode))
+        # What is joined by a push alone takes part as what does not bounce: it does not pull.
+        self._ways = {
+            i: one.side for i, (sign, one) in enumerate(switching)
+            if one is not None and one.side and (sign == 0 or i in wanted)
+        }  # fmt: skip
+        self._wanted = {i: wanted.get(i, 0.0) for i in self._ways}
+
+    @property
+    def all(self) -> set[int]:
+        """Every stop that may take part."""
+        return set(self._wanted)
 
     def run(self) -> Strike | None:
         """The impulses; None where there are none."""
-        active = set(self._wanted)
+        active = self.all
         for _ in range(TUNING.bounces):
-            strike = self._struck(active)
+            strike = self.struck(active)
             if strike is None:
                 return None
             wrong = self._contrary(strike, active)
             if not wrong:
                 return strike
-            active ^= {min(wrong & active or wrong)}
+            active ^= {min(wrong)}
         names = ", ".join(repr(self._model.program.friction[i].name) for i in self._wanted)
-        raise SimulationError(f"at t = {self._t:.9g} no impulses of {names} are consistent")
+        raise SimulationError(f"at t = {self._here.t:.9g} no impulses of {names} are consistent")
 
-    def _struck(self, active: set[int]) -> Strike | None:
+    def struck(self, active: set[int]) -> Strike | None:
+        """The impulses if these take part."""
         model, now = self._model, self._now
         held = tuple(0 if i in active else sign for i, sign in enumerate(self._held))
         if 0 not in held:
@@ -149,20 +194,28 @@ class _Search:
 
     def _contrary(self, strike: Strike, active: set[int]) -> set[int]:
         """The stops that would pull, that bounce faster than they ought to, or not enough."""
-        model, before = self._model, self._now.y[self._model.friction_readings]
-        given = strike.given[model.friction_inputs]
-        moved = strike.received[model.friction_readings]
+        model, here = self._model, self._here
+        after = here.s + strike.gained(len(here.s), model.law_rates)
+        later = model.at(here.t, after, here.pieces, self._free)
+        slips, given = later.y[model.friction_readings], strike.given[model.friction_inputs]
+        near = self._rounding(strike)
         least = TUNING.rounding * np.abs(given).max(initial=0.0)
         wrong = set()
         for i, speed in self._wanted.items():
             way = self._ways[i]
-            over = way * (before[i] + moved[i]) - speed
-            near = TUNING.rounding * (abs(before[i]) + abs(moved[i]) + speed)
+            over = way * slips[i] - speed
             if i in active:
-                wrong |= {i} if over > near or way * given[i] > least else set()
-            elif over < -near:
+                wrong |= {i} if over > near[i] or way * given[i] > least else set()
+            elif over < -near[i]:
                 wrong.add(i)
         return wrong
+
+    def _rounding(self, strike: Strike) -> Array:
+        """Below these slips after a strike are zero, from the terms of states and of what they gain."""
+        model, now = self._model, self._now
+        x = np.abs(now.x) + np.abs(now.numbers.Q) @ np.abs(strike.given)
+        terms = model.moves(now.numbers).terms[: len(model.switching)]
+        return np.asarray(TUNING.rounding * (terms @ np.concatenate((x, np.abs(now.u)))), float)
 
 
 def closed_up(here: Sight, mode: Mode, stops: Collection[int]) -> Array:
