@@ -105,22 +105,23 @@ class Tally:
     ) -> None:
         """Switches that come to hold: impulses, and what the impact took.
 
-        An impulse works on what there is after it; in storages on the mean of before and after. What a stop
-        loses as it throws back is what the impact took.
+        An impulse works on what there is after it; in storages on the mean of before and after. At ports that
+        give it, it is all of what the impact took, also where they throw back.
         """
         slipping = tuple(sign or 1 for sign in mode)
         a = self.model.at(t, before, pieces, slipping)
         b = self.model.at(t, struck.s, pieces, slipping)
-        for i in struck.thrown:
-            b.y[self.model.friction_readings[i]] = 0.0
         jump = np.zeros(_length(b))
         inputs = len(b.x) + len(b.z)
         readings = inputs + 2 * len(b.u)
         jump[inputs : inputs + len(b.u)] = struck.strike.given
         jump[readings : readings + len(b.y)] = struck.strike.received
+        past, now = vector_of(a), vector_of(b).copy()
+        hit = struck.strike.given[self.model.friction_inputs] != 0
+        now[readings + np.asarray(self.model.friction_readings)[hit]] = 0.0
         one, other = (
-            np.where(self.stored, (past + now) / 2, now)
-            for past, now in zip(*(self._pair(vector_of(end)) for end in (a, b)), strict=True)
+            np.where(self.stored, (early + late) / 2, late)
+            for early, late in zip(self._pair(past), self._pair(now), strict=True)
         )
         pushed, turned = self._pair(jump)
         self.total = self.total + one * turned * self._double + pushed * other

@@ -15,6 +15,7 @@ from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import refusals
 from codegen.standalone.bouncing import Meeting, thrown
+from codegen.standalone.striking import Strike
 from codegen.tuning import TUNING
 
 
@@ -71,7 +72,8 @@ def closing(
     model = here.model
     if not stops:
         return {}
-    known, now = here.evaluated(mode)
+    # What is held is pressed with what holds it.
+    known, now = here.evaluated(mode, slipping=False)
     told = model.guards(here.t, now)
     size = scales(model, now, here.t, peaks)
     near, rates = gap_rounding(here, known, peaks), slip_rates(model, now)
@@ -89,29 +91,79 @@ def closing(
     return found
 
 
+def hardly_leaving(
+    here: Sight, mode: Mode, stops: Collection[int], peaks: Peaks | None
+) -> Mapping[int, float]:
+    """Of these stops those that a shock has opened, and that would close again before a gap could be seen.
+
+    What is joined to them came to rest and they go on; unless they were stopped, too, the two might take
+    turns for ever below what is seen of gaps.
+    """
+    model = here.model
+    # What is held is pressed with what holds it.
+    known, now = here.evaluated(mode, slipping=False)
+    size = scales(model, now, here.t, peaks)
+    near, rates = gap_rounding(here, known, peaks), slip_rates(model, now)
+    found = {}
+    for i in sorted(stops):
+        one = model.switching[i]
+        assert one is not None
+        slip = one.side * float(now.y[model.friction_readings[i]])
+        pressed = max(-one.side * float(rates[i]), 0.0)
+        apart = not one.on and one.is_on(mode[i]) and slip > float(size.slip[i])
+        if apart and slip**2 <= 2 * TUNING.leap * pressed * float(near[one.guard]):
+            found[i] = 0.0
+    return found
+
+
+def stopped(here: Sight, mode: Mode, wanted: Mapping[int, float]) -> Impact | None:
+    """The impact that stops these, what is held in the mode staying held; None where no states move them."""
+    meeting = _meeting(here, mode, wanted)
+    with refusals():
+        strike = meeting.struck(meeting.stops)
+    return None if strike is None else _impact(here, mode, strike, ())
+
+
 def thrown_back(here: Sight, mode: Mode, wanted: Mapping[int, float]) -> Impact | None:
     """The impact of the stops that are ``wanted`` to bounce, what switches hold in the mode staying held.
 
     None where no states move what closes.
     """
-    model = here.model
-    slipping, now = here.evaluated((1,) * len(mode))
-    switching = list(zip(mode, model.switching, strict=True))
-    meeting = Meeting(
-        now.instant(here.t), tuple(1 if one is None else sign for sign, one in switching), wanted,
-        {i: one.side for i, one in enumerate(model.switching) if one is not None},
-        np.array(model.friction_inputs), np.array(model.friction_readings),
-    )  # fmt: skip
     with refusals():
-        strike = thrown(meeting, lambda held: model.hold(held, now.numbers))
+        strike = thrown(_meeting(here, mode, wanted))
     if strike is None:
         return None
+    given = strike.given[here.model.friction_inputs]
+    return _impact(here, mode, strike, tuple(i for i in wanted if given[i] != 0))
+
+
+def _meeting(here: Sight, mode: Mode, wanted: Mapping[int, float]) -> Meeting:
+    model = here.model
+    free, now = here.evaluated((1,) * len(mode))
+
+    def slips(strike: Strike) -> Array:
+        after = here.s + strike.gained(len(here.s), model.law_rates)
+        return np.asarray(model.at(here.t, after, here.pieces, free).y[model.friction_readings])
+
+    def near(strike: Strike) -> Array:
+        x = np.abs(now.x) + np.abs(now.numbers.Q) @ np.abs(strike.given)
+        terms = model.moves(now.numbers).terms[: len(mode)]
+        return np.asarray(TUNING.rounding * (terms @ np.concatenate((x, np.abs(now.u)))))
+
+    return Meeting(
+        now.instant(here.t), mode, model.switching, wanted, np.array(model.friction_inputs),
+        lambda held: model.hold(held, now.numbers), slips, near,
+    )  # fmt: skip
+
+
+def _impact(here: Sight, mode: Mode, strike: Strike, thrown: tuple[int, ...]) -> Impact:
+    """What a strike leads to, and what its ports take: impulses times the means of slips."""
+    model = here.model
+    slipping, now = here.evaluated((1,) * len(mode))
     after = here.s + strike.gained(len(here.s), model.law_rates)
     later = model.at(here.t, after, here.pieces, slipping)
     mean = 0.5 * (now.y + later.y)[model.friction_readings]
-    given = strike.given[model.friction_inputs]
-    struck = tuple(i for i in wanted if given[i] != 0)
-    return Impact(after, strike, float(given @ mean), struck)
+    return Impact(after, strike, float(strike.given[model.friction_inputs] @ mean), thrown)
 
 
 def closed_up(here: Sight, mode: Mode, stops: Collection[int]) -> Array:

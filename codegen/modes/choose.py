@@ -10,7 +10,7 @@ from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Impact, Mode, Snapshot
 from codegen.modes.blocks import blocks_of, slipping_as, turned_to, ways_to_rub
-from codegen.modes.bounce import closed_up, closing, met, thrown_back
+from codegen.modes.bounce import closed_up, closing, hardly_leaving, met, stopped, thrown_back
 from codegen.modes.choices import Choices
 from codegen.modes.closed import ClosedModel
 from codegen.modes.glances import Glances
@@ -140,6 +140,9 @@ def _struck(now: Occasion, here: Sight, free: Sequence[int]) -> Decision:
         here, now = now.seen(found.s), now._replace(previous=found.mode, touched=frozenset())
         wanted = closing(here, found.mode, wanted.keys(), now.peaks)
         thrown = thrown_back(here, found.mode, wanted) if wanted else None
+        if thrown is None and not found.impacts and impacts:
+            wanted = hardly_leaving(here, found.mode, met_now, now.peaks)
+            thrown = stopped(here, found.mode, wanted) if wanted else None
         if thrown is not None:
             impacts += (thrown,)
             here = now.seen(thrown.s)

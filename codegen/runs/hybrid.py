@@ -233,7 +233,11 @@ class _Course:
 
 
 def _still(here: Sight, mode: Mode, ports: frozenset[int], peaks: Peaks) -> frozenset[int]:
-    """Those of the ports that are at rest, or close enough for it to be the event's own rounding."""
+    """Those of the ports that are at rest, or close enough for it to be the event's own rounding.
+
+    A stop is met where its gap is closed, not where it is at rest.
+    """
+    ports -= {*here.model.stopping}
     if not ports:
         return frozenset()
     _, now = here.evaluated(mode)
@@ -278,24 +282,28 @@ def _changes(model: ClosedModel, old: Mode, new: Mode) -> list[tuple[Hashable, s
 def _told(
     model: ClosedModel, t: float, changes: Sequence[tuple[Hashable, str]], impacts: Sequence[Impact]
 ) -> list[Event]:
-    """What has happened at an instant: first what was thrown back, impact by impact."""
+    """What has happened at an instant: first what was thrown back, impact by impact.
+
+    The rest of a port's impulses goes with its change; of a stop that does not change, it is a hit.
+    """
     if not impacts:
         return [Event(t, port, kind) for port, kind in changes]
-    ports, given = (
-        model.program.friction,
-        [one.strike.given[model.friction_inputs] for one in impacts],
-    )
-    hits = [
-        Event(t, ports[i].name, "hit", float(struck[i]))
-        for one, struck in zip(impacts, given, strict=True)
-        for i in one.thrown
-    ]
-    whole = {
-        port.name: float(sum(struck[i] for struck in given))
-        for i, port in enumerate(ports)
-        if port.switch is not None
-    }
-    return hits + [Event(t, port, kind, whole.get(port, 0.0)) for port, kind in changes]
+    names = [port.name for port in model.program.friction]
+    hits, rest = list[Event](), dict[Hashable, float]()
+    for one in impacts:
+        given = one.strike.given[model.friction_inputs]
+        for i in np.flatnonzero(given).tolist():
+            if i in one.thrown:
+                hits.append(Event(t, names[i], "hit", float(given[i])))
+            else:
+                rest[names[i]] = rest.get(names[i], 0.0) + float(given[i])
+    changed = {port for port, _ in changes}
+    largest = max(map(abs, rest.values()), default=0.0)
+    for i in model.stopping:
+        left = rest.get(names[i], 0.0)
+        if names[i] not in changed and abs(left) > TUNING.rounding * largest:
+            hits.append(Event(t, names[i], "hit", left))
+    return hits + [Event(t, port, kind, rest.get(port, 0.0)) for port, kind in changes]
 
 
 def _check_progress(rounds: deque[float], t: float, least: float, events: list[Event]) -> None:

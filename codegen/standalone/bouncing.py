@@ -1,12 +1,14 @@
 """Impulses of stops that throw back what meets them: a linear complementarity problem.
 
-All that close and bounce are struck together, what is held staying held: impulses p and slips y
-before and after, counted as gaps open, have ``p >= 0``, ``y+ + e y- >= 0``, and one of them zero.
-So energy never grows (Newton's law of impact; Brogliato, Nonsmooth Mechanics, section 5.3).
+All that close and bounce are struck together: impulses p and slips y before and after, counted as
+gaps open, have ``p >= 0``, ``y+ + e y- >= 0``, and one of them zero. What a push alone joins takes
+part as what does not bounce; what else is held stays held. So energy never grows (Newton's law of
+impact; Brogliato, Nonsmooth Mechanics, section 5.3).
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -14,67 +16,87 @@ from codegen.standalone.arrays import Array, EvaluationError, Mode, Places
 from codegen.standalone.holding import Hold
 from codegen.standalone.instant import Instant
 from codegen.standalone.striking import Strike, struck
+from codegen.standalone.switchings import Switching
 from codegen.tuning import TUNING
 
 
 @dataclass(frozen=True)
 class Meeting:
-    """What is struck at an instant, without impulses so far: ``held``: 0 for each port that is.
+    """What is struck at an instant in a mode, looked at with all ports let go.
 
-    ``wanted``: of stops that close how fast they are to open after it; ``ways``: which way their
-    slips open them. ``inputs``, ``readings``: the places of what ports give and receive.
+    ``wanted``: of stops that close, how fast they are to open after it. ``inputs``: the places of
+    what ports give. ``hold``: the equations of what a mode holds; ``slips``: those after a strike;
+    ``near``: below these they are rounding.
     """
 
     now: Instant
-    held: Mode
+    mode: Mode
+    switching: Sequence[Switching | None]
     wanted: Mapping[int, float]
-    ways: Mapping[int, int]
     inputs: Places
-    readings: Places
+    hold: Callable[[Mode], Hold]
+    slips: Callable[[Strike], Array]
+    near: Callable[[Strike], Array]
+
+    @cached_property
+    def ways(self) -> Mapping[int, int]:
+        """The ports that may take part: what is wanted, and what a push alone holds; which way."""
+        ports = enumerate(zip(self.mode, self.switching, strict=True))
+        return {
+            i: one.side for i, (sign, one) in ports
+            if one is not None and one.side and (sign == 0 or i in self.wanted)
+        }  # fmt: skip
+
+    @property
+    def stops(self) -> frozenset[int]:
+        """All of them."""
+        return frozenset(self.ways)
+
+    @property
+    def held(self) -> Mode:
+        """What is held whoever takes part: what holds both ways, but no friction."""
+        ports = zip(self.mode, self.switching, strict=True)
+        return tuple(sign if one is not None and not one.side else 1 for sign, one in ports)
+
+    def struck(self, active: Set[int]) -> Strike | None:
+        """The impulses if these take part; None where no states move them."""
+        mode = tuple(0 if i in active else sign for i, sign in enumerate(self.held))
+        if 0 not in mode:
+            return None
+        held = self.hold(mode)
+        if not len(held.mix):
+            return None
+        ports: Sequence[int] = np.asarray(held.ports).tolist()
+        after = [self.ways[i] * self.wanted.get(i, 0.0) if i in active else 0.0 for i in ports]
+        slips = held.slips(self.now.x, self.now.u) - held.mix @ np.array(after)
+        return struck(held, self.now.numbers, slips)
+
+    def contrary(self, strike: Strike, active: Set[int]) -> set[int]:
+        """Ports that would pull, that open faster than they ought to, or not fast enough."""
+        slips, near, given = self.slips(strike), self.near(strike), strike.given[self.inputs]
+        least = TUNING.rounding * np.abs(given).max(initial=0.0)
+        wrong = set()
+        for i, way in self.ways.items():
+            over = way * slips[i] - self.wanted.get(i, 0.0)
+            if i in active:
+                wrong |= {i} if over > near[i] or way * given[i] > least else set()
+            elif over < -near[i]:
+                wrong.add(i)
+        return wrong
 
 
-def thrown(meeting: Meeting, hold: Callable[[Mode], Hold]) -> Strike | None:
+def thrown(meeting: Meeting) -> Strike | None:
     """The impulses, found by Murty's rule; None where no states move what closes.
 
-    ``hold``: the equations of what a mode holds. Raises `EvaluationError` where none are found.
+    Raises `EvaluationError` where none are found.
     """
-    active = set(meeting.wanted)
+    active = set(meeting.stops)
     for _ in range(TUNING.bounces):
-        strike = _struck(meeting, hold, active)
+        strike = meeting.struck(active)
         if strike is None:
             return None
-        wrong = _contrary(meeting, strike, active)
+        wrong = meeting.contrary(strike, active)
         if not wrong:
             return strike
-        active ^= {min(wrong & active or wrong)}
+        active ^= {min(wrong)}
     raise EvaluationError(f"at t = {meeting.now.t:g} no impulses of stops are consistent")
-
-
-def _struck(meeting: Meeting, hold: Callable[[Mode], Hold], active: set[int]) -> Strike | None:
-    now = meeting.now
-    mode = tuple(0 if i in active else sign for i, sign in enumerate(meeting.held))
-    if 0 not in mode:
-        return None
-    held = hold(mode)
-    if not len(held.mix):
-        return None
-    ports: Sequence[int] = np.asarray(held.ports).tolist()
-    after = [meeting.ways[i] * meeting.wanted[i] if i in active else 0.0 for i in ports]
-    return struck(held, now.numbers, held.slips(now.x, now.u) - held.mix @ np.array(after))
-
-
-def _contrary(meeting: Meeting, strike: Strike, active: set[int]) -> set[int]:
-    """The stops that would pull, that open faster than they ought to, or not fast enough."""
-    before: Array = meeting.now.y[meeting.readings]
-    given, moved = strike.given[meeting.inputs], strike.received[meeting.readings]
-    least = TUNING.rounding * np.abs(given).max(initial=0.0)
-    wrong = set()
-    for i, speed in meeting.wanted.items():
-        way = meeting.ways[i]
-        over = way * (before[i] + moved[i]) - speed
-        near = TUNING.rounding * (abs(before[i]) + abs(moved[i]) + speed)
-        if i in active:
-            wrong |= {i} if over > near or way * given[i] > least else set()
-        elif over < -near:
-            wrong.add(i)
-    return wrong

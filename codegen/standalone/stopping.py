@@ -15,6 +15,7 @@ from codegen.standalone.friction import slip_rates
 from codegen.standalone.instant import Instant
 from codegen.standalone.levels import level_terms
 from codegen.standalone.stepping import Chosen
+from codegen.standalone.striking import Strike
 from codegen.standalone.switched import SwitchedSteps
 from codegen.standalone.switchings import Switching
 from codegen.tuning import TUNING
@@ -101,12 +102,25 @@ class StoppedSteps(SwitchedSteps):
 
     def thrown(self, at: Point, mode: Mode, wanted: dict[int, float]) -> Array:
         """The vector s after the impulses of stops that throw back."""
-        now = self.any_of(at, (1,) * len(mode))
-        held = tuple(np.where(self.rubs, 1, mode).tolist())
-        ways = {i: one.side for i, one in self.stops()}
-        meeting = Meeting(now, held, wanted, ways, self.efforts, self.slips)
-        strike = thrown(meeting, lambda tried: self.friction.hold(tried, now.numbers))
-        return at.s if strike is None else at.s + strike.gained(len(at.s), self.form.law_rates)
+        free = (1,) * len(mode)
+        now = self.any_of(at, free)
+
+        def after(strike: Strike) -> Array:
+            return at.s + strike.gained(len(at.s), self.form.law_rates)
+
+        def slips(strike: Strike) -> Array:
+            return np.asarray(self.any_of(at._replace(s=after(strike)), free).y[self.slips])
+
+        def near(strike: Strike) -> Array:
+            gained = np.abs(now.numbers.Q) @ np.abs(strike.given)
+            moved = np.abs(now.numbers.F[self.slips]) @ gained
+            return np.asarray(TUNING.step_rounding * (self.terms(now) + moved))
+
+        strike = thrown(Meeting(
+            now, mode, self.switching, wanted, np.asarray(self.efforts),
+            lambda tried: self.friction.hold(tried, now.numbers), slips, near,
+        ))  # fmt: skip
+        return at.s if strike is None else after(strike)
 
     def closed_up(self, at: Point, mode: Mode, met: Sequence[Stop]) -> Array:
         """The vector s with the displacements of these at their bounds."""

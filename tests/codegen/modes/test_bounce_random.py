@@ -1,0 +1,31 @@
+"""Random bodies with up to six stops move as the judge finds; momentum is conserved, energy does not grow."""
+
+import numpy as np
+import pytest
+from oracles.stopped import run
+from oracles.stopped_judged import complaints, sure, unbalanced
+from oracles.stopped_random import random_line
+from references.stops.impact import JammedError
+from references.stops.motion import Machine
+from soak.families import seeds
+
+from bondgraph import SimulationError
+
+TIMES = np.linspace(0.0, 4.0, 41)
+
+
+@pytest.mark.parametrize("backend", ["numpy"])
+@pytest.mark.parametrize("seed", seeds("stops"))
+def test_random_stops(seed: int, backend: str) -> None:
+    line = random_line(np.random.default_rng(seed))
+    try:
+        course = Machine(line).run(TIMES)
+        upto = sure(line, TIMES, course, np.random.default_rng([seed, 1]))
+    except JammedError:
+        # A source presses what does not yield.
+        with pytest.raises(SimulationError):
+            run(line, TIMES, backend)
+        return
+    result = run(line, TIMES, backend)
+    assert complaints(line, TIMES, result, course, upto) == []
+    assert unbalanced(line, TIMES, result, backend) == []

@@ -1,0 +1,1 @@
+"""The judge of rigid bodies on lines with stops; `motion.Machine` runs one."""
