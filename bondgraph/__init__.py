@@ -88,6 +88,7 @@ __all__ = [
     "SingularStorageError",
     "StateEquations",
     "Step",
+    "Stop",
     "StoreError",
     "StructureError",
     "Sw",

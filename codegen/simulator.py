@@ -17,8 +17,8 @@ from codegen.engine.runs import CRuns
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
-from codegen.model.starts import told_starts
 from codegen.model.sources import source_signals
+from codegen.model.starts import told_starts
 from codegen.modes.closed import ClosedModel
 from codegen.modes.rates import rates
 from codegen.numbers.arrays import Array, is_finite, is_number, read_only

@@ -25,8 +25,8 @@ def Stop(
 ) -> Node:  # fmt: skip
     """A stop at a 1-junction: its displacement ``q_<name>``, the integral of its flow, stays within bounds.
 
-    Power counts into it. Rigid, it lets ``q_<name>`` neither fall below ``low`` nor rise above ``high`` (None:
-    no such bound): what moves on is stopped by an impulse and thrown back with ``restitution`` times its
+    Power counts into it. Rigid, it lets ``q_<name>`` neither fall below ``low`` nor rise above ``high`` (no
+    such bound if None): what moves on is stopped by an impulse and thrown back with ``restitution`` times its
     speed, a number from 0 to 1; what holds it there are ``e_<name>_low`` and ``e_<name>_high``. With
     ``stiffness``, and ``damping`` if any, it yields: beyond a bound it pushes back with the effort
     ``stiffness * depth + damping * flow``, as long as that does not pull. ``start``: the displacement with

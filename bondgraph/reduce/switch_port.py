@@ -10,7 +10,7 @@ from bondgraph.declare.elements import Switch
 from bondgraph.reduce.structure import Port
 
 Guard = Literal["one-sided", "stop", "commanded", "general"]
-"""What changes a switch over: its own two sides, these at a bound, a signal from outside, or any expression."""
+"""What changes a switch over: its two sides, these at a bound, a signal from outside, or any expression."""
 
 
 @dataclass(frozen=True)
@@ -19,8 +19,8 @@ class SwitchPort:
 
     ``guard``: "one-sided" if ``on`` is a positive multiple of the port's own effort and ``off`` of its own
     flow reversed, or both with the other sign (a flow and an effort for a controlled 0-junction);
-    "stop" if ``off`` is instead the negative of a gap, a displacement beyond a bound, which is the integral of
-    its own flow: apart from the bound it is on, there its own two sides tell;
+    "stop" if ``off`` is instead the negative of a gap, a displacement beyond a bound, the integral of its own
+    flow: apart from the bound it is on, there its own two sides tell;
     "commanded" if both hold time, parameters and open sources' inputs alone; else "general".
 
     ``side``, of a one-sided port 1 or -1, else 0: let go, it receives ``side * received >= 0``; held, it

@@ -47,8 +47,8 @@ def check_gaps(here: Sight, mode: Mode) -> None:
         assert one is not None
         if gaps[one.guard] < -near[one.guard]:
             raise SimulationError(
-                f"at t = {here.t:.9g} stop {port.name!r} begins {-gaps[one.guard]:.6g} beyond its bound; give "
-                f"{model.place_name(one.place)} in initial, or start, within it"
+                f"at t = {here.t:.9g} stop {port.name!r} begins {-gaps[one.guard]:.6g} beyond its bound; "
+                f"give {model.place_name(one.place)} in initial, or start, within it"
             )
 
 

@@ -91,7 +91,8 @@ class _Steps:
         """A law without its jumps, and half of each jump by what it hangs on."""
         marks: dict[sp.Expr, sp.Dummy] = {}
         marked = law.replace(
-            lambda part: isinstance(part, sp.sign | sp.Piecewise), lambda part: self._marked(part, marks)
+            lambda part: isinstance(part, sp.sign | sp.Piecewise),
+            lambda part: self._marked(part, marks),
         )
         if not marks:
             return law, {}
@@ -192,7 +193,8 @@ def _widened(
     reduction = equations.reduction
     own_columns = {k: _spread(reading, copies) for k, reading in reduction.columns.items()}
     return replace(
-        equations, inputs=inputs, readings=MappingProxyType(rows), **_matrices(equations, copies, len(inputs)),
+        equations, inputs=inputs, readings=MappingProxyType(rows),
+        **_matrices(equations, copies, len(inputs)),
         reduction=replace(reduction, inputs=inputs, columns=MappingProxyType(own_columns)),
     )  # fmt: skip
 
@@ -204,7 +206,9 @@ def _sum(parts: Iterable[tuple[Reading, sp.Expr]]) -> Reading:
     return total.whole()
 
 
-def _matrices(equations: StateEquations, copies: Columns, width: int) -> dict[str, sp.ImmutableSparseMatrix]:
+def _matrices(
+    equations: StateEquations, copies: Columns, width: int
+) -> dict[str, sp.ImmutableSparseMatrix]:
     matrices = {}
     for letter in "BEDG":
         matrix = getattr(equations, letter)

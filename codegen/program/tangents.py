@@ -83,7 +83,9 @@ def _seen(closing: Closing, given: sp.Symbol) -> list[int]:
     others = [equations.readings[closing.received[one]] for one in closing.friction if one != given]
     direct = bool(own & set(row.D))
     jumps = any(given == jump.mixture for jump in closing.jumps)
-    if not (row.F or jumps) or (direct and not any(answering & set(row.D) & set(o.D) for o in others)):
+    if not (row.F or jumps) or (
+        direct and not any(answering & set(row.D) & set(o.D) for o in others)
+    ):
         return []
     return [j for j in row.D if equations.inputs[j] in laws]
 

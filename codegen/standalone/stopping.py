@@ -49,7 +49,7 @@ class StoppedSteps(SwitchedSteps):
         return super().begin(at, on, named)
 
     def chosen(self, at: Point, previous: Chosen, dead_band: float, h: float) -> tuple[Mode, Array]:
-        """The first consistent mode after what stops do, and s then: joining first, then throwing."""
+        """The first consistent mode after what stops do, and s then: what joins comes first."""
         first = self.first if previous is None else previous
         met = self.met(at, first)
         apart = {i for i, _ in self.stops()} - {i for i, _ in met}

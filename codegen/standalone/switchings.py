@@ -30,9 +30,9 @@ class Switching:
     while ``side * y >= 0`` and held while ``side * u <= 0``; 0: of one that is told by the two
     guards from ``guard`` on, its conditions to turn on and off. ``slides``: of one way in which dry
     friction slips that gives a flow: held it slips. ``place``: of a stop the place in s of its
-    displacement; ``guard`` is its gap then, which changes by ``opening`` with that, and after that its
-    restitution: it is on while it is apart, and has the two sides of a one-sided switch where the gap is closed. ``bound``: whether
-    it is declared as a stop, which touches and is apart.
+    displacement; ``guard`` is its gap then, which changes by ``opening`` with that, and the next
+    its restitution. It is on while it is apart, and where the gap is closed it has the two sides
+    of a one-sided switch. ``bound``: whether it is declared as a stop, which touches and is apart.
     """
 
     on: bool
