@@ -7,6 +7,7 @@ from codegen.energy.audit import Audit
 from codegen.engine.fallback import BackendWarning
 from codegen.family import Family
 from codegen.fmu.export import write_fmu
+from codegen.inputs.held import Pulse, ZeroOrderHold
 from codegen.inputs.sampled import Sampled
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, Lag, Ramp, Sine, Step
@@ -54,6 +55,7 @@ __all__ = [
     "Grid",
     "Lag",
     "Program",
+    "Pulse",
     "Ramp",
     "Result",
     "Sampled",
@@ -69,6 +71,7 @@ __all__ = [
     "Swept",
     "SwitchedSimulator",
     "Table",
+    "ZeroOrderHold",
     "balance",
     "bode",
     "compare",

@@ -18,7 +18,7 @@ class Constant(Signal):
     value: float
 
     def __post_init__(self) -> None:
-        _check_finite(self, self.value)
+        check_finite(self, self.value)
 
     breakpoints = ()
 
@@ -41,7 +41,7 @@ class Step(Signal):
     initial: float = 0.0
 
     def __post_init__(self) -> None:
-        _check_finite(self, self.time, self.value, self.initial)
+        check_finite(self, self.time, self.value, self.initial)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -64,7 +64,7 @@ class Ramp(Signal):
     end: float | None = None
 
     def __post_init__(self) -> None:
-        _check_finite(self, self.time, self.slope, self.initial, self.end or 0.0)
+        check_finite(self, self.time, self.slope, self.initial, self.end or 0.0)
         if self.end is not None and self.end <= self.time:
             raise SignalError(f"{self}: a ramp must end after it begins")
 
@@ -91,7 +91,7 @@ class Sine(Signal):
     offset: float = 0.0
 
     def __post_init__(self) -> None:
-        _check_finite(self, self.amplitude, self.frequency, self.phase, self.offset)
+        check_finite(self, self.amplitude, self.frequency, self.phase, self.offset)
 
     breakpoints = ()
 
@@ -115,7 +115,7 @@ class Lag(Signal):
     time_constant: float
 
     def __post_init__(self) -> None:
-        _check_finite(self, self.time_constant)
+        check_finite(self, self.time_constant)
         if not isinstance(self.signal, Signal):
             raise SignalError(f"a lag follows a signal, not {self.signal!r}")
         if self.time_constant <= 0:
@@ -148,12 +148,13 @@ def as_signal(value: object, name: str) -> Signal:
             raise SignalError(f"input {name!r}: {value!r} is not a finite number")
         return Constant(float(value))
     raise SignalError(
-        f"input {name!r}: {value!r} is neither a signal nor a number; use Constant, Step, Ramp, "
-        "Sine, Sampled or Lag"
+        f"input {name!r}: {value!r} is neither a signal nor a number; use Constant, Step, Pulse, Ramp, "
+        "Sine, Square, Sawtooth, PWM, Sampled, ZeroOrderHold or Lag"
     )
 
 
-def _check_finite(signal: Signal, *numbers: float) -> None:
+def check_finite(signal: Signal, *numbers: float) -> None:
+    """Refuse what is no finite number, naming the kind of signal."""
     for number in numbers:
         if not is_number(number):
             raise SignalError(f"{type(signal).__name__}: {number!r} is not a number")
