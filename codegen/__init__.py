@@ -8,6 +8,7 @@ from codegen.engine.fallback import BackendWarning
 from codegen.family import Family
 from codegen.fmu.export import write_fmu
 from codegen.inputs.held import Pulse, ZeroOrderHold
+from codegen.inputs.periodic import PWM, Sawtooth, Square
 from codegen.inputs.sampled import Sampled
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, Lag, Ramp, Sine, Step
@@ -44,6 +45,7 @@ from codegen.switched.simulator import SwitchedSimulator, switched_simulator
 from codegen.trim import trim
 
 __all__ = [
+    "PWM",
     "Audit",
     "BackendWarning",
     "Block",
@@ -60,11 +62,13 @@ __all__ = [
     "Result",
     "Sampled",
     "Samples",
+    "Sawtooth",
     "Signal",
     "Simulator",
     "Sine",
     "SparseModel",
     "Spectrum",
+    "Square",
     "Step",
     "Sweep",
     "SweepInterrupted",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from bondgraph.errors import SignalError
+from codegen.inputs.lagged import lagged
 from codegen.inputs.pieces import Piece, collected, constant_piece, lagged_terms, moved
 from codegen.inputs.signal import Signal
 from codegen.numbers.arrays import is_finite, is_number
@@ -107,6 +108,9 @@ class Sine(Signal):
 class Lag(Signal):
     """A first-order lag: ``time_constant * y' + y = signal``, in steady state before the first break.
 
+    Of a signal that repeats the steady state repeats, too; of one whose duty is a signal the lag is, up to
+    the period that holds t = 0, as if the duty had been for ever what it is there.
+
     >>> round(Lag(Step(0.0, 1.0), 0.04)(0.04), 6)
     0.632121
     """
@@ -120,6 +124,20 @@ class Lag(Signal):
             raise SignalError(f"a lag follows a signal, not {self.signal!r}")
         if self.time_constant <= 0:
             raise SignalError(f"a lag's time constant must be positive, not {self.time_constant}")
+
+    @property
+    def endless(self) -> bool:
+        """Whether the signal it follows is."""
+        return self.signal.endless
+
+    @cached_property
+    def summands(self) -> tuple[Signal, ...]:
+        """Of an endless signal the lags of its summands."""
+        if not self.endless:
+            return (self,)
+        T = float(self.time_constant)
+        found = [(part, lagged(part, T)) for part in self.signal.summands]
+        return tuple(Lag(part, T) if one is None else one for part, one in found)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:

@@ -12,8 +12,8 @@ from bondgraph.algebra.expressions import expression
 
 SIGNALS: Mapping[str, type[codegen.Signal]] = MappingProxyType(
     {
-        "constant": codegen.Constant, "step": codegen.Step, "pulse": codegen.Pulse,
-        "ramp": codegen.Ramp, "sine": codegen.Sine, "lag": codegen.Lag,
+        "constant": codegen.Constant, "step": codegen.Step, "ramp": codegen.Ramp,
+        "sine": codegen.Sine, "lag": codegen.Lag, "pulse": codegen.Pulse,
     }
 )  # fmt: skip
 """What a signal may be made of, beside numbers and sums."""
