@@ -109,7 +109,8 @@ static int failed(int status)
 /* Inputs at t and just after. */
 static void inputs_at(const bg_signals *signals, double t, double *w, double *dw)
 {
-    bg_signals_at(signals, bg_signals_segment(signals, t), t, w, dw);
+    const bg_span span = bg_signals_span(signals, bg_reached(t));
+    bg_signals_at(signals, &span, t, w, dw);
 }
 
 /* Rows by fixed steps, `parts` from each to the next. */
