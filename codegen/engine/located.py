@@ -17,7 +17,7 @@ from codegen.engine.runs import NO_END, not_affine
 from codegen.engine.sizes import aligned, declarations
 from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
-from codegen.inputs.tables import SignalTable, has_table, signal_table
+from codegen.inputs.tables import NO_TABLE, SignalTable, has_table, signal_table
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
@@ -110,7 +110,7 @@ class LocatedRuns:
         ``keeping``: whether events are kept.
         """
         if not has_table(signals):
-            return Stopped("a lag follows a PWM whose duty is a signal", limit=True)
+            return Stopped(NO_TABLE, limit=True)
         ffi, _ = self.library.opened
         rows = np.empty((len(times), self.width))
         begin = np.array([*first, *[1] * max(len(self.model.switching), 1)], dtype=np.intc)

@@ -8,6 +8,11 @@ from codegen.inputs.pieces import Piece, Term
 from codegen.inputs.signal import Signal
 from codegen.inputs.waves import Wave
 
+NO_TABLE = (
+    "a lag of a PWM whose duty is a signal depends on all before, which no table holds; give the model the "
+    "lag, or the PWM a number as duty"
+)
+
 Row = tuple[int, int, int, float, complex]
 """An input, the place of its first coefficient, how many there are, their start [s], their rate [1/s]."""
 
@@ -53,9 +58,10 @@ def signal_table(signals: Sequence[Signal], begin: float, end: float) -> SignalT
         fastest.append(max((piece.fastest for _, piece in pieces), default=0.0))
     waves, parts = _waves(waved, terms)
     duties = [wave.duty for _, wave in waved if wave.duty is not None]
+    first, last = known_span(duties)
     return SignalTable(
         tuple(breaks), tuple(begins), tuple(terms.rows), tuple(terms.coefficients), tuple(fastest),
-        waves, parts, signal_table(duties, *known_span(duties)) if duties else None,
+        waves, parts, signal_table(duties, first - 1.0, last) if duties else None,
     )  # fmt: skip
 
 
@@ -66,9 +72,9 @@ def has_table(signals: Sequence[Signal]) -> bool:
 
 
 def known_span(signals: Sequence[Signal], begin: float = 0.0) -> tuple[float, float]:
-    """A time before all breakpoints that are at hand, at most ``begin``, and one no earlier than any [s]."""
+    """The first and the last of breakpoints that are at hand, and of ``begin`` [s]."""
     ends = [b for _, signal in _sorted(signals)[0] for b in signal.breakpoints]
-    first = min([begin, *(b - 1.0 for b in ends)])
+    first = min([begin, *ends])
     return first, max([first, *ends])
 
 
@@ -83,10 +89,7 @@ def _sorted(
             if isinstance(part, Wave):
                 waved.append((at, part))
             elif part.endless:
-                raise SignalError(
-                    "a lag of a PWM whose duty is a signal depends on all before, which no table holds; give "
-                    "the model the lag, or the PWM a number as duty"
-                )
+                raise SignalError(NO_TABLE)
             else:
                 chained.append((at, part))
     return chained, waved

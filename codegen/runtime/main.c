@@ -204,6 +204,7 @@ int main(int count, char **words)
     const bg_signals signals = {
         SCENARIO_SEGMENTS, scenario_breaks, scenario_begins, asked.terms,
         (const double(*)[2])asked.coefficients, scenario_fastest,
+        SCENARIO_WAVES, scenario_wave, scenario_parts, SCENARIO_DUTIES,
     };
     if (failed(bg_model_init(&model, asked.parameters)))
         return 1;
