@@ -2,15 +2,13 @@
 
 import tracemalloc
 from collections.abc import Mapping
-from functools import cache
 
 import numpy as np
 import pytest
-from references.build import bond_graph
+from oracles.pulsed import coil, half_bridge
 from references.pulsed import current, switchings
 from soak.families import seeds
 
-import bondgraph as bg
 from codegen import (
     PWM,
     Family,
@@ -28,21 +26,6 @@ from codegen import (
 )
 
 V, R = 24.0, 1.5
-
-
-@cache
-def coil() -> bg.StateEquations:
-    """A voltage over a coil and a resistance."""
-    nodes = [bg.Se("src", "u"), bg.One("n"), bg.I("L", "L", flow="i"), bg.R("R", "R")]
-    return bg.derive(bond_graph(nodes, "src>n>L n>R"))
-
-
-@cache
-def half_bridge() -> bg.StateEquations:
-    """Two switches that a gate drives in turn join the coil to a voltage, or to the ground."""
-    nodes = [bg.Se("src", "V"), bg.One("up"), bg.Sw("high", on="gate - 1/2"), bg.Zero("m"),
-             bg.Sw("low", on="1/2 - gate"), bg.One("n"), bg.I("L", "L", flow="i"), bg.R("R", "R")]  # fmt: skip
-    return bg.derive(bond_graph(nodes, "src>up>high up>m>low m>n>L n>R"))
 
 
 def _drawn(seed: int) -> tuple[float, float, float, float]:
