@@ -10,8 +10,8 @@ from bondgraph.algebra.expressions import normal
 from codegen.batch.asked import Asked
 from codegen.batch.model import BatchModel, Flags
 from codegen.inputs.signal import Signal
-from codegen.inputs.tables import has_table
 from codegen.inputs.swept import Swept, settled
+from codegen.inputs.tables import has_table
 from codegen.model.numbers import exact_parameters
 from codegen.model.sources import source_signals
 from codegen.numbers.arrays import Array

@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from codegen.numbers.arrays import Array
 
 Chain = tuple[int, complex, int]
@@ -27,5 +30,5 @@ class Rows:
     constants: Array
     starts: Array
     polynomials: Array
-    chains: Array
+    chains: NDArray[np.intc]
     fastest: Array

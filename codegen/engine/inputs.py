@@ -36,9 +36,9 @@ class Segments:
         del t, count
         size = len(self.chains)
         starts, polynomials = np.zeros((size, width)), np.zeros((size, width))
-        for at, chains in enumerate(self.polynomials):
+        for at, row in enumerate(self.polynomials):
             first = 0
-            for i, (start, polynomial) in enumerate(chains):
+            for i, (start, polynomial) in enumerate(row):
                 chain = self.structures[self.chains[at]][i]
                 step = 2 if chain[1].imag else 1
                 starts[at, i] = start

@@ -203,7 +203,9 @@ def _pointer(ffi: Any, array: Any, kind: str = "double *") -> Any:
 
 def _declared() -> str:
     """What is called; records that only C looks into have names alone."""
-    own = "".join(f"typedef struct {n} {n};\n" for n in ("bg_model", "bg_located", "bg_snapshot", "bg_span"))
+    own = "".join(
+        f"typedef struct {n} {n};\n" for n in ("bg_model", "bg_located", "bg_snapshot", "bg_span")
+    )
     headers = (
         "port_switch.h", "port_events.h", "model_signals.h", "located_request.h", "located_rows.h",
         "batch_measure.h", "batch_located.h",

@@ -6,8 +6,11 @@ from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
+from numpy.typing import NDArray
 
+from bondgraph.errors import SimulationError
 from codegen.engine.chains import Chain, Rows, slots_of
+from codegen.inputs.lagged import Chase
 from codegen.inputs.pieces import Piece, Term
 from codegen.inputs.signal import Signal
 from codegen.inputs.waves import Wave
@@ -94,7 +97,9 @@ class _Part:
             return [Piece(0.0, terms) for terms in signal.forms]
         if not signal.endless:
             return signal.pieces
-        times = (begin, *islice(signal.within(begin, math.inf), SAMPLES))
+        late = max(begin, signal.origin) if isinstance(signal, Chase) else begin
+        times = [begin, late]
+        times += [t for first in times[:] for t in islice(signal.within(first, math.inf), SAMPLES)]
         return [signal.piece(t) for t in times]
 
     def _told(self, forms: Sequence[Iterable[Term]]) -> _Table:
@@ -102,9 +107,13 @@ class _Part:
         polynomials = np.zeros((len(forms), sum(map(slots_of, self.chains))))
         for row, terms in enumerate(forms):
             for rate, polynomial in terms:
-                first = self._slot(complex(rate))
-                if first is None:
-                    constants[row] += complex(polynomial[0]).real
+                first, depth = self._slots(complex(rate))
+                if len(polynomial) > depth:
+                    raise SimulationError(
+                        f"{self._signal} has a term of the rate {rate:g} that none of its first pieces has"
+                    )
+                if not polynomial or not (rate or depth > 1):
+                    constants[row] += complex(sum(polynomial)).real
                     continue
                 width = 2 if complex(rate).imag else 1
                 for k, c in enumerate(polynomial):
@@ -113,14 +122,14 @@ class _Part:
                         polynomials[row, first + width * k + 1] += complex(c).imag
         return _Table(constants, polynomials)
 
-    def _slot(self, rate: complex) -> int | None:
-        """Where the chain of a rate has its slots; None for a constant, which has none."""
+    def _slots(self, rate: complex) -> tuple[int, int]:
+        """Where the chain of a rate has its slots, and its depth; that of a constant has none."""
         first = 0
         for chain in self.chains:
             if chain[1] == rate:
-                return first
+                return first, chain[2]
             first += slots_of(chain)
-        return None
+        return 0, 0 if rate else 1
 
     def breaks(self, t: float, count: int) -> Array:
         """The breakpoints after t: so many or more if there are."""
@@ -136,6 +145,7 @@ class _Part:
     def write(self, begins: Array, constants: Array, starts: Array, polynomials: Array) -> None:
         """What it is in segments that begin so."""
         signal, table = self._signal, self._table
+        which: NDArray[np.intp]
         if isinstance(signal, Wave):
             which, own = signal.places(begins)
         elif not signal.endless:

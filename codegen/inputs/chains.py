@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from codegen.inputs.pieces import Piece, collected, moved
 from codegen.numbers.arrays import Array
@@ -34,7 +35,7 @@ def sampled(breaks: Sequence[float], pieces: Sequence[Piece], times: Array) -> A
     return by_pieces(which, pieces, times)
 
 
-def by_pieces(which: Array, pieces: Sequence[Piece], times: Array) -> Array:
+def by_pieces(which: NDArray[np.intp], pieces: Sequence[Piece], times: Array) -> Array:
     """What each time's own piece is there."""
     result = np.zeros(len(times))
     for at in np.unique(which).tolist():

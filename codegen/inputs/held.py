@@ -101,11 +101,12 @@ def _row(numbers: ArrayLike | None, what: str) -> Array:
     return row
 
 
-def _even(start: float, period: object, count: int) -> Array:
+def _even(start: object, period: object, count: int) -> Array:
     """Times that many periods after the start, none the sum of others."""
     for number, what in ((start, "start"), (period, "period")):
         if not is_number(number) or not is_finite(number):
             raise SignalError(f"held values: the {what} must be a finite number, not {number!r}")
-    if not period > 0:  # type: ignore[operator]
+    first, step = float(start), float(period)  # type: ignore[arg-type]
+    if not step > 0:
         raise SignalError(f"held values: the period must be positive, not {period!r}")
-    return np.asarray(start + period * np.arange(count), dtype=float)  # type: ignore[operator]
+    return np.asarray(first + step * np.arange(count), dtype=np.float64)

@@ -25,11 +25,12 @@ def lagged_wave(wave: Wave, T: float) -> Signal:
     are equal, at the sum of a geometric series.
     """
     if wave.duty is not None:
-        share = wave.share(wave.period(0.0))
+        period = wave.period(0.0)
+        share = wave.share(period)
         still = replace(wave, fractions=(0.0, share), duty=None)
         if not 0 < share < 1:
             still = replace(still, fractions=(0.0,), forms=(wave.forms[0 if share else 1],))
-        return Chase(wave, T, lagged_wave(still, T), wave.preceding(0.0))
+        return Chase(wave, T, lagged_wave(still, T), wave.instant(period, wave.phase))
     forced = [lagged_terms(Piece(0.0, terms), T) for terms in wave.forms]
     ends = [*wave.fractions[1:], 1.0]
     lasts = [(b - a) / wave.frequency for a, b in zip(wave.fractions, ends, strict=True)]
@@ -63,7 +64,7 @@ def _expm1(z: complex) -> complex:
 
 @dataclass(frozen=True)
 class Chase(Endless):
-    """The answer of ``T y' + y = driven`` from ``origin`` [s] on, piece by piece; until then it is ``before``.
+    """The answer of ``T y' + y = driven`` from ``origin`` [s] on, piece by piece; until then ``before``.
 
     ``before`` is the lag of what the signal would be if its duty had for ever been what it is at the
     origin, where the period that holds t = 0 begins. Times are best asked for in turn: going back far
@@ -81,7 +82,11 @@ class Chase(Endless):
 
     def following(self, t: float) -> float:
         """That of the signal it follows, or of what was before."""
-        return self.driven.following(t) if t >= self.origin else min(self.before.following(t), self.origin)
+        return (
+            self.driven.following(t)
+            if t >= self.origin
+            else min(self.before.following(t), self.origin)
+        )
 
     def preceding(self, t: float) -> float:
         """As `following`."""
@@ -98,7 +103,10 @@ class Chase(Endless):
     def sampled(self, times: Array, rates: bool = False) -> Array:
         """As of all signals."""
         pieces = map(self.piece, times.tolist())
-        told = [(one.derivative if rates else one)(t) for one, t in zip(pieces, times.tolist(), strict=True)]
+        told = [
+            (one.derivative if rates else one)(t)
+            for one, t in zip(pieces, times.tolist(), strict=True)
+        ]
         return np.array(told, dtype=float)
 
     @cached_property
@@ -128,6 +136,7 @@ def lagged(signal: Signal, T: float) -> Signal | None:
         return lagged_wave(signal, T)
     if isinstance(signal, Chase):
         before = [lagged(part, T) for part in signal.before.summands]
-        assert len(before) == 1 and before[0] is not None
-        return Chase(signal, T, before[0], signal.origin)
+        first = before[0]
+        assert first is not None
+        return Chase(signal, T, first, signal.origin)
     return None

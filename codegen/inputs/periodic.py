@@ -114,7 +114,9 @@ def _level(value: float) -> tuple[tuple[complex, tuple[complex, ...]], ...]:
 
 def _check_frequency(signal: Signal, frequency: float) -> None:
     if not frequency > 0:
-        raise SignalError(f"{type(signal).__name__}: the frequency must be positive, not {frequency!r}")
+        raise SignalError(
+            f"{type(signal).__name__}: the frequency must be positive, not {frequency!r}"
+        )
 
 
 def _check_share(signal: Signal, name: str, share: float) -> None:

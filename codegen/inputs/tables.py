@@ -20,7 +20,8 @@ PartRow = tuple[int, int, float]
 """The place of a part's first term, how many there are, where in its period it begins."""
 
 WaveRow = tuple[int, int, int, float, float, float]
-"""The place of a wave's first part, how many there are, its duty's place or -1, frequency [Hz], phase, pace [1/s]."""
+"""The place of a wave's first part, how many there are, its duty's place or -1; frequency [Hz], phase, and
+the largest rate [1/s]."""
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bondgraph.errors import SignalError
 from codegen.inputs.chains import by_pieces, jumps
@@ -125,12 +126,14 @@ class Wave(Endless):
             pieces = [piece.derivative for piece in pieces]
         return by_pieces(which, pieces, times - begins)
 
-    def places(self, times: Array) -> tuple[Array, Array]:
+    def places(self, times: Array) -> tuple[NDArray[np.intp], Array]:
         """Which part holds at each of many times, and when it began."""
         f, phase = self.frequency, self.phase
         k = np.floor(times * f - phase)
-        k = np.where((k + 1 + phase) / f <= times, k + 1, np.where((k + phase) / f > times, k - 1, k))
-        which, begins = np.zeros(len(times), dtype=int), (k + phase) / f
+        k = np.where(
+            (k + 1 + phase) / f <= times, k + 1, np.where((k + phase) / f > times, k - 1, k)
+        )
+        which, begins = np.zeros(len(times), dtype=np.intp), (k + phase) / f
         for j, offset in self._columns(k):
             at = (k + offset) / f
             which, begins = np.where(at <= times, j, which), np.where(at <= times, at, begins)

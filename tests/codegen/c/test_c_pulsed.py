@@ -11,7 +11,19 @@ from oracles.pulsed import coil, half_bridge
 from references.pulsed import current, switchings
 
 from bondgraph import SignalError
-from codegen import PWM, Lag, Sampled, Sawtooth, Signal, Sine, Square, Step, simulator, to_c, to_python
+from codegen import (
+    PWM,
+    Lag,
+    Sampled,
+    Sawtooth,
+    Signal,
+    Sine,
+    Square,
+    Step,
+    simulator,
+    to_c,
+    to_python,
+)
 from codegen.python.script import script
 from codegen.targets import Export
 

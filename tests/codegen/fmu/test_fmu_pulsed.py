@@ -28,7 +28,9 @@ def test_model_exchange_is_told_of_every_instant(version: str, tmp_path: Path) -
     found, time = [], 0.0
     while time <= 1e-3:
         made.enterEventMode()
-        *_, planned, time = made.newDiscreteStates() if version == "2.0" else made.updateDiscreteStates()
+        *_, planned, time = (
+            made.newDiscreteStates() if version == "2.0" else made.updateDiscreteStates()
+        )
         assert planned
         made.enterContinuousTimeMode()
         made.setTime(time)

@@ -88,7 +88,9 @@ def test_parts_too_short_for_time_are_none() -> None:
 
 
 def test_what_repeats_faster_than_time_can_tell_is_refused() -> None:
-    with pytest.raises(SignalError, match="a period of 1e-20 s is no more than the rounding of time"):
+    with pytest.raises(
+        SignalError, match="a period of 1e-20 s is no more than the rounding of time"
+    ):
         PWM(1e20, 0.5).following(1.0)
 
 

@@ -2,8 +2,9 @@
 
 from functools import cache
 
-import bondgraph as bg
 from references.build import bond_graph
+
+import bondgraph as bg
 
 
 @cache
@@ -17,5 +18,6 @@ def coil() -> bg.StateEquations:
 def half_bridge() -> bg.StateEquations:
     """The switches join the coil to a voltage, or to the ground."""
     nodes = [bg.Se("src", "V"), bg.One("up"), bg.Sw("high", on="gate - 1/2"), bg.Zero("m"),
-             bg.Sw("low", on="1/2 - gate"), bg.One("n"), bg.I("L", "L", flow="i"), bg.R("R", "R")]  # fmt: skip
+             bg.Sw("low", on="1/2 - gate"), bg.One("n"), bg.I("L", "L", flow="i"),
+             bg.R("R", "R")]  # fmt: skip
     return bg.derive(bond_graph(nodes, "src>up>high up>m>low m>n>L n>R"))

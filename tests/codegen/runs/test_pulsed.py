@@ -138,7 +138,10 @@ def test_the_audit_closes(backend: str) -> None:
 def test_integrators_pass_every_instant(method: str) -> None:
     """The methods that step with a tolerance, in numpy and in C; a sawtooth and a moving duty as well."""
     times = np.linspace(0.0, 0.01, 53)
-    for drive in (PWM(5e3, Sine(0.4, 100.0, offset=0.5), 0.0, V, 0.2), Lag(Square(2e3, 0, V), 2e-4)):
+    for drive in (
+        PWM(5e3, Sine(0.4, 100.0, offset=0.5), 0.0, V, 0.2),
+        Lag(Square(2e3, 0, V), 2e-4),
+    ):
         exact = simulator(coil(), {"L": 1e-3, "R": R}).run(times, {}, {"u": drive})
         for backend in ("numpy", "c"):
             ready = simulator(coil(), {"L": 1e-3, "R": R}, backend=backend)
