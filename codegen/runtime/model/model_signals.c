@@ -87,6 +87,17 @@ static double rounding(const bg_signals *signals, const bg_span *span, int input
     return sum;
 }
 
+/* Adds a term, and tells the largest of the coefficients so far. */
+static void add_term(const bg_term *term, const double (*coefficients)[2], double t, double *w,
+                     double *dw, double *largest)
+{
+    const double(*const c)[2] = coefficients + term->first;
+    double *const most = largest + term->input;
+    bg_term_add(term, coefficients, t, w + term->input, dw + term->input);
+    for (int i = 0; i < term->count; i++)
+        *most = fmax(*most, fmax(fabs(c[i][0]), fabs(c[i][1])));
+}
+
 void bg_signals_at(const bg_signals *signals, const bg_span *span, double t, double *w, double *dw)
 {
     double largest[BG_ROOM(BG_EXTERNAL)] = {0};
@@ -95,13 +106,10 @@ void bg_signals_at(const bg_signals *signals, const bg_span *span, double t, dou
         w[i] = dw[i] = 0.0;
     /* Pieces are not continued back before they begin: a level would fall below zero. */
     t = fmax(t, span->begin);
-    for (const bg_term *term = next_term(&walk); term; term = next_term(&walk)) {
-        const double(*const c)[2] = signals->coefficients + term->first;
-        double *const most = largest + term->input;
-        bg_term_add(term, signals->coefficients, t, w + term->input, dw + term->input);
-        for (int i = 0; i < term->count; i++)
-            *most = fmax(*most, fmax(fabs(c[i][0]), fabs(c[i][1])));
-    }
+    for (; walk.next < walk.last; walk.next++) /* of the table, which most are */
+        add_term(signals->terms + walk.next, signals->coefficients, t, w, dw, largest);
+    for (const bg_term *term = next_term(&walk); term; term = next_term(&walk))
+        add_term(term, signals->coefficients, t, w, dw, largest);
     for (int i = 0; i < BG_EXTERNAL; i++)
         if (w[i] != 0.0 && fabs(w[i]) <= BG_CANCELLED * largest[i] /* else none: saves the look */
             && fabs(w[i]) <= rounding(signals, span, i, t))
