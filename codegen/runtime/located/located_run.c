@@ -178,8 +178,8 @@ void bg_located_set_out(bg_located *c, bg_model *m, const bg_signals *signals, b
 
 int bg_located_go(bg_located *c)
 {
-    const bg_engine engine = {bg_view_sight(&c->view), c, pass_on, take_in, fastest_now, NULL, take_away,
-                              go_on};
+    const bg_engine engine = {bg_view_sight(&c->view), c, pass_on, take_in, fastest_now, NULL,
+                              take_away, go_on};
     return bg_run(&engine, &c->run);
 }
 

@@ -31,7 +31,7 @@ double bg_cancelled(double size, double slope, double time)
     return 8.0 * DBL_EPSILON * (size + slope * time / 8.0);
 }
 
-/* A term that holds in a span, by its number; the one after the last is NULL. Those of waves are told
+/* The terms that hold in a span, one after the other, NULL after the last. Those of waves are told
  * from where their part begins, in `own`. */
 typedef struct {
     const bg_signals *signals;
@@ -98,7 +98,8 @@ static void add_term(const bg_term *term, const double (*coefficients)[2], doubl
         *most = fmax(*most, fmax(fabs(c[i][0]), fabs(c[i][1])));
 }
 
-void bg_signals_at(const bg_signals *signals, const bg_span *span, double t, double *w, double *dw)
+void bg_signals_at(const bg_signals *signals, const bg_span *span, double t, double *w,
+                   double *dw)
 {
     double largest[BG_ROOM(BG_EXTERNAL)] = {0};
     term_walk walk = walk_terms(signals, span);
