@@ -19,9 +19,9 @@ typedef struct {
     double fraction;
 } bg_part;
 
-/* What repeats: period k begins at (k + phase) / frequency, a part of it at (k + (phase + fraction)) /
- * frequency. `duty`: -1, or the input of `duties` that says at each period's start where the second of
- * two parts begins. `fastest` [1/s]: the largest rate of its parts. */
+/* What repeats: period k begins at (k + phase) / frequency, a part of it at
+ * (k + (phase + fraction)) / frequency. `duty`: -1, or the input of `duties` that says at each
+ * period's start where the second of two parts begins. `fastest` [1/s]: the largest rate. */
 typedef struct {
     int first, parts, duty;
     double frequency, phase, fastest;
@@ -54,12 +54,12 @@ void bg_term_add(const bg_term *term, const double (*coefficients)[2], double t,
 /* The time up to which breakpoints count as reached at t: times are sums of steps. */
 double bg_reached(double t);
 
-/* The pieces that hold at t and just after; their largest rate; inputs and their rates at t in them. */
+/* The pieces that hold at t and just after; their largest rate; inputs and their rates at t. */
 bg_span bg_signals_span(const bg_signals *signals, double t);
 double bg_signals_fastest(const bg_signals *signals, const bg_span *span);
 void bg_signals_at(const bg_signals *signals, const bg_span *span, double t, double *w, double *dw);
 
-/* model_waves.c: the part of a wave that holds at t, and when it began; when the next one begins. */
+/* model_waves.c: the part of a wave that holds at t, and when it began; when the next begins. */
 int bg_wave_part(const bg_signals *signals, const bg_wave *wave, double t, double *begin);
 double bg_wave_following(const bg_signals *signals, const bg_wave *wave, double t);
 

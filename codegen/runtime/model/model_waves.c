@@ -17,7 +17,7 @@ static double wave_period(const bg_wave *wave, double t)
     return wave_instant(wave, k, wave->phase) > t ? k - 1.0 : k;
 }
 
-/* Where a part after the first begins, from the start of its period on; infinite where it does not. */
+/* Where a part after the first begins, in periods; infinite where it does not. */
 static double wave_offset(const bg_signals *signals, const bg_wave *wave, int part, double start)
 {
     if (wave->duty < 0)
