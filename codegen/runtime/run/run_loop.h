@@ -22,8 +22,9 @@ typedef struct {
 /* What runs. `pass` tells the pieces of the inputs at t and just after; `see` takes the instant,
  * which was looked at with friction slipping so, into what rounding is relative to; `fastest` tells
  * the largest rate [1/s] there in the mode so far; `choose` decides the mode there as bg_choose
- * does, NULL where that is to do it; `rest` takes the slips of ports that stick away; `advance` goes
- * on to `stop` or the first event, whose ports it tells in `touched`. All but `see` give a status. */
+ * does, NULL where that is to do it; `rest` takes the slips of ports that stick away; `advance`
+ * goes on to `stop` or the first event, whose ports it tells in `touched`. All but `see` give a
+ * status. */
 typedef struct {
     bg_sight sight;
     void *self;
