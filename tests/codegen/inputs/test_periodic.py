@@ -53,6 +53,13 @@ def test_instants_are_whole_numbers_over_the_frequency(seed: int) -> None:
             assert abs(Fraction(one) - other) <= 4 * Fraction(math.ulp(max(abs(one), 1 / f)))
 
 
+def test_instants_are_the_doubles_nearest_to_what_they_stand_for() -> None:
+    """A tenth added up, or times three, is another double than three tenths."""
+    found = list(PWM(10.0, 0.5).within(0.0, 5.0))
+    assert found == [k / 20 for k in range(1, 101)]
+    assert found[5] == 0.3 != 3 * 0.1
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_so_many_switchings_as_there_are(seed: int) -> None:
     f, phase, duty = _drawn(seed)
@@ -110,6 +117,9 @@ def test_a_duty_is_read_at_the_start_of_each_period_and_clipped() -> None:
         share = min(max(duty(start), 0.0), 1.0)
         expected += [start] if share >= 1 else sorted({start, (k + (0.5 + share)) / 100})
     assert list(signal.within(-0.01, 0.1)) == [t for t in expected if -0.01 < t <= 0.1]
+    # Below zero it begins nothing before the period's start.
+    assert duty(0.005) < 0
+    assert signal.preceding(0.007) == 0.005
     for t in np.linspace(0, 0.1, 1001).tolist():
         k = math.floor(100 * t - 0.5)
         share = duty((k + 0.5) / 100)

@@ -69,6 +69,37 @@ def test_any_frequency_in_c(seed: int) -> None:
     _check("c", seed, 3000)
 
 
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_pulses_of_two_frequencies_superpose(backend: str) -> None:
+    """Segments follow one another in no order that repeats; in C many times what is written at once."""
+    f, other, L = 12_345.0, 7_777.7, 1e-3
+    times = np.linspace(0.0, (40 if backend == "numpy" else 5000) / f, 23)
+    one, two = (V, R, L, f, 0.3, 0.2), (2 * V, R, L, other, 0.6, -0.1)
+    drive = PWM(f, 0.3, 0.0, V, 0.2) + 2 * PWM(other, 0.6, 0.0, V, -0.1)
+    ready = simulator(coil(), {"L": L, "R": R}, backend=backend)
+    start = {"i": current(0.0, *one) + current(0.0, *two)}
+    run = ready.run(times, start, {"u": drive}, events=False)
+    expected = [current(t, *one) + current(t, *two) for t in times.tolist()]
+    assert run["i"] == pytest.approx(expected, abs=1e-9)
+
+
+def test_what_is_kept_of_a_segment_is_not_of_later_ones_of_its_number() -> None:
+    """A mode that comes once in 1024 segments, at another voltage each time; those are written at a time."""
+    h, L = 1e-5, 1e-3
+    levels = np.random.default_rng(0).uniform(1.0, 50.0, 5 * 1022)
+    gate = PWM(1 / (1022 * h), 0.5 / 1022, phase=500.25 / 1022)
+    ready = simulator(half_bridge(), {"L": L, "R": R}, backend="c")
+    inputs = {"V": ZeroOrderHold(values=levels, period=h), "gate": gate}
+    run = ready.run([0.0, 4000.5 * h], {}, inputs, initially_on=("low",))
+    i = 0.0
+    for k in range(4):
+        full = levels[1022 * k + 500] / R
+        i = full + (i - full) * np.exp(-0.5 * h * R / L)
+        i *= np.exp(-(1021.5 * h if k < 3 else (4000.5 - 3 * 1022 - 500.75) * h) * R / L)
+    assert len(run.events) == 16
+    assert run["i"][-1] == pytest.approx(i, rel=1e-9)
+
+
 def test_a_second_at_a_megahertz() -> None:
     """Two million pieces in C, 400,000 events."""
     f, duty, L = 1e6, 0.37, 1e-4
@@ -108,8 +139,8 @@ def test_memory_is_that_of_a_short_run(name: str) -> None:
     """A million switchings in C take no more than ten thousand do, a hundred thousand of others."""
     ready, drive = simulator(coil(), {"L": 1e-4, "R": R}, backend="c"), DRIVES[name]
     _peak(ready, 1e-4, drive)
-    end = 0.5 if name == "plain" else 0.05
-    assert _peak(ready, end, drive) < _peak(ready, 0.005, drive) + 250_000
+    peak = _peak(ready, 0.5 if name == "plain" else 0.05, drive)
+    assert peak < min(_peak(ready, 0.005, drive) + 250_000, 1_000_000)
 
 
 @pytest.mark.parametrize("name", DRIVES)
