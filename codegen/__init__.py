@@ -7,6 +7,8 @@ from codegen.energy.audit import Audit
 from codegen.engine.fallback import BackendWarning
 from codegen.family import Family
 from codegen.fmu.export import write_fmu
+from codegen.inputs.held import Pulse, ZeroOrderHold
+from codegen.inputs.periodic import PWM, Sawtooth, Square
 from codegen.inputs.sampled import Sampled
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, Lag, Ramp, Sine, Step
@@ -43,6 +45,7 @@ from codegen.switched.simulator import SwitchedSimulator, switched_simulator
 from codegen.trim import trim
 
 __all__ = [
+    "PWM",
     "Audit",
     "BackendWarning",
     "Block",
@@ -54,21 +57,25 @@ __all__ = [
     "Grid",
     "Lag",
     "Program",
+    "Pulse",
     "Ramp",
     "Result",
     "Sampled",
     "Samples",
+    "Sawtooth",
     "Signal",
     "Simulator",
     "Sine",
     "SparseModel",
     "Spectrum",
+    "Square",
     "Step",
     "Sweep",
     "SweepInterrupted",
     "Swept",
     "SwitchedSimulator",
     "Table",
+    "ZeroOrderHold",
     "balance",
     "bode",
     "compare",

@@ -12,9 +12,11 @@ from codegen.batch.engine import Room
 from codegen.batch.inputs import BatchInputs, each, varied
 from codegen.batch.model import BatchModel
 from codegen.batch.plan import Plan
-from codegen.engine.inputs import Packed, Segments, segments
+from codegen.engine.inputs import Segments, inputs_over
+from codegen.engine.packed import Packed
 from codegen.engine.runs import grid_of
 from codegen.engine.sizes import Engine, sizes
+from codegen.engine.windows import Windows
 from codegen.inputs.signal import Signal
 from codegen.numbers.arrays import Array
 
@@ -22,6 +24,7 @@ from codegen.numbers.arrays import Array
 class Shared(NamedTuple):
     """Inputs, and the engine's record of them."""
 
+    signals: Sequence[Signal]
     engine: Engine
     packed: Packed
 
@@ -38,21 +41,31 @@ class ExactLoop:
         """Inputs of all runs."""
         made = self._segments(signals)
         engine = self._model.engine(made.slots)
-        return Shared(engine, Packed(engine, made))
+        return Shared(signals, engine, Packed(engine, made, float(self._time[0])))
 
     def alike(
         self, shared: Shared, places: Sequence[int], factors: Array, indices: NDArray[np.intp]
     ) -> BatchInputs:
         """The same inputs for these runs, but those at ``places`` times ``factors``."""
+        if not shared.packed.whole:
+            # What is written on as a run goes is of that run alone.
+            found = []
+            for k in indices.tolist():
+                scale = dict(zip(places, factors[k].tolist(), strict=True))
+                own = [one.scaled(scale[j]) if j in scale else one
+                       for j, one in enumerate(shared.signals)]  # fmt: skip
+                found.append((k, self._segments(own)))
+            return each(shared.engine, found, float(self._time[0]))
         return varied(shared.engine, shared.packed, places, factors, indices)
 
     def different(self, found: Sequence[tuple[int, Sequence[Signal]]]) -> list[BatchInputs]:
         """The inputs of each run by its index, those of one engine together."""
-        made: dict[int, list[tuple[int, Segments]]] = {}
+        made: dict[int, list[tuple[int, Segments | Windows]]] = {}
         for k, signals in found:
             one = self._segments(signals)
             made.setdefault(sizes(self._model.closed, one.slots).G, []).append((k, one))
-        return [each(self._model.engine(slots), some) for slots, some in made.items()]
+        begin = float(self._time[0])
+        return [each(self._model.engine(slots), some, begin) for slots, some in made.items()]
 
     def run(
         self, inputs: BatchInputs, parameters: Array, states: Array
@@ -75,5 +88,5 @@ class ExactLoop:
         make = partial(Room, engine, kept.samples, *sizes, kept.eventful)
         return self._rooms.setdefault(engine.sizes.G, Rooms(make))
 
-    def _segments(self, signals: Sequence[Signal]) -> Segments:
-        return segments(signals, float(self._time[0]), float(self._time[-1]))
+    def _segments(self, signals: Sequence[Signal]) -> Segments | Windows:
+        return inputs_over(signals, float(self._time[0]), float(self._time[-1]))

@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from codegen.engine.inputs import Packed, Segments
+from codegen.engine.inputs import Segments
+from codegen.engine.packed import Packed
 from codegen.engine.sizes import Engine
+from codegen.engine.windows import Windows
 from codegen.numbers.arrays import Array
 
 
@@ -38,10 +40,10 @@ def varied(
     scale[:, list(places)] = factors[indices]
     record = np.frombuffer(engine.ffi.buffer(packed.record), dtype=np.uint8)
     records = np.tile(record, (count, 1))
-    own = {"constant": packed.constant * scale[:, None, :-1]}
-    if np.isin(packed.owner, places).any():
+    own, owner = {"constant": packed.constant * scale[:, None, :-1]}, packed.owner
+    if np.isin(owner, places).any():
         # Slots without an owner have the last column's one.
-        own["polynomial"] = packed.polynomial * scale[:, packed.owner]
+        own["polynomial"] = packed.polynomial * scale[:, owner]
     # Results of indexing need not lie in memory run by run.
     own = {name: np.ascontiguousarray(array) for name, array in own.items()}
     for name, array in own.items():
@@ -52,9 +54,11 @@ def varied(
     return BatchInputs(engine, indices, pointers, (packed, own, records))
 
 
-def each(engine: Engine, found: Sequence[tuple[int, Segments]]) -> BatchInputs:
-    """A record for each run."""
-    packed = [Packed(engine, made) for _, made in found]
+def each(
+    engine: Engine, found: Sequence[tuple[int, Segments | Windows]], begin: float
+) -> BatchInputs:
+    """A record for each run, which begins at that time [s]."""
+    packed = [Packed(engine, made, begin) for _, made in found]
     pointers = np.array([_address(engine, one.record) for one in packed], dtype=np.uintp)
     return BatchInputs(engine, np.array([k for k, _ in found]), pointers, packed)
 

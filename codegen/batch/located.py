@@ -14,7 +14,7 @@ from codegen.batch.plan import Plan
 from codegen.engine.located import METHODS, LocatedLibrary, packed_signals
 from codegen.engine.sizes import aligned
 from codegen.inputs.signal import Signal
-from codegen.inputs.tables import SignalTable, signal_table
+from codegen.inputs.tables import SignalTable, has_table, signal_table
 from codegen.numbers.arrays import Array
 from codegen.runs.track import Settings
 
@@ -96,7 +96,8 @@ class LocatedLoop:
         return LocatedInputs(indices, pointers, (shared, own, records))
 
     def different(self, found: Sequence[tuple[int, Sequence[Signal]]]) -> list[LocatedInputs]:
-        """The inputs of each run by its index."""
+        """The inputs of each run by its index, of those that tables can hold."""
+        found = [(k, signals) for k, signals in found if has_table(signals)]
         made = [packed_signals(self._ffi, self._table(signals)) for _, signals in found]
         pointers = np.array([_address(self._ffi, record) for record, _ in made], dtype=np.uintp)
         return [LocatedInputs(np.array([k for k, _ in found]), pointers, made)] if found else []

@@ -11,6 +11,7 @@ from codegen.batch.asked import Asked
 from codegen.batch.model import BatchModel, Flags
 from codegen.inputs.signal import Signal
 from codegen.inputs.swept import Swept, settled
+from codegen.inputs.tables import has_table
 from codegen.model.numbers import exact_parameters
 from codegen.model.sources import source_signals
 from codegen.model.starts import starts_of_runs
@@ -75,7 +76,10 @@ class Rows:
         """Whether all runs have the same inputs, but for factors, and the same known sources."""
         sources, names = self.model.program.sources, self.asked.names
         differ = any(s.name in names for expr in sources for s in expr.free_symbols)
-        return not callable(self.asked.inputs) and not differ
+        if callable(self.asked.inputs) or differ:
+            return False
+        given = [one.signal if isinstance(one, Swept) else one for one in self._given.values()]
+        return has_table([one for one in given if isinstance(one, Signal)])
 
     def common(self) -> list[Signal]:
         """The inputs of all runs that are alike, those that factors differ in at the factor 1."""

@@ -2,17 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from codegen.engine.sizes import Engine
+from codegen.engine.chains import Chain, Rows, slots_of
+from codegen.engine.windows import Windows
 from codegen.inputs.pieces import Piece, collected
 from codegen.inputs.signal import Signal
 from codegen.numbers.arrays import Array
-
-Chain = tuple[int, complex, int]
-"""An input, a rate [1/s] and how many coefficients the polynomial at that rate has."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +29,35 @@ class Segments:
     @property
     def slots(self) -> int:
         """How many slots the largest structure has."""
-        return max(sum(map(_slots, structure)) for structure in self.structures)
+        return max(sum(map(slots_of, structure)) for structure in self.structures)
+
+    def rows(self, t: float, width: int, count: int | None = None) -> Rows:
+        """All segments, whatever is asked for; ``width``: how many slots there is room for."""
+        del t, count
+        size = len(self.chains)
+        starts, polynomials = np.zeros((size, width)), np.zeros((size, width))
+        for at, row in enumerate(self.polynomials):
+            first = 0
+            for i, (start, polynomial) in enumerate(row):
+                chain = self.structures[self.chains[at]][i]
+                step = 2 if chain[1].imag else 1
+                starts[at, i] = start
+                for k, c in enumerate(polynomial):
+                    polynomials[at, first + step * k] = c.real
+                    if step == 2:
+                        polynomials[at, first + step * k + 1] = c.imag
+                first += slots_of(chain)
+        breaks, chains = np.array(self.breaks, dtype=float), np.array(self.chains, dtype=np.intc)
+        return Rows(
+            -np.inf, np.inf, breaks, self.constants, starts, polynomials, chains, self.fastest
+        )
+
+
+def inputs_over(signals: Sequence[Signal], begin: float, end: float) -> Segments | Windows:
+    """The signals from ``begin`` to ``end`` [s]: all segments, or so many at a time where there is no end."""
+    if any(signal.endless for signal in signals):
+        return Windows(signals, begin, end)
+    return segments(signals, begin, end)
 
 
 def segments(signals: Sequence[Signal], begin: float, end: float) -> Segments:
@@ -71,8 +96,8 @@ def _structures(
     """The chains that segments need: those of all in one, unless that is much more than any has."""
     each = [_chains([row]) for row in pieces]
     together = _chains(pieces)
-    most = max(sum(map(_slots, one)) for one in each)
-    if sum(map(_slots, together)) <= 2 * most + 2:
+    most = max(sum(map(slots_of, one)) for one in each)
+    if sum(map(slots_of, together)) <= 2 * most + 2:
         return [together], [0] * len(pieces)
     different = list(dict.fromkeys(each))
     return different, [different.index(one) for one in each]
@@ -89,63 +114,8 @@ def _chains(rows: Sequence[Sequence[Piece]]) -> tuple[Chain, ...]:
     return tuple((*key, d) for key, d in depth.items() if key[1] != 0 or d > 1)
 
 
-def _slots(chain: Chain) -> int:
-    return chain[2] * (2 if chain[1].imag else 1)
-
-
 def _over(row: Sequence[Piece], chain: Chain) -> tuple[float, tuple[complex, ...]]:
     """The start and the polynomial of a chain in a segment."""
     piece = row[chain[0]]
     found = next((p for rate, p in piece.terms if complex(rate) == chain[1]), ())
     return piece.start, tuple(complex(c) for c in found)
-
-
-class Packed:
-    """Segments as the engine's record, whose arrays have a row for each segment.
-
-    ``constant``: what each input is but for its chains. ``polynomial``: coefficients of the chains by
-    slot; ``owner``: the input of a slot, -1 where there is none.
-    """
-
-    def __init__(self, engine: Engine, made: Segments) -> None:
-        self.record = engine.new("ex_inputs")
-        ffi, sizes = engine.ffi, engine.sizes
-        self._kept: list[Any] = []
-        self._structures(engine, made)
-        count, G = len(made.chains), sizes.G
-        starts, polynomials = np.zeros((count, G)), np.zeros((count, G))
-        self.constant, self.polynomial = made.constants, polynomials
-        self.owner = np.full((count, G), -1)
-        for at, chains in enumerate(made.polynomials):
-            first = 0
-            for i, (start, polynomial) in enumerate(chains):
-                chain = made.structures[made.chains[at]][i]
-                width = 2 if chain[1].imag else 1
-                starts[at, i] = start
-                self.owner[at, first : first + _slots(chain)] = chain[0]
-                for k, c in enumerate(polynomial):
-                    polynomials[at, first + width * k] = c.real
-                    if width == 2:
-                        polynomials[at, first + width * k + 1] = c.imag
-                first += _slots(chain)
-        for name, array, kind in (
-            ("breaks", np.array(made.breaks), "double *"), ("fastest", made.fastest, "double *"),
-            ("constant", made.constants, f"double(*)[{sizes.W}]"),
-            ("start", starts, f"double(*)[{G}]"), ("polynomial", polynomials, f"double(*)[{G}]"),
-            ("chains", np.array(made.chains, dtype=np.intc), "int *"),
-        ):  # fmt: skip
-            self._kept.append(array)
-            setattr(self.record, name, ffi.cast(kind, array.ctypes.data))
-        self.record.segments = count
-
-    def _structures(self, engine: Engine, made: Segments) -> None:
-        records = engine.ffi.new("ex_chains[]", len(made.structures))
-        for record, chains in zip(records, made.structures, strict=True):
-            first = np.cumsum([0, *map(_slots, chains)]).tolist()
-            record.count = len(chains)
-            for i, (j, rate, depth) in enumerate(chains):
-                record.input[i], record.first[i], record.depth[i] = j, first[i], depth
-                record.width[i] = 2 if rate.imag else 1
-                record.rate[i][0], record.rate[i][1] = rate.real, rate.imag
-        self._kept.append(records)
-        self.record.structures = records

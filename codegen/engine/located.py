@@ -17,7 +17,7 @@ from codegen.engine.runs import NO_END, not_affine
 from codegen.engine.sizes import aligned, declarations
 from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
-from codegen.inputs.tables import SignalTable, signal_table
+from codegen.inputs.tables import NO_TABLE, SignalTable, has_table, signal_table
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
@@ -109,6 +109,8 @@ class LocatedRuns:
 
         ``keeping``: whether events are kept.
         """
+        if not has_table(signals):
+            return Stopped(NO_TABLE, limit=True)
         ffi, _ = self.library.opened
         rows = np.empty((len(times), self.width))
         begin = np.array([*first, *[1] * max(len(self.model.switching), 1)], dtype=np.intc)
@@ -186,7 +188,13 @@ def packed_signals(ffi: Any, table: SignalTable) -> tuple[Any, tuple[Any, ...]]:
     record.breaks, record.fastest = _pointer(ffi, breaks), _pointer(ffi, fastest)
     record.begins = _pointer(ffi, begins, "int *")
     record.coefficients = _pointer(ffi, coefficients, "double(*)[2]")
-    return record, (terms, breaks, fastest, begins, coefficients)
+    record.waves = len(table.waves)
+    waves, parts = ffi.new("bg_wave[]", [*table.waves]), ffi.new("bg_part[]", [*table.parts])
+    record.wave, record.parts, more = waves, parts, None
+    if table.duties is not None:
+        record.duties, more = packed_signals(ffi, table.duties)
+        more = record.duties, more
+    return record, (terms, breaks, fastest, begins, coefficients, waves, parts, more)
 
 
 def _pointer(ffi: Any, array: Any, kind: str = "double *") -> Any:
@@ -195,7 +203,9 @@ def _pointer(ffi: Any, array: Any, kind: str = "double *") -> Any:
 
 def _declared() -> str:
     """What is called; records that only C looks into have names alone."""
-    own = "".join(f"typedef struct {n} {n};\n" for n in ("bg_model", "bg_located", "bg_snapshot"))
+    own = "".join(
+        f"typedef struct {n} {n};\n" for n in ("bg_model", "bg_located", "bg_snapshot", "bg_span")
+    )
     headers = (
         "port_switch.h", "port_events.h", "model_signals.h", "located_request.h", "located_rows.h",
         "batch_measure.h", "batch_located.h",

@@ -10,10 +10,12 @@ from bondgraph.errors import SimulationError
 from codegen.engine.build import FLAGS, check_tools
 from codegen.engine.fallback import Stopped
 from codegen.engine.happened import told_events
-from codegen.engine.inputs import Packed, Segments, segments
+from codegen.engine.inputs import Segments, inputs_over
 from codegen.engine.modes import Tables
+from codegen.engine.packed import Packed
 from codegen.engine.sizes import Engine, aligned, engine, sizes
 from codegen.engine.status import Status
+from codegen.engine.windows import Windows
 from codegen.inputs.signal import Signal
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
@@ -113,7 +115,7 @@ class Prepared:
         library, arguments = self.engine.library, self.arguments
         while True:
             status = Status(library.ex_run(*arguments))
-            if (failed := self.tables.failed) is not None:
+            if (failed := self.tables.failed or self.inputs.failed) is not None:
                 self.tables.failed = None
                 raise failed
             if status == Status.MISSING and self.tables.room:
@@ -189,14 +191,14 @@ class CRuns:
         keeping: bool = True, patient: bool = True,
     ) -> Prepared:  # fmt: skip
         """Everything that a run needs."""
-        made = segments(signals, float(times[0]), float(times[-1]))
+        made = inputs_over(signals, float(times[0]), float(times[-1]))
         tables, context = self._tables(made)
         tables.record.most = 0 if patient else tables.places.few
         return Prepared(
             tables.engine,
             tables,
             context,
-            Packed(tables.engine, made),
+            Packed(tables.engine, made, float(times[0])),
             np.ascontiguousarray(times, dtype=np.float64),
             np.ascontiguousarray(start, dtype=np.float64),
             aligned(len(times), tables.engine.sizes.numbers["ROW"]),
@@ -207,7 +209,7 @@ class CRuns:
             keeping,
         )
 
-    def _tables(self, made: Segments) -> tuple[Tables, tuple[Array, Any]]:
+    def _tables(self, made: Segments | Windows) -> tuple[Tables, tuple[Array, Any]]:
         wanted = sizes(self.model, made.slots)
         if wanted.G not in self._ready:
             compiled = engine(wanted, self._flags)

@@ -7,12 +7,12 @@ import sympy as sp
 
 from bondgraph.equations import StateEquations
 from codegen.c.blocks import function, places
-from codegen.c.scenario import signal_lines
+from codegen.c.scenario import signal_lines, signals_record
 from codegen.c.text import array, comment, doubles, integers, quoted
 from codegen.fmu.resolution import resolution_text
 from codegen.fmu.variables import Starts, Variable
 from codegen.inputs.signal import Signal
-from codegen.inputs.tables import signal_table
+from codegen.inputs.tables import known_span, signal_table
 from codegen.program.records import Program, block
 
 
@@ -91,15 +91,13 @@ def model_text(model: FmuModel) -> str:
 
 
 def _sources(sources: Sequence[tuple[int, Signal]], external: int) -> list[str]:
-    ends = [b for _, signal in sources for b in signal.breakpoints]
-    begin = min([0.0, *ends]) - 1.0
-    table = signal_table([signal for _, signal in sources], begin, max([begin, *ends]))
+    inside = [signal for _, signal in sources]
+    begin, end = known_span(inside)
+    table = signal_table(inside, begin - 1.0, end)
     places = [at for at, _ in sources]
     terms = [(places[at], *rest) for at, *rest in table.terms]
     return [
-        *signal_lines(replace(table, terms=tuple(terms)), "fmu"),  # type: ignore[arg-type]
-        "const bg_signals fmu_signals = {",
-        f"    {len(table.fastest)}, fmu_breaks, fmu_begins, fmu_terms, fmu_coefficients, fmu_fastest",
-        "};",
+        *signal_lines(replace(table, terms=tuple(terms)), "fmu_signals"),  # type: ignore[arg-type]
+        *signals_record(table, "fmu_signals"),
         *integers("fmu_inside", (int(at in places) for at in range(external))),
     ]

@@ -1,4 +1,4 @@
-"""What every input over time is: a chain of smooth pieces between breakpoints that it knows.
+"""What every input over time is: a chain of smooth pieces, each known as it is asked for.
 
 A piece is a sum of polynomials times exponentials, ``sum_j p_j(tau) exp(rate_j tau)`` with
 ``tau = t - start``: the solutions of linear generators. Lags, sums and multiples of such pieces are such
@@ -8,21 +8,24 @@ pieces again, so every signal is evaluated exactly.
 import math
 from abc import ABC, abstractmethod
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bondgraph.errors import SignalError
+from codegen.inputs.chains import first_jump, sampled, scaled, summed
 from codegen.inputs.pieces import Piece, collected, moved
-from codegen.numbers.arrays import is_finite, is_number
-from codegen.tuning import TUNING
+from codegen.numbers.arrays import Array, is_finite, is_number
 
 
 class Signal(ABC):
-    """A function of time, continuous from the right, smooth between its breakpoints."""
+    """A function of time, continuous from the right, smooth between its breakpoints.
+
+    Runs ask for `piece` and `following`. Where breakpoints have no end no tuple holds them, and what
+    a signal does is what its `summands` do.
+    """
 
     @property
     @abstractmethod
@@ -34,19 +37,73 @@ class Signal(ABC):
     def pieces(self) -> tuple[Piece, ...]:
         """One piece more than there are breakpoints; the first reaches back for ever."""
 
-    def piece(self, t: float) -> Piece:
-        """The piece that holds at t and just after."""
-        return self.pieces[bisect_right(self.breakpoints, t)]
+    @property
+    def endless(self) -> bool:
+        """Whether its breakpoints have no end."""
+        return False
+
+    @property
+    def summands(self) -> "tuple[Signal, ...]":
+        """What it is the sum of; of an endless one none is a sum itself."""
+        return (self,)
 
     @property
     def seams(self) -> frozenset[float]:
         """Breakpoints at which the signal goes on smoothly."""
         return frozenset()
 
+    def piece(self, t: float) -> Piece:
+        """The piece that holds at t and just after."""
+        if self.endless:
+            return summed([part.piece(t) for part in self.summands], self._told_from(t))
+        return self.pieces[bisect_right(self.breakpoints, t)]
+
     def following(self, t: float) -> float:
         """The first breakpoint after t; infinite if there is none."""
+        if self.endless:
+            return min(part.following(t) for part in self.summands)
         at = bisect_right(self.breakpoints, t)
         return self.breakpoints[at] if at < len(self.breakpoints) else math.inf
+
+    def preceding(self, t: float) -> float:
+        """The last breakpoint up to t, where its piece begins; -inf if there is none."""
+        if self.endless:
+            return max(part.preceding(t) for part in self.summands)
+        at = bisect_right(self.breakpoints, t)
+        return self.breakpoints[at - 1] if at else -math.inf
+
+    def _told_from(self, t: float) -> float:
+        """A time that tells the piece at t from others, from which its terms are told."""
+        begin, end = self.preceding(t), self.following(t)
+        return begin if begin > -math.inf else end - 1.0 if end < math.inf else 0.0
+
+    def within(self, begin: float, end: float) -> Iterator[float]:
+        """The breakpoints after ``begin``, up to ``end`` [s], one after the other."""
+        at = self.following(begin)
+        while at <= end and at < math.inf:
+            yield at
+            at = self.following(at)
+
+    def first_jump(self, begin: float, end: float) -> float | None:
+        """The first time after ``begin``, up to ``end`` [s], at which it jumps; None if it never does."""
+        if self.endless:
+            found = [part.first_jump(begin, end) for part in self.summands]
+            return min((at for at in found if at is not None), default=None)
+        return first_jump(self.breakpoints, self.pieces, self.seams, begin, end)
+
+    def sampled(self, times: Array, rates: bool = False) -> Array:
+        """The values at many times, or how fast they change; at a breakpoint just after it."""
+        if self.endless:
+            rows = [part.sampled(times, rates) for part in self.summands]
+            return np.asarray(np.sum(rows, axis=0), dtype=float)
+        pieces = [piece.derivative for piece in self.pieces] if rates else self.pieces
+        return sampled(self.breakpoints, pieces, times)
+
+    def scaled(self, factor: float) -> "Signal":
+        """The signal times a finite number."""
+        if self.endless:
+            return _EndlessSum(tuple(part.scaled(factor) for part in self.summands))
+        return _Scaled(self, factor)
 
     def __call__(self, t: float) -> float:
         """The value at one time [s]; at a breakpoint that of the piece that begins."""
@@ -56,7 +113,9 @@ class Signal(ABC):
         """The sum of two signals."""
         if not isinstance(other, Signal):
             return NotImplemented
-        return _Sum((*_summands(self), *_summands(other)))
+        summands = (*self.summands, *other.summands)
+        endless = any(part.endless for part in summands)
+        return _EndlessSum(summands) if endless else _Sum(summands)
 
     def __mul__(self, factor: float) -> "Signal":
         """The signal times a number.
@@ -69,14 +128,48 @@ class Signal(ABC):
             return NotImplemented
         if not is_finite(factor):
             raise SignalError(f"a signal times {factor!r}: the factor is not finite")
-        return _Scaled(self, float(factor))
+        return self.scaled(float(factor))
 
     __rmul__ = __mul__
+
+
+class Endless(Signal):
+    """A signal whose breakpoints have no end: it tells `piece`, `following`, `preceding`, or `summands`."""
+
+    @property
+    def endless(self) -> bool:
+        """So it is."""
+        return True
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Refused: there is no end of them."""
+        raise SignalError(f"{self} has breakpoints without end; ask it for those within a time")
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """Refused, as `breakpoints`."""
+        raise SignalError(f"{self} has pieces without end; ask it for the piece at a time")
+
+
+@dataclass(frozen=True)
+class _EndlessSum(Endless):
+    parts: tuple[Signal, ...]
+
+    @property
+    def summands(self) -> tuple[Signal, ...]:
+        """The parts."""
+        return self.parts
 
 
 @dataclass(frozen=True)
 class _Sum(Signal):
     parts: tuple[Signal, ...]
+
+    @property
+    def summands(self) -> tuple[Signal, ...]:
+        """The parts."""
+        return self.parts
 
     @cached_property
     def breakpoints(self) -> tuple[float, ...]:
@@ -108,48 +201,4 @@ class _Scaled(Signal):
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """The signal's, each times the factor."""
-        return tuple(
-            Piece(piece.start, tuple((rate, tuple(self.factor * c for c in polynomial))
-                                     for rate, polynomial in piece.terms))
-            for piece in self.signal.pieces
-        )  # fmt: skip
-
-
-def _summands(signal: Signal) -> tuple[Signal, ...]:
-    return signal.parts if isinstance(signal, _Sum) else (signal,)
-
-
-def first_step(signal: Signal, begin: float, end: float) -> float | None:
-    """The first time after ``begin``, up to ``end``, at which a signal jumps; None if it never does."""
-    for b, one, other in zip(signal.breakpoints, signal.pieces, signal.pieces[1:], strict=False):
-        jump = abs(one(b) - other(b))
-        if (
-            begin < b <= end
-            and b not in signal.seams
-            and jump > TUNING.together * (abs(one(b)) + abs(other(b)))
-        ):
-            return b
-    return None
-
-
-def sampled_values(signal: Signal, times: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The signal's values at many times."""
-    return _sampled(signal.pieces, signal, times)
-
-
-def sampled_rates(signal: Signal, times: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How fast the signal changes at many times; at a breakpoint just after it."""
-    return _sampled([piece.derivative for piece in signal.pieces], signal, times)
-
-
-def _sampled(
-    pieces: Sequence[Piece], signal: Signal, times: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    if len(pieces) == 1:
-        return pieces[0].values(times)
-    which = np.searchsorted(np.array(signal.breakpoints, dtype=float), times, side="right")
-    result = np.zeros(len(times))
-    for at in np.unique(which).tolist():
-        here = which == at
-        result[here] = pieces[at].values(times[here])
-    return result
+        return tuple(scaled(piece, self.factor) for piece in self.signal.pieces)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from bondgraph.errors import SignalError
+from codegen.inputs.lagged import lagged
 from codegen.inputs.pieces import Piece, collected, constant_piece, lagged_terms, moved
 from codegen.inputs.signal import Signal
 from codegen.numbers.arrays import is_finite, is_number
@@ -18,7 +19,7 @@ class Constant(Signal):
     value: float
 
     def __post_init__(self) -> None:
-        _check_finite(self, self.value)
+        check_finite(self, self.value)
 
     breakpoints = ()
 
@@ -41,7 +42,7 @@ class Step(Signal):
     initial: float = 0.0
 
     def __post_init__(self) -> None:
-        _check_finite(self, self.time, self.value, self.initial)
+        check_finite(self, self.time, self.value, self.initial)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -64,7 +65,7 @@ class Ramp(Signal):
     end: float | None = None
 
     def __post_init__(self) -> None:
-        _check_finite(self, self.time, self.slope, self.initial, self.end or 0.0)
+        check_finite(self, self.time, self.slope, self.initial, self.end or 0.0)
         if self.end is not None and self.end <= self.time:
             raise SignalError(f"{self}: a ramp must end after it begins")
 
@@ -91,7 +92,7 @@ class Sine(Signal):
     offset: float = 0.0
 
     def __post_init__(self) -> None:
-        _check_finite(self, self.amplitude, self.frequency, self.phase, self.offset)
+        check_finite(self, self.amplitude, self.frequency, self.phase, self.offset)
 
     breakpoints = ()
 
@@ -107,6 +108,9 @@ class Sine(Signal):
 class Lag(Signal):
     """A first-order lag: ``time_constant * y' + y = signal``, in steady state before the first break.
 
+    Of a signal that repeats the steady state repeats, too; of one whose duty is a signal the lag is, up to
+    the period that holds t = 0, as if the duty had been for ever what it is there.
+
     >>> round(Lag(Step(0.0, 1.0), 0.04)(0.04), 6)
     0.632121
     """
@@ -115,11 +119,25 @@ class Lag(Signal):
     time_constant: float
 
     def __post_init__(self) -> None:
-        _check_finite(self, self.time_constant)
+        check_finite(self, self.time_constant)
         if not isinstance(self.signal, Signal):
             raise SignalError(f"a lag follows a signal, not {self.signal!r}")
         if self.time_constant <= 0:
             raise SignalError(f"a lag's time constant must be positive, not {self.time_constant}")
+
+    @property
+    def endless(self) -> bool:
+        """Whether the signal it follows is."""
+        return self.signal.endless
+
+    @cached_property
+    def summands(self) -> tuple[Signal, ...]:
+        """Of an endless signal the lags of its summands."""
+        if not self.endless:
+            return (self,)
+        T = float(self.time_constant)
+        found = [(part, lagged(part, T)) for part in self.signal.summands]
+        return tuple(Lag(part, T) if one is None else one for part, one in found)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -148,12 +166,13 @@ def as_signal(value: object, name: str) -> Signal:
             raise SignalError(f"input {name!r}: {value!r} is not a finite number")
         return Constant(float(value))
     raise SignalError(
-        f"input {name!r}: {value!r} is neither a signal nor a number; use Constant, Step, Ramp, "
-        "Sine, Sampled or Lag"
+        f"input {name!r}: {value!r} is neither a signal nor a number; use Constant, Step, Pulse, Ramp, "
+        "Sine, Square, Sawtooth, PWM, Sampled, ZeroOrderHold or Lag"
     )
 
 
-def _check_finite(signal: Signal, *numbers: float) -> None:
+def check_finite(signal: Signal, *numbers: float) -> None:
+    """Refuse what is no finite number, naming the kind of signal."""
     for number in numbers:
         if not is_number(number):
             raise SignalError(f"{type(signal).__name__}: {number!r} is not a number")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from codegen.inputs.signal import Signal, sampled_rates, sampled_values
+from codegen.inputs.signal import Signal
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
@@ -56,10 +56,10 @@ def _by_modes(
     modes = list(dict.fromkeys(track.modes))
     number = {mode: at for at, mode in enumerate(modes)}
     which = np.array([number[mode] for mode in track.modes])
-    w = np.array([sampled_values(signal, times) for signal in signals]).reshape(-1, len(times))
+    w = np.array([signal.sampled(times) for signal in signals]).reshape(-1, len(times))
     dw = np.zeros_like(w)
     if model.program.rated and len(signals):
-        dw[:] = [sampled_rates(signal, times) for signal in signals]
+        dw[:] = [signal.sampled(times, rates=True) for signal in signals]
     vectors = np.column_stack([track.vectors, w.T, dw.T, np.ones(len(times))])
     tables: Array | None = None
     for mode in modes:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from bondgraph.errors import SimulationError
-from codegen.inputs.signal import Signal, first_step
+from codegen.inputs.signal import Signal
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.records import Program
@@ -28,7 +28,7 @@ def refuse_impulses(model: ClosedModel, signals: Sequence[Signal], times: Array)
         if not rows and not driven:
             continue
         where = f"{program.readings[rows[0]]} shows" if rows else "a dependent storage would see"
-        step = first_step(signal, float(times[0]), float(times[-1]))
+        step = signal.first_jump(float(times[0]), float(times[-1]))
         if step is not None:
             raise SimulationError(
                 f"{_told(program, at)} steps at t = {step:g}, where {where} its rate and would be an "

@@ -115,7 +115,8 @@ static int failed(const bg_model *m, int status)
 /* Inputs at t and just after. */
 static void inputs_at(const bg_signals *signals, double t, double *w, double *dw)
 {
-    bg_signals_at(signals, bg_signals_segment(signals, t), t, w, dw);
+    const bg_span span = bg_signals_span(signals, bg_reached(t));
+    bg_signals_at(signals, &span, t, w, dw);
 }
 
 /* Rows by fixed steps, `parts` from each to the next. */
@@ -224,6 +225,7 @@ int main(int count, char **words)
     const bg_signals signals = {
         SCENARIO_SEGMENTS, scenario_breaks, scenario_begins, asked.terms,
         (const double(*)[2])asked.coefficients, scenario_fastest,
+        SCENARIO_WAVES, scenario_wave, scenario_parts, SCENARIO_DUTIES,
     };
     if (failed(&model, bg_model_init(&model, asked.parameters)))
         return 1;

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from bondgraph.errors import SignalError, SimulationError
 from codegen.energy.audit import Audit
-from codegen.inputs.signal import Signal, first_step
+from codegen.inputs.signal import Signal
 from codegen.numbers.arrays import Array, read_only
 from codegen.record.result import Result
 from codegen.runs.arguments import checked_times, initial_values, settings_of, signals_for
@@ -109,8 +109,8 @@ def _vectors(
     v = state - driven @ np.array([signal(t) for signal in signals])
     forcing = model.B + model.J @ driven if model.E.nnz else model.B
     found: list[Array] = []
-    breaks = sorted({b for signal in signals for b in signal.breakpoints if t < b < end})
-    for stop in (*breaks, end):
+    while t < end:
+        stop = min([end, *(signal.following(t) for signal in signals)])
         pieces = [signal.piece(t) for signal in signals]
 
         def forced(time: float, pieces: list = pieces) -> Array:  # type: ignore[type-arg]
@@ -154,7 +154,7 @@ def _check_steps(model: SparseModel, signals: Sequence[Signal], times: Array) ->
     if model.H.nnz:
         shows |= set(model.E.nonzero()[1].tolist())
     for at in sorted(shows):
-        step = first_step(signals[at], float(times[0]), float(times[-1]))
+        step = signals[at].first_jump(float(times[0]), float(times[-1]))
         if step is not None:
             raise SimulationError(
                 f"input {model.inputs[at]!r} steps at t = {step:g}, where an output shows its rate and "

@@ -118,7 +118,8 @@ _RUN = (
     assigned(
         "--input", "inputs", SIGNAL,
         "A number, or step(time, value), ramp(time, slope), sine(amplitude, frequency), "
-        "lag(signal, time_constant), constant(value), or a sum.",
+        "lag(signal, time_constant), pulse(begin, end, value), square(frequency, low, high), "
+        "sawtooth(frequency, low, high), pwm(frequency, duty), constant(value), or a sum.",
     ),
     laws,
     click.option("--until", type=click.FloatRange(min=0, min_open=True), metavar="SECONDS",

@@ -13,7 +13,8 @@ from bondgraph.algebra.expressions import expression
 SIGNALS: Mapping[str, type[codegen.Signal]] = MappingProxyType(
     {
         "constant": codegen.Constant, "step": codegen.Step, "ramp": codegen.Ramp,
-        "sine": codegen.Sine, "lag": codegen.Lag,
+        "sine": codegen.Sine, "lag": codegen.Lag, "pulse": codegen.Pulse,
+        "square": codegen.Square, "sawtooth": codegen.Sawtooth, "pwm": codegen.PWM,
     }
 )  # fmt: skip
 """What a signal may be made of, beside numbers and sums."""
@@ -36,6 +37,8 @@ def signal(text: str) -> codegen.Signal:
     Lag(signal=Step(time=0.1, value=350.0, initial=0.0), time_constant=0.04)
     >>> signal("-2.5")
     Constant(value=-2.5)
+    >>> signal("pwm(10e3, 0.3, high=24)").high
+    24.0
     """
     return _signal(_parsed(text), 0)
 
@@ -98,7 +101,8 @@ def _call(node: ast.Call, depth: int) -> codegen.Signal:
     names = list(inspect.signature(SIGNALS[name]).parameters)
 
     def value(argument: ast.expr, at: str) -> Any:
-        return _signal(argument, depth + 1) if at == "signal" else _number(argument)
+        is_signal = at == "signal" or (at == "duty" and _has_call(argument))
+        return _signal(argument, depth + 1) if is_signal else _number(argument)
 
     given = dict(zip(names, node.args, strict=False))
     more = {str(keyword.arg): keyword.value for keyword in node.keywords}

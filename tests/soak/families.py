@@ -232,6 +232,8 @@ FAMILIES = (
         6,
         200,
     ),
+    Family("pulsed", "codegen/runs/test_pulsed.py::test_any_frequency", 6, 200),
+    Family("pulsed-in-c", "codegen/runs/test_pulsed.py::test_any_frequency_in_c", 6, 200),
     Family("dips", "codegen/runs/test_dipping_guards.py", 12, 600),
     Family(
         "diodes",

@@ -19,10 +19,12 @@ static int start_of(const batch_room *room, const ex_inputs *inputs, const doubl
                     int *mode, double *s, double *moved)
 {
     const double t = room->job->times[0];
-    const int segment = bg_segment(inputs->segments, inputs->breaks, t);
     double g[EX_G], w[2 * EX_W];
-    ex_slots(inputs, segment, t, g);
-    ex_given(inputs, segment, g, w, w + EX_W);
+    bg_span span;
+    if (ex_span(inputs, t, &span))
+        return BG_NOT_AFFINE;
+    ex_slots(inputs, span.segment, t, g);
+    ex_given(inputs, span.segment, g, w, w + EX_W);
     batch_instance *const own = room->model;
     for (int i = 0; i < EX_K; i++)
         mode[i] = room->job->first[i];

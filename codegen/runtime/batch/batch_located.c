@@ -42,7 +42,7 @@ static int smooth(void *to, void *run, double begin, double end)
             status = bg_view_look(&c->view, t, s, c->run.mode);
         if (status != BG_OK)
             return status;
-        bg_signals_at(c->signals, c->run.segment, t, w, dw);
+        bg_signals_at(c->signals, &c->run.span, t, w, dw);
         for (int k = 0; k < job->products; k++) {
             const batch_product *const two = job->product + k;
             const int *const place = job->signal + job->signals;

@@ -6,7 +6,7 @@
 double batch_over_state(const ex_context *c, const double *reader, double *row)
 {
     const ex_inputs *const inputs = c->inputs;
-    const ex_chains *const chains = inputs->structures + inputs->chains[c->run.segment];
+    const ex_chains *const chains = inputs->structures + inputs->chains[c->run.span.segment];
     const double *const by_w = reader + EX_N, *const by_dw = by_w + EX_W;
     double level = reader[EX_L - 1];
     memset(row, 0, sizeof(double) * EX_Z);
@@ -21,7 +21,7 @@ double batch_over_state(const ex_context *c, const double *reader, double *row)
             slot[width] += by_dw[j];
     }
     for (int j = 0; j < EX_W; j++)
-        level += by_w[j] * inputs->constant[c->run.segment][j];
+        level += by_w[j] * inputs->constant[c->run.span.segment][j];
     return level;
 }
 

@@ -96,9 +96,14 @@ typedef struct {
     double rate[EX_G][2];
 } ex_chains;
 
-/* The inputs between breakpoints: segment k lasts to breaks[k], the last one for ever. In segment k
- * each chain is a polynomial (coefficients where its slots are) of the time from its own start. */
+/* The inputs between breakpoints, from `since` to `until`: segment k lasts to breaks[k], the last
+ * one to `until`. In segment k each chain is a polynomial (coefficients where its slots are) of the
+ * time from its own start. Where that is not all of a run, `more` writes the segments from t on in
+ * place of these; not 0 if it cannot. Structures stay. */
 typedef struct {
+    double since, until;
+    int (*more)(void *self, double t);
+    void *self;
     int segments;
     const double *breaks;             /* segments - 1 times, increasing */
     const int *chains;                /* which of `structures` */

@@ -20,9 +20,9 @@ static int in_bounds(const ex_context *c, const ex_choice *k, const double *v)
         in &= fabs(v[j]) <= k->most[j];
     for (int i = 0; i < EX_K && c->model->stopping; i++)
         in &= c->farthest[i] <= k->farthest[i];
-    if (k->steady == c->run.segment)
+    if (k->steady == c->run.span.segment)
         return in;
-    ex_input_sizes(c->inputs, c->run.segment, c->run.at.t, w);
+    ex_input_sizes(c->inputs, c->run.span.segment, c->run.at.t, w);
     for (int j = 0; j < EX_W; j++)
         in &= w[j] <= k->most[EX_N + j] && w[j] >= k->low[j];
     for (int j = EX_N; j < EX_L; j++)
@@ -54,7 +54,7 @@ static int holds(const ex_choice *k, const double *v)
 static int is_as_late(const ex_context *c, const ex_choice *k)
 {
     const bg_instant *const at = &c->run.at;
-    return at->time == k->time && at->t <= k->until && c->inputs->fastest[c->run.segment] <= k->pace
+    return at->time == k->time && at->t <= k->until && c->inputs->fastest[c->run.span.segment] <= k->pace
         && bg_look_ahead(at->time, at->t, at->following) == BG_LOOK_AHEAD * at->time;
 }
 
@@ -91,12 +91,12 @@ static void allow(ex_glance *g)
 {
     const ex_context *const c = g->c;
     ex_choice *const to = g->to;
-    const double pace = to->pace = c->inputs->fastest[c->run.segment];
+    const double pace = to->pace = c->inputs->fastest[c->run.span.segment];
     double w[EX_W], later[EX_W];
     to->until = 2.0 * fabs(c->run.at.t);
-    to->steady = is_steady(c->inputs, c->run.segment) ? c->run.segment : -1;
-    ex_input_sizes(c->inputs, c->run.segment, c->run.at.t, w);
-    ex_input_sizes(c->inputs, c->run.segment, to->until, later);
+    to->steady = is_steady(c->inputs, c->run.span.segment) ? c->run.span.segment : -1;
+    ex_input_sizes(c->inputs, c->run.span.segment, c->run.at.t, w);
+    ex_input_sizes(c->inputs, c->run.span.segment, to->until, later);
     for (int i = 0; i < EX_X; i++)
         to->most_x[i] = 2.0 * c->peaks.x[i];
     for (int i = 0; i < EX_U; i++)

@@ -12,7 +12,7 @@ static double set_out(const ex_context *c, const ex_place *p, ex_pair *z)
     for (int i = 0; i < EX_Z; i++)
         z[i] = (ex_pair){p->z[i], 0.0};
     for (int j = 0; j < EX_W; j++)
-        z[EX_Z + j] = (ex_pair){c->inputs->constant[c->run.segment][j], 0.0};
+        z[EX_Z + j] = (ex_pair){c->inputs->constant[c->run.span.segment][j], 0.0};
     z[EX_F - 1] = (ex_pair){1.0, 0.0};
     for (int i = 0; i < EX_F; i++)
         largest = bg_greater(largest, fabs(z[i].hi));

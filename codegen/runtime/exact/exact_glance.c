@@ -59,7 +59,7 @@ typedef struct {
 static int keeper_of(const ex_glance *g, const ex_mode *mode, double (*stay)[EX_PORTS], int port,
                      const ex_limits *limits, const double *most, keeper *to)
 {
-    const double pace = g->c->inputs->fastest[g->c->run.segment];
+    const double pace = g->c->inputs->fastest[g->c->run.span.segment];
     const double *const rate = limits->shot + EX_AT_RATE;
     int known = 1;
     memset(to, 0, sizeof *to);

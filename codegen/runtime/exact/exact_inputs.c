@@ -4,6 +4,19 @@
 #include <float.h>
 #include <math.h>
 
+int ex_span(const ex_inputs *inputs, double t, bg_span *span)
+{
+    const int here = t >= inputs->since && t < inputs->until;
+    if (!here && inputs->more && inputs->more(inputs->self, t))
+        return BG_NOT_AFFINE;
+    *span = bg_span_at(inputs->segments, inputs->breaks, t);
+    if (span->segment == 0)
+        span->begin = inputs->since;
+    if (span->segment + 1 == inputs->segments)
+        span->following = inputs->until;
+    return BG_OK;
+}
+
 /* The derivative of order `order` of a polynomial, one of every `width` coefficients. */
 static double derivative(const double *c, int depth, int width, int order, double tau)
 {

@@ -4,7 +4,9 @@
 
 #include "exact_context.h"
 
-/* exact_inputs.c: the slots at t in a segment; and w and its rate from them. */
+/* exact_inputs.c: what holds at t and just after, a status; the slots at t in a segment; and w and its
+ * rate from them. */
+int ex_span(const ex_inputs *inputs, double t, bg_span *span);
 void ex_slots(const ex_inputs *inputs, int segment, double t, double *g);
 void ex_given(const ex_inputs *inputs, int segment, const double *g, double *w, double *dw);
 
@@ -64,7 +66,7 @@ static inline int ex_find(ex_context *c, const int *mode, const ex_mode **found)
 /* Inputs are evaluated once for an instant: slots, and w and its rate. */
 static inline void ex_know(ex_context *c, double t)
 {
-    if (!c->known || c->known_time != t || c->known_segment != c->run.segment)
+    if (!c->known || c->known_time != t || c->known_segment != c->run.span.segment)
         ex_evaluate(c, t);
 }
 

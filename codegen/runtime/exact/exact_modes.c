@@ -69,11 +69,11 @@ int ex_rests(const ex_mode *mode, int port)
 
 void ex_evaluate(ex_context *c, double t)
 {
-    ex_slots(c->inputs, c->run.segment, t, c->slots);
-    ex_given(c->inputs, c->run.segment, c->slots, c->given, c->given + EX_W);
+    ex_slots(c->inputs, c->run.span.segment, t, c->slots);
+    ex_given(c->inputs, c->run.span.segment, c->slots, c->given, c->given + EX_W);
     c->known = 1;
     c->known_time = t;
-    c->known_segment = c->run.segment;
+    c->known_segment = c->run.span.segment;
 }
 
 /* What affine maps act on. */
@@ -92,7 +92,7 @@ static int is_rounding(const ex_context *c, double t, const double *v, const ex_
                        int port, double level)
 {
     double w[EX_W], sum = 0.0;
-    ex_input_sizes(c->inputs, c->run.segment, t, w);
+    ex_input_sizes(c->inputs, c->run.span.segment, t, w);
     for (int j = 0; j < EX_L; j++) {
         const int given = j >= EX_N && j < EX_N + EX_W;
         double size = given ? w[j - EX_N] : fabs(v[j]);

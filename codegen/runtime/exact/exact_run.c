@@ -74,6 +74,21 @@ static int couple(void *context, const int *mode, bg_set *touched)
     return BG_OK;
 }
 
+/* What was kept of a segment is not of the one that bears its number once others are written. */
+static int pass(void *context, double t, bg_span *span)
+{
+    ex_context *const c = context;
+    const double since = c->inputs->since;
+    const int status = ex_span(c->inputs, t, span);
+    if (c->inputs->since != since) {
+        c->runs++;
+        c->known = 0;
+        for (int n = 0; n < c->decided; n++)
+            c->choices[n].steady = -1;
+    }
+    return status;
+}
+
 /* States, and the terms that make up inputs. */
 static void see(void *context, const int *slipping)
 {
@@ -100,7 +115,7 @@ static int fastest(void *context, double *fastest)
     const ex_mode *mode;
     const int status = ex_find(c, c->run.mode, &mode);
     if (status == BG_OK)
-        *fastest = bg_greater(mode->fastest, c->inputs->fastest[c->run.segment]);
+        *fastest = bg_greater(mode->fastest, c->inputs->fastest[c->run.span.segment]);
     return status;
 }
 
@@ -159,7 +174,7 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
     const bg_sight sight = {c, EX_N, EX_K, model->switched ? model->switches : NULL,
                             model->stopping, model->coupled, c->shot + EX_AT_RATE, c->point,
                             c->struck, look, tell, ex_strike, couple};
-    const bg_engine engine = {sight, c, see, fastest, ex_choose, rest, advance};
+    const bg_engine engine = {sight, c, pass, see, fastest, ex_choose, rest, advance};
     c->model = model;
     c->inputs = inputs;
     c->task = task;
@@ -167,8 +182,6 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
     c->advance = how;
     c->caller = caller;
     c->known = c->next = 0;
-    c->run.segments = inputs->segments;
-    c->run.breaks = inputs->breaks;
     c->run.log.events = task->events;
     c->run.log.capacity = task->capacity;
     memcpy(c->s, task->start, sizeof c->s);

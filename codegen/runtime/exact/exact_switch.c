@@ -27,7 +27,7 @@ void ex_keep(const ex_context *c, const ex_mode *mode, const double *v, bg_port 
 static void sizes_of(const ex_context *c, const ex_mode *mode, const double *v, double t,
                      double *size)
 {
-    ex_input_sizes(c->inputs, c->run.segment, t, size + EX_N);
+    ex_input_sizes(c->inputs, c->run.span.segment, t, size + EX_N);
     for (int j = EX_N + EX_W; j < EX_L; j++)
         size[j] = fabs(v[j]);
     for (int i = 0; i < EX_N; i++) {

@@ -7,7 +7,7 @@
 /* The entry of the present mode and generator, from the cache or in place of the oldest. */
 static int entry(ex_context *c, ex_entry **found)
 {
-    const ex_chains *chains = c->inputs->structures + c->inputs->chains[c->run.segment];
+    const ex_chains *chains = c->inputs->structures + c->inputs->chains[c->run.span.segment];
     const ex_mode *mode;
     const int status = ex_find(c, c->run.mode, &mode);
     int oldest = 0;
@@ -58,7 +58,7 @@ static void constants(const ex_context *c, ex_entry *e)
     memcpy(sum, mode->shot[EX_L - 1], sizeof sum);
     memcpy(stay, mode->stay[EX_L - 1], sizeof stay);
     for (int j = 0; j < EX_W; j++) {
-        const double w = c->inputs->constant[c->run.segment][j];
+        const double w = c->inputs->constant[c->run.span.segment][j];
         if (w != 0.0) {
             for (int i = 0; i < EX_SHOT; i++)
                 sum[i] += mode->shot[EX_N + j][i] * w;
@@ -72,7 +72,7 @@ static void constants(const ex_context *c, ex_entry *e)
         e->b[i] = 0.0;
     ex_watch_gaps(c, -1, stay);
     ex_triggers(c, mode, sum, stay, e->level);
-    e->segment = c->run.segment;
+    e->segment = c->run.span.segment;
     e->run = c->runs;
 }
 
@@ -113,7 +113,7 @@ int ex_begin(ex_context *c, double stop)
     int status = entry(c, &stretch->entry);
     if (status)
         return status;
-    if (stretch->entry->segment != c->run.segment || stretch->entry->run != c->runs)
+    if (stretch->entry->segment != c->run.span.segment || stretch->entry->run != c->runs)
         constants(c, stretch->entry);
     memcpy(stretch->b, stretch->entry->b, sizeof stretch->b);
     memcpy(stretch->level, stretch->entry->level, sizeof stretch->level);

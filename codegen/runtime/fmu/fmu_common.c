@@ -17,7 +17,7 @@ static int externals_at(const void *self, double t, double *w, double *dw)
 {
     const fmu_instance *const f = self;
     double following;
-    fmu_externals(f, f->at.segment, t, w, dw);
+    fmu_externals(f, &f->at.span, t, w, dw);
     return !(f->at.exchange && fmu_next_break(f, &following) && t > following);
 }
 
@@ -35,6 +35,7 @@ void fmu_reset(fmu_instance *f, int exchange)
     memset(f, 0, sizeof *f);
     see_nothing(&f->at.peaks);
     f->at.exchange = exchange;
+    f->at.span = bg_signals_span(&fmu_signals, f->at.time);
     bg_model_parameters(f->at.parameters);
     memcpy(f->at.start, fmu_starts, sizeof(double) * FMU_STATES);
     memcpy(f->at.given, fmu_inputs, sizeof(double) * BG_EXTERNAL);
@@ -108,7 +109,7 @@ fmu_error fmu_refresh(fmu_instance *f)
     failed = fmu_apply(f);
     if (failed)
         return failed;
-    fmu_externals(f, f->at.segment, f->at.time, f->w, f->dw);
+    fmu_externals(f, &f->at.span, f->at.time, f->w, f->dw);
     if (f->at.phase <= FMU_INITIALIZING)
         failed = start(f);
     if (!failed)

@@ -36,7 +36,8 @@ typedef struct {
     bg_peaks peaks;
     double rest[BG_ROOM(BG_FRICTION)], margin[BG_ROOM(BG_FRICTION)];
     double switch_peak[BG_ROOM(FMU_SWITCHES)], switch_rest[BG_ROOM(FMU_SWITCHES)];
-    int side[BG_ROOM(FMU_SWITCHES)], mode[BG_ROOM(BG_FRICTION)], segment;
+    int side[BG_ROOM(FMU_SWITCHES)], mode[BG_ROOM(BG_FRICTION)];
+    bg_span span; /* of the sources inside */
     int named[BG_ROOM(FMU_STATES)], phase, decided, exchange, stepped;
     bg_fastest fastest;
 } fmu_memory;
@@ -94,10 +95,10 @@ fmu_error fmu_get_indicators(fmu_instance *f, double *indicators, size_t count);
 void fmu_get_nominals(double *nominals, size_t count);
 fmu_error fmu_copy(void *to, const void *from, size_t size);
 
-/* fmu_sources.c: external inputs at a time in a segment; breakpoints that are passed; the next one. The
+/* fmu_sources.c: external inputs at a time in a span; breakpoints that are passed; the next one. The
  * time of the next event: of a breakpoint, or of a look. That after t: where known sources have done
  * enough to be looked at, or an expression of time alone changes its sign. */
-void fmu_externals(const fmu_instance *f, int segment, double t, double *w, double *dw);
+void fmu_externals(const fmu_instance *f, const bg_span *span, double t, double *w, double *dw);
 void fmu_pass(fmu_instance *f, double t);
 int fmu_next_break(const fmu_instance *f, double *time);
 int fmu_next_event(const fmu_instance *f, double *time);

@@ -28,7 +28,7 @@ static fmu_error stride(fmu_instance *f, double t, double stop, double longest)
         double rates[BG_ROOM(W)];
         int status;
         for (int i = 0; i < 3; i++)
-            fmu_externals(f, f->at.segment, t + (k + 0.5 * i) * h, f->steps + i * W, rates);
+            fmu_externals(f, &f->at.span, t + (k + 0.5 * i) * h, f->steps + i * W, rates);
         status = bg_model_step(&f->model, t + k * h, h, f->at.s, f->steps);
         if (status != BG_OK)
             return told(f, status, t + k * h, h);
@@ -68,7 +68,7 @@ static fmu_error walk_pieces(fmu_instance *f, double t, double end)
 static int settle_end(fmu_instance *f, double t, double h)
 {
     for (int i = 0; i < 3; i++)
-        fmu_externals(f, f->at.segment, t + 0.5 * i * h, f->steps + i * W, f->dw);
+        fmu_externals(f, &f->at.span, t + 0.5 * i * h, f->steps + i * W, f->dw);
     return bg_model_settle(&f->model, t, h, f->at.s, f->steps);
 }
 

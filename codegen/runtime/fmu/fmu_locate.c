@@ -11,7 +11,7 @@
 static int inputs_there(const void *self, double t, double *w, double *dw)
 {
     const fmu_instance *const f = self;
-    fmu_externals(f, f->located.run.segment, t, w, dw);
+    fmu_externals(f, &f->located.run.span, t, w, dw);
     return 1;
 }
 
@@ -45,8 +45,7 @@ fmu_error fmu_locate(fmu_instance *f, double t, double end)
     bg_request asked = {0};
     int first[BG_MOST_PORTS] = {0};
     /* A breakpoint a rounding after t counts as reached. */
-    const int segment = bg_signals_segment(&fmu_signals, t);
-    const double from = segment > 0 ? fmax(t, fmu_signals.breaks[segment - 1]) : t;
+    const double from = fmax(t, bg_signals_span(&fmu_signals, bg_reached(t)).begin);
     if (!(from < end))
         return NULL;
     ask_for(f, &asked);

@@ -9,9 +9,9 @@
 enum { MOMENTS = BG_CHECKS + 1 };
 
 /* Values and rates at t; what the importer gives goes on from the instance's time with its slope. */
-void fmu_externals(const fmu_instance *f, int segment, double t, double *w, double *dw)
+void fmu_externals(const fmu_instance *f, const bg_span *span, double t, double *w, double *dw)
 {
-    bg_signals_at(&fmu_signals, segment, t, w, dw);
+    bg_signals_at(&fmu_signals, span, t, w, dw);
     for (int i = 0; i < BG_EXTERNAL; i++)
         if (!fmu_inside[i]) {
             const double change = f->at.slopes[i] * (t - f->at.time);
@@ -25,15 +25,15 @@ void fmu_externals(const fmu_instance *f, int segment, double t, double *w, doub
 
 void fmu_pass(fmu_instance *f, double t)
 {
-    f->at.segment = bg_signals_segment(&fmu_signals, t);
+    f->at.span = bg_signals_span(&fmu_signals, bg_reached(t));
     f->stale = 1;
 }
 
 int fmu_next_break(const fmu_instance *f, double *time)
 {
-    if (f->at.segment + 1 >= fmu_signals.segments)
+    if (f->at.span.following == INFINITY)
         return 0;
-    *time = fmu_signals.breaks[f->at.segment];
+    *time = f->at.span.following;
     return 1;
 }
 

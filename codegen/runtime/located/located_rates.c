@@ -94,14 +94,14 @@ static int largest_rate(bg_located *c, double *fastest)
     if (!isfinite(size))
         return BG_NOT_FINITE;
     c->own = BG_LISTED(BG_SIZE, BG_SIZE) ? from_products(c) : from_squares(c, size);
-    *fastest = fmax(c->signals->fastest[c->run.segment], c->own);
+    *fastest = fmax(bg_signals_fastest(c->signals, &c->run.span), c->own);
     return BG_OK;
 }
 
 int bg_located_fastest(bg_located *c, double t, const double *s, double *fastest)
 {
     int same = c->known;
-    *fastest = c->signals->fastest[c->run.segment];
+    *fastest = bg_signals_fastest(c->signals, &c->run.span);
     for (int i = 0; i < K; i++)
         same &= c->rated[i] == c->run.mode[i];
     if (same) {

@@ -8,8 +8,14 @@
 static int inputs_now(const void *self, double t, double *w, double *dw)
 {
     const bg_located *const c = self;
-    bg_signals_at(c->signals, c->run.segment, t, w, dw);
+    bg_signals_at(c->signals, &c->run.span, t, w, dw);
     return 1;
+}
+
+static int pass_on(void *run, double t, bg_span *span)
+{
+    *span = bg_signals_span(((const bg_located *)run)->signals, t);
+    return BG_OK;
 }
 
 /* In the present mode; straight-line code where all ports slip and there is any. */
@@ -95,7 +101,7 @@ static int sample(bg_located *c, double until)
 static double longest_now(const bg_located *c, int method, double fastest)
 {
     const double bound = bg_longest_step(c->run.at.t - c->run.began);
-    const double driven = c->signals->fastest[c->run.segment];
+    const double driven = bg_signals_fastest(c->signals, &c->run.span);
     if (method == BG_RADAU)
         return driven > 0 ? fmin(bound, BG_FOLLOWED / driven) : bound;
     return fastest > 0 ? fmin(bound, 1.0 / fastest) : bound;
@@ -160,11 +166,10 @@ void bg_located_set_out(bg_located *c, bg_model *m, const bg_signals *signals, b
     c->stiff = BG_STIFF_SPAN / (end - t);
     c->ahead = NULL;
     c->known = 0;
-    c->run.segments = signals->segments;
-    c->run.breaks = signals->breaks;
     c->run.log.events = asked->events;
     c->run.log.capacity = asked->capacity;
     bg_set_out(&c->run, t, end, c->s, first);
+    c->run.span = bg_signals_span(signals, t);
     c->view.model = m;
     c->view.peaks = &c->peaks;
     c->view.self = c;
@@ -173,8 +178,8 @@ void bg_located_set_out(bg_located *c, bg_model *m, const bg_signals *signals, b
 
 int bg_located_go(bg_located *c)
 {
-    const bg_engine engine = {bg_view_sight(&c->view), c, take_in, fastest_now, NULL, take_away,
-                              go_on};
+    const bg_engine engine = {bg_view_sight(&c->view), c, pass_on, take_in, fastest_now, NULL,
+                              take_away, go_on};
     return bg_run(&engine, &c->run);
 }
 

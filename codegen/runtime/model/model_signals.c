@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "model_signals.h"
-#include "run_pace.h"
 #include "tuning.h"
 
 void bg_term_add(const bg_term *term, const double (*coefficients)[2], double t, double *value,
@@ -32,12 +31,46 @@ double bg_cancelled(double size, double slope, double time)
     return 8.0 * DBL_EPSILON * (size + slope * time / 8.0);
 }
 
+/* The terms that hold in a span, one after the other, NULL after the last. Those of waves are told
+ * from where their part begins, in `own`. */
+typedef struct {
+    const bg_signals *signals;
+    const bg_span *span;
+    int wave, next, last;
+    double begin;
+    bg_term own;
+} term_walk;
+
+static term_walk walk_terms(const bg_signals *signals, const bg_span *span)
+{
+    const int *const begins = signals->begins + span->segment;
+    return (term_walk){signals, span, -1, begins[0], begins[1], 0.0, {0, 0, 0, 0.0, {0.0, 0.0}}};
+}
+
+static const bg_term *next_term(term_walk *walk)
+{
+    const bg_signals *const signals = walk->signals;
+    while (walk->next == walk->last) {
+        if (++walk->wave >= signals->waves)
+            return 0;
+        const bg_wave *const wave = signals->wave + walk->wave;
+        const int part = bg_wave_part(signals, wave, walk->span->begin, &walk->begin);
+        walk->next = signals->parts[wave->first + part].first;
+        walk->last = walk->next + signals->parts[wave->first + part].count;
+    }
+    if (walk->wave < 0)
+        return signals->terms + walk->next++;
+    walk->own = signals->terms[walk->next++];
+    walk->own.start = walk->begin;
+    return &walk->own;
+}
+
 /* What rounding leaves of an input's terms where they cancel. */
-static double rounding(const bg_signals *signals, int segment, int input, double t)
+static double rounding(const bg_signals *signals, const bg_span *span, int input, double t)
 {
     double sum = 0.0;
-    for (int k = signals->begins[segment]; k < signals->begins[segment + 1]; k++) {
-        const bg_term *const term = signals->terms + k;
+    term_walk walk = walk_terms(signals, span);
+    for (const bg_term *term = next_term(&walk); term; term = next_term(&walk)) {
         const double(*const c)[2] = signals->coefficients + term->first;
         const double tau = t - term->start;
         double size = 0.0, slope = 0.0;
@@ -54,31 +87,68 @@ static double rounding(const bg_signals *signals, int segment, int input, double
     return sum;
 }
 
-void bg_signals_at(const bg_signals *signals, int segment, double t, double *w, double *dw)
+/* Adds a term, and tells the largest of the coefficients so far. */
+static void add_term(const bg_term *term, const double (*coefficients)[2], double t, double *w,
+                     double *dw, double *largest)
+{
+    const double(*const c)[2] = coefficients + term->first;
+    double *const most = largest + term->input;
+    bg_term_add(term, coefficients, t, w + term->input, dw + term->input);
+    for (int i = 0; i < term->count; i++)
+        *most = fmax(*most, fmax(fabs(c[i][0]), fabs(c[i][1])));
+}
+
+void bg_signals_at(const bg_signals *signals, const bg_span *span, double t, double *w,
+                   double *dw)
 {
     double largest[BG_ROOM(BG_EXTERNAL)] = {0};
+    term_walk walk = walk_terms(signals, span);
     for (int i = 0; i < BG_EXTERNAL; i++)
         w[i] = dw[i] = 0.0;
-    /* A segment is not continued back before its begin: a level would fall below zero. */
-    if (segment > 0)
-        t = fmax(t, signals->breaks[segment - 1]);
-    for (int k = signals->begins[segment]; k < signals->begins[segment + 1]; k++) {
-        const bg_term *const term = signals->terms + k;
-        const double(*const c)[2] = signals->coefficients + term->first;
-        double *const most = largest + term->input;
-        bg_term_add(term, signals->coefficients, t, w + term->input, dw + term->input);
-        for (int i = 0; i < term->count; i++)
-            *most = fmax(*most, fmax(fabs(c[i][0]), fabs(c[i][1])));
-    }
+    /* Pieces are not continued back before they begin: a level would fall below zero. */
+    t = fmax(t, span->begin);
+    for (; walk.next < walk.last; walk.next++) /* of the table, which most are */
+        add_term(signals->terms + walk.next, signals->coefficients, t, w, dw, largest);
+    for (const bg_term *term = next_term(&walk); term; term = next_term(&walk))
+        add_term(term, signals->coefficients, t, w, dw, largest);
     for (int i = 0; i < BG_EXTERNAL; i++)
         if (w[i] != 0.0 && fabs(w[i]) <= BG_CANCELLED * largest[i] /* else none: saves the look */
-            && fabs(w[i]) <= rounding(signals, segment, i, t))
+            && fabs(w[i]) <= rounding(signals, span, i, t))
             w[i] = 0.0;
 }
 
-/* A breakpoint counts as reached a rounding before it: times are sums of steps. */
-int bg_signals_segment(const bg_signals *signals, double t)
+double bg_signals_one(const bg_signals *signals, int at, double t)
 {
-    const double near = t + 8 * DBL_EPSILON * fabs(t);
-    return bg_segment(signals->segments, signals->breaks, near);
+    const bg_span span = bg_signals_span(signals, t);
+    term_walk walk = walk_terms(signals, &span);
+    double value = 0.0, slope = 0.0;
+    for (const bg_term *term = next_term(&walk); term; term = next_term(&walk))
+        if (term->input == at)
+            bg_term_add(term, signals->coefficients, t, &value, &slope);
+    return value;
+}
+
+double bg_reached(double t)
+{
+    return t + 8 * DBL_EPSILON * fabs(t);
+}
+
+bg_span bg_signals_span(const bg_signals *signals, double t)
+{
+    bg_span span = bg_span_at(signals->segments, signals->breaks, t);
+    for (int i = 0; i < signals->waves; i++) {
+        double begin;
+        bg_wave_part(signals, signals->wave + i, t, &begin);
+        span.begin = fmax(span.begin, begin);
+        span.following = fmin(span.following, bg_wave_following(signals, signals->wave + i, t));
+    }
+    return span;
+}
+
+double bg_signals_fastest(const bg_signals *signals, const bg_span *span)
+{
+    double fastest = signals->fastest[span->segment];
+    for (int i = 0; i < signals->waves; i++)
+        fastest = fmax(fastest, signals->wave[i].fastest);
+    return fastest;
 }

@@ -11,7 +11,7 @@ static int come_to_end(const bg_engine *e, bg_course *c, int *undecided)
 {
     const bg_sight *const sight = &e->sight;
     bg_port now[BG_MOST_PORTS];
-    *undecided = c->segment > 0 && c->breaks[c->segment - 1] == c->at.t;
+    *undecided = c->span.begin == c->at.t;
     if (sight->ports == 0)
         return BG_OK;
     const int status = sight->look(sight->self, c->at.t, c->at.s, c->mode);
@@ -87,7 +87,7 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
     c->at = (bg_instant){.t = t, .s = s};
     c->began = t;
     c->end = end;
-    c->segment = bg_segment(c->segments, c->breaks, t);
+    c->span = (bg_span){0, -INFINITY, INFINITY};
     c->log.count = c->rounds.next = c->rounds.full = 0;
     for (int i = 0; i < BG_MOST_PORTS; i++)
         c->mode[i] = first ? first[i] : 1;
@@ -95,18 +95,19 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
 
 int bg_run(const bg_engine *e, bg_course *c)
 {
-    const double most = 16.0 * c->log.capacity + c->segments + 1000.0;
-    int status = BG_OK;
-    for (double turns = 0.0; turns < most; turns += 1.0) {
+    const double most = 16.0 * c->log.capacity + 1000.0;
+    int status = BG_OK, started = 0;
+    /* Breakpoints lie ahead one after the other: a turn that ends at one gets somewhere. */
+    for (double turns = 0.0; turns < most; turns += c->at.t < c->at.following) {
         int undecided = 1;
-        c->segment = bg_segment(c->segments, c->breaks, c->at.t);
-        const int last = c->segment + 1 == c->segments;
-        c->at.following = last ? INFINITY : c->breaks[c->segment];
-        if (turns > 0 && c->at.t >= c->end)
+        status = e->pass(e->self, c->at.t, &c->span);
+        c->at.following = c->span.following;
+        if (status == BG_OK && started && c->at.t >= c->end)
             status = come_to_end(e, c, &undecided);
         if (status || !undecided)
             return status;
-        status = settle(e, c, turns > 0);
+        status = settle(e, c, started);
+        started = 1;
         memset(c->at.touched, 0, sizeof c->at.touched);
         if (status || c->at.t >= c->end)
             return status;

@@ -7,25 +7,26 @@
 #include "port_events.h"
 #include "run_pace.h"
 
-/* Where a run is. `began`, `end` [s]: of all of it; segment k of the inputs lasts to breaks[k], the
- * last one for ever. */
+/* Where a run is. `began`, `end` [s]: of all of it; `span`: the pieces of its inputs. */
 typedef struct {
     bg_instant at;
     double began, end;
-    int segments, segment, mode[BG_MOST_PORTS];
-    const double *breaks;
+    bg_span span;
+    int mode[BG_MOST_PORTS];
     bg_log log;
     bg_rounds rounds;
 } bg_course;
 
-/* What runs. `see` takes the instant, which was looked at with friction slipping so, into what
- * rounding is relative to; `fastest` tells the largest rate [1/s] there in the mode so far;
- * `choose` decides the mode there as bg_choose does, NULL where that is to do it; `rest` takes the
- * slips of ports that stick away; `advance` goes on to `stop` or the first event, whose ports it
- * tells in `touched`. All but the first give a status. */
+/* What runs. `pass` tells the pieces of the inputs at t and just after; `see` takes the instant,
+ * which was looked at with friction slipping so, into what rounding is relative to; `fastest` tells
+ * the largest rate [1/s] there in the mode so far; `choose` decides the mode there as bg_choose
+ * does, NULL where that is to do it; `rest` takes the slips of ports that stick away; `advance`
+ * goes on to `stop` or the first event, whose ports it tells in `touched`. All but `see` give a
+ * status. */
 typedef struct {
     bg_sight sight;
     void *self;
+    int (*pass)(void *self, double t, bg_span *span);
     void (*see)(void *self, const int *slipping);
     int (*fastest)(void *self, double *fastest);
     int (*choose)(void *self, const bg_sight *sight);

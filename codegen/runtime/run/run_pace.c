@@ -34,7 +34,7 @@ int bg_stalls(bg_rounds *rounds, double t, double time)
     return rounds->full && t - rounds->time[rounds->next] < least;
 }
 
-int bg_segment(int segments, const double *breaks, double t)
+bg_span bg_span_at(int segments, const double *breaks, double t)
 {
     int low = 0, high = segments - 1;
     while (low < high) {
@@ -44,5 +44,6 @@ int bg_segment(int segments, const double *breaks, double t)
         else
             high = middle;
     }
-    return low;
+    return (bg_span){low, low > 0 ? breaks[low - 1] : -INFINITY,
+                     low + 1 < segments ? breaks[low] : INFINITY};
 }

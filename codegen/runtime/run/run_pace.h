@@ -27,7 +27,14 @@ double bg_longest_step(double elapsed);
 /* Counts an event at t; whether the latest ones all were within a moment of a time constant. */
 int bg_stalls(bg_rounds *rounds, double t, double time);
 
-/* The segment that holds at t and just after; segment k lasts to breaks[k], the last for ever. */
-int bg_segment(int segments, const double *breaks, double t);
+/* The pieces of all inputs at an instant: the segment of a table, when the latest of them began and
+ * the next breakpoint of any; infinite where there is none. */
+typedef struct {
+    int segment;
+    double begin, following;
+} bg_span;
+
+/* What holds of a table at t and just after; segment k lasts to breaks[k], the last for ever. */
+bg_span bg_span_at(int segments, const double *breaks, double t);
 
 #endif

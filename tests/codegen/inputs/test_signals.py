@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from codegen import Constant, Lag, Ramp, Sampled, Signal, Sine, Step
+from codegen import Constant, Lag, Pulse, Ramp, Sampled, Signal, Sine, Step, ZeroOrderHold
 
 TIMES = np.linspace(-1.0, 3.0, 81)
 
@@ -26,6 +26,9 @@ VALUES = [
     (-2.5 * Ramp(0.2, 3.0), lambda t: -7.5 * max(t - 0.2, 0.0)),
     (Sine(2.0, 1.3) * 3, lambda t: 6.0 * np.sin(2 * np.pi * 1.3 * t)),
     (Sampled([0, 1, 1.5], [2, -1, 4]), lambda t: _line([0, 1, 1.5], [2, -1, 4], t)),
+    (Pulse(0.2, 1.2, 3.0, -1.0), lambda t: 3.0 if 0.2 <= t < 1.2 else -1.0),
+    (ZeroOrderHold([0.5, 1, 1.5], [2, -1, 4]), lambda t: 2 if t < 1 else (-1 if t < 1.5 else 4)),
+    (ZeroOrderHold([0.5], [2]), lambda t: 2.0),
 ]
 SIGNALS = [signal for signal, _ in VALUES]
 IDS = [str(signal) for signal in SIGNALS]
@@ -50,7 +53,7 @@ def test_continuous_from_the_right_with_a_piece_for_each_stretch(signal: Signal)
         assert signal(at) == after(at)
         assert signal(np.nextafter(at, -np.inf)) == before(np.nextafter(at, -np.inf))
         assert signal(at + 1e-9) == pytest.approx(signal(at), abs=1e-7)
-        if not isinstance(signal, Step):
+        if not isinstance(signal, Step | Pulse | ZeroOrderHold):
             assert before(at) == pytest.approx(after(at), rel=1e-14, abs=1e-14)
 
 
@@ -85,3 +88,10 @@ def test_far_from_its_start_a_signal_is_as_exact_as_near() -> None:
     shifted = Step(1000.0, 1.0) + Sine(1.0, 1.0, 0.25)
     assert shifted(1000.0) == pytest.approx(1.0 + np.sin(0.25), abs=1e-11)
     assert shifted(0.0) == pytest.approx(np.sin(0.25), abs=1e-11)
+
+
+def test_held_values_begin_at_whole_numbers_of_periods() -> None:
+    """0.1 added up ten times is not 1: the times are products."""
+    held = ZeroOrderHold(values=range(1001), period=0.1, start=-2.0)
+    assert held.breakpoints == tuple(-2.0 + 0.1 * k for k in range(1, 1001))
+    assert [held(t) for t in (-9.0, held.times[7], 1e9)] == [0.0, 7.0, 1000.0]

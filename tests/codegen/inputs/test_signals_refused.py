@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bondgraph import SignalError
-from codegen import Constant, Lag, Ramp, Sampled, Sine, Step
+from codegen import Constant, Lag, Pulse, Ramp, Sampled, Sine, Step, ZeroOrderHold
 from codegen.inputs.signals import as_signal
 
 NOT_FINITE = [math.nan, math.inf, -math.inf]
@@ -17,6 +17,8 @@ MAKERS = [
     ("Ramp", lambda x: Ramp(0.0, 1.0, 0.0, x)), ("Sine", lambda x: Sine(x, 1.0)),
     ("Sine", lambda x: Sine(1.0, x)), ("Sine", lambda x: Sine(1.0, 1.0, x)),
     ("Sine", lambda x: Sine(1.0, 1.0, 0.0, x)), ("Lag", lambda x: Lag(Constant(1.0), x)),
+    ("Pulse", lambda x: Pulse(x, 2.0, 1.0)), ("Pulse", lambda x: Pulse(0.0, x, 1.0)),
+    ("Pulse", lambda x: Pulse(0.0, 1.0, x)), ("Pulse", lambda x: Pulse(0.0, 1.0, 1.0, x)),
 ]  # fmt: skip
 
 
@@ -89,6 +91,32 @@ def test_ramp_must_end_after_it_begins(end: float) -> None:
 def test_samples_must_be_two_increasing_finite_columns(times, values, message: str) -> None:
     with pytest.raises(SignalError, match=message):
         Sampled(times, values)
+
+
+def test_a_pulse_must_end_after_it_begins() -> None:
+    with pytest.raises(SignalError, match="a pulse must end after it begins"):
+        Pulse(0.2, 0.2, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"times": [0, 1], "values": [1, 2, 3]}, "one length, not 2 and 3"),
+        ({"times": [0, 0], "values": [1, 2]}, "the times must increase"),
+        ({"values": [1, 2]}, "either times or a period"),
+        ({"times": [0, 1], "values": [1, 2], "period": 1.0}, "either times or a period"),
+        ({"values": [1, 2], "period": 0.0}, "the period must be positive, not 0.0"),
+        ({"values": [1, 2], "period": math.inf}, "the period must be a finite number, not inf"),
+        ({"values": [1, 2], "period": "1"}, "the period must be a finite number, not '1'"),
+        ({"values": [1], "period": 1, "start": math.nan}, "the start must be a finite number"),
+        ({"values": [], "period": 1.0}, "values must be one number or more in a row"),
+        ({"times": [0, 1], "values": [1, math.nan]}, "one of the values is not finite"),
+        ({"times": ["a"], "values": [1]}, "times must be numbers"),
+    ],
+)
+def test_held_values_must_be_a_column_with_its_times(given, message: str) -> None:
+    with pytest.raises(SignalError, match=f"held values.*{message}"):
+        ZeroOrderHold(**given)
 
 
 def test_adding_a_number_is_refused() -> None:

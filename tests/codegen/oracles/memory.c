@@ -52,13 +52,15 @@ static int stepped(const bg_signals *signals, double h)
     double *const map = malloc(sizeof(double) * BG_MAP_ROWS * BG_MAP_COLUMNS);
     bg_snapshot *const shot = malloc(sizeof *shot);
     int status = bg_model_init(model, NULL), bad = 0;
-    bg_signals_at(signals, bg_signals_segment(signals, 0.0), 0.0, w, dw);
+    bg_span span = bg_signals_span(signals, bg_reached(0.0));
+    bg_signals_at(signals, &span, 0.0, w, dw);
     if (status == BG_OK)
         status = bg_model_vector(model, 0.0, scenario_states, w, s);
     for (int k = 0; k < 5 && status == BG_OK; k++) {
         for (int i = 2; i >= 0; i--) {
             const double t = (k + 0.5 * i) * h;
-            bg_signals_at(signals, bg_signals_segment(signals, t), t, w + i * BG_EXTERNAL, dw);
+            span = bg_signals_span(signals, bg_reached(t));
+            bg_signals_at(signals, &span, t, w + i * BG_EXTERNAL, dw);
         }
         status = bg_model_step(model, k * h, h, s, w);
         if (status == BG_OK)
@@ -78,7 +80,8 @@ int main(int count, char **words)
 {
     static const int samples[] = {1, 2, 9};
     const bg_signals signals = {SCENARIO_SEGMENTS, scenario_breaks, scenario_begins, scenario_terms,
-                                scenario_coefficients, scenario_fastest};
+                                scenario_coefficients, scenario_fastest, SCENARIO_WAVES,
+                                scenario_wave, scenario_parts, SCENARIO_DUTIES};
     const double end = count > 1 ? strtod(words[1], NULL) : 1.0;
     int bad = stepped(&signals, 1e-5);
     for (int method = BG_AUTO; method <= BG_RADAU; method++)

@@ -3,7 +3,7 @@
 import pytest
 
 import bondgraph as bg
-from codegen import Constant, Lag, Ramp, Sine, Step
+from codegen import PWM, Constant, Lag, Pulse, Ramp, Sawtooth, Sine, Square, Step
 from differentials.commands.signals import law, signal
 
 
@@ -20,6 +20,11 @@ from differentials.commands.signals import law, signal
         ("sine(10, 50)", Sine(10.0, 50.0)),
         ("sine(10, 50, offset=1)", Sine(10.0, 50.0, offset=1.0)),
         (" lag(lag(step(0, 1), 0.1), 0.2) ", Lag(Lag(Step(0.0, 1.0), 0.1), 0.2)),
+        ("pulse(0.1, 0.2, 5)", Pulse(0.1, 0.2, 5.0)),
+        ("square(2e3, -1, 1, phase=0.5)", Square(2000.0, -1.0, 1.0, phase=0.5)),
+        ("sawtooth(50, 0, 1, 0.5)", Sawtooth(50.0, 0.0, 1.0, 0.5)),
+        ("pwm(1e4, 0.3, high=24)", PWM(10_000.0, 0.3, high=24.0)),
+        ("pwm(1e4, lag(step(0, 1), 0.1))", PWM(10_000.0, Lag(Step(0.0, 1.0), 0.1))),
     ],
 )
 def test_a_text_is_the_signal_it_says(text: str, expected: object) -> None:
@@ -36,7 +41,8 @@ def test_sums_add_up() -> None:
     [
         "", "stp(0.1)", "step", "step(0.1)", "step(1, 2, 3, 4)", "step(1, time=2)", "step(a=1, b=2)",
         "step(*[1, 2])", "step(**{})", "lag(1, 0.1, 2)", "lag(0.1)", "step(step(0, 1), 2)", "pi",
-        "1/0", "exp(1e9)", "10**400", "nan", "inf", "1j", "True", "'1'", "step(0, 1)*2",
+        "1/0", "exp(1e9)", "10**400", "nan", "inf", "1j", "True", "'1'", "step(0, 1)*2", "pwm(0, 0.5)",
+        "square(1, 0, 1, sine(1, 1))", "pwm(1e3)",
         "__import__('os').system('false')", "(lambda: 1)()", "step.__class__(1)", "[1]", "1; 2",
         "lag(step(0, 1), 0)", "(" * 300, "lag(" * 30 + "1" + ", 1)" * 30, "1 " * 1000, "\0",
     ],
