@@ -46,7 +46,7 @@ class Element:
     it has per unit of each port's variable, by the ports' names; ``owner``: the field's node.
     ``energy``: of a storage with an energy function, that function. ``inverse``: of one with a law, its
     state as a function of what the law gives, so that it may have derivative causality. ``switch``: of an
-    ideal switch, when it turns on and off. ``whole``: of a part of a stop, that stop. ``start``: of what makes
+    ideal switch, when it turns on and off. ``whole``: of a stop's part, that stop. ``start``: of what makes
     a state, the value with which runs begin.
     """
 

@@ -4,13 +4,14 @@ import math
 import warnings
 from collections.abc import Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ModelWarning
-from codegen.inputs.signal import Signal, sampled_values
+from codegen.inputs.signal import Signal
 from codegen.model.commands import Command, commands
 from codegen.model.numbers import exact_parameters
 from codegen.model.outside import outside
@@ -21,6 +22,9 @@ BEYOND = 1.0
 
 LOOKS = 101
 """Samples of such a run."""
+
+REPEATS = 1000
+"""So many breakpoints are looked at of what repeats."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +68,7 @@ def first_rests(
     """
     own = [sized[name] for name in one.signals]
     grid = _grid(one, times, [signal for signal, _ in own])
-    read = [np.atleast_2d(sampled_values(s, grid)) * np.reshape(by, (-1, 1)) for s, by in own]
+    read = [np.atleast_2d(s.sampled(grid)) * np.reshape(by, (-1, 1)) for s, by in own]
     values = np.atleast_2d(np.asarray(one.value(grid, *read), dtype=float) + 0 * grid)
     at = _first(_ways(values, on), values)
     return np.where(at >= 0, grid[at], np.nan)
@@ -90,7 +94,7 @@ def rests(
 def _rest_of_steps(one: Command, signals: Sequence[Signal], times: Array, on: bool) -> float:
     """The same of a command that steps, without arrays, which take longer than a short run."""
     begin, end = float(times[0]), float(times[-1])
-    breaks = {b for signal in signals for b in signal.breakpoints if begin < b < end}
+    breaks = {b for signal in signals for b in _breaks(signal, begin, end)}
     for at in (begin, *sorted(breaks)):
         value = float(one.value(at, *(signal(at) for signal in signals)))
         if on and value == 0:
@@ -111,7 +115,8 @@ def warn_of_rests(
     if not told:
         return
     if times is None:
-        ends = [b for signal in signals.values() for b in signal.breakpoints]
+        finite = [signal for signal in signals.values() if not signal.endless]
+        ends = [b for signal in finite for b in signal.breakpoints]
         times = np.linspace(0.0, max([0.0, *ends]) + BEYOND, LOOKS)
     for rest in rests(told, signals, times, on):
         warnings.warn(str(rest), ModelWarning, stacklevel=outside())
@@ -119,15 +124,22 @@ def warn_of_rests(
 
 def _steps(one: Command, signals: Sequence[Signal]) -> bool:
     """Whether a command is constant between breakpoints of what it reads."""
-    every = (piece.level is not None for signal in signals for piece in signal.pieces)
-    return not one.timed and all(every)
+    if one.timed or any(signal.endless for signal in signals):
+        return False
+    return all(piece.level is not None for signal in signals for piece in signal.pieces)
+
+
+def _breaks(signal: Signal, begin: float, end: float) -> list[float]:
+    """The breakpoints between two times; of one that repeats the first of them."""
+    every = signal.within(begin, end)
+    return [b for b in (islice(every, REPEATS) if signal.endless else every) if b < end]
 
 
 def _grid(one: Command, times: Array, signals: Sequence[Signal]) -> Array:
     """The times, breakpoints between them, and halfway between all of these; of steps only their ends."""
     if _steps(one, signals):
         times = times[[0, -1]]
-    breaks = [b for signal in signals for b in signal.breakpoints if times[0] < b < times[-1]]
+    breaks = [b for signal in signals for b in _breaks(signal, float(times[0]), float(times[-1]))]
     points = np.unique([*times.tolist(), *breaks])
     return np.unique([*points.tolist(), *((points[:-1] + points[1:]) / 2).tolist()])
 
