@@ -145,7 +145,7 @@ def test_paralleled_capacitors_share_their_charge(
     lost = C_1 * C_2 / (C_1 + C_2) * (u_1 - u_2) ** 2 / 2
     assert energy[0] - energy[-1] == pytest.approx(lost, rel=1e-12)
     assert result["k"].tolist() == [0.0] * 4 + [1.0] * 5
-    ((time, port, kind),) = result.events
+    ((time, port, kind, _),) = result.events
     assert (port, kind) == ("k", "on")
     assert time == pytest.approx(1.0, abs=1e-12)
 
