@@ -87,7 +87,7 @@ def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:
         "FRICTION": ports,
         "PORTS": max(ports, 1),
         "SWITCHES": sum(port.switch is not None for port in program.friction),
-        "STOPPING": int(program.stopping),
+        "STOPPING": int(program.stopped),
         "GUARDS": len(program.guards.results),
         "COUPLED": coupled,
         "HOLDS": min(FEW_HOLDS if program.varying or ports > LARGE else MOST_HOLDS, 2**ports),

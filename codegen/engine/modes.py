@@ -36,7 +36,7 @@ class Tables:
             self.record.supply = self._answer
         self._magnitudes(*moved[:2])
         self.record.switched = model.program.switched
-        self.record.stopping = model.program.stopping
+        self.record.stopping = model.program.stopped
         self._fill_stops()
         for at, port in enumerate(model.program.friction):
             self.record.own[at] = port.input

@@ -213,15 +213,9 @@ class Program:
         return any(port.switch is not None for port in self.friction)
 
     @property
-    def stopping(self) -> bool:
+    def stopped(self) -> bool:
         """Whether any port is a stop."""
         return any(port.switch is not None and port.switch.stops for port in self.friction)
-
-    @property
-    def restitution_given(self) -> bool:
-        """Whether parameters alone tell the restitutions of stops."""
-        told = [one.switch.restitution for one in self.equations.switches if one.gap is not None]
-        return all(one.free_symbols <= {*self.parameters} for one in told)
 
     def before(self, on: Container[Hashable]) -> tuple[int, ...]:
         """The mode of each port before a run: these switches on, the others off, friction let go.

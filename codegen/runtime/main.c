@@ -2,9 +2,9 @@
  *     ./model END SAMPLE [name=value ...]    names of parameters, initial states, inputs
  * A row every SAMPLE seconds, by fixed steps of SAMPLE or, with `step=H`, of a part of it that is
  * about H; `band=B` is the dead band of every friction port. With the word `located` steps are
- * adaptive and events located; they are told on the error stream. An input named is constant;
- * others are as in scenario.h. States that follow what switches hold at the start are told there,
- * too. */
+ * adaptive and events located; they are told on the error stream, with the impulses of impacts. An
+ * input named is constant; others are as in scenario.h. States that follow what switches hold at
+ * the start are told there, too. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -140,28 +140,6 @@ static int look_loose(ex_glance *g)
     return 1;
 }
 
-/* Whether all stops were apart and stay so, for sure; these are not asked. */
-static int bar_stops(ex_glance *g, const int *before)
-{
-    const ex_model *const m = g->c->model;
-    for (int i = 0; i < EX_K && m->stopping; i++) {
-        const bg_switch *const one = m->switches + i;
-        double row[EX_L] = {0};
-        if (one->kind != BG_STOPS)
-            continue;
-        row[one->place] = one->opening;
-        row[EX_L - 1] = m->room[i];
-        const double most = g->to->most[one->place];
-        const double near = bg_gap_rounding(one, m->room[i] + one->opening * most, most, g->rate[i],
-                                            most, nextafter(g->to->until, INFINITY) - g->to->until);
-        if (!bg_is_apart(one, before[i]) || g->c->run.at.touched[i]
-            || !ex_ask(g, row, 1.0, near * (1.0 + BG_BOUND_SLACK)))
-            return 0;
-        bg_add(&g->barred, i);
-    }
-    return 1;
-}
-
 /* Keeps a choice from a mode to the present one, if it can be told at a first look. */
 static void keep(ex_context *c, const int *before)
 {
@@ -177,7 +155,7 @@ static void keep(ex_context *c, const int *before)
     to->time = c->run.at.time;
     ex_vector(c, c->run.at.t, c->s, g.v);
     allow(&g);
-    if (!is_as_late(c, to) || !look_loose(&g) || !bar_stops(&g, before))
+    if (!is_as_late(c, to) || !look_loose(&g) || !ex_bar_stops(&g, before))
         return;
     for (int i = 0; i < EX_K; i++) {
         if (bg_has(&g.barred, i))

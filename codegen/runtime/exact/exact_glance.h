@@ -28,6 +28,9 @@ void ex_limit(const ex_glance *g, const ex_mode *mode, const double *most, ex_li
 int ex_ask(ex_glance *g, const double *row, double sign, double least);
 double ex_row(const double *row, const double *v);
 
+/* exact_stop.c: whether all stops were apart in a mode and stay so, for sure; these are not asked. */
+int ex_bar_stops(ex_glance *g, const int *before);
+
 /* What contradicts a way of the switches, as bg_try_ways asks for it; a status where that is not sure. */
 int ex_glance_at(void *self, const bg_set *held, int *holds, bg_set *broken);
 

@@ -1,5 +1,5 @@
 /* Stops of affine modes: their gaps, which change with one displacement each. */
-#include "exact_internal.h"
+#include "exact_glance.h"
 
 #include <math.h>
 
@@ -46,4 +46,25 @@ void ex_watch_gaps(const ex_context *c, int column, double *stay)
             const int own = column == m->switches[i].place;
             stay[i] = column < 0 ? m->room[i] : own ? m->switches[i].opening : 0.0;
         }
+}
+
+int ex_bar_stops(ex_glance *g, const int *before)
+{
+    const ex_model *const m = g->c->model;
+    for (int i = 0; i < EX_K && m->stopping; i++) {
+        const bg_switch *const one = m->switches + i;
+        double row[EX_L] = {0};
+        if (one->kind != BG_STOPS)
+            continue;
+        row[one->place] = one->opening;
+        row[EX_L - 1] = m->room[i];
+        const double most = g->to->most[one->place];
+        const double near = bg_gap_rounding(one, m->room[i] + one->opening * most, most, g->rate[i],
+                                            most, nextafter(g->to->until, INFINITY) - g->to->until);
+        if (!bg_is_apart(one, before[i]) || g->c->run.at.touched[i]
+            || !ex_ask(g, row, 1.0, near * (1.0 + BG_BOUND_SLACK)))
+            return 0;
+        bg_add(&g->barred, i);
+    }
+    return 1;
 }

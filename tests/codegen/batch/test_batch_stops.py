@@ -1,83 +1,99 @@
-"""Sweeps over models with stops in the loop of C: bounces as their closed form counts and times them."""
+"""The loop over runs in C on models with stops: bounces as their closed form counts and times them."""
 
 import shutil
-from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pytest
-from oracles.stops import ball, bounces, dropped
+from oracles.stops import ball, bounces, flight
 
 import bondgraph as bg
-from codegen import Family, event_count, final, first_event, sweep
+from codegen import Family, event_count, final, first_event, samples, sweep
+from codegen.engine.status import Status
+from codegen.sweeps.job import Job
+from codegen.sweeps.measuring import batch_of
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 
-TABLE = {"e": [0.0, 0.3, 0.8, 0.9], "h": [0.4, 0.9]}
+TIMES = np.linspace(0.0, 2.0, 21)
 
 MEASURES = {
     "first": first_event("floor", "hit"), "touch": first_event("floor", "touch"),
-    "hits": event_count("floor", "hit"), "place": final("q_floor"), "speed": final("v"),
+    "hits": event_count("floor", "hit"), "place": samples("q_floor"), "speed": final("v"),
 }  # fmt: skip
 
+RUNS = np.array([(e, h) for e in (0.0, 0.3, 0.8, 0.9, 1.0) for h in (0.4, 0.9)])
+"""Restitution and height of each."""
 
-def _start(numbers: Mapping[str, float]) -> dict[str, float]:
-    return {"q_floor": numbers["h"]}
-
-
-def _swept(table: Mapping[str, list[float]], method: str, backend: str = "c"):
-    """Over 2 s; any run that C hands back is an error, as warnings are."""
-    family = Family(bg.derive(ball("e")), {"m": 2.0, "g": 9.81}, backend=backend)
-    times = np.linspace(0.0, 2.0, 21)
-    return sweep(
-        family, table, times, MEASURES, _start, method=method, workers=0, progress=False
-    )  # fmt: skip
+METHODS = ["auto", "DOP853"]
+"""By exact steps; with events located."""
 
 
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("method", ["auto", "DOP853"])
-def test_a_sweep_counts_and_times_bounces(method: str) -> None:
-    found = _swept(TABLE, method)
-    for e, h, *_, hits, place, speed, first, touch in zip(
-        *(found[name] for name in ("e", "h", "hits", "place", "speed", "first", "touch")),
-        strict=True,
-    ):
+def _family(backend: str = "c") -> Family:
+    return Family(bg.derive(ball("e")), {"m": 2.0, "g": 9.81, "e": 0.5}, backend=backend)
+
+
+def _swept(method: str, runs: np.ndarray = RUNS) -> tuple[dict[str, Any], list[int], Any]:
+    """The columns of the loop in C, and which runs are left to do another way."""
+    job = Job(_family(), ("e", "q_floor"), TIMES, MEASURES, settings={"method": method})
+    loop = batch_of(job)
+    assert loop is not None
+    columns, left = loop(runs)
+    return dict(zip(MEASURES, columns, strict=True)), left, loop.statuses
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_loop_counts_and_times_bounces(method: str) -> None:
+    found, left, statuses = _swept(method)
+    assert not left
+    assert dict(statuses) == {int(Status.OK): len(RUNS)}
+    for k, (e, h) in enumerate(RUNS.tolist()):
         at = bounces(e, h, 200)
         if e == 0:
-            assert (hits, touch) == (0, pytest.approx(at[0], abs=1e-12))
+            assert found["hits"][k] == 0
+            assert found["touch"][k] == pytest.approx(at[0], abs=1e-12)
             continue
-        assert first == pytest.approx(at[0], abs=1e-12)
+        flying = at[99] > TIMES
+        right = flight(e, h, TIMES[flying])
+        assert found["place"][k][flying] == pytest.approx(right, abs=1e-10)
+        assert found["first"][k] == pytest.approx(at[0], abs=1e-12)
         if at[-1] < 2:
-            assert touch == pytest.approx(at[-1], abs=1e-4)
-            assert (place, speed) == (0.0, 0.0)
+            assert found["touch"][k] == pytest.approx(at[-1], abs=1e-4)
+            assert (found["place"][k][-1], found["speed"][k]) == (0.0, 0.0)
         else:
-            assert hits == np.count_nonzero(at < 2)
-            since, v = 2 - at[hits.astype(int) - 1], np.sqrt(2 * 9.81 * h) * e**hits
-            right = v * since - 9.81 * since**2 / 2, v - 9.81 * since
-            assert (place, speed) == pytest.approx(right, abs=1e-10)
+            assert np.isnan(found["touch"][k])
+            assert found["hits"][k] == np.count_nonzero(at < 2)
 
 
-def test_a_sweep_is_the_same_by_every_loop() -> None:
-    exact, located = _swept(TABLE, "auto"), _swept(TABLE, "DOP853")
-    expected = _swept(TABLE, "auto", "numpy")
-    for name in MEASURES:
-        for found in (exact, located):
-            assert found[name] == pytest.approx(expected[name], abs=1e-9, nan_ok=True), name
+def test_both_loops_do_as_numpy_does() -> None:
+    expected = sweep(
+        _family("numpy"), [dict(zip(("e", "q_floor"), run, strict=True)) for run in RUNS.tolist()],
+        TIMES, MEASURES, workers=0, progress=False,
+    )  # fmt: skip
+    for method in METHODS:
+        found, _, _ = _swept(method)
+        for name in MEASURES:
+            assert found[name] == pytest.approx(np.array(expected[name]), abs=1e-8, nan_ok=True), (
+                name
+            )
 
 
-def test_a_start_beyond_a_bound_is_refused_by_name() -> None:
-    found = _swept({"e": [0.5], "h": [0.1, -0.2]}, "DOP853")
+@pytest.mark.parametrize("method", METHODS)
+def test_a_start_beyond_a_bound_is_refused_by_name(method: str) -> None:
+    _, left, _ = _swept(method, np.array([(0.5, 0.1), (0.5, -0.2)]))
+    assert left == [1]
+    found = sweep(
+        _family(), {"e": [0.5], "q_floor": [0.1, -0.2]}, TIMES, MEASURES, method=method, workers=0,
+        progress=False,
+    )  # fmt: skip
     (failure,) = found.failed
-    assert (failure.run, failure.values["h"]) == (1, -0.2)
+    assert (failure.run, failure.values["q_floor"]) == (1, -0.2)
     assert "stop 'floor' begins 0.2 beyond its bound" in failure.message
     assert found["first"][0] == pytest.approx(bounces(0.5, 0.1, 1)[0])
 
 
-def test_more_bounces_than_a_loop_keeps_are_counted_all_the_same() -> None:
-    """A ball that bounces for ever, from so low that it does more than 256 times: the other way."""
-    case = dropped(1.0, 1e-4)
-    family = Family(case.equations, {"m": 2.0, "g": 9.81}, backend="c")
-    found = sweep(
-        family, {"e": [1.0], "h": [1e-4]}, [0.0, 5.0], {"hits": event_count("floor", "hit")}, _start,
-        workers=0, progress=False,
-    )  # fmt: skip
+def test_more_bounces_than_the_loop_keeps_are_counted_all_the_same() -> None:
+    """A ball that bounces for ever, from so low that it does more than 256 times: another way."""
+    table = {"e": [1.0], "q_floor": [1e-4]}
+    found = sweep(_family(), table, [0.0, 5.0], MEASURES, workers=0, progress=False)
     assert found["hits"].tolist() == [np.count_nonzero(bounces(1.0, 1e-4, 1000) < 5)]
