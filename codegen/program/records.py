@@ -228,6 +228,12 @@ class Program:
         )
 
     @property
+    def restitution_given(self) -> bool:
+        """Whether parameters alone tell the restitutions of stops."""
+        told = [one.switch.restitution for one in self.equations.switches if one.gap is not None]
+        return all(one.free_symbols <= {*self.parameters} for one in told)
+
+    @property
     def rated_inputs(self) -> frozenset[int]:
         """The inputs whose rates are known, or told by what moves a slip."""
         told = {port.input for port in self.friction}

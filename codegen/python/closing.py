@@ -95,8 +95,8 @@ def needed(program: Program, slips: SlipRows | None) -> list[str]:
     """
     also = {
         "deadband": bool(program.friction) and not program.switched,
-        "switched": program.switched and not program.stopping,
-        "stopping": program.stopping,
+        "switched": program.switched and not program.stopped,
+        "stopping": program.stopped,
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
         "ranks": slips is not None,
@@ -117,7 +117,7 @@ def closing(program: Program, slips: SlipRows | None) -> list[str]:
         base, arguments = "DeadBand", "NAMES, friction(self.parameters)"
         lines += [] if slips is None else slip_rows(slips)
     if program.switched:
-        base = "StoppedSteps" if program.stopping else "SwitchedSteps"
+        base = "StoppedSteps" if program.stopped else "SwitchedSteps"
         arguments = f"{arguments}, switches(self.parameters)"
         lines += _switching(program)
     lines += ["", "", *_form(program)]
