@@ -35,7 +35,7 @@ def quantities(
     kind = _kind(name, attributes)
     ports = attributes.get("ports")
     for key in ("effort", "flow"):
-        if kind.two_port or (kind.joins and key not in kind.nature.keys):
+        if kind.two_port or ((kind.joins or kind is Kind.STOP) and key not in kind.nature.keys):
             continue
         given = attributes.get(key)
         if kind.supplies and key not in kind.nature.keys:

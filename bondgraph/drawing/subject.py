@@ -1,6 +1,6 @@
 """What there is to draw: the nodes and bonds of a graph with their texts, and where strokes lie."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -73,7 +73,7 @@ def subject(graph: Any, values: bool) -> Subject:
     strokes = causal.strokes if causal else {}
     dependent = frozenset(causal.derivative) if causal else frozenset()
     elements: dict[Hashable, Element] = {name: checked.nodes[name]["element"] for name in checked}
-    owners = {name: name if e.owner is None else e.owner for name, e in elements.items()}
+    owners = {name: _drawn_as(e) for name, e in elements.items()}
     places = {owner: at for at, owner in enumerate(dict.fromkeys(owners.values()))}
     ports: dict[Hashable, list[Element]] = {owner: [] for owner in places}
     for name, owner in owners.items():
@@ -85,8 +85,16 @@ def subject(graph: Any, values: bool) -> Subject:
             (owners[tail], owners[head]), places, strokes,
         )
         for tail, head in checked.edges
+        if owners[tail] != owners[head]
     )  # fmt: skip
     return Subject(items, links, remark)
+
+
+def _drawn_as(element: Element) -> Hashable:
+    """The node that stands for an element: a field's for its ports, a stop's for its parts."""
+    if element.owner is not None:
+        return element.owner
+    return element.name if element.whole is None else element.whole
 
 
 def _causal(graph: Any) -> tuple[CausalGraph | None, str]:
@@ -104,6 +112,10 @@ def _item(
     owner: Hashable, ports: list[Element], dependent: frozenset[Hashable], values: bool
 ) -> Item:
     element = ports[0]
+    if element.whole is not None:
+        return Item(
+            owner, Kind.STOP, (_bounds(ports) if values else ()) or named(owner), one_port=True
+        )
     if element.kind.joins:
         return Item(owner, element.kind, named(owner))
     switched = _switched(element)
@@ -119,6 +131,22 @@ def _item(
         one_port=not element.kind.two_port and len(ports) == 1,
         dependent=any(port.name in dependent for port in ports),
     )
+
+
+def _bounds(ports: Sequence[Element]) -> Rich:
+    """What a rigid stop keeps its displacement within, if that is short; nothing of one that yields."""
+    place = next(port.integral for port in ports if port.integral is not None)
+    low: Rich = ()
+    high: Rich = ()
+    for port in ports:
+        if port.switch is None:
+            continue
+        if sp.diff(port.switch.off, place) < 0:
+            low = (*formula(place + port.switch.off), Run(" ≤ "))
+        else:
+            high = (Run(" ≤ "), *formula(place - port.switch.off))
+    text: Rich = (*low, *formula(place), *high)
+    return joined([*text]) if (low or high) and length(text) <= MOST else ()
 
 
 def _switched(element: Element) -> str:

@@ -94,13 +94,18 @@ def _switch(one: SwitchPort) -> str:
     free = f"it gives {given} = 0"
     holds = f"it keeps {received} = 0 by what {given} that takes"
     on, off = (holds, free) if one.held == "on" else (free, holds)
+    what = "an ideal switch" if one.gap is None else "a stop"
     text = (
-        f"{one.name}: an ideal switch; on, {on}, and turns off as {plain(one.off)} rises above zero; "
+        f"{one.name}: {what}; on, {on}, and turns off as {plain(one.off)} rises above zero; "
         f"off, {off}, and turns on as {plain(one.on)} rises above zero"
     )
     if not one.side:
         return text
     least, most = ("negative", "positive") if one.side > 0 else ("positive", "negative")
+    if one.gap is not None:
+        bounce = one.switch.restitution
+        thrown = f", and what meets it is thrown back at {plain(bounce)} of its speed" if bounce else ""
+        return f"{text}; so {plain(one.gap)} is never negative and {one.port.element.effort} never {most}{thrown}"
     return f"{text}; so {received} is never {least} and {given} never {most}"
 
 

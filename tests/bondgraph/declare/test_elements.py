@@ -32,8 +32,8 @@ def test_constructor_gives_a_node_of_plain_data(node: tuple, expected: tuple) ->
     assert type(node[1]["kind"]) is str
 
 
-def test_kinds_are_those_of_textbooks() -> None:
-    kinds = ["Se", "Sf", "I", "C", "R", "TF", "GY", "Zero", "One", "De", "Df", "Sw"]
+def test_kinds_are_those_of_textbooks_and_a_stop() -> None:
+    kinds = ["Se", "Sf", "I", "C", "R", "TF", "GY", "Zero", "One", "De", "Df", "Stop", "Sw"]
     assert [str(kind) for kind in bg.Kind] == kinds
 
 
