@@ -103,10 +103,19 @@ def _switch(one: SwitchPort) -> str:
         return text
     least, most = ("negative", "positive") if one.side > 0 else ("positive", "negative")
     if one.gap is not None:
-        bounce = one.switch.restitution
-        thrown = f", and what meets it is thrown back at {plain(bounce)} of its speed" if bounce else ""
-        return f"{text}; so {plain(one.gap)} is never negative and {one.port.element.effort} never {most}{thrown}"
+        return f"{text}; {_bound(one)}"
     return f"{text}; so {received} is never {least} and {given} never {most}"
+
+
+def _bound(one: SwitchPort) -> str:
+    """What a stop sees to."""
+    pushes = one.side if one.gives == "effort" else -one.side
+    never = "positive" if pushes > 0 else "negative"
+    text = f"so {plain(one.gap)} is never negative and {one.port.element.effort} never {never}"
+    bounce = one.switch.restitution
+    if not bounce:
+        return text
+    return f"{text}, and what meets it is thrown back with {plain(bounce)} times its speed"
 
 
 def junctions_step(
