@@ -39,7 +39,6 @@ NO_END = 2**31 - 1
 MEANINGS = {
     Status.NOT_AFFINE: "a friction mode is not one affine map",
     Status.NO_HOLD: "nothing holds the ports that would have to stick",
-    Status.NO_SHARE: "how redundant ports share a load was not found",
     Status.NEGATIVE: "a friction level falls below zero",
     Status.UNDECIDED: "no way of sticking and slipping is consistent",
     Status.STALLS: "events follow one another and time makes no progress",

@@ -73,4 +73,6 @@ def test_every_end_of_the_engine_has_a_meaning() -> None:
     named = {name for file in names for name in re.findall(r"\bBG_(\w+)", runtime_file(file))}
     # Where no mode is consistent, `bg_choose` says so.
     ends = {status for status in Status if status.name in named | {"UNDECIDED"}}
-    assert set(runs.MEANINGS) == ends - {Status.OK, Status.BLUNT} > runs.LIMITS
+    # The loop of all runs knows a bad level, which exact steps call a negative one.
+    ends -= {Status.OK, Status.BLUNT, Status.BAD_FRICTION}
+    assert set(runs.MEANINGS) == ends > runs.LIMITS

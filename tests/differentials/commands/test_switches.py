@@ -77,7 +77,7 @@ def test_a_file_is_swept_over_numbers_and_a_switch_measured(dog: str, data: Data
     """Joined from 1 s on, both slow down with d/4: v = 1 exp(-d (t - 1)/4)."""
     found = data(
         "sweep", dog, "--grid", "d=0.5,1", "--on", "dog", "--initial", "v_1=4", "--initial", "v_2=0",
-        "--input", "gate=step(1, 1)", "--until", "2", "--final", "v_2", "--final", "dog",
+        "--input", "gate=step(1, 1, -1)", "--until", "2", "--final", "v_2", "--final", "dog",
         "--first", "dog:off", "--workers", "0",
     )  # fmt: skip
     for run in found["runs"]:
