@@ -137,6 +137,26 @@ static void slips_beyond(const ex_mode *holding, const double *v, const double *
     }
 }
 
+/* Below what slips are rounding after a strike that stops these: of their terms with all let go, and
+ * of what states gain. */
+static int round_struck(ex_context *c, const int *mode, const ex_mode *holding, const double *v,
+                        const double *slips, double *near)
+{
+    const ex_mode *loose;
+    const int status = find_way(c, mode, 1, &loose);
+    if (status)
+        return status;
+    memset(near, 0, sizeof(double) * EX_K);
+    for (int j = 0; j < EX_L; j++) {
+        double size = fabs(v[j]);
+        for (int k = 0; k < holding->held && j < EX_N; k++)
+            size += fabs(holding->jump[k][j] * slips[k]);
+        for (int i = 0; i < EX_K; i++)
+            near[i] += BG_ROUNDING * fabs(loose->shot[j][EX_AT_SLIP + i]) * size;
+    }
+    return BG_OK;
+}
+
 int ex_strike(void *context, const bg_instant *at, const int *mode, const double *speeds,
               double *s, bg_blow *blow)
 {
@@ -151,8 +171,10 @@ int ex_strike(void *context, const bg_instant *at, const int *mode, const double
     slips_beyond(holding, v, speeds, slips);
     if (holding->held == 0 || (!speeds && !would_jump(c, at, mode, holding, slips, real, &status)))
         return status;
-    if (speeds)
+    if (speeds) {
         memcpy(real, slips, sizeof real);
+        status = round_struck(c, mode, holding, v, slips, blow->near);
+    }
     blow->struck = 1;
     for (int i = 0; i < EX_K; i++) {
         double way = 0.0, terms = 0.0;
@@ -167,5 +189,5 @@ int ex_strike(void *context, const bg_instant *at, const int *mode, const double
     for (int k = 0; k < holding->held; k++)
         for (int i = 0; i < EX_N; i++)
             s[i] += holding->jump[k][i] * slips[k];
-    return BG_OK;
+    return status;
 }

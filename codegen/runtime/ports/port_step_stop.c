@@ -45,6 +45,7 @@ static int throw_in_step(void *self, const bg_instant *at, const int *mode, cons
     bg_held_slips(held, &c->m->shot, slips);
     bg_less_speeds(held, speeds, slips);
     bg_stop(c->m, mode, held, impulses, slips, s, blow->given, ways);
+    bg_round_struck(c->m, &c->m->shot, blow->given, BG_STEP_ROUNDING, blow->near);
     blow->struck = 1;
     return BG_OK;
 }

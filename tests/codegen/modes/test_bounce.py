@@ -11,7 +11,7 @@ from references.stops.motion import Machine
 import bondgraph as bg
 from codegen import Result, simulator
 
-ROUTES = [("numpy", "auto"), ("numpy", "DOP853")]
+ROUTES = [(backend, method) for backend in ("numpy", "c") for method in ("auto", "DOP853")]
 
 
 def _stop(name: str, a: int, b: int | None, at: float, bounce: float, way: int = 1) -> Bound:

@@ -14,7 +14,7 @@ from bondgraph import SimulationError
 TIMES = np.linspace(0.0, 4.0, 41)
 
 
-@pytest.mark.parametrize("backend", ["numpy"])
+@pytest.mark.parametrize("backend", ["numpy", "c"])
 @pytest.mark.parametrize("seed", seeds("stops"))
 def test_random_stops(seed: int, backend: str) -> None:
     line = random_line(np.random.default_rng(seed))
