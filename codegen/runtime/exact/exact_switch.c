@@ -137,23 +137,28 @@ static void slips_beyond(const ex_mode *holding, const double *v, const double *
     }
 }
 
-/* Below what slips are rounding after a strike that stops these: of their terms with all let go, and
- * of what states gain. */
-static int round_struck(ex_context *c, const int *mode, const ex_mode *holding, const double *v,
-                        const double *slips, double *near)
+/* Below what slips are rounding after ports have given these impulses: of their terms with all let
+ * go, and of what states gain. */
+static int round_struck(ex_context *c, const bg_instant *at, const int *mode, bg_blow *blow)
 {
+    const ex_model *const a = c->model;
     const ex_mode *loose;
-    const int status = find_way(c, mode, 1, &loose);
+    int status = find_way(c, mode, 1, &loose);
+    if (status == BG_OK)
+        status = ex_look(c, at->t, at->s, loose, c->shot);
     if (status)
         return status;
-    memset(near, 0, sizeof(double) * EX_K);
-    for (int j = 0; j < EX_L; j++) {
-        double size = fabs(v[j]);
-        for (int k = 0; k < holding->held && j < EX_N; k++)
-            size += fabs(holding->jump[k][j] * slips[k]);
+    memset(blow->near, 0, sizeof blow->near);
+    for (int j = 0; j < EX_X; j++) {
+        double size = fabs(c->shot[EX_AT_X + j]);
+        for (int k = 0; k < EX_K; k++)
+            size += a->Q[a->own[k]][j] * fabs(blow->given[k]);
         for (int i = 0; i < EX_K; i++)
-            near[i] += BG_ROUNDING * fabs(loose->shot[j][EX_AT_SLIP + i]) * size;
+            blow->near[i] += BG_ROUNDING * a->F[j][i] * size;
     }
+    for (int j = 0; j < EX_U; j++)
+        for (int i = 0; i < EX_K; i++)
+            blow->near[i] += BG_ROUNDING * a->D[j][i] * fabs(c->shot[EX_AT_U + j]);
     return BG_OK;
 }
 
@@ -171,10 +176,8 @@ int ex_strike(void *context, const bg_instant *at, const int *mode, const double
     slips_beyond(holding, v, speeds, slips);
     if (holding->held == 0 || (!speeds && !would_jump(c, at, mode, holding, slips, real, &status)))
         return status;
-    if (speeds) {
+    if (speeds)
         memcpy(real, slips, sizeof real);
-        status = round_struck(c, mode, holding, v, slips, blow->near);
-    }
     blow->struck = 1;
     for (int i = 0; i < EX_K; i++) {
         double way = 0.0, terms = 0.0;
@@ -189,5 +192,5 @@ int ex_strike(void *context, const bg_instant *at, const int *mode, const double
     for (int k = 0; k < holding->held; k++)
         for (int i = 0; i < EX_N; i++)
             s[i] += holding->jump[k][i] * slips[k];
-    return status;
+    return speeds ? round_struck(c, at, mode, blow) : BG_OK;
 }
