@@ -18,6 +18,9 @@ from bondgraph.reduce.structure import Port
 WORDS = {True: ("on", "off"), False: ("stick", "slip")}
 """The modes of switches, and of other ports."""
 
+STOPS = {"apart": "on", "touch": "off"}
+"""The same of stops, in the words of their events."""
+
 
 @dataclass(frozen=True)
 class ToldModes:
@@ -96,6 +99,8 @@ def _checked(equations: StateEquations, mode: Any) -> dict[Hashable, str]:
             f"mode must map nodes to 'on', 'off', 'stick' or 'slip', not be {mode!r}"
         )
     switches = {one.name for one in equations.switches}
+    stops = {one.name for one in equations.switches if one.switch.stops}
+    mode = {name: STOPS.get(w, w) if name in stops else w for name, w in mode.items()}
     resisting = {p.element.name for p in equations.ports if p.element.kind.resists}
     for name, word in mode.items():
         if name not in switches | resisting:
@@ -109,7 +114,7 @@ def _checked(equations: StateEquations, mode: Any) -> dict[Hashable, str]:
             raise StructureError(
                 f"mode: {name!r} can be {words[0]!r} or {words[1]!r}, not {word!r}"
             )
-    return dict(mode)
+    return mode
 
 
 def _listed(equations: StateEquations) -> list[Hashable]:
