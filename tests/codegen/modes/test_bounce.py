@@ -93,6 +93,14 @@ def test_cradles(
     assert abs(result.audit().residual) < 1e-12
 
 
+@pytest.mark.parametrize(("backend", "method"), ROUTES)
+def test_a_start_that_closes_is_completed_and_no_event(backend: str, method: str) -> None:
+    """One ball comes, touching, at 1 m/s: the run begins after what that leads to."""
+    result = run(_row((1.0, 0.0, 0.0), 1.0), [0.0, 0.5], backend, method)
+    assert not result.events
+    assert [result[f"v{i}"][0] for i in range(3)] == pytest.approx([0, 0, 1], abs=1e-12)
+
+
 def test_two_balls_that_come_together_send_two() -> None:
     """They touch one another, and then the third."""
     line = _row((1.0, 1.0, 0.0, 0.0, 0.0), 1.0)

@@ -9,17 +9,17 @@ from references.build import bond_graph
 import bondgraph as bg
 
 
-def _falling(restitution: object):
+def _falling(**told: object):
     """A mass under a force that falls on a floor."""
     nodes = [
         bg.Se("F", "F"), bg.One("n"), bg.I("m", "m", flow="v"),
-        bg.Stop("floor", restitution=restitution),
+        bg.Stop("floor", **told),
     ]  # fmt: skip
     return bond_graph(nodes, "F>n>m n>floor")
 
 
 def rigid_stop() -> Kind:
-    """From 5 m under 10 m/s^2: at the floor at 1 s with 10 m/s, and again after 2 e^k s."""
+    """From 5 m, which the stop tells, under 10 m/s^2: at the floor at 1 s with 10 m/s, and after 2 e^k s more."""
     m, e, g, height = 2.0, 0.8, 10.0, 5.0
 
     def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
@@ -30,8 +30,8 @@ def rigid_stop() -> Kind:
         return {"q_floor": stepwise(t, *parts)}
 
     return Kind(
-        "rigid stop", _falling("e"), {"m": m, "e": e}, {"F": f"{-m * g}"}, known, 4.9,
-        {"q_floor": height}, on=("floor",), at=0.5, mode={"floor": "apart"},
+        "rigid stop", _falling(restitution="e", start="h"), {"h": height, "m": m, "e": e},
+        {"F": f"{-m * g}"}, known, 4.9, on=("floor",), at=0.5, mode={"floor": "apart"},
         rest={"inputs": {"F": 0.0}, "initial": {"q_floor": 1.0}},
     )  # fmt: skip
 
@@ -48,7 +48,7 @@ def plastic_stop() -> Kind:
         }  # fmt: skip
 
     return Kind(
-        "rigid stop, plastic", _falling(0), {"m": m}, {"F": f"step({turns}, {m * g / 2}, {-m * g})"},
+        "rigid stop, plastic", _falling(), {"m": m}, {"F": f"step({turns}, {m * g / 2}, {-m * g})"},
         known, 4.03, {"q_floor": height}, on=("floor",), at=1.7, mode={"floor": "touch"},
         rest={"inputs": {"F": -m * g}, "initial": {"q_floor": 0.0}},
     )  # fmt: skip
