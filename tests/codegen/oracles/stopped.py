@@ -79,7 +79,10 @@ def _signal(wave: Wave) -> Signal | float:
 
 
 def run(
-    line: Line, times: Sequence[float] | np.ndarray, backend: str = "numpy", method: str = "auto",
+    line: Line,
+    times: Sequence[float] | np.ndarray,
+    backend: str = "numpy",
+    method: str = "auto",
     **settings: float,
 ) -> Result:
     """The toolkit's run, by this backend and no other."""
