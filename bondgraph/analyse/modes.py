@@ -100,9 +100,11 @@ def _checked(equations: StateEquations, mode: Any) -> dict[Hashable, str]:
         )
     switches = {one.name for one in equations.switches}
     stops = {one.name for one in equations.switches if one.switch.stops}
-    mode = {name: STOPS.get(w, w) if name in stops else w for name, w in mode.items()}
+    told: dict[Hashable, str] = {
+        name: STOPS.get(word, word) if name in stops else word for name, word in mode.items()
+    }
     resisting = {p.element.name for p in equations.ports if p.element.kind.resists}
-    for name, word in mode.items():
+    for name, word in told.items():
         if name not in switches | resisting:
             listed = ", ".join(map(repr, [one.name for one in equations.switches]))
             raise StructureError(
@@ -114,7 +116,7 @@ def _checked(equations: StateEquations, mode: Any) -> dict[Hashable, str]:
             raise StructureError(
                 f"mode: {name!r} can be {words[0]!r} or {words[1]!r}, not {word!r}"
             )
-    return mode
+    return told
 
 
 def _listed(equations: StateEquations) -> list[Hashable]:

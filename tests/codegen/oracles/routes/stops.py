@@ -19,7 +19,7 @@ def _falling(**told: object):
 
 
 def rigid_stop() -> Kind:
-    """From 5 m, as the stop tells, under 10 m/s^2: at the floor at 1 s with 10 m/s, and after 2 e^k s more."""
+    """From 5 m, as the stop tells, under 10 m/s^2: at the floor at 1 s with 10 m/s, and 2 e^k s later."""
     m, e, g, height = 2.0, 0.8, 10.0, 5.0
 
     def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
