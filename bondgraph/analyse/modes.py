@@ -101,7 +101,8 @@ def _checked(equations: StateEquations, mode: Any) -> dict[Hashable, str]:
     switches = {one.name for one in equations.switches}
     stops = {one.name for one in equations.switches if one.switch.stops}
     told: dict[Hashable, str] = {
-        name: STOPS.get(word, word) if name in stops else word for name, word in mode.items()
+        name: STOPS[word] if name in stops and word in STOPS else word
+        for name, word in mode.items()
     }
     resisting = {p.element.name for p in equations.ports if p.element.kind.resists}
     for name, word in told.items():
