@@ -21,10 +21,11 @@ def causality_text(causal: bg.CausalGraph) -> str:
 
 
 def events_text(result: Result) -> str:
-    """When friction ports stuck, slipped and crossed zero, and switches changed, one event a line."""
+    """When friction ports stuck, slipped and crossed zero, switches changed and stops were met, by lines."""
     words = {
         "stick": "sticks", "slip": "slips again", "cross": "crosses zero slip",
         "on": "turns on", "off": "turns off",
+        "hit": "is hit", "touch": "is touched", "apart": "is left",
     }  # fmt: skip
     lines = [f"t = {e.time:.6f} s   {e.port} {words[e.kind]}" for e in result.events]
     return (

@@ -45,9 +45,9 @@ def linearize(
     simulator, over those declared. ``inputs``: names in laws that become inputs; what else no signal
     has is a parameter. A law that reads no signal and no such input leaves its port an input. ``outputs``:
     names of signals, else the equations' outputs. ``mode``: node to its mode: "on" or "off" for every
-    switch and controlled junction; "stick" or "slip" for dry friction, which slips unless told, to the
-    side that ``at`` tells. ``stuck``: nodes that stick. What is held takes a state with it, of the
-    storage of lowest priority, earlier ones first.
+    switch and controlled junction, of a stop also "apart" or "touch"; "stick" or "slip" for dry friction,
+    which slips unless told, to the side that ``at`` tells. ``stuck``: nodes that stick. What is held takes
+    a state with it, of the storage of lowest priority, earlier ones first.
 
     Raises `SignalError` where a slope needs a value that ``at`` lacks or the law has a corner there,
     `StructureError` for a switch without a mode and for one that there is not, `DependentSourceError`

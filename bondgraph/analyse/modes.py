@@ -18,6 +18,9 @@ from bondgraph.reduce.structure import Port
 WORDS = {True: ("on", "off"), False: ("stick", "slip")}
 """The modes of switches, and of other ports."""
 
+STOPS = {"apart": "on", "touch": "off"}
+"""The same of stops, in the words of their events."""
+
 
 @dataclass(frozen=True)
 class ToldModes:
@@ -96,8 +99,13 @@ def _checked(equations: StateEquations, mode: Any) -> dict[Hashable, str]:
             f"mode must map nodes to 'on', 'off', 'stick' or 'slip', not be {mode!r}"
         )
     switches = {one.name for one in equations.switches}
+    stops = {one.name for one in equations.switches if one.switch.stops}
+    told: dict[Hashable, str] = {
+        name: STOPS[word] if name in stops and word in STOPS else word
+        for name, word in mode.items()
+    }
     resisting = {p.element.name for p in equations.ports if p.element.kind.resists}
-    for name, word in mode.items():
+    for name, word in told.items():
         if name not in switches | resisting:
             listed = ", ".join(map(repr, [one.name for one in equations.switches]))
             raise StructureError(
@@ -109,7 +117,7 @@ def _checked(equations: StateEquations, mode: Any) -> dict[Hashable, str]:
             raise StructureError(
                 f"mode: {name!r} can be {words[0]!r} or {words[1]!r}, not {word!r}"
             )
-    return dict(mode)
+    return told
 
 
 def _listed(equations: StateEquations) -> list[Hashable]:

@@ -4,6 +4,7 @@ What merely touches takes no part. What closes more slowly than the model's own 
 higher than displacements are known, stays where it is.
 """
 
+import math
 from collections.abc import Collection, Mapping
 
 import numpy as np
@@ -85,9 +86,13 @@ def closing(
         least = TUNING.bounce * float(size.slip[i])
         if one.on or not one.is_on(mode[i]) or back <= 0 or slip >= -least:
             continue
-        pressed = max(-one.side * float(rates[i]), 0.0)
-        if (back * slip) ** 2 > 2 * TUNING.leap * pressed * float(near[one.guard]):
-            found[i] = -back * slip
+        pull, limit = one.side * float(rates[i]), float(near[one.guard])
+        depth = max(-float(told[one.guard]), 0.0)
+        # What is found late, beyond the bound, had another speed there.
+        gained = -2 * pull * depth if depth > limit else 0.0
+        speed = back * math.sqrt(max(slip**2 - gained, 0.0))
+        if speed**2 > 2 * TUNING.leap * max(-pull, 0.0) * limit:
+            found[i] = speed
     return found
 
 

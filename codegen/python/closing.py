@@ -62,14 +62,19 @@ class Model({base}):
 def simulate(time, initial, inputs, parameters=None, step=STEP, dead_band=1e-6{also}):
     """Integrate with steps of at most ``step`` [s] and sample at the times given.
 
-    ``initial``: states by name, the rest start at 0. ``inputs``: a number or a function of time for
+    ``initial``: states by name, the rest start at {rest}. ``inputs``: a number or a function of time for
     each of INPUTS. ``dead_band``: slips below it may stick. {told}The work of a step is bounded: nothing
     is located inside it. Returns arrays by name: t, states, inputs, outputs, {what}.
 
     Raises `UnstableStep` for a step beyond the stability of its method, with the longest that is
     stable; LONGEST_STEP is that of the start.
     """
-    return run(Model(parameters), time, initial, inputs, step, dead_band{given})'''
+    return run(Model(parameters), time, {initial}, inputs, step, dead_band{given})'''
+
+
+_FROM_ZERO = {"rest": "0", "initial": "initial"}
+_TOLD = {"rest": "STARTS, or 0", "initial": "{**STARTS, **initial}"}
+"""Where no start is declared, and where some are."""
 
 
 _PLAIN = {"also": "", "given": "", "told": "", "what": "friction efforts"}
@@ -105,10 +110,10 @@ def needed(program: Program, slips: SlipRows | None) -> list[str]:
     return [f"codegen.standalone.{name}" for name in names]
 
 
-def closing(program: Program, slips: SlipRows | None) -> list[str]:
+def closing(program: Program, slips: SlipRows | None, told: bool) -> list[str]:
     """Functions that bind formulas and tables to the rest, the class `Model`, and `simulate`.
 
-    ``slips``: as `needed` takes them.
+    ``slips``: as `needed` takes them. ``told``: whether there is a table STARTS.
     """
     names = "STATES, INPUTS, SHOWN, SWITCHES" if program.switched else "STATES, INPUTS, SHOWN"
     lines = [RULE, "# How this model is put together.", "", f"NAMES = Names({names})"]
@@ -124,7 +129,7 @@ def closing(program: Program, slips: SlipRows | None) -> list[str]:
     lines += _friction(program, slips) if program.friction else []
     if program.switched:
         lines += _SWITCHES.format(count=len(program.guards.results)).splitlines()
-    words = _SWITCHED if program.switched else _PLAIN
+    words = (_SWITCHED if program.switched else _PLAIN) | (_TOLD if told else _FROM_ZERO)
     return [*lines, *_MODEL.format(base=base, arguments=arguments, **words).splitlines()]
 
 

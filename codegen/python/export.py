@@ -7,6 +7,7 @@ from typing import Any
 from bondgraph.equations import StateEquations
 from codegen.model.commands import conditions_told
 from codegen.model.doubts import warn_of_doubts
+from codegen.model.starts import told_starts
 from codegen.ports.holds import all_plain, check_sets
 from codegen.program.records import Program
 from codegen.program.units import units
@@ -58,9 +59,10 @@ def to_python(
     (signals or numbers, others are 0): where a run starts, at which the longest stable step is found. The
     same arguments give the same text.
 
-    The module has ``PARAMETERS``, ``STATES``, ``INPUTS``, ``OUTPUTS``, ``LONGEST_STEP``; ``Model`` with
-    ``rhs`` and ``outputs``; and ``simulate``, which takes fixed Runge-Kutta steps, lets friction ports stick
-    inside a dead band and raises the module's ``UnstableStep`` for steps beyond the method's stability.
+    The module has ``PARAMETERS``, ``STATES``, ``INPUTS``, ``OUTPUTS``, ``LONGEST_STEP``, and, where the graph
+    declares starts, these for the parameters given as ``STARTS``; ``Model`` with ``rhs`` and ``outputs``; and
+    ``simulate``, which takes fixed Runge-Kutta steps, lets friction ports stick inside a dead band and raises
+    the module's ``UnstableStep`` for steps beyond the method's stability.
 
     What holds sticking ports is decided for the parameters given; the module raises an `ArithmeticError` that
     names the ports with others at which other ones are redundant, and as `simulator` does.
@@ -73,6 +75,7 @@ def to_python(
     warn_of_doubts(program, equations, exact)
     names = names_of(program)
     used = {symbol.name: float(exact[symbol.name]) for symbol in program.parameters}
+    starts = told_starts(equations, exact)
     check_sets(program, closed.slips)
     slips = None if all_plain(program, closed.slips) else closed.slips
     imports, fixed = written_out(needed(program, slips))
@@ -80,13 +83,14 @@ def to_python(
         *_head(program, equations, name, imports),
         *("", *table("PARAMETERS", used)),
         *("", *public(program)),
+        *(("", *table("STARTS", starts)) if starts else ()),
         *("", *places(program)),
         *(friction_tables(program, closed.slips) if program.friction else ()),
         *step_settings(start.longest, len(program.friction)),
         *_functions(program, names),
     ]
     same = [RULE, "# What follows is the same for every model.", "", "", fixed]
-    tail = closing(program, slips)
+    tail = closing(program, slips, bool(starts))
     return "\n".join([*lines, "", "", *same, "", "", *tail]) + "\n"
 
 

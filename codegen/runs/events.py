@@ -141,11 +141,19 @@ class Watch:
             return self._crossing(i, t_a, t_b, 0.0, dense) if b <= 0 else None
         if b >= -2 * limit or t_b <= self._blind:
             return None
-        return max(self._crossing(i, t_a, t_b, -2 * limit, dense), self._blind)
+        found = self._crossing(i, t_a, t_b, -2 * limit, dense)
+        half = 0.5 * (t_a + found)
+        if self._above(i, half, dense) > limit:
+            # What has been up and down again between two points.
+            found = self._crossing(i, half, found, 0.0, dense)
+        return float(max(found, self._blind))
+
+    def _above(self, i: int, t: float, dense: Dense) -> float:
+        return float(self._triggers(t, self._snapshot(t, dense(t)))[i])
 
     def _crossing(self, i: int, t_a: float, t_b: float, level: float, dense: Dense) -> float:
         def above(t: float) -> float:
-            return float(self._triggers(t, self._snapshot(t, dense(t)))[i] - level)
+            return self._above(i, t, dense) - level
 
         if above(t_a) <= 0:
             return t_a
@@ -157,7 +165,5 @@ class Watch:
         self, i: int, grid: Sequence[float], values: Sequence[float], k: int, dense: Dense
     ) -> float | None:
         """The first root between points k and k + 1, where a trigger dips below zero and comes back."""
-        lowest = dip(
-            lambda t: float(self._triggers(t, self._snapshot(t, dense(t)))[i]), grid, values, k
-        )
+        lowest = dip(lambda t: self._above(i, t, dense), grid, values, k)
         return None if lowest is None else self._crossing(i, grid[k], lowest, 0.0, dense)

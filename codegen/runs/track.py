@@ -20,7 +20,8 @@ class Event(NamedTuple):
 
     At a switch or a controlled junction "on" or "off"; at a `Stop` "touch", "apart", or "hit" where what met
     it is thrown back, or it takes a shock and stays as it is. ``impulse``: of an impact, that of what the
-    port gives; a port's events of one instant share it.
+    port gives; a port's events of one instant share it. Impacts with which a run begins
+    are none: they complete a start that no mode holds.
     """
 
     time: float

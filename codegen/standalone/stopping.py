@@ -1,10 +1,11 @@
-"""Stops in fixed steps: at the start of the step that finds a gap closed its stop is met.
+"""Stops in fixed steps: at the start of the step in which a gap would close its stop is met.
 
-It stops what closes, or throws it back, unless that would return within a step: so what bounces
-comes to rest and does not chatter. Displacements are put back to the bound.
+The gap is closed then, at the speed that what meets it will have there: it is stopped, or thrown
+back unless it would return within a step. So nothing goes through a stop, and what bounces comes
+to rest and does not chatter.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
@@ -51,28 +52,31 @@ class StoppedSteps(SwitchedSteps):
     def chosen(self, at: Point, previous: Chosen, dead_band: float, h: float) -> tuple[Mode, Array]:
         """The first consistent mode after what stops do, and s then: what joins comes first."""
         first = self.first if previous is None else previous
-        met = self.met(at, first)
+        met = self.met(at, first, h)
         apart = {i for i, _ in self.stops()} - {i for i, _ in met}
-        for _ in range(TUNING.impacts):
-            wanted = self.closing(at, first, met, h)
+        at, depth = self.closed_up(at, first, met)
+        for _ in range(TUNING.bounces):
+            wanted = self.closing(at, first, met, depth, h)
             asked = [i for i in self.places if i not in apart and i not in wanted]
             mode, s = self.among(at, asked, first, previous, dead_band, h)
             joined = not np.array_equal(s, at.s)
             at, first = at._replace(s=s), tuple(np.where(self.rubs, first, mode).tolist())
-            wanted = self.closing(at, mode, [(i, one) for i, one in met if i in wanted], h)
+            still = [(i, one) for i, one in met if i in wanted]
+            wanted = self.closing(at, mode, still, depth, h)
             if wanted:
-                at = at._replace(s=self.thrown(at, mode, wanted))
+                at, depth = at._replace(s=self.thrown(at, mode, wanted)), {}
             elif not joined:
-                break
-        return mode, self.closed_up(at, mode, met)
+                return mode, at.s
+        raise EvaluationError(f"at t = {at.t:g} what meets stops still closes")
 
-    def met(self, at: Point, mode: Mode) -> list[Stop]:
-        """The stops whose gap is closed, or that were held."""
+    def met(self, at: Point, mode: Mode, h: float) -> list[Stop]:
+        """The stops that were held, and those whose gap is closed, or would be within the step."""
         now = self.any_of(at, mode)
-        gaps, near = self.told(now), self.gap_rounding(now)
+        gaps, near, slips = self.told(now), self.gap_rounding(now), now.y[self.slips]
         return [
             (i, one) for i, one in self.stops()
             if not one.is_on(mode[i]) or gaps[one.guard] <= near[one.guard]
+            or gaps[one.guard] + h * one.side * slips[i] <= 0
         ]  # fmt: skip
 
     def gap_rounding(self, now: Instant) -> Array:
@@ -80,8 +84,13 @@ class StoppedSteps(SwitchedSteps):
         terms = level_terms(now, (), self.switches.guards)
         return np.asarray(TUNING.step_rounding * terms, dtype=float)
 
-    def closing(self, at: Point, mode: Mode, met: Sequence[Stop], h: float) -> dict[int, float]:
-        """How fast these open after they throw back what closes; without those that do not."""
+    def closing(
+        self, at: Point, mode: Mode, met: Sequence[Stop], depth: Mapping[int, float], h: float
+    ) -> dict[int, float]:
+        """How fast these open after they throw back what closes; without those that do not.
+
+        ``depth``: how far beyond its bound each was before it was put there.
+        """
         if not met:
             return {}
         now = self.any_of(at, mode)
@@ -90,13 +99,12 @@ class StoppedSteps(SwitchedSteps):
         found = {}
         for i, one in met:
             slip, back = one.side * slips[i], told[one.guard + 1]
-            pressed = max(-one.side * rates[i], 0.0)
+            pull = one.side * rates[i]
             if one.on or not one.is_on(mode[i]) or slip >= -near[i]:
                 continue
-            # What it gained beyond the bound it had not where it met it.
-            beyond = 2 * pressed * max(-told[one.guard], 0.0)
-            speed = float(back * np.sqrt(max(slip**2 - beyond, 0.0)))
-            if 2 * speed > h * pressed:
+            square = slip**2 + 2 * pull * depth.get(i, 0.0)
+            speed = float(back * np.sqrt(max(square, 0.0)))
+            if 2 * speed > h * max(-pull, 0.0):
                 found[i] = speed
         return found
 
@@ -122,11 +130,14 @@ class StoppedSteps(SwitchedSteps):
         ))  # fmt: skip
         return at.s if strike is None else after(strike)
 
-    def closed_up(self, at: Point, mode: Mode, met: Sequence[Stop]) -> Array:
-        """The vector s with the displacements of these at their bounds."""
+    def closed_up(
+        self, at: Point, mode: Mode, met: Sequence[Stop]
+    ) -> tuple[Point, dict[int, float]]:
+        """The displacements of these at their bounds, and how far beyond these they were."""
         if not met:
-            return at.s
-        gaps, s = self.told(self.any_of(at, mode)), at.s.copy()
-        for _, one in met:
-            s[one.place] -= one.opening * gaps[one.guard]
-        return s
+            return at, {}
+        gaps, s, depth = self.told(self.any_of(at, mode)), at.s.copy(), dict[int, float]()
+        for i, one in met:
+            depth[i] = -float(gaps[one.guard])
+            s[one.place] += one.opening * depth[i]
+        return at._replace(s=s), depth

@@ -56,7 +56,8 @@ EVENTS: Mapping[str, tuple[Callable[[Any, str], Any], str]] = MappingProxyType(
 """Measures of a port's events."""
 
 RUBBING, SWITCHING = ("stick", "slip", "cross"), ("on", "off")
-"""Events of friction, and of switches."""
+STOPPING = ("hit", "touch", "apart")
+"""Events of friction, of switches, and of stops."""
 
 
 def measure_options(command: Command) -> Command:

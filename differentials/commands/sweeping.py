@@ -16,6 +16,7 @@ from differentials.commands.grids import (
     FORM,
     GRID,
     RUBBING,
+    STOPPING,
     SWITCHING,
     measure_options,
     measures,
@@ -115,7 +116,9 @@ def _measures(
     family: codegen.Family, ready: Prepared, measured: Mapping[str, tuple[str, ...]]
 ) -> dict[str, Any]:
     signals = [*map(str, ready.equations.signals), *map(str, ready.equations.integrals)]
-    ports = {one.name: SWITCHING for one in ready.equations.switches}
+    ports = {
+        one.name: STOPPING if one.switch.stops else SWITCHING for one in ready.equations.switches
+    }
     known = dict.fromkeys((*family.states, *family.inputs, *signals, *map(str, ports)))
     declared = {**ready.equations.laws, **ready.laws}
     rubbing = [node for node, law in declared.items() if isinstance(law, bg.DryFriction)]

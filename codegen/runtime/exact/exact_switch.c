@@ -137,6 +137,31 @@ static void slips_beyond(const ex_mode *holding, const double *v, const double *
     }
 }
 
+/* Below what slips are rounding after ports have given these impulses: of their terms with all let
+ * go, and of what states gain. */
+static int round_struck(ex_context *c, const bg_instant *at, const int *mode, bg_blow *blow)
+{
+    const ex_model *const a = c->model;
+    const ex_mode *loose;
+    int status = find_way(c, mode, 1, &loose);
+    if (status == BG_OK)
+        status = ex_look(c, at->t, at->s, loose, c->shot);
+    if (status)
+        return status;
+    memset(blow->near, 0, sizeof blow->near);
+    for (int j = 0; j < EX_X; j++) {
+        double size = fabs(c->shot[EX_AT_X + j]);
+        for (int k = 0; k < EX_K; k++)
+            size += a->Q[a->own[k]][j] * fabs(blow->given[k]);
+        for (int i = 0; i < EX_K; i++)
+            blow->near[i] += BG_ROUNDING * a->F[j][i] * size;
+    }
+    for (int j = 0; j < EX_U; j++)
+        for (int i = 0; i < EX_K; i++)
+            blow->near[i] += BG_ROUNDING * a->D[j][i] * fabs(c->shot[EX_AT_U + j]);
+    return BG_OK;
+}
+
 int ex_strike(void *context, const bg_instant *at, const int *mode, const double *speeds,
               double *s, bg_blow *blow)
 {
@@ -167,5 +192,5 @@ int ex_strike(void *context, const bg_instant *at, const int *mode, const double
     for (int k = 0; k < holding->held; k++)
         for (int i = 0; i < EX_N; i++)
             s[i] += holding->jump[k][i] * slips[k];
-    return BG_OK;
+    return speeds ? round_struck(c, at, mode, blow) : BG_OK;
 }

@@ -73,6 +73,15 @@ static double crossing(root_search *asked, double a, double b, double level)
     return found;
 }
 
+/* Where a trigger that begins at zero falls well below it between a and b; where it has been up and
+ * down again before that, where it came through zero. */
+static double hop(root_search *asked, double a, double b, double limit)
+{
+    const double low = crossing(asked, a, b, -2 * limit), half = 0.5 * (a + low);
+    asked->level = 0.0;
+    return above(asked, half) > limit ? crossing(asked, half, low, 0.0) : low;
+}
+
 /* Where trigger `i` falls through zero between two points: 1, if it does. Until it is armed only a
  * fall well below zero counts, after a moment in which nothing does. */
 static int trigger_fall(root_search *asked, double t_a, double t_b, double a, double b,
@@ -94,7 +103,7 @@ static int trigger_fall(root_search *asked, double t_a, double t_b, double a, do
     }
     if (b >= -2 * limit || t_b <= watch->blind)
         return 0;
-    *root = fmax(crossing(asked, t_a, t_b, -2 * limit), watch->blind);
+    *root = fmax(hop(asked, t_a, t_b, limit), watch->blind);
     return 1;
 }
 

@@ -147,6 +147,11 @@ int bg_complete(bg_model *m, double t, const double *w, const int *named, int *m
 double bg_slip(const bg_model *m, const bg_snapshot *now, int port, double *terms);
 double bg_slip_rate(const bg_model *m, const bg_snapshot *now, int port, double *terms);
 
+/* Below what slips count as zero after impulses at an instant: this part of their terms and of what
+ * states gain. */
+void bg_round_struck(const bg_model *m, const bg_snapshot *now, const double *given, double part,
+                     double *near);
+
 /* An instant at the start of a step of h, and the mode before it, if any step was. */
 typedef struct {
     double t, h;

@@ -37,9 +37,18 @@ static double leaving_speed(const bg_switch *one, const bg_port *now)
     return speed * speed > 2.0 * BG_LEAP * fmax(-push, 0.0) * now->near_gap ? speed : 0.0;
 }
 
-/* Those among some stops that bounce as they are met. */
-static int find_closing(const bg_sight *c, const bg_instant *at, const int *mode, bg_set among,
-                        bg_throw *wanted)
+/* Whether what an impact has opened would close again before its gap could be seen. What is joined
+ * to it came to rest; unless it were stopped, too, the two might take turns for ever. */
+static int hardly_leaves(const bg_switch *one, const bg_port *now)
+{
+    const double slip = one->side * now->slip, pressed = fmax(-one->side * now->push, 0.0);
+    return slip > now->near_slip && slip * slip <= 2.0 * BG_LEAP * pressed * now->near_gap;
+}
+
+/* Those among some stops that bounce as they are met; or, if `leaving`, those that hardly leave,
+ * to be stopped. What is held is pressed with what holds it. */
+static int find_wanted(const bg_sight *c, const bg_instant *at, const int *mode, bg_set among,
+                       int leaving, bg_throw *wanted)
 {
     int known[BG_MOST_PORTS];
     bg_port now[BG_MOST_PORTS];
@@ -47,7 +56,7 @@ static int find_closing(const bg_sight *c, const bg_instant *at, const int *mode
     if (bg_is_empty(&among))
         return BG_OK;
     memcpy(known, mode, sizeof(int) * (size_t)c->ports);
-    const int status = bg_evaluated(c, at, 1, known);
+    const int status = bg_evaluated(c, at, 0, known);
     if (status)
         return status;
     c->tell(c->self, known, at, now, NULL);
@@ -55,23 +64,24 @@ static int find_closing(const bg_sight *c, const bg_instant *at, const int *mode
         const bg_switch *const one = c->switches + i;
         if (!bg_has(&among, i) || one->on || !bg_is_apart(one, mode[i]))
             continue;
-        wanted->speed[i] = leaving_speed(one, now + i);
-        if (wanted->speed[i] > 0.0)
+        wanted->speed[i] = leaving ? 0.0 : leaving_speed(one, now + i);
+        if (leaving ? hardly_leaves(one, now + i) : wanted->speed[i] > 0.0)
             bg_add(&wanted->ports, i);
     }
     return BG_OK;
 }
 
-/* Takes what an impact has thrown back to s, and tells of it. */
-static int take_blow(const bg_sight *c, const bg_instant *at, const bg_throw *wanted,
+/* Takes what an impact leads to as s, and tells of what it has thrown back. */
+static int take_blow(const bg_sight *c, const bg_instant *at, const bg_set *thrown,
                      const bg_blow *blow)
 {
     bg_log *const log = at->log;
     memcpy(at->s, c->struck, sizeof(double) * (size_t)c->size);
     for (int i = 0; i < c->ports && log; i++) {
-        log->given[i] += blow->given[i];
-        if (!bg_has(&wanted->ports, i) || blow->given[i] == 0.0)
+        if (!bg_has(thrown, i) || blow->given[i] == 0.0) {
+            log->given[i] += blow->given[i];
             continue;
+        }
         log->thrown = 1;
         if (bg_append(log, (bg_event){at->t, i, BG_HIT, blow->given[i]}))
             return BG_EVENTS;
@@ -97,38 +107,55 @@ static int close_up(const bg_sight *c, const bg_instant *at, const int *mode, co
     return BG_OK;
 }
 
+/* Stops what hardly leaves, at the end of what was struck. */
+static int still(const bg_sight *c, const bg_instant *at, const bg_set *met, const int *mode,
+                 int *thrown)
+{
+    const bg_set none = {{0}};
+    bg_throw wanted;
+    bg_blow blow = {0};
+    int status = find_wanted(c, at, mode, *met, 1, &wanted);
+    if (status == BG_OK && !bg_is_empty(&wanted.ports))
+        status = bg_bring_to_rest(c, at, mode, &wanted, &blow);
+    *thrown = blow.struck;
+    return status == BG_OK && *thrown ? take_blow(c, at, &none, &blow) : status;
+}
+
 /* One turn: joins, then throws back; whether anything was joined and thrown. */
 static int strike_in_turn(const bg_sight *c, const bg_instant *at, const bg_set *met,
                           const bg_set *apart, int *mode, int *joined, int *thrown)
 {
     bg_throw wanted;
     bg_blow blow = {0};
-    int status = find_closing(c, at, mode, *met, &wanted);
+    int status = find_wanted(c, at, mode, *met, 0, &wanted);
     const bg_set barred = bg_turned(*apart, &wanted.ports);
     if (status == BG_OK)
         status = bg_choose_once(c, at, &barred, mode, &blow);
     *joined = blow.struck;
     blow.struck = 0;
     if (status == BG_OK)
-        status = find_closing(c, at, mode, wanted.ports, &wanted);
+        status = find_wanted(c, at, mode, wanted.ports, 0, &wanted);
     if (status == BG_OK && !bg_is_empty(&wanted.ports))
         status = bg_throw_back(c, at, mode, &wanted, &blow);
     *thrown = blow.struck;
-    return status == BG_OK && *thrown ? take_blow(c, at, &wanted, &blow) : status;
+    return status == BG_OK && *thrown ? take_blow(c, at, &wanted.ports, &blow) : status;
 }
 
 int bg_choose_struck(const bg_sight *c, const bg_instant *at, int *mode)
 {
     bg_instant now = *at;
     bg_set met = {{0}}, apart = {{0}};
-    int status = find_met(c, at, mode, &met, &apart), joinings = 0;
+    int status = find_met(c, at, mode, &met, &apart), joinings = 0, struck = 0;
     for (int turn = 0; turn < BG_BOUNCES && status == BG_OK; turn++) {
         int joined, thrown;
         status = strike_in_turn(c, &now, &met, &apart, mode, &joined, &thrown);
+        memset(now.touched, 0, sizeof now.touched);
+        if (status == BG_OK && struck && !joined && !thrown)
+            status = still(c, &now, &met, mode, &thrown);
+        struck |= joined | thrown;
         joinings += joined;
         if (status == BG_OK && !thrown && (!joined || joinings > BG_IMPACTS))
             return close_up(c, &now, mode, &met);
-        memset(now.touched, 0, sizeof now.touched);
     }
     return status ? status : BG_STRUCK;
 }

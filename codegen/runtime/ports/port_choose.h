@@ -43,10 +43,11 @@ typedef struct {
 } bg_instant;
 
 /* An impact: whether there is one; what each port gives; 1 where that goes with its switch's mode,
- * -1 where against it, else 0. */
+ * -1 where against it, else 0. `near`: where speeds are wanted, below these slips after it are
+ * rounding. */
 typedef struct {
     int struck, shocks[BG_MOST_PORTS];
-    double given[BG_MOST_PORTS];
+    double given[BG_MOST_PORTS], near[BG_MOST_PORTS];
 } bg_blow;
 
 /* What can be looked at; `coupled`: whether a port's slip depends at once on friction. `look`
@@ -55,7 +56,7 @@ typedef struct {
  * is and, unless `at` is NULL, what counts as zero there; and unless that is NULL of the ruling,
  * which comes with no rows. `strike` puts s, which is that of `at` before, to what it is once the
  * switches of a mode hold, by an impact if more than rounding has to stop; or, unless `speeds` is
- * NULL, once those have these slips. `couple` tells of each port that is held in a
+ * NULL, by one after which those have these slips. `couple` tells of each port that is held in a
  * mode which ports it touches: those that its effort moves at once or accelerates, and those with
  * which it has part in what none of them rules alone; its status tells that this is not known. */
 typedef struct {

@@ -81,9 +81,14 @@ typedef struct {
     double speed[BG_MOST_PORTS];
 } bg_throw;
 
-/* port_throw.c: the impact of stops that throw back what closes, what switches hold in the mode
- * staying held; s after it goes to sight->struck. None where no states move what closes. */
+/* port_throw.c: the impact of stops that throw back what closes; what a push alone holds in the
+ * mode takes part as what does not bounce, what else switches hold stays held. s after it goes to
+ * sight->struck. None where no states move what closes. */
 int bg_throw_back(const bg_sight *sight, const bg_instant *at, const int *mode,
                   const bg_throw *wanted, bg_blow *blow);
+
+/* The same that stops these, all that is held in the mode staying held. */
+int bg_bring_to_rest(const bg_sight *sight, const bg_instant *at, const int *mode,
+                     const bg_throw *wanted, bg_blow *blow);
 
 #endif

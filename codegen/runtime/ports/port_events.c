@@ -1,8 +1,10 @@
 /* What happens at ports, in order. */
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
 #include "port_log.h"
+#include "tuning.h"
 
 int bg_slides(const int *mode)
 {
@@ -36,6 +38,13 @@ static double given_by(const bg_log *log, const bg_switch *with, int port)
     return log->given[port] + (with->slides ? log->given[port + 1] : 0.0);
 }
 
+/* Whether a stop took a shock, which is more than rounding of the largest, and stays as it is. */
+static int is_hit(const bg_log *log, const bg_switch *with, int port, int changed, double largest)
+{
+    return with != NULL && with->kind == BG_STOPS && !changed
+        && fabs(log->given[port]) > BG_ROUNDING * largest;
+}
+
 void bg_begin_log(bg_log *log)
 {
     log->thrown = 0;
@@ -55,6 +64,13 @@ int bg_append(bg_log *log, bg_event event)
 int bg_note(bg_log *log, double t, int ports, const bg_switch *switches, const int *before,
             const int *mode)
 {
+    double largest = 0.0;
+    for (int i = 0; i < ports; i++)
+        largest = fmax(largest, fabs(given_by(log, switches ? switches + i : NULL, i)));
+    for (int i = 0; i < ports && largest > 0.0; i++)
+        if (is_hit(log, switches + i, i, before[i] != mode[i], largest)
+            && bg_append(log, (bg_event){t, i, BG_HIT, log->given[i]}))
+            return -1;
     for (int switched = switches != NULL; switched >= 0; switched--)
         for (int i = 0; i < ports; i++) {
             const bg_switch *const with = switches ? switches + i : NULL;

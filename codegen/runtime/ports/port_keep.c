@@ -111,12 +111,17 @@ int bg_view_strike(void *view, const bg_instant *at, const int *mode, const doub
         }
         if (status)
             return status;
-        if (!held || !have_to_jump(held, &v->shot, ports, speeds, slips))
+        if (!held || held->kept == 0)
+            break;
+        const int asked = speeds && !blow->struck;
+        if (!have_to_jump(held, &v->shot, ports, speeds, slips) && !asked)
             break;
         blow->struck = 1;
         bg_stop(v->model, mode, held, impulses, slips, s, blow->given, ways);
         now.s = s;
     }
+    if (speeds && blow->struck)
+        bg_round_struck(v->model, &v->shot, blow->given, BG_ROUNDING, blow->near);
     for (int i = 0; i < K; i++)
         blow->shocks[i] = ways[i] == 0.0 ? 0 : ways[i] > 0.0 ? 1 : -1;
     return BG_OK;

@@ -38,3 +38,18 @@ double bg_slip_rate(const bg_model *m, const bg_snapshot *now, int port, double 
         sum += a->D[row * M + j] * now->du[j];
     return bg_moving[port] < 0 ? sum : sum + now->y[bg_moving[port]];
 }
+
+void bg_round_struck(const bg_model *m, const bg_snapshot *now, const double *given, double part,
+                     double *near)
+{
+    const bg_numbers *const a = &m->numbers;
+    for (int i = 0; i < K; i++) {
+        const double *const F = a->F + bg_friction_readings[i] * N;
+        double terms, gained = 0.0;
+        bg_slip(m, now, i, &terms);
+        for (int l = 0; l < N; l++)
+            for (int k = 0; k < K; k++)
+                gained += fabs(F[l] * a->Q[l * M + bg_friction_inputs[k]] * given[k]);
+        near[i] = part * (terms + gained);
+    }
+}

@@ -45,6 +45,7 @@ static int throw_in_step(void *self, const bg_instant *at, const int *mode, cons
     bg_held_slips(held, &c->m->shot, slips);
     bg_less_speeds(held, speeds, slips);
     bg_stop(c->m, mode, held, impulses, slips, s, blow->given, ways);
+    bg_round_struck(c->m, &c->m->shot, blow->given, BG_STEP_ROUNDING, blow->near);
     blow->struck = 1;
     return BG_OK;
 }
@@ -78,8 +79,8 @@ static int meet_in_step(step_search *c, bg_set *met)
     return BG_OK;
 }
 
-/* Those of them that bounce. */
-static int closing_in_step(step_search *c, const bg_set *met, bg_throw *wanted)
+/* Those among some of them that bounce. */
+static int closing_in_step(step_search *c, bg_set met, bg_throw *wanted)
 {
     double guards[BG_ROOM(BG_GUARDS)] = {0}, terms, moves;
     bg_model *const m = c->m;
@@ -90,7 +91,7 @@ static int closing_in_step(step_search *c, const bg_set *met, bg_throw *wanted)
     bg_guards(&m->now, guards);
     for (int i = 0; i < K; i++) {
         const bg_switch *const one = bg_switches + i;
-        if (!bg_has(met, i) || one->on || !bg_is_apart(one, m->mode[i]))
+        if (!bg_has(&met, i) || one->on || !bg_is_apart(one, m->mode[i]))
             continue;
         const double slip = one->side * bg_slip(m, &m->shot, i, &terms);
         const double push = one->side * bg_slip_rate(m, &m->shot, i, &moves);
@@ -120,31 +121,37 @@ static int give_back(step_search *c, const bg_throw *wanted, int *thrown)
     return status;
 }
 
+/* Whether impulses of what joins have changed s. */
+static int has_joined(const step_search *c)
+{
+    int any = 0;
+    for (int i = 0; i < BG_SIZE; i++)
+        any |= c->s[i] != c->begun[i];
+    return any;
+}
+
 int bg_search_struck(step_search *c)
 {
     bg_set met;
     bg_throw wanted;
     int thrown = 1, status = meet_in_step(c, &met);
     const bg_set apart = c->barred;
-    if (status == BG_OK)
-        status = closing_in_step(c, &met, &wanted);
     for (int turn = 0; turn < BG_BOUNCES && status == BG_OK; turn++) {
         int before[BG_ROOM(K)];
         memcpy(before, c->m->mode, sizeof before);
+        status = closing_in_step(c, met, &wanted);
         c->barred = bg_turned(apart, &wanted.ports);
-        status = bg_search_ways(c, before);
         if (status == BG_OK)
-            status = closing_in_step(c, &met, &wanted);
-        if (status == BG_OK && bg_is_empty(&wanted.ports))
-            return BG_OK;
+            status = bg_search_ways(c, before);
+        const int joined = has_joined(c);
         if (status == BG_OK)
+            status = closing_in_step(c, wanted.ports, &wanted);
+        thrown = !bg_is_empty(&wanted.ports);
+        if (status == BG_OK && thrown)
             status = give_back(c, &wanted, &thrown);
-        if (status == BG_OK && !thrown)
+        if (status == BG_OK && !thrown && !joined)
             return BG_OK;
         memcpy(c->begun, c->s, sizeof c->begun);
-        memset(&wanted, 0, sizeof wanted);
-        if (status == BG_OK)
-            status = closing_in_step(c, &met, &wanted);
     }
     return status ? status : BG_STRUCK;
 }

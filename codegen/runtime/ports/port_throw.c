@@ -19,7 +19,17 @@ static int slips_at(const bg_sight *c, const bg_instant *at, const double *s, co
     return BG_OK;
 }
 
-/* The impact where these stops take part; s after it goes to c->struck. */
+/* The ports that may take part: those that are wanted, and what a push alone holds in the mode. */
+static bg_set pushing(const bg_sight *c, const int *mode, const bg_set *wanted)
+{
+    bg_set found = {{0}};
+    for (int i = 0; i < c->ports; i++)
+        if (c->switches[i].side && (mode[i] == 0 || bg_has(wanted, i)))
+            bg_add(&found, i);
+    return found;
+}
+
+/* The impact where these take part, with what holds both ways; s after it goes to c->struck. */
 static int strike_some(const bg_sight *c, const bg_instant *at, const int *mode,
                        const bg_throw *wanted, const bg_set *active, bg_blow *blow)
 {
@@ -27,10 +37,11 @@ static int strike_some(const bg_sight *c, const bg_instant *at, const int *mode,
     double speeds[BG_MOST_PORTS] = {0};
     *blow = (bg_blow){0};
     for (int i = 0; i < c->ports; i++) {
-        tried[i] = c->switches[i].kind == BG_RUBS ? 1 : mode[i];
+        const bg_switch *const one = c->switches + i;
+        tried[i] = one->kind == BG_RUBS || one->side ? 1 : mode[i];
         if (bg_has(active, i)) {
             tried[i] = 0;
-            speeds[i] = c->switches[i].side * wanted->speed[i];
+            speeds[i] = one->side * wanted->speed[i];
         }
         any |= tried[i] == 0;
     }
@@ -38,9 +49,10 @@ static int strike_some(const bg_sight *c, const bg_instant *at, const int *mode,
     return any ? c->strike(c->self, at, tried, speeds, c->struck, blow) : BG_OK;
 }
 
-/* The stops that would pull, that bounce faster than they ought to, or not enough. */
-static bg_set contrary_stops(const bg_sight *c, const bg_throw *wanted, const bg_set *active,
-                             const bg_blow *blow, const double *before, const double *after)
+/* Of the ports that may take part those that would pull, that open faster than they ought to, or
+ * not fast enough. */
+static bg_set contrary_pushes(const bg_sight *c, const bg_throw *wanted, const bg_set *may,
+                              const bg_set *active, const bg_blow *blow, const double *after)
 {
     bg_set wrong = {{0}};
     double largest = 0.0;
@@ -48,9 +60,8 @@ static bg_set contrary_stops(const bg_sight *c, const bg_throw *wanted, const bg
         largest = fmax(largest, fabs(blow->given[i]));
     for (int i = 0; i < c->ports; i++) {
         const double way = c->switches[i].side, over = way * after[i] - wanted->speed[i];
-        const double near =
-            BG_ROUNDING * (fabs(before[i]) + fabs(after[i] - before[i]) + wanted->speed[i]);
-        if (!bg_has(&wanted->ports, i))
+        const double near = blow->near[i];
+        if (!bg_has(may, i))
             continue;
         if (bg_has(active, i) ? over > near || way * blow->given[i] > BG_ROUNDING * largest
                               : over < -near)
@@ -59,36 +70,33 @@ static bg_set contrary_stops(const bg_sight *c, const bg_throw *wanted, const bg
     return wrong;
 }
 
-/* Of those that are wrong the one that changes: one that takes part, if there is any. */
-static bg_set one_of(const bg_set *wrong, const bg_set *active)
-{
-    bg_set both = {{0}};
-    for (int k = 0; k < BG_SET_WORDS; k++)
-        both.bits[k] = wrong->bits[k] & active->bits[k];
-    return bg_only(bg_first_of(bg_is_empty(&both) ? wrong : &both));
-}
-
 int bg_throw_back(const bg_sight *c, const bg_instant *at, const int *mode, const bg_throw *wanted,
                   bg_blow *blow)
 {
-    double before[BG_MOST_PORTS], after[BG_MOST_PORTS];
+    double after[BG_MOST_PORTS];
     int loose[BG_MOST_PORTS];
-    bg_set active = wanted->ports;
+    const bg_set may = pushing(c, mode, &wanted->ports);
+    bg_set active = may;
     for (int i = 0; i < c->ports; i++)
         loose[i] = 1;
     int status = bg_evaluated(c, at, 1, loose);
-    if (status == BG_OK)
-        status = slips_at(c, at, at->s, loose, before);
     for (int turn = 0; turn < BG_BOUNCES && status == BG_OK; turn++) {
         status = strike_some(c, at, mode, wanted, &active, blow);
         if (status || !blow->struck)
             return status;
         status = slips_at(c, at, c->struck, loose, after);
-        const bg_set wrong = contrary_stops(c, wanted, &active, blow, before, after);
+        const bg_set wrong = contrary_pushes(c, wanted, &may, &active, blow, after);
         if (status || bg_is_empty(&wrong))
             return status;
-        const bg_set one = one_of(&wrong, &active);
+        const bg_set one = bg_only(bg_first_of(&wrong));
         active = bg_turned(active, &one);
     }
     return status ? status : BG_STRUCK;
+}
+
+int bg_bring_to_rest(const bg_sight *c, const bg_instant *at, const int *mode,
+                     const bg_throw *wanted, bg_blow *blow)
+{
+    const bg_set all = pushing(c, mode, &wanted->ports);
+    return strike_some(c, at, mode, wanted, &all, blow);
 }

@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles.c_model import WARNED, compiled, written
+from oracles.exported import loaded
 from oracles.stops import Stopped, bounces, dropped, flight, rotor, struck
 
-from codegen import to_c
+from codegen import to_c, to_python
 
 
 def _program(case: Stopped, folder: Path) -> Path:
@@ -83,6 +84,25 @@ def test_fixed_steps_beside_dry_friction(tmp_path: Path) -> None:
     found, _ = _called(_program(case, tmp_path), 3, case.times[1], "step=1e-4")
     for name in expected.states:
         assert found[name][:32] == pytest.approx(expected[name], abs=2e-3), name
+
+
+STEPPED = {
+    "plastic": (lambda: dropped(0.0), 3.0), "bouncing": (lambda: dropped(0.8), 3.0),
+    "elastic": (lambda: dropped(1.0), 3.0), "a row": (lambda: struck(4, 2, "1/2"), 1.0),
+    "friction": (rotor, 2.0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", STEPPED)
+def test_fixed_steps_are_those_of_exported_python(name: str, tmp_path: Path) -> None:
+    """Each step meets the same stops: every sample to rounding."""
+    make, end = STEPPED[name]
+    case = make()
+    found, _ = _called(_program(case, tmp_path), end, end / 50, f"step={end / 500!r}")
+    module = loaded(to_python(case.equations, case.numbers, name="stepped"))
+    other = module.simulate(np.linspace(0, end, 51), case.initial, case.inputs, step=end / 500)
+    for state in map(str, case.equations.states):
+        assert found[state] == pytest.approx(other[state], abs=1e-9), state
 
 
 @pytest.mark.parametrize("words", [["located"], []])

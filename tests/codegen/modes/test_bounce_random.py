@@ -14,9 +14,15 @@ from bondgraph import SimulationError
 TIMES = np.linspace(0.0, 4.0, 41)
 
 
-@pytest.mark.parametrize("backend", ["numpy"])
+TIGHT = {"rtol": 1e-13, "atol": 1e-14}
+"""For located events: what bounces multiplies an integrator's errors."""
+
+ROUTES = [("numpy", "auto", {}), ("c", "auto", {}), ("c", "DOP853", TIGHT)]
+
+
+@pytest.mark.parametrize(("backend", "method", "settings"), ROUTES)
 @pytest.mark.parametrize("seed", seeds("stops"))
-def test_random_stops(seed: int, backend: str) -> None:
+def test_random_stops(seed: int, backend: str, method: str, settings: dict[str, float]) -> None:
     line = random_line(np.random.default_rng(seed))
     try:
         course = Machine(line).run(TIMES)
@@ -24,8 +30,8 @@ def test_random_stops(seed: int, backend: str) -> None:
     except JammedError:
         # A source presses what does not yield.
         with pytest.raises(SimulationError):
-            run(line, TIMES, backend)
+            run(line, TIMES, backend, method, **settings)
         return
-    result = run(line, TIMES, backend)
+    result = run(line, TIMES, backend, method, **settings)
     assert complaints(line, TIMES, result, course, upto) == []
     assert unbalanced(line, TIMES, result, backend) == []

@@ -79,8 +79,14 @@ def _signal(wave: Wave) -> Signal | float:
 
 
 def run(
-    line: Line, times: Sequence[float] | np.ndarray, backend: str = "numpy", method: str = "auto"
+    line: Line,
+    times: Sequence[float] | np.ndarray,
+    backend: str = "numpy",
+    method: str = "auto",
+    **settings: float,
 ) -> Result:
-    """The toolkit's run."""
+    """The toolkit's run, by this backend and no other."""
     made: Simulator = simulator(bg.derive(graph(line)), {}, backend=backend)
-    return made.run(times, initial(line), inputs(line), method=method)
+    result = made.run(times, initial(line), inputs(line), method=method, **settings)
+    assert result.backend == backend
+    return result

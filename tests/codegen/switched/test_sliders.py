@@ -16,6 +16,7 @@ from references.build import bond_graph
 
 import bondgraph as bg
 from codegen import (
+    Constant,
     Family,
     Ramp,
     Signal,
@@ -332,3 +333,18 @@ def test_a_steady_state() -> None:
     assert set(point) == {"v", "f", "F", "f_F", "F_a", "s"}
     with pytest.raises(bg.SimulationError, match="'a' would not stick"):
         trim(ready, {"F": 2.5})
+
+
+@pytest.mark.parametrize(("backend", "method"), ENGINES)
+@pytest.mark.parametrize("way", [1, -1])
+def test_a_travel_is_the_impulse_of_its_event(way: int, backend: str, method: str) -> None:
+    """A level falls by a step to 2 below 200/pi sin(0.02 pi): the spring of 100 gives way at once."""
+    ready = simulator(
+        bg.derive(iwan("a")), {"k_a": 100.0}, {"a": bg.DryFriction("N")}, backend=backend
+    )
+    speed, level = Sine(2.0 * way, 0.5, np.pi / 2), Constant(5.0) + Step(0.02, -3.0)
+    result = ready.run(np.linspace(0.0, 0.1, 11), {}, {"v": speed, "N": level}, method)
+    (event,) = [one for one in result.events if one.impulse]
+    travel = (200 / np.pi * np.sin(0.02 * np.pi) - 2) / 100
+    assert (event.port, event.kind) == ("a", "slip")
+    assert (event.time, abs(event.impulse)) == pytest.approx((0.02, travel), abs=1e-9)
