@@ -74,7 +74,7 @@ static int settle(const bg_engine *e, bg_course *c, int started)
     for (int i = 0; i < sight->ports; i++)
         touched |= c->at.touched[i];
     if (status == BG_OK && started) {
-        if (bg_note(&c->log, c->at.t, sight->ports, sight->switches, before, c->mode))
+        if (bg_note(&c->log, c->at.t, sight->ports, sight->kinds, before, c->mode))
             status = BG_EVENTS;
         else if (touched && !c->log.thrown && bg_stalls(&c->rounds, c->at.t, c->at.time))
             status = BG_STALLS;
