@@ -49,6 +49,33 @@ static int decide(const bg_engine *e, bg_course *c, int started)
     return sight->look(sight->self, c->at.t, c->at.s, c->mode);
 }
 
+/* Counts the crossings of jumps at an instant; whether one comes to rest on its jump: crossed so often
+ * in a row without leaping higher than what counts as zero. As codegen/runs/crossings.py. */
+static int gather(const bg_engine *e, bg_course *c)
+{
+    const bg_sight *const sight = &e->sight;
+    bg_port now[BG_MOST_PORTS];
+    int crossed = 0, gathers = 0;
+    for (int i = 0; i < sight->ports; i++)
+        crossed |= c->at.touched[i] && sight->kinds[i].kind == BG_RUBS && sight->kinds[i].bound;
+    if (!crossed)
+        return BG_OK;
+    const int status = sight->look(sight->self, c->at.t, c->at.s, c->mode);
+    if (status)
+        return status;
+    sight->tell(sight->self, c->mode, &c->at, now, NULL);
+    for (int i = 0; i < sight->ports; i++) {
+        int *const unseen = c->crossings.unseen + i;
+        if (!c->at.touched[i] || sight->kinds[i].kind != BG_RUBS || !sight->kinds[i].bound)
+            continue;
+        const double leap = fabs(now[i].push) * (c->at.t - c->crossings.last[i]) / 4;
+        c->crossings.last[i] = c->at.t;
+        *unseen = c->mode[i] == 0 || leap > BG_LEAP * now[i].near_slip ? 0 : *unseen + 1;
+        gathers |= *unseen >= BG_STALLED;
+    }
+    return gathers ? BG_STALLS : BG_OK;
+}
+
 /* Takes the present instant into account, decides the mode there and removes slips that stick. */
 static int settle(const bg_engine *e, bg_course *c, int started)
 {
@@ -79,6 +106,8 @@ static int settle(const bg_engine *e, bg_course *c, int started)
         else if (touched && !c->log.thrown && bg_stalls(&c->rounds, c->at.t, c->at.time))
             status = BG_STALLS;
     }
+    if (status == BG_OK && started)
+        status = gather(e, c);
     return status ? status : e->rest(e->self);
 }
 
@@ -91,6 +120,8 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
     c->log.count = c->rounds.next = c->rounds.full = 0;
     for (int i = 0; i < BG_MOST_PORTS; i++)
         c->mode[i] = first ? first[i] : 1;
+    for (int i = 0; i < BG_MOST_PORTS; i++)
+        c->crossings.last[i] = -INFINITY, c->crossings.unseen[i] = 0;
 }
 
 int bg_run(const bg_engine *e, bg_course *c)
