@@ -24,9 +24,7 @@ class Crossings:
         self._jumps = [i for i, port in enumerate(self._ports) if port.jumps]
         self._last, self._unseen = dict[int, float](), dict.fromkeys(self._jumps, 0)
 
-    def take(
-        self, here: Sight, mode: Mode, touched: Collection[int], peaks: Peaks | None
-    ) -> None:
+    def take(self, here: Sight, mode: Mode, touched: Collection[int], peaks: Peaks | None) -> None:
         """Take the crossings of an instant into account, at which the mode has become this one.
 
         Raises `SimulationError` where a jump has been crossed `TUNING.stalled` times in a row without

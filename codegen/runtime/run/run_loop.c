@@ -51,7 +51,7 @@ static int decide(const bg_engine *e, bg_course *c, int started)
 
 /* Counts the crossings of jumps at an instant; whether one comes to rest on its jump: crossed so often
  * in a row without leaping higher than what counts as zero. As codegen/runs/crossings.py. */
-static int gather(const bg_engine *e, bg_course *c)
+static int count_crossings(const bg_engine *e, bg_course *c)
 {
     const bg_sight *const sight = &e->sight;
     bg_port now[BG_MOST_PORTS];
@@ -107,7 +107,7 @@ static int settle(const bg_engine *e, bg_course *c, int started)
             status = BG_STALLS;
     }
     if (status == BG_OK && started)
-        status = gather(e, c);
+        status = count_crossings(e, c);
     return status ? status : e->rest(e->self);
 }
 
