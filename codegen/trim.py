@@ -32,8 +32,9 @@ def trim(
 
     ``initial``: states to start the search from. ``mode``: what friction and switches do there, in the
     words of events, such as ``{"dog": "off", "brake": "stick"}``; of others a mode is found that is
-    consistent, from the one that the start shows; so of jumps of laws, which have no word. Sticking is preferred where both would do. The result is
-    what `linearize` takes as ``at``, and ``mode`` what it takes as that.
+    consistent, from the one that the start shows; so of laws that jump, which no word names. Sticking and
+    sliding are preferred where both would do. The result is what `linearize` takes as ``at``, and ``mode``
+    what it takes as that.
 
     Raises `SignalError` and `StructureError` for unusable arguments, `SimulationError` if no steady state
     was found, with the ports that would leave it.

@@ -129,8 +129,8 @@ def _taken_apart(part: sp.Expr) -> tuple[sp.Expr, list[tuple[sp.Expr, sp.Expr]]]
     if isinstance(part, sp.sign):
         return sp.Integer(0), [(part.args[0], one)]
     *branches, (last, otherwise) = part.args
-    sides = [_side(condition) for _, condition in branches]
-    if otherwise != sp.true or not all(sides) or len({way for _, way in sides}) != 1:
+    sides = [side for _, condition in branches if (side := _side(condition)) is not None]
+    if otherwise != sp.true or len(sides) < len(branches) or len({way for _, way in sides}) != 1:
         return part, []
     between = [sp.expand(b[0] - a[0]) for a, b in pairwise(sides)]
     if not all(gap.is_positive for gap in between):

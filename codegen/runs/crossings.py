@@ -1,9 +1,9 @@
 """Jumps that are crossed at ever shorter intervals, which come to rest on the jump: an accumulation.
 
-A jump that acts only on a higher derivative of what it hangs on (``x'' = -2 sign(x) - sign(x')``) holds nothing:
-it is crossed, and the crossings may gather towards an instant from which on both ``x`` and its rate stay zero
-(sliding of second order: Levant, International Journal of Control 58, 1993, section 3). No mode says that.
-``run_loop.c`` decides the same way.
+A jump that acts only on a higher derivative of what it hangs on (``x'' = -2 sign(x) - sign(x')``) holds
+nothing. It is crossed, and the crossings may gather towards an instant from which on both ``x`` and its rate
+stay zero (sliding of second order: Levant, International Journal of Control 58, 1993, section 3). No mode says
+that. ``run_loop.c`` decides the same way.
 """
 
 from collections.abc import Collection
