@@ -1,9 +1,9 @@
 """Jumps that are crossed at ever shorter intervals, which come to rest on the jump: an accumulation.
 
 A jump that acts only on a higher derivative of what it hangs on (``x'' = -2 sign(x) - sign(x')``) holds
-nothing. It is crossed, and the crossings may gather towards an instant from which on both ``x`` and its rate
-stay zero (sliding of second order: Levant, International Journal of Control 58, 1993, section 3). No mode says
-that. ``run_loop.c`` decides the same way.
+nothing. It is crossed, and the crossings may gather towards an instant from which on ``x`` and its rate stay
+zero both (sliding of second order: Levant, International Journal of Control 58, 1993, section 3). No mode
+says that. ``run_loop.c`` decides the same way.
 """
 
 from collections.abc import Collection
@@ -23,6 +23,10 @@ class Crossings:
         self._ports = model.program.friction
         self._jumps = [i for i, port in enumerate(self._ports) if port.jumps]
         self._last, self._unseen = dict[int, float](), dict.fromkeys(self._jumps, 0)
+
+    def of(self, before: Mode, after: Mode) -> frozenset[int]:
+        """The jumps that slide neither before nor after an instant: they may be crossed ever so often."""
+        return frozenset(i for i in self._jumps if before[i] and after[i])
 
     def take(self, here: Sight, mode: Mode, touched: Collection[int], peaks: Peaks | None) -> None:
         """Take the crossings of an instant into account, at which the mode has become this one.

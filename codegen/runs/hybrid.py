@@ -128,7 +128,8 @@ class _Course:
         if self._settled is not None:
             changes = self._changes.of((self.mode, new), lambda: _changes(model, self.mode, new))
             self.track.note(_told(model, t, changes, impacts))
-        if self._settled is not None and self._touched and not any(i.thrown for i in impacts):
+        counted = self._touched - self._crossings.of(self.mode, new)
+        if self._settled is not None and counted and not any(i.thrown for i in impacts):
             _check_progress(self._rounds, t, hardly_apart(peaks.time), self.track.events)
         if after is not here.s:
             here = Sight(model, t, after, pieces)

@@ -49,6 +49,11 @@ static int decide(const bg_engine *e, bg_course *c, int started)
     return sight->look(sight->self, c->at.t, c->at.s, c->mode);
 }
 
+static int is_jump(const bg_switch *one)
+{
+    return one->kind == BG_RUBS && one->bound;
+}
+
 /* Counts the crossings of jumps at an instant; whether one comes to rest on its jump: crossed so often
  * in a row without leaping higher than what counts as zero. As codegen/runs/crossings.py. */
 static int count_crossings(const bg_engine *e, bg_course *c)
@@ -57,7 +62,7 @@ static int count_crossings(const bg_engine *e, bg_course *c)
     bg_port now[BG_MOST_PORTS];
     int crossed = 0, gathers = 0;
     for (int i = 0; i < sight->ports; i++)
-        crossed |= c->at.touched[i] && sight->kinds[i].kind == BG_RUBS && sight->kinds[i].bound;
+        crossed |= c->at.touched[i] && is_jump(sight->kinds + i);
     if (!crossed)
         return BG_OK;
     const int status = sight->look(sight->self, c->at.t, c->at.s, c->mode);
@@ -66,7 +71,7 @@ static int count_crossings(const bg_engine *e, bg_course *c)
     sight->tell(sight->self, c->mode, &c->at, now, NULL);
     for (int i = 0; i < sight->ports; i++) {
         int *const unseen = c->crossings.unseen + i;
-        if (!c->at.touched[i] || sight->kinds[i].kind != BG_RUBS || !sight->kinds[i].bound)
+        if (!c->at.touched[i] || !is_jump(sight->kinds + i))
             continue;
         const double leap = fabs(now[i].push) * (c->at.t - c->crossings.last[i]) / 4;
         c->crossings.last[i] = c->at.t;
@@ -98,8 +103,9 @@ static int settle(const bg_engine *e, bg_course *c, int started)
     c->at.log = started ? &c->log : NULL;
     status = decide(e, c, started);
     c->at.log = NULL;
+    /* A jump that is crossed may be so as often as it is. */
     for (int i = 0; i < sight->ports; i++)
-        touched |= c->at.touched[i];
+        touched |= c->at.touched[i] && !(is_jump(sight->kinds + i) && before[i] && c->mode[i]);
     if (status == BG_OK && started) {
         if (bg_note(&c->log, c->at.t, sight->ports, sight->kinds, before, c->mode))
             status = BG_EVENTS;
