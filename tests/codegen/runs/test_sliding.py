@@ -64,7 +64,7 @@ def test_jumps_that_are_crossed_are_no_events() -> None:
 
 
 def test_a_jump_may_be_crossed_as_often_as_it_is() -> None:
-    """x'' = -1e11 sign(x): two crossings in each 0.57 us, far more than 60 in what is a moment to slow models."""
+    """x'' = -1e11 sign(x): two crossings in each 0.57 us, far more than 60 in a moment of slow models."""
     period = 4 * np.sqrt(2e-3 / 1e11)
     result = simulator(oscillating("1e11*sign(x)"), {}).run([0.0, 40 * period], {"x": 1e-3})
     assert result["x"][-1] == pytest.approx(1e-3, rel=CLOSE)
