@@ -32,8 +32,9 @@ def trim(
 
     ``initial``: states to start the search from. ``mode``: what friction and switches do there, in the
     words of events, such as ``{"dog": "off", "brake": "stick"}``; of others a mode is found that is
-    consistent, from the one that the start shows. Sticking is preferred where both would do. The result is
-    what `linearize` takes as ``at``, and ``mode`` what it takes as that.
+    consistent, from the one that the start shows; so of laws that jump, which no word names. Sticking and
+    sliding are preferred where both would do. The result is what `linearize` takes as ``at``, and ``mode``
+    what it takes as that.
 
     Raises `SignalError` and `StructureError` for unusable arguments, `SimulationError` if no steady state
     was found, with the ports that would leave it.
@@ -101,7 +102,9 @@ def _told(model: ClosedModel, mode: Mode, wrong: Broken) -> str:
     words = []
     for i in sorted(wrong):
         port = model.program.friction[i]
-        if port.slides:
+        if port.jumps:
+            words.append(f"{port.name!r} would not {'stay on its side' if mode[i] else 'slide'}")
+        elif port.slides:
             words.append(f"{port.name!r} would not {'stick' if mode[i] else 'slip so'}")
         elif port.switch is not None:
             words.append(f"{port.name!r} would not stay {port.switch.word(mode[i])}")

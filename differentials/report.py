@@ -26,6 +26,7 @@ def events_text(result: Result) -> str:
         "stick": "sticks", "slip": "slips again", "cross": "crosses zero slip",
         "on": "turns on", "off": "turns off",
         "hit": "is hit", "touch": "is touched", "apart": "is left",
+        "slide": "slides along a jump", "leave": "leaves the jump",
     }  # fmt: skip
     lines = [f"t = {e.time:.6f} s   {e.port} {words[e.kind]}" for e in result.events]
     return (

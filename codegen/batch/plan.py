@@ -95,11 +95,11 @@ class Gathering:
         row = self._rows.setdefault(self._places[name], len(self._rows))
         return self._kept(WHATS.index(what), row, -1, -1)
 
-    def event(self, what: str, node: Hashable, event: str) -> int:
-        """The place of what is kept of events."""
-        port = self._ports.index(node) if node in self._ports else -1
+    def event(self, what: str, node: Hashable, event: str) -> list[int]:
+        """The places of what is kept of events, one for each of the node's ports."""
+        ports = [at for at, name in enumerate(self._ports) if name == node] or [-1]
         kind = KINDS.index(event) if event in KINDS else -1
-        return self._kept(WHATS.index(what), -1, port, kind)
+        return [self._kept(WHATS.index(what), -1, port, kind) for port in ports]
 
     def account(self, account: Account) -> Callable[[Array], Array]:
         """What an account came to, from the rows of results."""
@@ -136,8 +136,10 @@ def plain(measure: Measure, gathered: Gathering) -> Column | None:
     name = READY[measure.function]
     what = WHATS.index(name)
     if what >= EVENTS:
-        at = gathered.event(name, *measure.arguments)
-    elif gathered.knows(measure.arguments[0]):
+        places = gathered.event(name, *measure.arguments)
+        whole = np.fmin if what == EVENTS else np.add
+        return lambda found, numbers: whole.reduce(found[:, places], axis=1)
+    if gathered.knows(measure.arguments[0]):
         at = gathered.signal(name, measure.arguments[0])
     else:
         return None

@@ -24,6 +24,8 @@ Choices = tuple[tuple[int, ...], ...]
 def choices(model: ClosedModel, told: Mapping[Hashable, str] | None) -> Choices:
     """What each port may do, of some told in the words of events: "on", "off", "stick" or "slip".
 
+    A node may have several jumps, and a jump several nodes: on which side it is, or whether it slides, no
+    word tells.
     Raises `StructureError` for a word or a node that there is not.
     """
     asked = {} if told is None else told
@@ -32,17 +34,18 @@ def choices(model: ClosedModel, told: Mapping[Hashable, str] | None) -> Choices:
             f"mode must map nodes to 'on', 'off', 'stick' or 'slip', not be {asked!r}"
         )
     ports = model.program.friction
+    names = [port.name for port in ports if not port.jumps]
     for name in asked:
-        if name not in [port.name for port in ports]:
-            listed = ", ".join(repr(port.name) for port in ports) or "none"
+        if name not in names:
+            listed = ", ".join(map(repr, names)) or "none"
             raise StructureError(
                 f"mode: {name!r} is no switch and has no dry friction; there are {listed}"
             )
     found = []
     for port in ports:
         words = _words(port)
-        word = asked.get(port.name)
-        if port.name in asked and word not in words:
+        word = None if port.jumps else asked.get(port.name)
+        if port.name in asked and word not in words and not port.jumps:
             one, other = words
             raise StructureError(f"mode: {port.name!r} can be {one!r} or {other!r}, not {word!r}")
         both = (0, 1) if port.switch is not None else (0, 1, -1)

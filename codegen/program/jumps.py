@@ -9,6 +9,7 @@ its mixture, an input with the columns of what the law gives, and receives what 
 
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from types import MappingProxyType
 
 import sympy as sp
@@ -105,33 +106,49 @@ class _Steps:
         return rest, {argument: f for argument, f in factors.items() if f != 0}
 
     def _marked(self, part: sp.Expr, marks: dict[sp.Expr, sp.Dummy]) -> sp.Expr:
-        argument, above, below = _sides(part)
-        if argument is None or not argument.free_symbols & self._moving:
+        whole, jumps = _taken_apart(part)
+        if not jumps or not jumps[0][0].free_symbols & self._moving:
             return part
-        turned = sp.Integer(1)
-        for known in marks:
-            ratio = sp.cancel(argument / known)
-            if ratio.is_number and ratio.is_finite and ratio != 0:
-                argument, turned = known, sp.sign(ratio)
-        mark = marks.setdefault(argument, sp.Dummy())
-        return (above + below) / 2 + turned * (above - below) / 2 * mark
+        for argument, half in jumps:
+            key, turned = _known(argument, marks)
+            whole += turned * half * marks.setdefault(key, sp.Dummy())
+        return whole
 
     def _changes(self, factor: sp.Expr) -> bool:
         return any(name.name not in self._still for name in factor.free_symbols)
 
 
-def _sides(part: sp.Expr) -> tuple[sp.Expr | None, sp.Expr, sp.Expr]:
-    """What a sign, or a value by one comparison, hangs on, and its values above and below."""
+def _taken_apart(part: sp.Expr) -> tuple[sp.Expr, list[tuple[sp.Expr, sp.Expr]]]:
+    """A sign, or a value by thresholds of one argument: its mean, and what each jump hangs on with its half.
+
+    >>> v = sp.Symbol("v")
+    >>> _taken_apart(sp.Piecewise((2, v > 1), (0, v > -1), (-2, True)))
+    (0, [(v - 1, 1), (v + 1, 1)])
+    """
     one = sp.Integer(1)
     if isinstance(part, sp.sign):
-        return part.args[0], one, -one
-    if len(part.args) == 2 and part.args[1][1] is sp.true:
-        (value, condition), (other, _) = part.args
-        if isinstance(condition, Gt | Ge):
-            return condition.lhs - condition.rhs, value, other
-        if isinstance(condition, Lt | Le):
-            return condition.rhs - condition.lhs, value, other
-    return None, one, one
+        return sp.Integer(0), [(part.args[0], one)]
+    *branches, (last, otherwise) = part.args
+    sides = [side for _, condition in branches if (side := _side(condition)) is not None]
+    if otherwise != sp.true or len(sides) < len(branches) or len({way for _, way in sides}) != 1:
+        return part, []
+    between = [sp.expand(b[0] - a[0]) for a, b in pairwise(sides)]
+    if not all(gap.is_positive for gap in between):
+        return part, []
+    values = [*(value for value, _ in branches), last]
+    halves = [(above - below) / 2 for above, below in pairwise(values)]
+    return last + sp.Add(*halves), [
+        (argument, half) for (argument, _), half in zip(sides, halves, strict=True)
+    ]
+
+
+def _side(condition: sp.Expr) -> tuple[sp.Expr, str] | None:
+    """What is positive where a condition is true, and whether it is above or below a threshold."""
+    if isinstance(condition, Gt | Ge):
+        return condition.lhs - condition.rhs, "above"
+    if isinstance(condition, Lt | Le):
+        return condition.rhs - condition.lhs, "below"
+    return None
 
 
 def _with_jumps(

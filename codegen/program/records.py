@@ -81,11 +81,11 @@ class FrictionPort:
         """The fields of its ``bg_switch``: kind, on while held?, side, first condition, way of slipping.
 
         Then those of a stop: the place of its displacement, how its gap opens with that, whether it is
-        declared as one.
+        declared as one; of the jump of a law, that it is one.
         """
         one = self.switch
         if one is None:
-            return 0, 0, 0, 0, 0, 0, 0, 0
+            return 0, 0, 0, 0, 0, 0, 0, int(self.jumps)
         kind = 3 if one.stops else 1 if one.side else 2
         place = max(one.place, 0)
         guard = max(one.guard, 0)

@@ -21,6 +21,7 @@ from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
 from codegen.numbers.latest import Latest
 from codegen.runs.clock import NONE, Clock
+from codegen.runs.crossings import Crossings
 from codegen.runs.exact import ExactLeg
 from codegen.runs.free import FreeLeg
 from codegen.runs.legs import Leg
@@ -84,6 +85,7 @@ class _Course:
         self._model, self._times, self._inputs = model.within(self.track), times, Inputs(signals)
         self._settings, self._origin = settings, begin
         self._clock, self._stretches = Clock(self._model), Stretches(self._model)
+        self._crossings = Crossings(self._model)
         glances = Glances(self._model) if self._model.switches else None
         self._first_looks = glances, None if glances is None else Choices(glances)
         self._changes = Latest[tuple[Mode, Mode], list[tuple[Hashable, str]]]()
@@ -126,10 +128,12 @@ class _Course:
         if self._settled is not None:
             changes = self._changes.of((self.mode, new), lambda: _changes(model, self.mode, new))
             self.track.note(_told(model, t, changes, impacts))
-        if self._settled is not None and self._touched and not any(i.thrown for i in impacts):
+        counted = self._touched - self._crossings.of(self.mode, new)
+        if self._settled is not None and counted and not any(i.thrown for i in impacts):
             _check_progress(self._rounds, t, hardly_apart(peaks.time), self.track.events)
         if after is not here.s:
             here = Sight(model, t, after, pieces)
+        self._crossings.take(here, new, self._touched, peaks)
         self._come_to_rest(here, new, impacts)
         self.mode, self._touched, self._settled = new, frozenset(), t
         self._here = here if self.s is here.s else Sight(model, t, self.s, pieces)

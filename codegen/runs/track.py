@@ -19,9 +19,10 @@ class Event(NamedTuple):
     """What happened: at a friction port "stick", "slip" (it was released) or "cross" (through zero).
 
     At a switch or a controlled junction "on" or "off"; at a `Stop` "touch", "apart", or "hit" where what met
-    it is thrown back, or it takes a shock and stays as it is. ``impulse``: of an impact, that of what the
-    port gives; a port's events of one instant share it. Impacts with which a run begins
-    are none: they complete a start that no mode holds.
+    it is thrown back, or it takes a shock and stays as it is. At a law that jumps "slide" and "leave": it
+    stays where the law jumps, by a mixture of both sides; a jump that is crossed is no event. ``impulse``: of
+    an impact, that of what the port gives; a port's events of one instant share it. Impacts with which a run
+    begins are none: they complete a start that no mode holds.
     """
 
     time: float

@@ -170,7 +170,7 @@ static void tell_completed(const command *asked, const double *gained)
 static int run_located(bg_model *m, const command *asked, const bg_signals *signals)
 {
     static const char *const kinds[] = {"stick", "slip", "cross", "on", "off", "hit",
-                                        "touch", "apart"};
+                                        "touch", "apart", "slide", "leave"};
     static bg_located run;
     static bg_event events[EVENTS];
     static double gained[BG_ROOM(STATES)];

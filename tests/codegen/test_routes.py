@@ -16,8 +16,8 @@ import bondgraph as bg
 
 pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
-ALWAYS = ("coulomb", "key_across", "latch")
-"""Kinds that go every way in every run: friction, a key with impulses, one whose past decides."""
+ALWAYS = ("coulomb", "relay", "key_across", "latch")
+"""Kinds that go every way in every run: friction, a jump, a key with impulses, one whose past decides."""
 
 LONG = ("sweep", "command line", "to_python", *COMPILED)
 """What else takes its time; all kinds go these ways where they are asked for."""

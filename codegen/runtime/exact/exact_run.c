@@ -172,8 +172,8 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
               ex_advancing *how, void *caller)
 {
     const bg_sight sight = {c, EX_N, EX_K, model->switched ? model->switches : NULL,
-                            model->stopping, model->coupled, c->shot + EX_AT_RATE, c->point,
-                            c->struck, look, tell, ex_strike, couple};
+                            model->switches, model->stopping, model->coupled,
+                            c->shot + EX_AT_RATE, c->point, c->struck, look, tell, ex_strike, couple};
     const bg_engine engine = {sight, c, pass, see, fastest, ex_choose, rest, advance};
     c->model = model;
     c->inputs = inputs;

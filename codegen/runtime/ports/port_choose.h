@@ -63,6 +63,7 @@ typedef struct {
     void *self;
     int size, ports;
     const bg_switch *switches; /* NULL where no port is one */
+    const bg_switch *kinds;    /* the same of every model */
     int stopping;              /* whether any is a stop */
     const int *coupled;
     const double *rate;

@@ -1,6 +1,5 @@
 /* What happens at ports, in order. */
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 #include "port_log.h"
@@ -16,16 +15,24 @@ static int rubbed(int before, int now)
     return now == before ? -1 : now == 0 ? BG_STICK : before == 0 ? BG_SLIP : BG_CROSS;
 }
 
+/* A jump that is crossed is none of its events. */
+static int jumped(int before, int now)
+{
+    return (before == 0) == (now == 0) ? -1 : now == 0 ? BG_SLIDE : BG_LEAVE;
+}
+
 /* What a port has done, if it has; switches or friction alone. */
 static int happened(const bg_switch *with, int switched, const int *before, const int *now)
 {
-    const int is_switch = with != NULL && with->kind != BG_RUBS && !with->slides;
-    if (is_switch != switched || (with != NULL && with->slides < 0))
+    const int is_switch = with->kind != BG_RUBS && !with->slides;
+    if (is_switch != switched || with->slides < 0)
         return -1;
-    if (with != NULL && with->slides)
+    if (with->slides)
         return rubbed(bg_slides(before), bg_slides(now));
-    if (!switched || *now == *before)
-        return switched ? -1 : rubbed(*before, *now);
+    if (!switched)
+        return with->bound ? jumped(*before, *now) : rubbed(*before, *now);
+    if (*now == *before)
+        return -1;
     const int on = with->on == (*now == 0);
     return with->bound ? (on ? BG_APART : BG_TOUCH) : on ? BG_ON : BG_OFF;
 }
@@ -33,7 +40,7 @@ static int happened(const bg_switch *with, int switched, const int *before, cons
 /* The impulse that a switch has given; both ways of friction that gives a flow are one. */
 static double given_by(const bg_log *log, const bg_switch *with, int port)
 {
-    if (with == NULL || with->kind == BG_RUBS)
+    if (with->kind == BG_RUBS)
         return 0.0;
     return log->given[port] + (with->slides ? log->given[port + 1] : 0.0);
 }
@@ -66,16 +73,16 @@ int bg_note(bg_log *log, double t, int ports, const bg_switch *switches, const i
 {
     double largest = 0.0;
     for (int i = 0; i < ports; i++)
-        largest = fmax(largest, fabs(given_by(log, switches ? switches + i : NULL, i)));
+        largest = fmax(largest, fabs(given_by(log, switches + i, i)));
     for (int i = 0; i < ports && largest > 0.0; i++)
         if (is_hit(log, switches + i, i, before[i] != mode[i], largest)
             && bg_append(log, (bg_event){t, i, BG_HIT, log->given[i]}))
             return -1;
-    for (int switched = switches != NULL; switched >= 0; switched--)
+    for (int switched = 1; switched >= 0; switched--)
         for (int i = 0; i < ports; i++) {
-            const bg_switch *const with = switches ? switches + i : NULL;
-            const int kind = happened(with, switched, before + i, mode + i);
-            if (kind >= 0 && bg_append(log, (bg_event){t, i, kind, given_by(log, with, i)}))
+            const int kind = happened(switches + i, switched, before + i, mode + i);
+            if (kind >= 0
+                && bg_append(log, (bg_event){t, i, kind, given_by(log, switches + i, i)}))
                 return -1;
         }
     return 0;

@@ -5,7 +5,18 @@
 #include "config.h"
 #include "port_switch.h"
 
-enum bg_kind { BG_STICK, BG_SLIP, BG_CROSS, BG_ON, BG_OFF, BG_HIT, BG_TOUCH, BG_APART };
+enum bg_kind {
+    BG_STICK,
+    BG_SLIP,
+    BG_CROSS,
+    BG_ON,
+    BG_OFF,
+    BG_HIT,
+    BG_TOUCH,
+    BG_APART,
+    BG_SLIDE,
+    BG_LEAVE
+};
 
 /* `impulse`: of an impact, that of what the port gives. */
 typedef struct {

@@ -123,8 +123,8 @@ static int couple_ports(void *view, const int *mode, bg_set *touched)
 
 bg_sight bg_view_sight(bg_view *v)
 {
-    return (bg_sight){v, BG_SIZE, K, BG_SWITCHES ? bg_switches : NULL, BG_STOPPING, bg_beside,
-                      v->shot.rate, v->point, v->struck, bg_view_look, tell_ports,
+    return (bg_sight){v, BG_SIZE, K, BG_SWITCHES ? bg_switches : NULL, bg_switches, BG_STOPPING,
+                      bg_beside, v->shot.rate, v->point, v->struck, bg_view_look, tell_ports,
                       bg_view_strike, couple_ports};
 }
 

@@ -10,7 +10,8 @@ enum bg_way { BG_RUBS, BG_ONE_SIDED, BG_TOLD, BG_STOPS };
  * for the ways in which friction slips that gives a flow, one after the other: held it slips. Of a
  * stop, which is on while it is apart and has its sides where the gap is closed: `guard`: the place
  * of its gap, before its restitution; `place`: that of its displacement in s, with which the gap
- * changes by `opening`; `bound`: whether it is told as one, that touches and is apart. */
+ * changes by `opening`; `bound`: whether it is told as one, that touches and is apart; of
+ * what rubs, whether it is the jump of a law, which slides while it is held. */
 typedef struct {
     int kind, on, side, guard, slides, place, opening, bound;
 } bg_switch;

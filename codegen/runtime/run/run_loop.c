@@ -49,6 +49,38 @@ static int decide(const bg_engine *e, bg_course *c, int started)
     return sight->look(sight->self, c->at.t, c->at.s, c->mode);
 }
 
+static int is_jump(const bg_switch *one)
+{
+    return one->kind == BG_RUBS && one->bound;
+}
+
+/* Counts the crossings of jumps at an instant; whether one comes to rest on its jump: crossed so often
+ * in a row without leaping higher than what counts as zero. As codegen/runs/crossings.py. */
+static int count_crossings(const bg_engine *e, bg_course *c)
+{
+    const bg_sight *const sight = &e->sight;
+    bg_port now[BG_MOST_PORTS];
+    int crossed = 0, gathers = 0;
+    for (int i = 0; i < sight->ports; i++)
+        crossed |= c->at.touched[i] && is_jump(sight->kinds + i);
+    if (!crossed)
+        return BG_OK;
+    const int status = sight->look(sight->self, c->at.t, c->at.s, c->mode);
+    if (status)
+        return status;
+    sight->tell(sight->self, c->mode, &c->at, now, NULL);
+    for (int i = 0; i < sight->ports; i++) {
+        int *const unseen = c->crossings.unseen + i;
+        if (!c->at.touched[i] || !is_jump(sight->kinds + i))
+            continue;
+        const double leap = fabs(now[i].push) * (c->at.t - c->crossings.last[i]) / 4;
+        c->crossings.last[i] = c->at.t;
+        *unseen = c->mode[i] == 0 || leap > BG_LEAP * now[i].near_slip ? 0 : *unseen + 1;
+        gathers |= *unseen >= BG_STALLED;
+    }
+    return gathers ? BG_STALLS : BG_OK;
+}
+
 /* Takes the present instant into account, decides the mode there and removes slips that stick. */
 static int settle(const bg_engine *e, bg_course *c, int started)
 {
@@ -71,14 +103,17 @@ static int settle(const bg_engine *e, bg_course *c, int started)
     c->at.log = started ? &c->log : NULL;
     status = decide(e, c, started);
     c->at.log = NULL;
+    /* A jump that is crossed may be so as often as it is. */
     for (int i = 0; i < sight->ports; i++)
-        touched |= c->at.touched[i];
+        touched |= c->at.touched[i] && !(is_jump(sight->kinds + i) && before[i] && c->mode[i]);
     if (status == BG_OK && started) {
-        if (bg_note(&c->log, c->at.t, sight->ports, sight->switches, before, c->mode))
+        if (bg_note(&c->log, c->at.t, sight->ports, sight->kinds, before, c->mode))
             status = BG_EVENTS;
         else if (touched && !c->log.thrown && bg_stalls(&c->rounds, c->at.t, c->at.time))
             status = BG_STALLS;
     }
+    if (status == BG_OK && started)
+        status = count_crossings(e, c);
     return status ? status : e->rest(e->self);
 }
 
@@ -91,6 +126,8 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
     c->log.count = c->rounds.next = c->rounds.full = 0;
     for (int i = 0; i < BG_MOST_PORTS; i++)
         c->mode[i] = first ? first[i] : 1;
+    for (int i = 0; i < BG_MOST_PORTS; i++)
+        c->crossings.last[i] = -INFINITY, c->crossings.unseen[i] = 0;
 }
 
 int bg_run(const bg_engine *e, bg_course *c)

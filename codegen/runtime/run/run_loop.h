@@ -15,6 +15,7 @@ typedef struct {
     int mode[BG_MOST_PORTS];
     bg_log log;
     bg_rounds rounds;
+    bg_crossings crossings;
 } bg_course;
 
 /* What runs. `pass` tells the pieces of the inputs at t and just after; `see` takes the instant,

@@ -3,6 +3,7 @@
 #define BG_RUN_PACE_H
 
 #include "config.h"
+#include "port_set.h"
 #include "tuning.h"
 
 /* When latest stretches ended in an event; `next` is where the next time goes: on the oldest. */
@@ -10,6 +11,13 @@ typedef struct {
     double time[BG_STALLED];
     int next, full;
 } bg_rounds;
+
+/* Of each port that is the jump of a law when it was crossed last, and how many of its latest leaps
+ * could not be seen. */
+typedef struct {
+    double last[BG_MOST_PORTS];
+    int unseen[BG_MOST_PORTS];
+} bg_crossings;
 
 /* The shortest time constant at the largest rate; what has none of its own is as slow as a run is
  * old, which is `elapsed`. As codegen/modes/pace.py. */

@@ -21,13 +21,12 @@ def test_a_run_that_makes_no_progress_ends(monkeypatch: pytest.MonkeyPatch, push
         BLOCK.run([0.0, 1.0], inputs={"P": push})
 
 
-def test_friction_written_as_a_jump_is_refused_and_not_integrated_for_ever() -> None:
-    """m v' = 1 - 3 sign(v) from v = 1: at v = 0 the law points both ways at itself."""
+def test_friction_written_as_a_jump_holds_as_friction_does() -> None:
+    """m v' = 1 - 3 sign(v) from v = 1: at rest after 1 s."""
     run = simulator(bg.derive(block()), {"m": 2.0}, laws={"ground": "3*sign(slip)"})
-    with pytest.raises(
-        bg.SimulationError, match=r"at t = 1\.0?\d* .*no longer advances.*DryFriction"
-    ):
-        run.run([0.0, 2.0], {"v": 1.0}, {"P": 1.0})
+    result = run.run([0.0, 0.5, 2.0], {"v": 1.0}, {"P": 1.0})
+    assert result["v"] == pytest.approx([1.0, 0.5, 0.0], abs=1e-12)
+    assert [(e.kind, e.time) for e in result.events] == [("slide", pytest.approx(1.0, abs=1e-12))]
 
 
 def test_breakpoints_outside_the_run_are_no_breakpoints() -> None:

@@ -227,7 +227,7 @@ def test_the_main_program_tells_what_turns_on_and_off(tmp_path: Path) -> None:
     done = subprocess.run(
         [program, "0.04", "0.001", "located"], capture_output=True, text=True, check=True
     )
-    told = re.findall(r"^(\S+),d,(\w+)$", done.stderr, re.MULTILINE)
+    told = re.findall(r"^(\S+),d,(\w+),0$", done.stderr, re.MULTILINE)
     assert [kind for _, kind in told] == ["on", "off", "on", "off"]
     ready = simulator(bg.derive(case.graph), case.numbers)
     events = ready.run([0.0, 0.04], case.initial, {"u": Sine(10, 50)}).events

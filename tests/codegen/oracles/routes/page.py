@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 
 from oracles.routes.friction import FRICTION
 from oracles.routes.going import COMPILED, ROUTES
+from oracles.routes.jumping import JUMPING
 from oracles.routes.kind import Kind
 from oracles.routes.kinds import KINDS
 from oracles.routes.lawful import LAWFUL
@@ -42,6 +43,7 @@ def page() -> str:
     parts = [HEAD]
     for title, kinds in (
         ("Dry friction", (*FRICTION, *SLOPED)),
+        ("Laws that jump", JUMPING),
         ("Switches", SWITCHES),
         ("No port that switches", (*PLAIN, *LAWFUL)),
     ):

@@ -1,0 +1,58 @@
+"""Jumps that are crossed at ever shorter intervals, which come to rest on the jump: an accumulation.
+
+A jump that acts only on a higher derivative of what it hangs on (``x'' = -2 sign(x) - sign(x')``) holds
+nothing. It is crossed, and the crossings may gather towards an instant from which on ``x`` and its rate stay
+zero both (sliding of second order: Levant, International Journal of Control 58, 1993, section 3). No mode
+says that. ``run_loop.c`` decides the same way.
+"""
+
+from collections.abc import Collection
+
+from bondgraph.errors import SimulationError
+from codegen.model.snapshot import Mode
+from codegen.modes.closed import ClosedModel
+from codegen.modes.rounding import Peaks, scales, slip_rates
+from codegen.modes.trials import Sight
+from codegen.tuning import TUNING
+
+
+class Crossings:
+    """Of each jump when it was crossed last, and how many of the latest leaps could not be seen."""
+
+    def __init__(self, model: ClosedModel) -> None:
+        self._ports = model.program.friction
+        self._jumps = [i for i, port in enumerate(self._ports) if port.jumps]
+        self._last, self._unseen = dict[int, float](), dict.fromkeys(self._jumps, 0)
+
+    def of(self, before: Mode, after: Mode) -> frozenset[int]:
+        """The jumps that slide neither before nor after an instant: they may be crossed ever so often."""
+        return frozenset(i for i in self._jumps if before[i] and after[i])
+
+    def take(self, here: Sight, mode: Mode, touched: Collection[int], peaks: Peaks | None) -> None:
+        """Take the crossings of an instant into account, at which the mode has become this one.
+
+        Raises `SimulationError` where a jump has been crossed `TUNING.stalled` times in a row without
+        leaping higher than what counts as zero.
+        """
+        crossed = [i for i in self._jumps if i in touched]
+        if not crossed:
+            return
+        model, now = here.model, here.at(mode)
+        near, rates = scales(model, now, here.t, peaks).slip, slip_rates(model, now)
+        for i in crossed:
+            between = here.t - self._last.get(i, -float("inf"))
+            self._last[i] = here.t
+            # At a rate v, and back with it after a time T, it leaps by v T/4.
+            seen = mode[i] == 0 or abs(float(rates[i])) * between > 4 * TUNING.leap * float(near[i])
+            self._unseen[i] = 0 if seen else self._unseen[i] + 1
+            if self._unseen[i] >= TUNING.stalled:
+                raise _accumulates(model, i, here.t)
+
+
+def _accumulates(model: ClosedModel, port: int, t: float) -> SimulationError:
+    name = model.program.friction[port].name
+    return SimulationError(
+        f"at t = {t:.9g} a jump in the law at {name!r} is crossed ever sooner, and comes to rest there: it "
+        "moves no first rate of what it hangs on, so that it cannot slide; let it depend on that rate, too, "
+        "or end the run before"
+    )
