@@ -42,13 +42,13 @@ static double given_by(const bg_log *log, const bg_switch *with, int port)
 {
     if (with->kind == BG_RUBS)
         return 0.0;
-    return log->given[port] + (with->slides ? log->given[port + 1] : 0.0);
+    return log->given[port] + (with->slides > 0 ? log->given[port + 1] : 0.0);
 }
 
 /* Whether a stop took a shock, which is more than rounding of the largest, and stays as it is. */
 static int is_hit(const bg_log *log, const bg_switch *with, int port, int changed, double largest)
 {
-    return with != NULL && with->kind == BG_STOPS && !changed
+    return with->kind == BG_STOPS && !changed
         && fabs(log->given[port]) > BG_ROUNDING * largest;
 }
 
