@@ -15,8 +15,8 @@ enum {
 /* From the mode `before`, with these ports touched, to that `after`; `used`: when it was asked for last.
  * It is made where `rows` rows over (s, w, w', 1), by columns, are above `least`:
  * as long as the time constant is the same, t before `until`, states and inputs are below `most`,
- * displacements of stops never were `farthest`, and inputs are above `low`; which these are for sure in the segment `steady`, -1 where they are not; and their
- * rates are not above `pace`. */
+ * displacements of stops never were `farthest`, and inputs are above `low`; which these are for sure
+ * in the segment `steady`, -1 where they are not; and their rates are not above `pace`. */
 typedef struct {
     int used, rows, steady;
     int before[EX_PORTS], touched[EX_PORTS], after[EX_PORTS];

@@ -38,9 +38,9 @@ static void keep_switches(fmu_instance *f, const bg_snapshot *now, double *value
         }
 }
 
-/* Two for each friction port: its slip in its direction; margins to breakaway where it sticks. Two for
- * each switch, too: what keeps it, of a stop that is apart its gap, and none. Then one for each expression at whose zero a law switches.
- * A little below zero still counts as holding. */
+/* Two for each friction port: its slip in its direction; margins to breakaway where it sticks. Two
+ * for each switch, too: what keeps it, of a stop that is apart its gap, and none. Then one for each
+ * expression at whose zero a law switches. A little below zero still counts as holding. */
 void fmu_indicators_of(fmu_instance *f, const bg_snapshot *now, double *values)
 {
     for (int i = 0; i < K; i++) {
