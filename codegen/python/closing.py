@@ -101,7 +101,7 @@ def needed(program: Program, slips: SlipRows | None) -> list[str]:
     also = {
         "deadband": bool(program.friction) and not program.switched,
         "switched": program.switched and not program.stopped,
-        "stopping": program.stopped,
+        "stops.stopping": program.stopped,
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
         "ranks": slips is not None,

@@ -55,7 +55,7 @@ static int is_jump(const bg_switch *one)
 }
 
 /* Counts the crossings of jumps at an instant; whether one comes to rest on its jump: crossed so
- * often in a row without leaping higher than what counts as zero. As codegen/runs/crossings.py. */
+ * often in a row without leaping higher than what counts as zero. As codegen/modes/crossings.py. */
 static int count_crossings(const bg_engine *e, bg_course *c)
 {
     const bg_sight *const sight = &e->sight;

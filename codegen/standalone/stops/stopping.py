@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 
 from codegen.standalone.arrays import Array, EvaluationError, Mode
-from codegen.standalone.bouncing import Meeting, thrown
+from codegen.standalone.stops.bouncing import Meeting, thrown
 from codegen.standalone.evaluation import Point
 from codegen.standalone.friction import slip_rates
 from codegen.standalone.instant import Instant
