@@ -15,8 +15,8 @@ from codegen.modes.rounding import Peaks, guard_rounding, scales, slip_rates
 from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import refusals
-from codegen.standalone.stops.bouncing import Meeting, thrown
 from codegen.standalone.striking import Strike
+from codegen.stops.bouncing import Meeting, thrown
 from codegen.tuning import TUNING
 
 

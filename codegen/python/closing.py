@@ -101,13 +101,13 @@ def needed(program: Program, slips: SlipRows | None) -> list[str]:
     also = {
         "deadband": bool(program.friction) and not program.switched,
         "switched": program.switched and not program.stopped,
-        "stops.stopping": program.stopped,
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
         "ranks": slips is not None,
     }
     names = ["formulas", "running", *(name for name, wanted in also.items() if wanted)]
-    return [f"codegen.standalone.{name}" for name in names]
+    stops = ["codegen.stops.stopping"] if program.stopped else []
+    return [*(f"codegen.standalone.{name}" for name in names), *stops]
 
 
 def closing(program: Program, slips: SlipRows | None, told: bool) -> list[str]:

@@ -15,10 +15,10 @@ from codegen.standalone.friction import slip_rates
 from codegen.standalone.instant import Instant
 from codegen.standalone.levels import level_terms
 from codegen.standalone.stepping import Chosen
-from codegen.standalone.stops.bouncing import Meeting, thrown
 from codegen.standalone.striking import Strike
 from codegen.standalone.switched import SwitchedSteps
 from codegen.standalone.switchings import Switching
+from codegen.stops.bouncing import Meeting, thrown
 from codegen.tuning import TUNING
 
 Stop = tuple[int, Switching]
