@@ -21,7 +21,8 @@ void bg_begin_log(bg_log *log);
 int bg_append(bg_log *log, bg_event event);
 
 /* Appends a hit for each stop that took a shock and is as it was, then an event for each of `ports`
- * modes that is not what it was, of switches first, with what these have given; 0, or -1 where there is no room. `switches`: NULL where no port is one. */
+ * modes that is not what it was, of switches first, with what these have given; 0, or -1 where
+ * there is no room. `switches`: NULL where no port is one. */
 int bg_note(bg_log *log, double t, int ports, const bg_switch *switches, const int *before,
             const int *mode);
 
