@@ -9,11 +9,9 @@ its mixture, an input with the columns of what the law gives, and receives what 
 
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from types import MappingProxyType
 
 import sympy as sp
-from sympy.core.relational import Ge, Gt, Le, Lt
 
 from bondgraph.algebra.exact import fixed
 from bondgraph.algebra.expressions import TIME
@@ -22,6 +20,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.structure import Port
 from codegen.program.sliding import row_of, told_of, unused
+from codegen.program.thresholds import taken_apart
 
 Columns = Mapping[int, Mapping[int, sp.Expr]]
 """Of inputs that are added, by their places, the columns that each has, with factors."""
@@ -106,7 +105,7 @@ class _Steps:
         return rest, {argument: f for argument, f in factors.items() if f != 0}
 
     def _marked(self, part: sp.Expr, marks: dict[sp.Expr, sp.Dummy]) -> sp.Expr:
-        whole, jumps = _taken_apart(part)
+        whole, jumps = taken_apart(part)
         if not jumps or not jumps[0][0].free_symbols & self._moving:
             return part
         for argument, half in jumps:
@@ -116,39 +115,6 @@ class _Steps:
 
     def _changes(self, factor: sp.Expr) -> bool:
         return any(name.name not in self._still for name in factor.free_symbols)
-
-
-def _taken_apart(part: sp.Expr) -> tuple[sp.Expr, list[tuple[sp.Expr, sp.Expr]]]:
-    """A sign, or a value by thresholds of one argument: its mean, and what each jump hangs on with its half.
-
-    >>> v = sp.Symbol("v")
-    >>> _taken_apart(sp.Piecewise((2, v > 1), (0, v > -1), (-2, True)))
-    (0, [(v - 1, 1), (v + 1, 1)])
-    """
-    one = sp.Integer(1)
-    if isinstance(part, sp.sign):
-        return sp.Integer(0), [(part.args[0], one)]
-    *branches, (last, otherwise) = part.args
-    sides = [side for _, condition in branches if (side := _side(condition)) is not None]
-    if otherwise != sp.true or len(sides) < len(branches) or len({way for _, way in sides}) != 1:
-        return part, []
-    between = [sp.expand(b[0] - a[0]) for a, b in pairwise(sides)]
-    if not all(gap.is_positive for gap in between):
-        return part, []
-    values = [*(value for value, _ in branches), last]
-    halves = [(above - below) / 2 for above, below in pairwise(values)]
-    return last + sp.Add(*halves), [
-        (argument, half) for (argument, _), half in zip(sides, halves, strict=True)
-    ]
-
-
-def _side(condition: sp.Expr) -> tuple[sp.Expr, str] | None:
-    """What is positive where a condition is true, and whether it is above or below a threshold."""
-    if isinstance(condition, Gt | Ge):
-        return condition.lhs - condition.rhs, "above"
-    if isinstance(condition, Lt | Le):
-        return condition.rhs - condition.lhs, "below"
-    return None
 
 
 def _with_jumps(
