@@ -54,7 +54,7 @@ static int is_jump(const bg_switch *one)
     return one->kind == BG_RUBS && one->bound;
 }
 
-/* Counts the crossings of jumps at an instant; whether one comes to rest on its jump: crossed so often
+/* Counts the crossings of jumps at an instant; whether one comes to rest on its jump: crossed often
  * in a row without leaping higher than what counts as zero. As codegen/modes/crossings.py. */
 static int count_crossings(const bg_engine *e, bg_course *c)
 {
