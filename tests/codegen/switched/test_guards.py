@@ -24,7 +24,7 @@ def test_a_flat_condition_turns_on_where_it_is_zero(backend: str) -> None:
              bg.Se("u", 1), bg.R("r", "1 + v**2"), bg.Sw("k", on="1e5*x**3")]  # fmt: skip
     equations = bg.derive(bond_graph(nodes, "m>M m>p m>b u>j j>k j>r"))
     result = simulator(equations, {"d": 0}, backend=backend).run([0, 20], {"x": -1, "v": 1})
-    ((time, port, kind),) = result.events
+    ((time, port, kind, _),) = result.events
     assert (port, kind) == ("k", "on")
     assert time == pytest.approx(1.0, abs=1e-9)
 
