@@ -59,7 +59,7 @@ class Kind(StrEnum):
     ONE = "One", Nature("junction", frozenset({"flow", "on", "off"}), common="flow", digit="1")
     DE = "De", Nature("detector", frozenset({"effort", "integrate", "unit"}), gives="flow", place=4)
     DF = "Df", Nature("detector", frozenset({"flow", "integrate", "unit"}), gives="effort", place=3)
-    STOP = "Stop", Nature("switch", frozenset({"flow", *_BOUNDED}), place=2)
+    STOP = "Stop", Nature("switch", frozenset({"flow", *_BOUNDED}), place=8)
     SW = "Sw", Nature("switch", frozenset({"effort", "flow", "on", "off"}), place=2)
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":

@@ -129,7 +129,7 @@ def test_only_differences_of_time_count(shift: float) -> None:
 def test_at_an_event_and_at_a_step_a_sample_shows_the_instant_after() -> None:
     run = simulator(bg.derive(block()), {"m": 1.0, "F_c": 2.0})
     result = run.run([0.0, 0.5, 1.0, 1.5], {"v": 1.0}, {"P": Step(1.0, 3.0)})
-    assert [tuple(e) for e in result.events] == [
+    assert [e[:3] for e in result.events] == [
         (pytest.approx(0.5, abs=1e-12), "ground", "stick"), (1.0, "ground", "slip"),
     ]  # fmt: skip
     assert result["P"].tolist() == [0.0, 0.0, 3.0, 3.0]

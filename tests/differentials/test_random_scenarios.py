@@ -49,7 +49,7 @@ def of_clutch(found: Result, clutch: int) -> tuple[np.ndarray, np.ndarray, np.nd
 
 
 def switches(found: Result, clutch: int) -> list[tuple[float, str]]:
-    return [(at, kind) for at, port, kind in found.events if (port == "clutch_2") == (clutch == 2)]
+    return [(e.time, e.kind) for e in found.events if (e.port == "clutch_2") == (clutch == 2)]
 
 
 def modes(found: Result, clutch: int) -> np.ndarray:
@@ -129,5 +129,5 @@ def test_every_combination_of_modes_of_two_clutches(speedup: float, difference: 
 def test_symmetric_clutches_lock_in_one_instant(name: str) -> None:
     """The paper: "4WD mode is provided by locking both clutches"."""
     found = check(name, Scenario(20, 0, 100, (5e4, 5e4), 0.1, 0.05, 0.3))
-    assert [kind for *_, kind in found.events] == ["stick", "stick"]
+    assert [event.kind for event in found.events] == ["stick", "stick"]
     assert found.events[0].time == pytest.approx(found.events[1].time, rel=0, abs=1e-9)

@@ -108,7 +108,7 @@ def test_the_ground_lets_go_when_it_has_reached_its_own_breakaway() -> None:
 def test_the_contact_lets_go_when_it_has_reached_its_own_breakaway() -> None:
     """At t = 1.8 the ground holds 3.8 < 4.2; from then on it carries 2 + L_2 = 3."""
     result = _rising(2.0)
-    assert [tuple(e) for e in result.events] == [(pytest.approx(1.8, abs=1e-9), "contact", "slip")]
+    assert [e[:3] for e in result.events] == [(pytest.approx(1.8, abs=1e-9), "contact", "slip")]
     after = np.maximum(result.time, 1.8)
     assert result["v_2"] == pytest.approx(((after - 1) ** 2 - 0.8**2) / 2, abs=1e-9)
     assert np.abs(result["v_1"]).max() < 1e-12

@@ -78,12 +78,14 @@ def latex(bench: Bench) -> None:
 
 def drawing(bench: Bench) -> None:
     """Every node is drawn, a switch as one, every bond with its stroke."""
-    switches = bench.kind.switches
+    switches = [one for one in bench.kind.equations.switches if not one.switch.stops]
+    stops = [node for node, kind in bench.kind.graph.nodes(data="kind") if kind == "Stop"]
     drawn = bg.drawing(bench.kind.graph)
     drawn.save(bench.folder / "kind.svg")
     assert {node.name for node in drawn.scene.nodes} >= {*bench.kind.graph}
     assert all(bond.stroke for bond in drawn.scene.bonds)
     assert drawn.text().count("Sw: ") == len(switches)
+    assert drawn.text().count("Stop: ") == len(stops)
 
 
 def json(bench: Bench) -> None:
