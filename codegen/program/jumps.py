@@ -8,12 +8,10 @@ its mixture, an input with the columns of what the law gives, and receives what 
 """
 
 from collections.abc import Hashable, Iterable, Mapping
-from dataclasses import dataclass, replace
-from types import MappingProxyType
+from dataclasses import dataclass
 
 import sympy as sp
 
-from bondgraph.algebra.exact import fixed
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.equations import StateEquations
@@ -21,9 +19,7 @@ from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.structure import Port
 from codegen.program.sliding import row_of, told_of, unused
 from codegen.program.thresholds import taken_apart
-
-Columns = Mapping[int, Mapping[int, sp.Expr]]
-"""Of inputs that are added, by their places, the columns that each has, with factors."""
+from codegen.program.widened import spread, widened
 
 
 @dataclass(frozen=True)
@@ -164,22 +160,16 @@ def _widened(
     inputs = tuple(renamed.get(name, name) for name in equations.inputs)
     inputs += tuple(name for jump in jumps for name in (jump.mixture, jump.offset))
     copies = {count + 2 * at: own for at, own in enumerate(columns)}
-    rows = {name: _spread(row, copies) for name, row in equations.readings.items()}
+    rows = {name: spread(row, copies) for name, row in equations.readings.items()}
     for one in smooth:
         own = {equations.inputs.index(one.port.given): sp.Integer(1)}
-        rows[one.port.given] = _spread(Reading({}, own, {}, {}), copies)
+        rows[one.port.given] = spread(Reading({}, own, {}, {}), copies)
     for at, (jump, parts) in enumerate(zip(jumps, told, strict=True)):
         rows[jump.depends] = _sum(
             [(Reading({}, {count + 2 * at + 1: sp.Integer(1)}, {}, {}), sp.Integer(1))]
-            + [(_spread(row_of(equations, name), copies), factor) for name, factor in parts.items()]
+            + [(spread(row_of(equations, name), copies), factor) for name, factor in parts.items()]
         )
-    reduction = equations.reduction
-    own_columns = {k: _spread(reading, copies) for k, reading in reduction.columns.items()}
-    return replace(
-        equations, inputs=inputs, readings=MappingProxyType(rows),
-        **_matrices(equations, copies, len(inputs)),
-        reduction=replace(reduction, inputs=inputs, columns=MappingProxyType(own_columns)),
-    )  # fmt: skip
+    return widened(equations, inputs, copies, rows)
 
 
 def _sum(parts: Iterable[tuple[Reading, sp.Expr]]) -> Reading:
@@ -187,32 +177,3 @@ def _sum(parts: Iterable[tuple[Reading, sp.Expr]]) -> Reading:
     for row, factor in parts:
         total.add(row, factor)
     return total.whole()
-
-
-def _matrices(
-    equations: StateEquations, copies: Columns, width: int
-) -> dict[str, sp.ImmutableSparseMatrix]:
-    matrices = {}
-    for letter in "BEDG":
-        matrix = getattr(equations, letter)
-        wider = sp.SparseMatrix(matrix.rows, width, dict(matrix.todok()))
-        for new, parts in copies.items():
-            for i in range(matrix.rows):
-                wider[i, new] = sp.Add(*(factor * matrix[i, old] for old, factor in parts.items()))
-        matrices[letter] = sp.ImmutableSparseMatrix(wider)
-    return matrices
-
-
-def _spread(row: Reading, copies: Columns) -> Reading:
-    """A row with entries for the inputs that are added."""
-    D, K = (_more(part, copies) for part in (row.D, row.K))
-    return Reading(row.F, fixed(D), row.H, fixed(K))
-
-
-def _more(part: Mapping[int, sp.Expr], copies: Columns) -> dict[int, sp.Expr]:
-    result = dict(part)
-    for new, own in copies.items():
-        total = sp.Add(*(factor * part[old] for old, factor in own.items() if old in part))
-        if total != 0:
-            result[new] = total
-    return result

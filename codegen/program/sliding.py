@@ -6,17 +6,16 @@ at zero, or backwards ``u_2 <= 0``, which holds ``e + level`` there. Let go, bot
 """
 
 from collections.abc import Hashable, Iterable, Mapping
-from dataclasses import dataclass, replace
-from types import MappingProxyType
+from dataclasses import dataclass
 
 import sympy as sp
 
-from bondgraph.algebra.exact import fixed
 from bondgraph.declare.laws import DryFriction, Law, slides
 from bondgraph.equations import StateEquations
 from bondgraph.reduce.motion import slope_of
 from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.structure import Port
+from codegen.program.widened import spread, widened
 
 
 @dataclass(frozen=True)
@@ -73,44 +72,19 @@ def _halved(
     told, rest = told_of(equations, law.level * law.curve)
     equations = equations.with_readings({*told, port.received})
     inputs = (*equations.inputs[:own], a, *equations.inputs[own + 1 :], b, level)
-    readings = {name: _spread(row, own, count) for name, row in equations.readings.items()}
+    copies = {count: {own: sp.Integer(1)}}
+    readings = {name: spread(row, copies) for name, row in equations.readings.items()}
     readings[port.given] = Reading({}, {own: sp.Integer(1), count: sp.Integer(1)}, {}, {})
     for name, sign in ((over, -1), (under, 1)):
         total = ReadingSum(readings[port.received])
         total.add(Reading({}, {count + 1: sp.Integer(1)}, {}, {}), sp.Integer(sign))
         for signal, factor in told.items():
-            total.add(_spread(row_of(equations, signal), own, count), sign * factor)
+            total.add(spread(row_of(equations, signal), copies), sign * factor)
         readings[name] = total.whole()
     halves = Half(a, over, 1), Half(b, under, -1)
-    return _over(equations, inputs, readings, own), Slider(
+    return widened(equations, inputs, copies, readings), Slider(
         port, halves, level, rest, law.level * law.curve
     )
-
-
-def _over(
-    equations: StateEquations, inputs: tuple[sp.Symbol, ...],
-    readings: Mapping[sp.Symbol, Reading], own: int,
-) -> StateEquations:  # fmt: skip
-    """The equations with two more inputs, of which the first has the column of ``own``."""
-    count, reduction = len(equations.inputs), equations.reduction
-    columns = {k: _spread(reading, own, count) for k, reading in reduction.columns.items()}
-    matrices = {}
-    for name in "BEDG":
-        matrix = getattr(equations, name)
-        wider = sp.SparseMatrix(matrix.rows, count + 2, dict(matrix.todok()))
-        for i in range(matrix.rows):
-            wider[i, count] = matrix[i, own]
-        matrices[name] = sp.ImmutableSparseMatrix(wider)
-    return replace(
-        equations, inputs=inputs, readings=MappingProxyType(dict(readings)), **matrices,
-        reduction=replace(reduction, inputs=inputs, columns=MappingProxyType(columns)),
-    )  # fmt: skip
-
-
-def _spread(row: Reading, own: int, count: int) -> Reading:
-    """A row that reads a slip reads both ways of slipping."""
-    D, K = ({**part, count: part[own]} if own in part else part for part in (row.D, row.K))
-    return Reading(row.F, fixed(D), row.H, fixed(K))
 
 
 def row_of(equations: StateEquations, name: sp.Symbol) -> Reading:

@@ -6,7 +6,7 @@ law has beyond its tangent, and the rate is ``(F + d L_x) x' + d (L_z z' + L_w w
 is ``b' + L_x' x``. So all factors of x' stand in one row, and what holds a port acts by way of laws, too.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -14,12 +14,12 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.laws import ExpressionLaw
-from bondgraph.equations import StateEquations
 from bondgraph.reduce.record import Reading, ReadingSum
 from codegen.program.closing import Closing
 from codegen.program.sliding import unused
 from codegen.program.slopes import NoSlopeError, slope
 from codegen.program.totals import Totals
+from codegen.program.widened import widened
 
 
 @dataclass(frozen=True)
@@ -108,17 +108,6 @@ def _along(
     return result.whole(), moved.whole()
 
 
-def _with_inputs(equations: StateEquations, names: Iterable[sp.Symbol]) -> StateEquations:
-    """The equations with more inputs, whose columns are zero."""
-    inputs, matrices = (*equations.inputs, *names), {}
-    for letter in "BEDG":
-        matrix = getattr(equations, letter)
-        wider = sp.SparseMatrix(matrix.rows, len(inputs), dict(matrix.todok()))
-        matrices[letter] = sp.ImmutableSparseMatrix(wider)
-    reduction = replace(equations.reduction, inputs=inputs)
-    return replace(equations, inputs=inputs, reduction=reduction, **matrices)
-
-
 class _Tangents:
     """The tangents of laws, and the inputs that they are written with: each once."""
 
@@ -194,11 +183,11 @@ class _Tangents:
 
     def told(self) -> Closing:
         """The laws with the inputs that were added, which drive nothing."""
-        closing = self._closing
+        closing, equations = self._closing, self._closing.equations
         late = [name for name in self.added if name not in self._known]
         return replace(
             closing,
-            equations=_with_inputs(closing.equations, self.added),
+            equations=widened(equations, (*equations.inputs, *self.added), {}, equations.readings),
             laws={**closing.laws, **self.added},
             port_names={**closing.port_names, **{a: closing.port_names[b] for a, b in self._owner.items()}},
             received={**closing.received, **{a: closing.received[b] for a, b in self._owner.items()}},
