@@ -5,17 +5,27 @@
 
 #include "port_choosing.h"
 
+/* What there is at an instant in a mode, or, where that cannot be looked at, in another; what
+ * counts as zero only where `near` is the instant. */
+static int look_as(const bg_sight *c, const bg_instant *at, const bg_instant *near,
+                   const int *mode, bg_port *now)
+{
+    int known[BG_MOST_PORTS];
+    memcpy(known, mode, sizeof(int) * (size_t)c->ports);
+    const int status = bg_evaluated(c, at, 0, known);
+    if (status == BG_OK)
+        c->tell(c->self, known, near, now, NULL);
+    return status;
+}
+
 /* The stops whose gap is closed: whose event it is, that were held, or to rounding; the others. */
 static int find_met(const bg_sight *c, const bg_instant *at, const int *mode, bg_set *met,
                     bg_set *apart)
 {
-    int known[BG_MOST_PORTS];
     bg_port now[BG_MOST_PORTS];
-    memcpy(known, mode, sizeof(int) * (size_t)c->ports);
-    const int status = bg_evaluated(c, at, 0, known);
+    const int status = look_as(c, at, at, mode, now);
     if (status)
         return status;
-    c->tell(c->self, known, at, now, NULL);
     for (int i = 0; i < c->ports; i++) {
         if (c->switches[i].kind != BG_STOPS)
             continue;
@@ -50,16 +60,13 @@ static int hardly_leaves(const bg_switch *one, const bg_port *now)
 static int find_wanted(const bg_sight *c, const bg_instant *at, const int *mode, bg_set among,
                        int leaving, bg_throw *wanted)
 {
-    int known[BG_MOST_PORTS];
     bg_port now[BG_MOST_PORTS];
     memset(wanted, 0, sizeof *wanted);
     if (bg_is_empty(&among))
         return BG_OK;
-    memcpy(known, mode, sizeof(int) * (size_t)c->ports);
-    const int status = bg_evaluated(c, at, 0, known);
+    const int status = look_as(c, at, at, mode, now);
     if (status)
         return status;
-    c->tell(c->self, known, at, now, NULL);
     for (int i = 0; i < c->ports; i++) {
         const bg_switch *const one = c->switches + i;
         if (!bg_has(&among, i) || one->on || !bg_is_apart(one, mode[i]))
@@ -92,15 +99,12 @@ static int take_blow(const bg_sight *c, const bg_instant *at, const bg_set *thro
 /* Closes the gaps of these stops, as far as they are rounding. */
 static int close_up(const bg_sight *c, const bg_instant *at, const int *mode, const bg_set *met)
 {
-    int known[BG_MOST_PORTS];
     bg_port now[BG_MOST_PORTS];
     if (bg_is_empty(met))
         return BG_OK;
-    memcpy(known, mode, sizeof(int) * (size_t)c->ports);
-    const int status = bg_evaluated(c, at, 0, known);
+    const int status = look_as(c, at, NULL, mode, now);
     if (status)
         return status;
-    c->tell(c->self, known, NULL, now, NULL);
     for (int i = 0; i < c->ports; i++)
         if (bg_has(met, i))
             at->s[c->switches[i].place] -= c->switches[i].opening * now[i].gap;
