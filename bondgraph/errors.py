@@ -3,6 +3,9 @@
 What is done all the same, but should be looked at, is a `ModelWarning`.
 """
 
+import difflib
+from collections.abc import Iterable
+
 
 class BondGraphError(ValueError):
     """Base of every refusal of this toolkit."""
@@ -62,3 +65,18 @@ class SimulationError(BondGraphError):
 
 class ModelWarning(UserWarning):
     """Base of this toolkit's warnings: what is run all the same, but should be looked at."""
+
+
+def shortened(text: str) -> str:
+    """A text as a message quotes it, cut where it is long."""
+    return repr(text if len(text) <= 60 else text[:57] + "...")
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """A question after the name that was meant, or nothing.
+
+    >>> nearest("alds", ["passive", "alsd"]), nearest("x", ["passive", "alsd"])
+    (" (did you mean 'alsd'?)", '')
+    """
+    found = difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)
+    return f" (did you mean {found[0]!r}?)" if found else ""

@@ -10,14 +10,14 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.algebra.expressions import normal
+from bondgraph.algebra.atoms import normal
 from bondgraph.analyse.closures import merged_laws
 from bondgraph.analyse.turned import turned
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, SignalError
 from codegen.engine.located import LocatedLibrary
 from codegen.model.doubts import warn_of_doubts
-from codegen.model.numbers import exact_parameters
+from codegen.model.exact_values import exact_parameters
 from codegen.packing import packed
 from codegen.program.lower import lower
 from codegen.program.records import Program

@@ -33,7 +33,7 @@ DISPLAY = re.compile(r"_repr_[a-z]+_")
 MOST_FILES = 20
 """In one folder."""
 
-LONGEST = 30
+LONGEST = 32
 """Files, each importing the next, over `bondgraph` and `codegen`."""
 
 

@@ -6,8 +6,9 @@ from typing import Any
 
 import sympy as sp
 
+from bondgraph.algebra.atoms import normal
 from bondgraph.algebra.exact import FixedRow, Row, SingularError, cancelled, fixed
-from bondgraph.algebra.expressions import TIME, normal
+from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.tidy import tidy_matrices
 from bondgraph.analyse.closed_rows import ClosedRows
 from bondgraph.analyse.closures import merged_laws

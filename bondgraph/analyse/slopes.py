@@ -5,7 +5,8 @@ from itertools import product
 
 import sympy as sp
 
-from bondgraph.algebra.expressions import TIME, expression, normal
+from bondgraph.algebra.atoms import normal
+from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.algebra.residues import is_zero
 from bondgraph.analyse.unknowns import still
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law

@@ -9,9 +9,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
+from bondgraph.algebra.atoms import normal, number
 from bondgraph.algebra.elimination import ResidueRows
 from bondgraph.algebra.exact import rows_of
-from bondgraph.algebra.expressions import normal, number
 from bondgraph.algebra.residues import residues
 from bondgraph.errors import MissingExtraError, ParameterError, SignalError
 

@@ -7,7 +7,8 @@ from typing import Any, Literal
 
 import sympy as sp
 
-from bondgraph.algebra.expressions import TIME, normal
+from bondgraph.algebra.atoms import normal
+from bondgraph.algebra.expressions import TIME
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.lines import Line, Rule, is_independent, owner, signal_lines, variable_of

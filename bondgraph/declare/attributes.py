@@ -5,7 +5,8 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.algebra.expressions import expression, number, symbol
+from bondgraph.algebra.atoms import number, symbol
+from bondgraph.algebra.expressions import expression
 from bondgraph.algebra.residues import is_zero
 from bondgraph.declare import fields
 from bondgraph.declare.elements import Switch

@@ -5,7 +5,8 @@ from typing import Any
 
 import networkx as nx
 
-from bondgraph.algebra.expressions import TIME, normal, symbol
+from bondgraph.algebra.atoms import normal, symbol
+from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.laws import SLIP
 from bondgraph.declare.renaming import Names, Part, name_text, names_read, quantities, renamed
 from bondgraph.errors import StructureError

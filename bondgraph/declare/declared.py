@@ -5,7 +5,8 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.algebra.expressions import TIME, expression, symbol
+from bondgraph.algebra.atoms import symbol
+from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.declare import fields
 from bondgraph.declare.attributes import (
     check_keys,

@@ -4,8 +4,9 @@ from collections.abc import Hashable, Mapping, Sequence
 
 import sympy as sp
 
+from bondgraph.algebra.atoms import normal, symbol
 from bondgraph.algebra.elimination import ResidueRows
-from bondgraph.algebra.expressions import expression, normal, symbol
+from bondgraph.algebra.expressions import expression
 from bondgraph.algebra.residues import is_zero, residues
 from bondgraph.errors import ExpressionError, StructureError
 

@@ -6,7 +6,8 @@ from typing import Any, TypeAlias
 import networkx as nx
 import sympy as sp
 
-from bondgraph.algebra.expressions import TIME, expression, normal
+from bondgraph.algebra.atoms import normal
+from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.declare.kinds import EXPRESSIONS, Kind
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw
 from bondgraph.declare.stops import stop_parts

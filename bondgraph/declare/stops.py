@@ -5,7 +5,8 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.algebra.expressions import expression, symbol
+from bondgraph.algebra.atoms import symbol
+from bondgraph.algebra.expressions import expression
 from bondgraph.declare.attributes import variable
 from bondgraph.declare.elements import Element, Node, Switch
 from bondgraph.declare.kinds import Kind

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
-from sympy.core.relational import Relational
-from sympy.logic.boolalg import BooleanAtom, BooleanFunction
 
-from bondgraph.algebra.expressions import MAX_DIGITS, expression, number
+from bondgraph.algebra.atoms import MAX_DIGITS, number
+from bondgraph.algebra.expressions import expression
+from bondgraph.algebra.written import written
 from bondgraph.declare.kinds import EXPRESSIONS, Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.declare.validate import validate
@@ -21,9 +21,6 @@ NAMES = frozenset(
     {"kind", "effort", "flow", "gives", "integrate", "unit", "port", "tail_port", "head_port"}
 )
 """Attributes of nodes and bonds that are mere names."""
-
-_AS_CALL = {sp.pi: sp.Symbol("acos(-1)"), sp.E: sp.Symbol("exp(1)")}
-"""Text has no names for these numbers, but calls that give them."""
 
 
 @dataclass(frozen=True)
@@ -129,12 +126,7 @@ def _written(value: Any, where: str) -> str | int | float:
             f"{where}: the symbol {strange[0]} has assumptions, which text cannot say; "
             f"use a plain Symbol({strange[0]!r})"
         )
-    if exact.has(sp.Piecewise, Relational, BooleanFunction, BooleanAtom):
-        raise FileFormatError(
-            f"{where}: text cannot say a piecewise expression; keep the law in code and write the "
-            "graph without it, or use min, max, abs and sign"
-        )
-    text = str(sp.sstr(exact.xreplace(_AS_CALL), order="lex"))
+    text = written(exact)
     try:
         back = expression(text, where)
     except ExpressionError as error:

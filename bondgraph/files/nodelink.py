@@ -7,7 +7,7 @@ from typing import Any
 
 import networkx as nx
 
-from bondgraph.algebra.expressions import MAX_DIGITS
+from bondgraph.algebra.atoms import MAX_DIGITS
 from bondgraph.errors import FileFormatError
 from bondgraph.files.declarations import Declaration, declaration
 from bondgraph.files.restored import check_type, restored
@@ -28,7 +28,7 @@ def to_json(graph: Any) -> str:
     same graph gives the same text.
 
     Raises what `validate` raises, and `FileFormatError`, naming the node, for what text cannot say:
-    symbols with assumptions and piecewise expressions.
+    symbols with assumptions.
 
     >>> import bondgraph as bg
     >>> graph = nx.DiGraph()

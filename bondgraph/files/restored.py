@@ -5,7 +5,8 @@ from typing import Any
 
 import networkx as nx
 
-from bondgraph.algebra.expressions import expression, symbol
+from bondgraph.algebra.atoms import symbol
+from bondgraph.algebra.expressions import expression
 from bondgraph.declare.kinds import EXPRESSIONS
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.declare.validate import validate

@@ -14,7 +14,7 @@ from codegen.energy.accounts import Account, Accounts, Product, accounts, with_s
 from codegen.energy.ledger import GAVE, LOST, TOOK, sides
 from codegen.energy.stored import stored_energy
 from codegen.family import Family
-from codegen.model.numbers import exact_parameters
+from codegen.model.exact_values import exact_parameters
 from codegen.numbers.arrays import Array
 from codegen.program.layout import places
 from codegen.record.measures import READY, Measure

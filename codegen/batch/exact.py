@@ -15,7 +15,8 @@ from codegen.batch.plan import Plan
 from codegen.engine.inputs import Segments, inputs_over
 from codegen.engine.packed import Packed
 from codegen.engine.runs import grid_of
-from codegen.engine.sizes import Engine, sizes
+from codegen.engine.sized import sizes
+from codegen.engine.sizes import Engine
 from codegen.engine.windows import Windows
 from codegen.inputs.signal import Signal
 from codegen.numbers.arrays import Array

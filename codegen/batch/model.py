@@ -13,9 +13,11 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from codegen.batch.engine import batch_engine
 from codegen.c.export import stepped, texts
-from codegen.engine.sizes import Engine, sizes
+from codegen.engine.sized import sizes
+from codegen.engine.sizes import Engine
 from codegen.family import Family
-from codegen.model.numbers import check_values, exact_parameters
+from codegen.model.exact_values import exact_parameters
+from codegen.model.numbers import check_values
 from codegen.numbers.arrays import Array
 from codegen.program.records import Program
 from codegen.tuning import TUNING

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bondgraph.algebra.expressions import normal
+from bondgraph.algebra.atoms import normal
 from codegen.batch.asked import Asked
 from codegen.batch.model import BatchModel, Flags
 from codegen.inputs.signal import Signal
 from codegen.inputs.swept import Swept, settled
 from codegen.inputs.tables import has_table
-from codegen.model.numbers import exact_parameters
+from codegen.model.exact_values import exact_parameters
 from codegen.model.sources import source_signals
 from codegen.model.starts import starts_of_runs
 from codegen.numbers.arrays import Array

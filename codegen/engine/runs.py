@@ -13,7 +13,8 @@ from codegen.engine.happened import told_events
 from codegen.engine.inputs import Segments, inputs_over
 from codegen.engine.modes import Tables
 from codegen.engine.packed import Packed
-from codegen.engine.sizes import Engine, aligned, engine, sizes
+from codegen.engine.sized import sizes
+from codegen.engine.sizes import Engine, aligned, engine
 from codegen.engine.status import Status
 from codegen.engine.windows import Windows
 from codegen.inputs.signal import Signal

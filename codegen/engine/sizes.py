@@ -11,7 +11,6 @@ import numpy as np
 from bondgraph.errors import SimulationError
 from codegen.c.runtime import SHARED, runtime_file, runtime_names
 from codegen.engine.build import FLAGS, compiled, loaded
-from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.tuning import tuning_text
 
@@ -26,9 +25,6 @@ DIGITS = 32
 
 ALIGNMENT = 64
 """Of arrays that the engine works on, in bytes; a power of two."""
-
-SLOTS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
-"""Sizes of generators that engines are compiled for."""
 
 
 @dataclass(frozen=True)
@@ -64,19 +60,6 @@ class Sizes:
             "SHOT": shot, "WORDS": -(-ports // DIGITS), "L": length,
             "SHARP": 1 if self.K else length,
         }  # fmt: skip
-
-
-def sizes(model: ClosedModel, slots: int) -> Sizes:
-    """The sizes of an engine for a model whose inputs' generators have so many slots."""
-    program = model.program
-    return Sizes(
-        N=model.size,
-        X=max(len(program.states), 1),
-        U=max(len(program.inputs), 1),
-        W=max(len(program.external), 1),
-        K=len(program.friction),
-        G=next((size for size in SLOTS if size >= slots), slots),
-    )
 
 
 @dataclass(frozen=True)

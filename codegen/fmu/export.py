@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from bondgraph.algebra.expressions import normal
+from bondgraph.algebra.atoms import normal
 from bondgraph.analyse.turned import turned
 from bondgraph.declare.switching import checked_modes
 from bondgraph.equations import StateEquations

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from bondgraph.algebra.expressions import normal
+from bondgraph.algebra.atoms import normal
 from bondgraph.errors import SignalError
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant

@@ -1,34 +1,21 @@
 """A program with numbers for its parameters: dense arrays, checked exactly before floats are trusted."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import sympy as sp
 
 from bondgraph.algebra.elimination import ResidueRows
 from bondgraph.algebra.exact import FixedRow, rows_of
-from bondgraph.algebra.expressions import normal, number
 from bondgraph.algebra.residues import residues
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from bondgraph.reduce.resistances import resistive_loops
+from codegen.model.exact_values import at_parameters, residue_rows
 from codegen.model.numpy_backend import compiled
 from codegen.numbers.arrays import Array, read_only, real_values
 from codegen.program.records import Program
 from codegen.standalone.matrices import Numbers, solved
-
-
-def exact_parameters(parameters: Mapping[str, object]) -> dict[str, sp.Rational]:
-    """Every parameter as the rational it stands for; `ParameterError` for what is not a number."""
-    result: dict[str, sp.Rational] = {}
-    for name, value in parameters.items():
-        if not isinstance(name, str):
-            raise ParameterError(f"parameter {name!r}: a parameter's name must be a text")
-        try:
-            result[str(normal(name))] = number(value, f"parameter {name!r}")
-        except ValueError as error:
-            raise ParameterError(str(error)) from None
-    return result
 
 
 def numbers(
@@ -91,22 +78,6 @@ def _not_finite(equations: StateEquations, parameters: Mapping[str, sp.Rational]
                 used = _listed(entry, parameters)
                 return f"{name}[{i}, {j}] = {entry} has no finite real value at {used}"
     return "a coefficient has no finite real value at these parameters"
-
-
-def at_parameters(expr: sp.Expr, parameters: Mapping[str, sp.Rational]) -> sp.Expr:
-    """An expression with exact numbers for its parameters."""
-    return expr.xreplace(
-        {name: parameters[name.name] for name in expr.free_symbols if name.name in parameters}
-    )
-
-
-def residue_rows(
-    rows: Iterable[Mapping[int, sp.Expr]], parameters: Mapping[str, sp.Rational]
-) -> list[dict[int, int]]:
-    """Rows in residues at these parameters, less what is zero there."""
-    value = residues()
-    found = [{j: value(at_parameters(e, parameters)) for j, e in row.items()} for row in rows]
-    return [{j: entry for j, entry in row.items() if entry} for row in found]
 
 
 def _check_elements(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:

@@ -13,7 +13,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import ModelWarning
 from codegen.inputs.signal import Signal
 from codegen.model.commands import Command, commands
-from codegen.model.numbers import exact_parameters
+from codegen.model.exact_values import exact_parameters
 from codegen.model.outside import outside
 from codegen.numbers.arrays import Array
 

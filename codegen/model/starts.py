@@ -7,7 +7,7 @@ import sympy as sp
 
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
-from codegen.model.numbers import exact_parameters
+from codegen.model.exact_values import exact_parameters
 from codegen.numbers.arrays import Array
 
 

@@ -15,9 +15,10 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece, are_same
 from codegen.model.commands import Command, commands
+from codegen.model.exact_values import exact_parameters
 from codegen.model.instant import Binding
 from codegen.model.moves import Moves, moves
-from codegen.model.numbers import assembled, check_values, exact_parameters, numbers
+from codegen.model.numbers import assembled, check_values, numbers
 from codegen.model.sharp import NotAffineError, sharp_rates
 from codegen.model.snapshot import Mode, Run, Snapshot
 from codegen.modes.maps import AffineMaps

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bondgraph.algebra.expressions import normal
+from bondgraph.algebra.atoms import normal
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, StructureError
 from codegen.inputs.signal import Signal

@@ -11,7 +11,7 @@ from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.names import named_by
 from bondgraph.declare.validate import validate, with_elements
 from bondgraph.errors import ParameterError, SingularStorageError, StructureError
-from codegen.model.numbers import at_parameters, exact_parameters
+from codegen.model.exact_values import at_parameters, exact_parameters
 
 
 def valued_graph(graph: Any, parameters: Mapping[str, object]) -> Any:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bondgraph.algebra.expressions import normal
+from bondgraph.algebra.atoms import normal
 from bondgraph.errors import SignalError
 from codegen.numbers.arrays import Array, real_array
 

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from bondgraph.algebra.expressions import normal
+from bondgraph.algebra.atoms import normal
 from bondgraph.errors import ModelWarning
 from codegen.family import Family
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import as_signal
 from codegen.inputs.swept import Swept, settled
 from codegen.model.commands import Command, commands
-from codegen.model.numbers import exact_parameters
+from codegen.model.exact_values import exact_parameters
 from codegen.model.resting import Rest, first_rests, rests
 from codegen.numbers.arrays import Array
 from codegen.sweeps.design import Table

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bondgraph.algebra.expressions import normal
+from bondgraph.algebra.atoms import normal
 from bondgraph.errors import SignalError
 from codegen.batch.asked import Given
 from codegen.engine.fallback import tell_all

@@ -1,6 +1,5 @@
 """Names that are typed: near misses, and parameter types of click that know and complete them."""
 
-import difflib
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -9,19 +8,10 @@ import click
 from click.shell_completion import CompletionItem
 
 import bondgraph as bg
+from bondgraph.errors import nearest
 
 MOST = 20
 """Names that a message lists."""
-
-
-def nearest(name: str, known: Iterable[str]) -> str:
-    """A question after the name that was meant, or nothing.
-
-    >>> nearest("alds", ["passive", "alsd"]), nearest("x", ["passive", "alsd"])
-    (" (did you mean 'alsd'?)", '')
-    """
-    found = difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)
-    return f" (did you mean {found[0]!r}?)" if found else ""
 
 
 def listed(known: Sequence[str]) -> str:

@@ -11,7 +11,7 @@ import networkx as nx
 from click.shell_completion import CompletionItem
 
 import bondgraph as bg
-from differentials.commands.names import nearest
+from bondgraph.errors import nearest
 from differentials.report import causality_text
 from differentials.topologies import Differential, catalog, graph
 

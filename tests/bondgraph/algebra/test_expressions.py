@@ -8,7 +8,7 @@ import pytest
 import sympy as sp
 
 import bondgraph as bg
-from bondgraph.algebra.expressions import number, symbol
+from bondgraph.algebra.atoms import number, symbol
 
 x, y = sp.symbols("x y")
 tenth = sp.Rational(1, 10)
@@ -37,6 +37,24 @@ tenth = sp.Rational(1, 10)
         ("min(x, y, 1) + max(x, 2)", sp.Min(x, y, 1) + sp.Max(x, 2)),
         ("sign(-3)", sp.Integer(-1)),
         ("+x", x),
+        ("2*pi*x", 2 * sp.pi * x),
+        ("hypot(x, 3)", sp.sqrt(x**2 + 9)),
+        ("log10(x) + log10(1000)", sp.log(x) / sp.log(10) + 3),
+        ("Piecewise((x, x > 1), (2*y, True))", sp.Piecewise((x, x > 1), (2 * y, True))),
+        ("Piecewise((1, 0 < x <= y), (2, True))", sp.Piecewise((1, (x > 0) & (x <= y)), (2, True))),
+        (
+            "Piecewise((1, not x > 1 or y != 2), (2, True))",
+            sp.Piecewise((1, (x <= 1) | sp.Ne(y, 2)), (2, True)),
+        ),
+        (
+            "Piecewise((1, (x > 1) & ~(y == 2) | (y < 0)), (2, True))",
+            sp.Piecewise((1, (x > 1) & sp.Ne(y, 2) | (y < 0)), (2, True)),
+        ),
+        ("Piecewise((1, x < 0), (2, x >= 0))", sp.Piecewise((1, x < 0), (2, True))),
+        (
+            "3*Piecewise((Piecewise((1, y > 1), (x, True)), x > 1), (2, True))",
+            3 * sp.Piecewise((sp.Piecewise((1, y > 1), (x, True)), x > 1), (2, True)),
+        ),
     ],
 )
 def test_text_is_read_exactly(text: str, expected: sp.Expr) -> None:
@@ -70,7 +88,7 @@ def test_real_constants_stay(text: str) -> None:
     assert complex(value).imag == 0.0
 
 
-@pytest.mark.parametrize("name", ["E", "I", "N", "O", "Q", "S", "pi", "oo", "nan", "beta", "gamma"])
+@pytest.mark.parametrize("name", ["E", "I", "N", "O", "Q", "S", "oo", "nan", "beta", "gamma"])
 def test_names_are_plain_symbols_whatever_sympy_calls_so(name: str) -> None:
     result = bg.expression(name, "here")
     assert result == sp.Symbol(name)
@@ -183,3 +201,32 @@ def test_nothing_is_evaluated(tmp_path: Path) -> None:
         with pytest.raises(bg.ExpressionError, match=r"^node 'q': "):
             bg.expression(text, "node 'q'")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("x^2", r"'x \^ 2' is not allowed; a power is written \*\*"),
+        ("x if y > 1 else 2", r"a choice is written Piecewise\(\(a, condition\), \(b, True\)\)"),
+        ("x > 1", "a comparison stands in a condition"),
+        ("x and y", "and, or, not stand in a condition"),
+        ("not x", "and, or, not stand in a condition"),
+        ("Piecewise((1, x > 1 && y > 1), (2, True))", "&& is written and here"),
+        ("Piecewise((1, x > 1 || y > 1), (2, True))", r"\|\| is written or here"),
+        ("Piecewise((1, !(x > 1)), (2, True))", "! is written not here"),
+        ("Piecewise((1, x = 1), (2, True))", "= is written == here"),
+        ("sinn(x)", r"'sinn' is not a function an expression may use \(did you mean 'sin'\?\)"),
+        ("piecewise((1, x > 1), (2, True))", r"did you mean 'Piecewise'\?"),
+        ("Piecewise(x, y)", "'x' is no piece; Piecewise takes pairs"),
+        ("Piecewise()", "Piecewise takes pairs"),
+        ("Piecewise((1, x), (2, True))", "'x' is no condition; that is a comparison"),
+        ("Piecewise((1, x in y), (2, True))", "'x in y' is no condition"),
+        ("Piecewise((1, x > 1))", r"none of its conditions holds; end it with \(value, True\)"),
+        ("Piecewise((1, x > 1), (2, x < 1))", "no value where none of its conditions holds"),
+        (sp.Piecewise((1, x > 1)), "no value where none of its conditions holds"),
+        (sp.Symbol("pi"), "pi is a number and cannot be a symbol; rename it"),
+    ],
+)  # fmt: skip
+def test_what_is_spelled_otherwise_is_told_with_its_spelling(text: object, told: str) -> None:
+    with pytest.raises(bg.ExpressionError, match=rf"^node 'q': .*{told}"):
+        bg.expression(text, "node 'q'")

@@ -105,13 +105,23 @@ PLAY = [name for name, row in differentials.catalog.items() if row.play]
 
 
 @pytest.mark.parametrize("name", PLAY)
-def test_backlash_is_piecewise_and_refused_by_the_springs_name(name: str, form: tuple) -> None:
+def test_backlash_comes_back(name: str, form: tuple) -> None:
     full = differentials.catalog[name].play == "full"
-    graph = differentials.graph(name, halfshafts=full, backlash=True)
-    with pytest.raises(
-        bg.FileFormatError, match=r"node '.*shaft.*_spring', law: text cannot say a piece"
-    ):
-        form[0](graph)
+    _round(differentials.graph(name, halfshafts=full, backlash=True), form)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        sp.Piecewise((x, y > 0), (0, True)),
+        sp.Piecewise(
+            (x, (y > 0) & (y <= x)), (sp.pi * y, ~sp.Eq(x, 2) | (x > 3 * y)), (sp.E, True)
+        ),
+        sp.Piecewise((x, (y > 0) & ((x < 1) | (x > 2) & (y < 5))), (-1, True)) ** 2,
+    ],
+)
+def test_what_piecewise_resistances_say_comes_back(value: object, form: tuple) -> None:
+    _round(_resisted(value), form)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -199,7 +209,6 @@ def test_fields_come_back(form: tuple) -> None:
     [
         (sp.Symbol("k", positive=True), "node 'r', value: the symbol k has assumptions"),
         (sp.Dummy("d") + 1, "node 'r', value: the symbol d has assumptions"),
-        (sp.Piecewise((x, y > 0), (0, True)), "node 'r', value: text cannot say a piecewise"),
         (sp.EulerGamma, "node 'r', value: 'EulerGamma' would be read as EulerGamma, which is not"),
         (sp.Mul(2, sp.Add(x, y, evaluate=False), evaluate=False), "node 'r', value: .* would be read as"),
         (sp.Add(*sp.symbols("long_name_:500")), "node 'r', value: text of 7887 characters"),

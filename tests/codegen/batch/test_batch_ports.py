@@ -23,7 +23,7 @@ from codegen import (
 )  # fmt: skip
 from codegen.batch.engine import batch_engine
 from codegen.c.export import to_c
-from codegen.engine.sizes import sizes
+from codegen.engine.sized import sizes
 from codegen.record.result import Result
 from codegen.sweeps.job import Job
 from codegen.sweeps.measuring import batch_of

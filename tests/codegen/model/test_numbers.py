@@ -11,7 +11,8 @@ from references.build import bond_graph
 
 import bondgraph as bg
 from codegen import simulator
-from codegen.model.numbers import exact_parameters, numbers
+from codegen.model.exact_values import exact_parameters
+from codegen.model.numbers import numbers
 from codegen.program.lower import lower
 
 CIRCUIT = bg.derive(series_circuit())

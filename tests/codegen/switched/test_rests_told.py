@@ -17,7 +17,7 @@ from codegen import Constant, Ramp, Sine, Step, to_c, to_python, write_fmu
 from codegen.exports import target
 from codegen.inputs.signal import Signal
 from codegen.model.commands import commands
-from codegen.model.numbers import exact_parameters
+from codegen.model.exact_values import exact_parameters
 from codegen.model.resting import rests
 from codegen.targets import Export
 

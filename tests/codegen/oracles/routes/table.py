@@ -39,11 +39,6 @@ REFUSALS = (
         "A closed form of more than 40 states is no expression for people; `A`, `J`, `B`, `E` stay sparse.",
         "no expression for people",
     ),
-    Refusal(
-        ("table",), ("JSON", "GraphML", "command line"), False,
-        "Text says no `Piecewise`, as which sympy writes a table; the graph is kept in code.",
-        "text cannot say a piecewise expression",
-    ),
 )  # fmt: skip
 
 

@@ -1,0 +1,52 @@
+"""The functions that text may use, and what expressions may be made of."""
+
+from collections.abc import Callable
+from typing import Any
+
+import sympy as sp
+
+
+def hypotenuse(a: sp.Expr, b: sp.Expr) -> sp.Expr:
+    """The longest side of a triangle with a right angle between sides ``a`` and ``b``."""
+    return sp.sqrt(a**2 + b**2)
+
+
+FUNCTIONS: dict[str, tuple[int, int, Callable[..., Any]]] = {
+    "sin": (1, 1, sp.sin),
+    "cos": (1, 1, sp.cos),
+    "tan": (1, 1, sp.tan),
+    "asin": (1, 1, sp.asin),
+    "acos": (1, 1, sp.acos),
+    "atan": (1, 1, sp.atan),
+    "atan2": (2, 2, sp.atan2),
+    "sinh": (1, 1, sp.sinh),
+    "cosh": (1, 1, sp.cosh),
+    "tanh": (1, 1, sp.tanh),
+    "exp": (1, 1, sp.exp),
+    "log": (1, 1, sp.log),
+    "log10": (1, 1, lambda x: sp.log(x, 10)),
+    "sqrt": (1, 1, sp.sqrt),
+    "hypot": (2, 2, hypotenuse),
+    "abs": (1, 1, sp.Abs),
+    "Abs": (1, 1, sp.Abs),
+    "sign": (1, 1, sp.sign),
+    "min": (2, 16, sp.Min),
+    "max": (2, 16, sp.Max),
+    "Min": (2, 16, sp.Min),
+    "Max": (2, 16, sp.Max),
+}
+"""Functions that text may use: least and most number of arguments, and what is built."""
+
+PARTS = (
+    sp.Add, sp.Mul, sp.Pow, sp.Symbol, sp.Number, sp.NumberSymbol, sp.exp,
+    *(build for *_, build in FUNCTIONS.values() if isinstance(build, type)),
+    sp.Piecewise, sp.functions.elementary.piecewise.ExprCondPair,
+    sp.core.relational.Relational, sp.logic.boolalg.BooleanFunction, sp.logic.boolalg.BooleanAtom,
+)  # fmt: skip
+"""What an expression may be made of."""
+
+ALLOWED = (
+    "an expression holds numbers, names, + - * / **, the functions "
+    f"{', '.join(sorted(FUNCTIONS))}, and Piecewise((value, condition), ..., (value, True))"
+)
+"""What a refusal names as the way out."""
