@@ -140,7 +140,8 @@ class Simulator:
         Of a limit of C's own it is called before numpy starts, else once numpy has not refused it, too.
         """
         times = checked_times(time)
-        given = signals_for({} if inputs is None else inputs, self.inputs)
+        known = (name.name for name in self.closed.equations.signals)
+        given = signals_for({} if inputs is None else inputs, self.inputs, known)
         signals = [*given, *self.sources(float(times[0]), float(times[-1]))]
         settings = settings_of(method, rtol, atol)
         refuse_impulses(self.closed, signals, times)

@@ -50,8 +50,9 @@ class Constants:
 
     def hoisted(self, expr: sp.Basic) -> sp.Basic:
         """An expression with whatever parameters determine under a name of its own."""
-        if not expr.free_symbols - self._parameters:
-            return self.named(expr) if isinstance(expr, sp.Expr) else expr
+        if not expr.free_symbols - self._parameters and isinstance(expr, sp.Expr):
+            return self.named(expr)
+        # Of pieces and conditions it is the sides that are named.
         if not expr.args:
             return expr
         if not isinstance(expr, (sp.Add, sp.Mul)):

@@ -9,7 +9,7 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.analyse.turned import turned
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.equations import StateEquations
-from bondgraph.errors import ParameterError, StructureError
+from bondgraph.errors import ParameterError, StructureError, nearest
 from codegen.program.affine import is_affine
 from codegen.program.closing import Closing, close_ports
 from codegen.program.gains import check_gains
@@ -39,9 +39,8 @@ def lower(
     given, equations = set(parameters), turned(equations, laws)
     missing = [name.name for name in equations.parameters if name.name not in given]
     if missing:
-        raise ParameterError(
-            f"missing parameter(s) {', '.join(missing)}; give each a number in parameters"
-        )
+        told = ", ".join(name + nearest(name, given) for name in missing)
+        raise ParameterError(f"missing parameter(s) {told}; give each a number in parameters")
     conditions = (
         c for p in equations.ports if (s := p.element.switch) for c in (s.on, s.off, s.restitution)
     )

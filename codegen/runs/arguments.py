@@ -1,13 +1,13 @@
 """What a run is given: times, initial values, inputs and settings, checked and as arrays and signals."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bondgraph.algebra.atoms import normal
 from bondgraph.equations import StateEquations
-from bondgraph.errors import SignalError, StructureError
+from bondgraph.errors import SignalError, StructureError, nearest
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import as_signal
 from codegen.numbers.arrays import Array, is_finite, is_number, read_only, real_array
@@ -51,7 +51,9 @@ def named_numbers(initial: Mapping[str, float], states: Sequence[str]) -> dict[s
     for given, value in initial.items():
         name = str(normal(given))
         if name not in states:
-            raise SignalError(f"{name!r} is not a state; there are {', '.join(states)}")
+            raise SignalError(
+                f"{name!r} is not a state{nearest(name, states)}; there are {', '.join(states)}"
+            )
         if not is_number(value):
             raise SignalError(f"initial {name}: {value!r} is not a number")
         if not is_finite(value):
@@ -60,19 +62,27 @@ def named_numbers(initial: Mapping[str, float], states: Sequence[str]) -> dict[s
     return result
 
 
-def signals_for(inputs: Mapping[str, object], names: Sequence[str]) -> list[Signal]:
-    """A signal for each input in turn; `SignalError` for missing and unknown ones."""
+def signals_for(
+    inputs: Mapping[str, object], names: Sequence[str], known: Iterable[str] = ()
+) -> list[Signal]:
+    """A signal for each input in turn; `SignalError` for missing and unknown ones.
+
+    ``known``: other names of the model, any of which a missing one may have been meant to be.
+    """
     if not isinstance(inputs, Mapping):
         raise SignalError(f"inputs must map names to values, not be {inputs!r}")
     inputs = {str(normal(name)): value for name, value in inputs.items()}
     for name in inputs:
         if name not in names:
-            known = ", ".join(names) or "none"
-            raise SignalError(f"unknown input {name!r}; the model's inputs are {known}")
+            raise SignalError(
+                f"unknown input {name!r}{nearest(name, names)}; the model's inputs are "
+                f"{', '.join(names) or 'none'}"
+            )
     missing = [name for name in names if name not in inputs]
     if missing:
+        told = ", ".join(name + nearest(name, [*known, *inputs]) for name in missing)
         raise SignalError(
-            f"missing input(s) {', '.join(missing)}: give each a signal or a number in inputs, "
+            f"missing input(s) {told}: give each a signal or a number in inputs, "
             "a law in laws, or, if it is a parameter, a number in parameters"
         )
     return [as_signal(inputs[name], name) for name in names]

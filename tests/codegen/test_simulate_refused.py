@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from oracles.models import oscillator, series_circuit
+from references.build import bond_graph
 
 import bondgraph as bg
 from codegen import Step, simulator
@@ -65,6 +66,26 @@ def test_time_must_be_increasing_finite_points(time, message: str) -> None:
 def test_inputs_must_be_the_models_own(inputs, message: str) -> None:
     with pytest.raises(bg.SignalError, match=message):
         RUN.run(TIMES, inputs=inputs)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "inputs", "message"),
+    [
+        ({"mass": 1, "k": 1}, {"F": 1}, r"missing input\(s\) f_bb \(did you mean 'f_b'\?\): give each"),
+        ({"mas": 1, "k": 1}, {"F": 1}, r"missing parameter\(s\) mass \(did you mean 'mas'\?\); give each"),
+        ({"mass": 1, "k": 1}, {"F": 1, "f_bc": 1}, r"unknown input 'f_bc' \(did you mean 'f_bb'\?\); the"),
+    ],
+)  # fmt: skip
+def test_near_misses_are_told(parameters: dict, inputs: dict, message: str) -> None:
+    nodes = [
+        bg.Se("s", "F"),
+        bg.One("n"),
+        bg.I("m", "mass"),
+        bg.R("d", law="k*abs(f_bb)", flow="f_b"),
+    ]
+    equations = bg.derive(bond_graph(nodes, "s>n>m n>d"))
+    with pytest.raises(bg.BondGraphError, match=message):
+        simulator(equations, parameters).run(TIMES, inputs=inputs)
 
 
 def test_a_model_without_inputs_says_so() -> None:

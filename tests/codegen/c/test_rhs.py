@@ -105,3 +105,18 @@ def test_what_is_not_a_number_is_refused(x, u) -> None:
     run = simulator(CIRCUIT, {"R": 5.0, "L": 0.3, "C": 0.02})
     with pytest.raises(bg.SignalError, match="must be numbers"):
         run.rhs(0.0, x, u)
+
+
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+@pytest.mark.parametrize(
+    "law", ["Piecewise((f, f < b), (b, True))", "Piecewise((7, a > b), (f, f < b), (b, a < b), (f, True))"]
+)  # fmt: skip
+def test_pieces_end_in_bare_parameters(law: str, backend: str) -> None:
+    """A damper that saturates at b: ``f' = 3 - f`` up to b, then ``f' = 3 - b``."""
+    nodes = [bg.Se("s", 3), bg.One("n"), bg.I("m", 1, flow="f"), bg.R("d", law=law)]
+    equations = bg.derive(bond_graph(nodes, "s>n>m n>d"))
+    values = {"b": 1.0, "a": 0.5} if "a" in law else {"b": 1.0}
+    at = np.log(1.5)
+    found = simulator(equations, values, backend=backend).run([0.0, 0.3, at, 1.0])["f"]
+    expected = [0.0, 3 * (1 - np.exp(-0.3)), 1.0, 1 + 2 * (1 - at)]
+    assert found == pytest.approx(expected, abs=1e-8)
