@@ -80,7 +80,8 @@ def signals_for(
             )
     missing = [name for name in names if name not in inputs]
     if missing:
-        told = ", ".join(name + nearest(name, [*known, *inputs]) for name in missing)
+        others = {*known, *inputs} - {*names}
+        told = ", ".join(name + nearest(name, sorted(others)) for name in missing)
         raise SignalError(
             f"missing input(s) {told}: give each a signal or a number in inputs, "
             "a law in laws, or, if it is a parameter, a number in parameters"
