@@ -10,7 +10,15 @@ from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Impact, Mode, Snapshot
 from codegen.modes.blocks import blocks_of, slipping_as, turned_to, ways_to_rub
-from codegen.modes.bounce import closed_up, closing, hardly_leaving, met, stopped, thrown_back
+from codegen.modes.bounce import (
+    closed_up,
+    closing,
+    creeping,
+    hardly_leaving,
+    met,
+    stopped,
+    thrown_back,
+)
 from codegen.modes.choices import Choices
 from codegen.modes.closed import ClosedModel
 from codegen.modes.glances import Glances
@@ -132,6 +140,10 @@ def _struck(now: Occasion, here: Sight, free: Sequence[int]) -> Decision:
     impacts: tuple[Impact, ...] = ()
     joined = 0
     for _ in range(TUNING.bounces):
+        slow = creeping(here, now.previous, met_now, now.peaks)
+        if slow and (stilled := thrown_back(here, now.previous, slow)) is not None:
+            impacts += (stilled,)
+            here = now.seen(stilled.s)
         wanted = closing(here, now.previous, met_now, now.peaks)
         now = now._replace(barred=apart | wanted.keys())
         found = _decided(now, here, [i for i in free if i not in now.barred])
