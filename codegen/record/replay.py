@@ -52,8 +52,8 @@ class Run:
             shots = snapshots(model.within(run.track), self.times, signals, run.track)
         _, observer = named_columns(model, self.times, shots)
         rows = np.array(tally.rows)
-        totals, impacts = read_only(rows[:, :-1] @ shares(whole)), read_only(rows[:, -1])
-        return Integrated(totals, impacts, observer)
+        totals = read_only(rows[:, :-2] @ shares(whole))
+        return Integrated(totals, *map(read_only, rows.T[-2:].copy()), observer)
 
 
 def closed_model(
