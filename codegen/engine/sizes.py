@@ -33,7 +33,7 @@ SLOTS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
 
 @dataclass(frozen=True)
 class Sizes:
-    """What ``config.h`` says: lengths of s, x and u, external inputs, friction ports, slots."""
+    """What ``config.h`` says: lengths of s, x and u, external inputs, friction ports, slots, resets."""
 
     N: int
     X: int
@@ -41,14 +41,17 @@ class Sizes:
     W: int
     K: int
     G: int
+    R: int = 0
 
     @property
     def config(self) -> str:
         """The generated header."""
         named = {**vars(self), "MODES": self.numbers["MODES"]}
+        del named["R"]
         lines = ",\n".join(f"    EX_{name} = {value}" for name, value in named.items())
         guard = "#ifndef EXACT_SIZES_H\n#define EXACT_SIZES_H\n"
         ports = f"#ifndef BG_PORTS\n#define BG_PORTS {max(self.K, 1)}\n#endif\n"
+        ports += f"#ifndef BG_RESETS\n#define BG_RESETS {self.R}\n#endif\n"
         return f"/* The sizes of one model. */\n{guard}{ports}enum {{\n{lines}\n}};\n#endif\n"
 
     @property
@@ -62,7 +65,7 @@ class Sizes:
         return {
             **vars(self), "MODES": min(3**self.K, most), "PORTS": ports, "ROW": row,
             "SHOT": shot, "WORDS": -(-ports // DIGITS), "L": length,
-            "SHARP": 1 if self.K else length,
+            "SHARP": 1 if self.K else length, "MOST_RESETS": max(self.R, 1),
         }  # fmt: skip
 
 
@@ -76,6 +79,7 @@ def sizes(model: ClosedModel, slots: int) -> Sizes:
         W=max(len(program.external), 1),
         K=len(program.friction),
         G=next((size for size in SLOTS if size >= slots), slots),
+        R=len(program.resets),
     )
 
 

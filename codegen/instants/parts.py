@@ -46,7 +46,7 @@ def parts_of(now: Occasion, here: Sight) -> list[Part]:
     """
     found: list[Part] = []
     fired: list[Reset] = []
-    for _ in range(TUNING.resets):
+    for _ in range(TUNING.renewals):
         decided = decide(now, here)
         part = Part(
             now.previous, decided.mode, decided.impacts, decided.s, clear=decided.clear
