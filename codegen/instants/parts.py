@@ -88,11 +88,13 @@ def _fired(model: ClosedModel, part: Part) -> list[Reset]:
         return []
     struck = {i for one in part.impacts for i in one.thrown}
     struck |= hits(model, part.before, part.mode, part.impacts).keys()
-    return [
-        one for one in model.program.resets
-        if part.mode[one.port] == one.sign != part.before[one.port]
-        or (one.port in struck and not model.switching[one.port].is_on(one.sign))
-    ]  # fmt: skip
+    found = []
+    for one in model.program.resets:
+        switching = model.switching[one.port]
+        off = switching is not None and not switching.is_on(one.sign)
+        if part.mode[one.port] == one.sign != part.before[one.port] or (one.port in struck and off):
+            found.append(one)
+    return found
 
 
 def _reset(here: Sight, mode: Mode, fired: Sequence[Reset], peaks: Peaks | None) -> Array:

@@ -65,7 +65,7 @@ def lower(
     expressions, layout = coefficients(equations)
     sources = Sources(closing, given, taken)
     _, guards = switches(closing)
-    conditions = len(guards)
+    first = len(guards)
     guards = [*guards, *reset_values(closing)]
     if timed:
         expressions = [sources.parted(entry) for entry in expressions]
@@ -99,7 +99,7 @@ def lower(
         joint=closing.joint,
         read=_read(closing),
         guards=block(guards, taken),
-        resets=resets(closing, rubbing, conditions),
+        resets=resets(closing, rubbing, first),
         guards_affine=is_affine(guards, given),
         varying=varying,
         affine=not (varying or moving) and _is_affine(closing, values, given),

@@ -168,7 +168,7 @@ def resets(closing: Closing, ports: Sequence[FrictionPort], first: int) -> tuple
     """Which state becomes which of these values, the ``first`` of which stands there, and when."""
     states = [*closing.equations.states, *closing.law_states]
     at = {port.input: place for place, port in enumerate(ports)}
-    found = []
+    found: list[Reset] = []
     for one in closing.equations.switches:
         place = at[closing.equations.inputs.index(one.port.given)]
         switching = ports[place].switch

@@ -53,7 +53,8 @@ class Run:
         _, observer = named_columns(model, self.times, shots)
         rows = np.array(tally.rows)
         totals = read_only(rows[:, :-2] @ shares(whole))
-        return Integrated(totals, *map(read_only, rows.T[-2:].copy()), observer)
+        impacts, renewed = (read_only(rows[:, at]) for at in (-2, -1))
+        return Integrated(totals, impacts, renewed, observer)
 
 
 def closed_model(
