@@ -9,7 +9,7 @@ from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, StructureError
 from bondgraph.reduce.structure import Port
-from codegen.model.numbers import at_parameters
+from codegen.model.exactly import at_parameters
 
 
 def stored_energy(

@@ -47,7 +47,6 @@ class Sizes:
     def config(self) -> str:
         """The generated header."""
         named = {**vars(self), "MODES": self.numbers["MODES"]}
-        del named["R"]
         lines = ",\n".join(f"    EX_{name} = {value}" for name, value in named.items())
         guard = "#ifndef EXACT_SIZES_H\n#define EXACT_SIZES_H\n"
         ports = f"#ifndef BG_PORTS\n#define BG_PORTS {max(self.K, 1)}\n#endif\n"

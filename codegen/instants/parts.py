@@ -4,14 +4,14 @@ What a reset becomes is told by the values just before it, after the impacts; al
 is set together.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.model.snapshot import Impact, Mode
-from codegen.modes.choose import Occasion, decide
+from codegen.modes.choices import Decision, Occasion
 from codegen.modes.closed import ClosedModel
 from codegen.modes.impact import impact
 from codegen.modes.rounding import Peaks
@@ -19,6 +19,8 @@ from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
 from codegen.standalone.switchings import Reset
 from codegen.tuning import TUNING
+
+Decide = Callable[[Occasion, Sight], Decision]
 
 
 class Part(NamedTuple):
@@ -38,8 +40,10 @@ class Part(NamedTuple):
         return self.s if self.reset is None else self.reset
 
 
-def parts_of(now: Occasion, here: Sight) -> list[Part]:
+def parts_of(decide: Decide, now: Occasion, here: Sight) -> list[Part]:
     """The parts of an instant at which ports may have events; the last has no resets.
+
+    ``decide``: what decides a mode.
 
     Raises `SimulationError` where there is no mode, where what is set contradicts what is held or is set
     twice, and where resets set off one another without end.

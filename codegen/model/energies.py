@@ -7,7 +7,7 @@ import sympy as sp
 
 from bondgraph.declare.elements import Element
 from bondgraph.equations import StateEquations
-from codegen.model.numbers import at_parameters
+from codegen.model.exactly import at_parameters
 from codegen.tuning import TUNING
 
 

@@ -1,6 +1,6 @@
 """A program with numbers for its parameters: dense arrays, checked exactly before floats are trusted."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import sympy as sp
@@ -12,6 +12,7 @@ from bondgraph.algebra.residues import residues
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from bondgraph.reduce.resistances import resistive_loops
+from codegen.model.exactly import at_parameters, residue_rows
 from codegen.model.numpy_backend import compiled
 from codegen.numbers.arrays import Array, read_only, real_values
 from codegen.program.records import Program
@@ -91,22 +92,6 @@ def _not_finite(equations: StateEquations, parameters: Mapping[str, sp.Rational]
                 used = _listed(entry, parameters)
                 return f"{name}[{i}, {j}] = {entry} has no finite real value at {used}"
     return "a coefficient has no finite real value at these parameters"
-
-
-def at_parameters(expr: sp.Expr, parameters: Mapping[str, sp.Rational]) -> sp.Expr:
-    """An expression with exact numbers for its parameters."""
-    return expr.xreplace(
-        {name: parameters[name.name] for name in expr.free_symbols if name.name in parameters}
-    )
-
-
-def residue_rows(
-    rows: Iterable[Mapping[int, sp.Expr]], parameters: Mapping[str, sp.Rational]
-) -> list[dict[int, int]]:
-    """Rows in residues at these parameters, less what is zero there."""
-    value = residues()
-    found = [{j: value(at_parameters(e, parameters)) for j, e in row.items()} for row in rows]
-    return [{j: entry for j, entry in row.items() if entry} for row in found]
 
 
 def _check_elements(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:

@@ -12,8 +12,8 @@ import numpy as np
 import sympy as sp
 
 from bondgraph.errors import SimulationError
+from codegen.model.exactly import at_parameters
 from codegen.model.hybrid import hybrid
-from codegen.model.numbers import at_parameters
 from codegen.model.real_roots import Roots, roots_of
 from codegen.numbers.arrays import Array
 from codegen.program.gains import shown, written_out

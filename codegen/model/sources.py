@@ -6,7 +6,7 @@ import sympy as sp
 
 from codegen.inputs.known import known_signal
 from codegen.inputs.signal import Signal
-from codegen.model.numbers import at_parameters
+from codegen.model.exactly import at_parameters
 from codegen.program.records import Program
 from codegen.tuning import TUNING
 

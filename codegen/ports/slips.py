@@ -10,7 +10,7 @@ from bondgraph.algebra.residues import PRIME
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
 from bondgraph.reduce.record import ReadingSum
-from codegen.model.numbers import residue_rows
+from codegen.model.exactly import residue_rows
 from codegen.program.gains import written_out
 from codegen.program.records import Program
 from codegen.standalone.holding import HeldSet

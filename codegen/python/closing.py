@@ -101,14 +101,14 @@ def needed(program: Program, slips: SlipRows | None) -> list[str]:
     also = {
         "deadband": bool(program.friction) and not program.switched,
         "switched": program.switched and not program.stopped and not program.resets,
-        "resetting": bool(program.resets),
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
         "ranks": slips is not None,
     }
     names = ["formulas", "running", *(name for name, wanted in also.items() if wanted)]
-    stops = ["codegen.stops.stopping"] if program.stopped else []
-    return [*(f"codegen.standalone.{name}" for name in names), *stops]
+    events = {"stopping": program.stopped, "resetting": bool(program.resets)}
+    also_there = [f"codegen.stops.{name}" for name, wanted in events.items() if wanted]
+    return [*(f"codegen.standalone.{name}" for name in names), *also_there]
 
 
 def closing(program: Program, slips: SlipRows | None, told: bool) -> list[str]:

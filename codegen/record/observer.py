@@ -11,7 +11,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError
 from bondgraph.reduce.record import Reading
 from codegen.energy.stored import stored_energy
-from codegen.model.numbers import at_parameters
+from codegen.model.exactly import at_parameters
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array, real_array
 

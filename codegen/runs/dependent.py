@@ -6,7 +6,7 @@ import numpy as np
 
 from bondgraph.errors import SignalError
 from bondgraph.reduce.storages import field_row
-from codegen.model.numbers import at_parameters
+from codegen.model.exactly import at_parameters
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING

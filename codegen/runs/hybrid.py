@@ -13,8 +13,8 @@ from codegen.inputs.present import Inputs, Present
 from codegen.inputs.signal import Signal
 from codegen.instants.parts import Part, hits, parts_of
 from codegen.model.snapshot import Mode
-from codegen.modes.choices import Choices
-from codegen.modes.choose import Occasion, decide
+from codegen.modes.choices import Choices, Occasion
+from codegen.modes.choose import decide
 from codegen.modes.closed import ClosedModel
 from codegen.modes.crossings import Crossings
 from codegen.modes.glances import Glances
@@ -151,7 +151,7 @@ class _Course:
             mode, s, impacts, clear = decide(now, here)
             return [Part(self.mode, mode, impacts, s, clear=clear)]
         try:
-            return parts_of(now, here)
+            return parts_of(decide, now, here)
         except SimulationError:
             if self.t + now.ahead < self.end:
                 raise

@@ -11,7 +11,8 @@ from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.names import named_by
 from bondgraph.declare.validate import validate, with_elements
 from bondgraph.errors import ParameterError, SingularStorageError, StructureError
-from codegen.model.numbers import at_parameters, exact_parameters
+from codegen.model.exactly import at_parameters
+from codegen.model.numbers import exact_parameters
 
 
 def valued_graph(graph: Any, parameters: Mapping[str, object]) -> Any:

@@ -82,11 +82,12 @@ typedef struct {
     int (*become)(void *self, const bg_instant *at, const int *mode, double *values);
 } bg_sight;
 
-/* port_reset.c: from the mode so far to the one just after the instant: 0 sticks or is held, 1 slips forwards or
- * is let go, -1 backwards; s of the instant becomes what it is after an impact. Ports at rest, or
- * so close that it is an event's own rounding, stick if they can; switches stay as long as nothing
- * contradicts it. Where there is a log, resets set states, and the mode is decided anew. A status: where no mode is consistent BG_UNDECIDED or, if none could be looked
- * at, that of the first. */
+/* port_reset.c: from the mode so far to the one just after the instant: 0 sticks or is held, 1
+ * slips forwards or is let go, -1 backwards; s of the instant becomes what it is after an impact.
+ * Ports at rest, or so close that it is an event's own rounding, stick if they can; switches stay
+ * as long as nothing contradicts it. Where there is a log, resets set states, and the mode is
+ * decided anew. A status: where no mode is consistent BG_UNDECIDED or, if none could be looked at,
+ * that of the first. */
 int bg_choose(const bg_sight *sight, const bg_instant *at, int *mode);
 
 /* What to try where a mode cannot be evaluated, by number: slipping as it does, the same backwards

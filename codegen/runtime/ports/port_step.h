@@ -21,11 +21,11 @@ typedef struct {
 /* port_step.c: a mode, where some ports are switches; a step that has none leaves all as it was. */
 int bg_search_ways(step_search *c, const int *before);
 
-/* port_step.c: s after the impulses of what the switches of a mode hold; how far these go with it. */
+/* port_step.c: s after the impulses of what switches hold in a mode; how far these go with it. */
 int bg_strike_in_step(step_search *c, const int *mode, double *ways);
 
-/* port_step_reset.c: sets what states are reset to at the events from the mode before to the present
- * one, which then is that before; `any`: whether there were such. A status. */
+/* port_step_reset.c: sets what states are reset to at the events from the mode before to the
+ * present one, which then is that before; `any`: whether there were such. A status. */
 int bg_set_in_step(step_search *c, int *before, int *any);
 
 /* port_step_stop.c: the same where stops may be met: what joins first, then what closes is thrown

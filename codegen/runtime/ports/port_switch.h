@@ -16,8 +16,8 @@ typedef struct {
     int kind, on, side, guard, slides, place, opening, bound;
 } bg_switch;
 
-/* What a state becomes as a port comes to a mode, `sign`, or at an impact of a stop: its place in s,
- * and that of the value among the conditions. */
+/* What a state becomes as a port comes to a mode, `sign`, or at an impact of a stop: its place in
+ * s, and that of the value among the conditions. */
 typedef struct {
     int port, sign, place, value;
 } bg_reset;
