@@ -25,6 +25,7 @@ from bondgraph.reduce.outputs import named_signals, shown_signals
 from bondgraph.reduce.ports import reduce_ports
 from bondgraph.reduce.rates import resolved
 from bondgraph.reduce.readings import check_laws
+from bondgraph.reduce.resets import check_resets
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.structure import JunctionStructure, PortRow
 from bondgraph.reduce.switches import check_switches, switch_ports
@@ -110,6 +111,7 @@ def _equations(
     check_laws(laws, signals, imposed, E, readings)
     switches = switch_ports(reduction, signals)
     check_switches(switches, reduction.inputs, E, readings)
+    check_resets(switches, reduction)
     n, m = len(states), len(reduction.inputs)
     parts: list[tuple[Sequence[FixedRow], int]] = [
         (A, n), ([row.F for row in balances], n), ([row.D for row in balances], m), (E, m),

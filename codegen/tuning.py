@@ -55,6 +55,7 @@ class Tuning:
     slowest: float = _told(100.0, "1/s, below which nothing is called fast while a run is young")
     coarsest: float = _told(20.0, "no step is longer than what went before over this")
     impacts: int = _told(20, "so often a mode is decided again where one impact leads to another")
+    renewals: int = _told(100, "so often events may reset states in one instant")
     stalled: int = _told(60, "so many events within a moment are a run that goes nowhere")
     together: float = _told(1e-12, "events so close, of the time, are one")
 

@@ -12,6 +12,7 @@ from bondgraph.declare import fields
 from bondgraph.declare.elements import Switch
 from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import ExpressionLaw, Law, check_slider, law, slides
+from bondgraph.declare.resets import resets_of
 from bondgraph.errors import ExpressionError, StructureError
 
 
@@ -168,4 +169,5 @@ def switch_of(name: Hashable, attributes: Mapping[str, Any], gives: str) -> Swit
         raise StructureError(f"{where} has no condition on, above zero where it turns on")
     on = expression(attributes["on"], f"{where}, on")
     off = -on if attributes.get("off") is None else expression(attributes["off"], f"{where}, off")
-    return Switch(name, on, off, gives)
+    resets = resets_of(attributes.get("reset"), where, ("on", "off"))
+    return Switch(name, on, off, gives, resets=resets)

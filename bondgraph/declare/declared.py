@@ -39,7 +39,7 @@ def elements_of(name: Hashable, attributes: Mapping[str, Any]) -> dict[Hashable,
         if attributes.get("kind") == Kind.STOP:
             return {element.name: element for element in _stop(name, attributes)}
         made = [_element(name, attributes)]
-        if made[0].kind.joins and (attributes.keys() & {"on", "off"}):
+        if made[0].kind.joins and (attributes.keys() & {"on", "off", "reset"}):
             made.append(_control(made[0], attributes))
         return {element.name: element for element in made}
     where = f"node {name!r}"

@@ -18,6 +18,15 @@ OTHER = {"effort": "flow", "flow": "effort"}
 
 
 @dataclass(frozen=True)
+class Reset:
+    """What a state becomes at an event of a switch: as it turns "on" or "off"; at a "hit" of a stop."""
+
+    state: sp.Symbol
+    value: sp.Expr
+    event: str
+
+
+@dataclass(frozen=True)
 class Switch:
     """When a switch or a controlled junction of this name changes over.
 
@@ -25,7 +34,7 @@ class Switch:
     zero effort, or zero flow, as ``gives`` says; while off it has zero of the other.
 
     ``stops``: whether it is a bound of a `Stop`; ``restitution``: the part of its speed that what meets the
-    bound keeps.
+    bound keeps. ``resets``: what it sets states to at its events.
     """
 
     name: Hashable
@@ -34,6 +43,7 @@ class Switch:
     gives: str
     restitution: sp.Expr = sp.S.Zero
     stops: bool = False
+    resets: tuple[Reset, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -211,7 +221,9 @@ def Df(name: Hashable, flow: object = None, integrate: object = None, **more: ob
     return _node(name, Kind.DF, flow=flow, integrate=integrate, **more)
 
 
-def Sw(name: Hashable, on: object, off: object = None, **more: object) -> Node:
+def Sw(
+    name: Hashable, on: object, off: object = None, reset: object = None, **more: object
+) -> Node:
     """An ideal switch: zero effort while it is on (closed), zero flow while it is off (open).
 
     Off, it turns on as the expression ``on`` rises above zero; on, it turns off as ``off`` does, which
@@ -221,8 +233,12 @@ def Sw(name: Hashable, on: object, off: object = None, **more: object) -> Node:
 
     >>> Sw("key", on="gate - 1/2")
     ('key', {'kind': 'Sw', 'on': 'gate - 1/2'})
+
+    ``reset``: states by name and what each becomes as it turns on, ``{"v": "-v/2"}``; or for both ways,
+    ``{"on": {...}, "off": {...}}``. Expressions have the values just before, after the impulses of what
+    comes to hold; all that are set at one instant are set together. Then the mode is decided anew.
     """
-    return _node(name, Kind.SW, on=on, off=off, **more)
+    return _node(name, Kind.SW, on=on, off=off, reset=reset, **more)
 
 
 def _node(name: Hashable, kind: Kind, **attributes: object) -> Node:

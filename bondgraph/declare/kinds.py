@@ -13,6 +13,7 @@ _BOUNDED = ("low", "high", "restitution", "start", "stiffness", "damping")
 EXPRESSIONS = ("value", "energy", "inverse", "on", "off", *_BOUNDED)
 """The attributes that are numbers or expressions."""
 
+_SWITCHED = frozenset({"on", "off", "reset"})
 _NAMED = frozenset({"value", "effort", "flow", "law", "unit", "ports"})
 _STORED = _NAMED | {"inverse", "energy", "priority"}
 
@@ -54,13 +55,13 @@ class Kind(StrEnum):
     GY = "GY", Nature("gyrator", frozenset({"value", "unit"}))
     ZERO = (
         "Zero",
-        Nature("junction", frozenset({"effort", "on", "off"}), common="effort", digit="0"),
+        Nature("junction", frozenset({"effort", *_SWITCHED}), common="effort", digit="0"),
     )
-    ONE = "One", Nature("junction", frozenset({"flow", "on", "off"}), common="flow", digit="1")
+    ONE = "One", Nature("junction", frozenset({"flow", *_SWITCHED}), common="flow", digit="1")
     DE = "De", Nature("detector", frozenset({"effort", "integrate", "unit"}), gives="flow", place=4)
     DF = "Df", Nature("detector", frozenset({"flow", "integrate", "unit"}), gives="effort", place=3)
-    STOP = "Stop", Nature("switch", frozenset({"flow", *_BOUNDED}), place=8)
-    SW = "Sw", Nature("switch", frozenset({"effort", "flow", "on", "off"}), place=2)
+    STOP = "Stop", Nature("switch", frozenset({"flow", "reset", *_BOUNDED}), place=8)
+    SW = "Sw", Nature("switch", frozenset({"effort", "flow", *_SWITCHED}), place=2)
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":
         """One of the rows above; ``Kind("I")`` looks one up and makes none."""

@@ -90,8 +90,11 @@ def _check_assumptions(elements: Sequence[Element], signals: set[sp.Symbol]) -> 
 
 def _read(element: Element) -> list[Law | sp.Expr]:
     """What an element reads names in."""
-    conditions = (element.switch.on, element.switch.off) if element.switch else ()
-    return [part for part in (element.value, element.law, *conditions) if part is not None]
+    told: list[Law | sp.Expr | None] = [element.value, element.law]
+    if element.switch is not None:
+        told += [element.switch.on, element.switch.off]
+        told += [part for one in element.switch.resets for part in (one.state, one.value)]
+    return [part for part in told if part is not None]
 
 
 def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:

@@ -19,7 +19,7 @@ Part: TypeAlias = "nx.DiGraph[Hashable]"
 Names = Mapping[str, str]
 """Old names of signals and parameters to new ones."""
 
-_READ = ("law", *EXPRESSIONS)
+_READ = ("law", "reset", *EXPRESSIONS)
 """The attributes that read names; the others own them, or hold none."""
 
 _OWN_SLIP = sp.Dummy("slip of a curve")
@@ -54,7 +54,7 @@ def _further(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str, s
     if kind.stores and any(attributes.get(key) is not None for key in ("law", "energy")):
         for ending in ("",) if ports is None else (f"_{port}" for port in ports):
             yield kind.letter, ending, None
-    if kind.joins and (attributes.keys() & {"on", "off"}):
+    if kind.joins and (attributes.keys() & {"on", "off", "reset"}):
         yield from (("e", "_switch", None), ("f", "_switch", None))
     if kind is Kind.STOP:
         yield "q", "", None
@@ -131,6 +131,13 @@ def _mapped(value: Any, change: Callable[[sp.Expr], sp.Expr], where: str) -> Any
         return value.applyfunc(lambda entry: change(expression(entry, where)))
     if isinstance(value, list | tuple):
         return type(value)(_mapped(entry, change, where) for entry in value)
+    if isinstance(value, Mapping):
+        return {
+            key if isinstance(entry, Mapping) else _mapped(key, change, where): _mapped(
+                entry, change, where
+            )
+            for key, entry in value.items()
+        }
     before = expression(value, where)
     after = change(before)
     if after == before:

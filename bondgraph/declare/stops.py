@@ -11,6 +11,7 @@ from bondgraph.declare.attributes import variable
 from bondgraph.declare.elements import Element, Node, Switch
 from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.declare.resets import resets_of
 from bondgraph.errors import StructureError
 
 BOUNDS = {"low": 1, "high": -1}
@@ -23,6 +24,7 @@ POSITION = "position"
 def Stop(
     name: Hashable, low: object = 0, high: object = None, restitution: object = 0,
     start: object = None, stiffness: object = None, damping: object = None, flow: object = None,
+    reset: object = None,
 ) -> Node:  # fmt: skip
     """A stop at a 1-junction: its displacement ``q_<name>``, the integral of its flow, stays within bounds.
 
@@ -31,7 +33,8 @@ def Stop(
     speed, a number from 0 to 1; what holds it there are ``e_<name>_low`` and ``e_<name>_high``. With
     ``stiffness``, and ``damping`` if any, it yields: beyond a bound it pushes back with the effort
     ``stiffness * depth + damping * flow``, as long as that does not pull. ``start``: the displacement with
-    which runs begin, 0 unless told; values may hold parameters.
+    which runs begin, 0 unless told; values may hold parameters. ``reset``: of a rigid one states by name and
+    what each becomes at each of its impacts, ``{"n": "n + 1"}``: expressions have the values just after it.
 
     >>> import bondgraph as bg, networkx as nx
     >>> g = nx.DiGraph()
@@ -43,7 +46,7 @@ def Stop(
     """
     given = {
         "low": low, "high": high, "restitution": restitution, "start": start,
-        "stiffness": stiffness, "damping": damping, "flow": flow,
+        "stiffness": stiffness, "damping": damping, "flow": flow, "reset": reset,
     }  # fmt: skip
     told = {key: value for key, value in given.items() if value is not None}
     if told.get("restitution") == 0:
@@ -92,14 +95,16 @@ def _rigid(
     bounce = _optional(attributes, "restitution", where) or sp.Integer(0)
     if bounce.is_number and not 0 <= bounce <= 1:
         raise StructureError(f"{where}: restitution {bounce} is not between 0 and 1")
+    resets = resets_of(attributes.get("reset"), where, ("hit",))
     found = []
     for key, bound in bounds.items():
         effort, flow = _own(name, key)
         way = BOUNDS[key]
         own = name if len(bounds) == 1 else f"{name}.{key}"
         switch = Switch(
-            own, way * effort, way * (bound - place), "effort", restitution=bounce, stops=True
-        )
+            own, way * effort, way * (bound - place), "effort", restitution=bounce, stops=True,
+            resets=resets,
+        )  # fmt: skip
         found.append(
             Element(f"{name}.{key}", Kind.SW, None, effort, flow, switch=switch, whole=name)
         )
@@ -113,6 +118,8 @@ def _springs(
     where = f"node {name!r}"
     if attributes.get("restitution") is not None:
         raise StructureError(f"{where}: a stop has a restitution or a stiffness, not both")
+    if attributes.get("reset") is not None:
+        raise StructureError(f"{where}: a stop that yields has no impacts at which to reset states")
     stiffness = expression(attributes["stiffness"], f"{where}, stiffness")
     damping = _optional(attributes, "damping", where) or sp.Integer(0)
     found = []

@@ -145,8 +145,13 @@ def _bounds(ports: Sequence[Element]) -> Rich:
             low = (*formula(place + port.switch.off), Run(" ≤ "))
         else:
             high = (Run(" ≤ "), *formula(place - port.switch.off))
-    text: Rich = (*low, *formula(place), *high)
-    return joined([*text]) if (low or high) and length(text) <= MOST else ()
+    bounded: Rich = (*low, *formula(place), *high)
+    switches = [port.switch for port in ports if port.switch is not None]
+    text = (*bounded, *_resets(switches[0])) if switches else bounded
+    for one in (text, bounded):
+        if (low or high) and length(one) <= MOST:
+            return joined([*one])
+    return ()
 
 
 def _switched(element: Element) -> str:
@@ -159,7 +164,8 @@ def _switched(element: Element) -> str:
 def _value(element: Element) -> Rich | None:
     """What the element is by its value, by its law or by how it switches, if that is short."""
     if element.switch is not None:
-        text = _one_way(element) or _conditions(element.switch)
+        one_way = _one_way(element)
+        text = (*one_way, *_resets(element.switch)) if one_way else _conditions(element.switch)
         return joined([*text]) if length(text) <= MOST else None
     given = element.value
     if given is None and element.kind.supplies and element.owner is None:
@@ -191,7 +197,15 @@ def _conditions(switch: Switch) -> Rich:
     text: Rich = (*formula(switch.on), Run(" > 0"))
     if switch.off != -switch.on:
         text = (*text, Run(", off "), *formula(switch.off), Run(" > 0"))
-    return text
+    return (*text, *_resets(switch))
+
+
+def _resets(switch: Switch) -> Rich:
+    """What a switch sets states to."""
+    parts: Rich = ()
+    for one in switch.resets:
+        parts = (*parts, Run("; "), *formula(one.state), Run(" := "), *formula(one.value))
+    return parts
 
 
 def _link(

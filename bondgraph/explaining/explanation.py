@@ -77,7 +77,7 @@ def explain(graph: Any, outputs: Iterable[Hashable] | None = None) -> Explanatio
 def _steps(causal: CausalGraph, result: StateEquations) -> Iterator[Step]:
     reduction, strokes, signals = result.reduction, causal.assignment, assignments(causal)
     taken = {*(line.symbol for line in signals), *result.signals, *result.parameters}
-    for part in (*result.laws.values(), *(c for one in result.switches for c in (one.on, one.off))):
+    for part in (*result.laws.values(), *(c for one in result.switches for c in one.read)):
         taken |= part.free_symbols
     held = momenta(reduction, taken)
     shown = [(name, result.signals[name]) for name in result.outputs]

@@ -7,7 +7,7 @@ import sympy as sp
 from bondgraph.causality.assignments import Assignment
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations
-from bondgraph.declare.elements import OTHER
+from bondgraph.declare.elements import OTHER, Reset
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.explaining.momenta import Momenta
@@ -99,12 +99,19 @@ def _switch(one: SwitchPort) -> str:
         f"{one.name}: {what}; on, {on}, and turns off as {plain(one.off)} rises above zero; "
         f"off, {off}, and turns on as {plain(one.on)} rises above zero"
     )
+    text += "".join(map(_reset, one.switch.resets))
     if not one.side:
         return text
     least, most = ("negative", "positive") if one.side > 0 else ("positive", "negative")
     if one.gap is not None:
         return f"{text}; {_bound(one)}"
     return f"{text}; so {received} is never {least} and {given} never {most}"
+
+
+def _reset(one: Reset) -> str:
+    """What a state becomes."""
+    when = "at each impact" if one.event == "hit" else f"as it turns {one.event}"
+    return f"; {when} {one.state} becomes {plain(one.value)}"
 
 
 def _bound(one: SwitchPort) -> str:

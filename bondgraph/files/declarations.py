@@ -79,6 +79,8 @@ def _plain(key: str, value: Any, kind: object, where: str) -> Any:
         if isinstance(rows, Sequence) and not isinstance(rows, str):
             return [[_written(entry, where) for entry in row] for row in rows]
         return _written(rows, where)
+    if key == "reset" and isinstance(value, Mapping):
+        return {_name(state, where): _become(state, told, where) for state, told in value.items()}
     if key == "ports":
         return [_name(port, where) for port in value]
     if key in ("effort", "flow") and isinstance(value, Mapping):
@@ -87,6 +89,15 @@ def _plain(key: str, value: Any, kind: object, where: str) -> Any:
     if key in NAMES:
         return _name(value, where)
     raise FileFormatError(f"{where}: files do not know this attribute")
+
+
+def _become(state: object, told: Any, where: str) -> Any:
+    """What a state is reset to, or the states of an event by what each is reset to."""
+    if isinstance(told, Mapping):
+        return {
+            _name(one, where): _written(value, f"{where} of {one}") for one, value in told.items()
+        }
+    return _written(told, f"{where} of {state}")
 
 
 def _law(value: Any, kind: object, where: str) -> Any:

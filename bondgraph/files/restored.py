@@ -22,6 +22,7 @@ TYPES: Mapping[str, tuple[type, ...]] = {
     "effort": (str, dict),
     "flow": (str, dict),
     "ports": (list,),
+    "reset": (dict,),
 }
 """What a file may hold for an attribute; where nothing is said here, a text."""
 
@@ -82,6 +83,8 @@ def _attributes(attributes: Mapping[str, Any], where: str) -> dict[str, Any]:
         check_type(value, TYPES.get(key, (str,)), place)
         if isinstance(value, list):
             _check_list(value, place, rows=key == "value")
+        elif key == "reset":
+            _check_reset(value, place)
         elif isinstance(value, dict) and key != "law":
             _check_list([*value, *value.values()], place, rows=False)
         result[key] = _law(value, place) if key == "law" and isinstance(value, dict) else value
@@ -94,6 +97,16 @@ def _check_list(values: Iterable[Any], where: str, rows: bool) -> None:
         check_type(value, (list,) if rows else (str,), where)
         for entry in value if rows else ():
             check_type(entry, SCALARS, where)
+
+
+def _check_reset(states: Mapping[str, Any], where: str) -> None:
+    """Refuse what is neither what states become nor that of each event."""
+    for name, value in states.items():
+        check_type(name, (str,), where)
+        check_type(value, (*SCALARS, dict), f"{where} of {name[:60]}")
+        for state, told in value.items() if isinstance(value, dict) else ():
+            check_type(state, (str,), where)
+            check_type(told, SCALARS, f"{where} of {state[:60]}")
 
 
 def _law(parts: Mapping[str, Any], where: str) -> DryFriction | ExpressionLaw:

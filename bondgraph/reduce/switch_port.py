@@ -53,6 +53,11 @@ class SwitchPort:
         return self.switch.off
 
     @property
+    def read(self) -> tuple[sp.Expr, ...]:
+        """What it reads: its conditions, and what it sets states to."""
+        return self.on, self.off, *(one.value for one in self.switch.resets)
+
+    @property
     def gives(self) -> str:
         """What it gives in all of its modes, "effort" or "flow"."""
         return self.port.gives

@@ -89,6 +89,7 @@ def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:
         "SWITCHES": sum(port.switch is not None for port in program.friction),
         "STOPPING": int(program.stopped),
         "GUARDS": len(program.guards.results),
+        "RESETS": len(program.resets),
         "COUPLED": coupled,
         "HOLDS": min(FEW_HOLDS if program.varying or ports > LARGE else MOST_HOLDS, 2**ports),
         "CONSTANTS": len(fast.constants) if fast else 0,
@@ -144,6 +145,8 @@ def program_tables(
         lines += integers(name, numbers)
     rows = [_switch(port) for port in friction]
     lines += array("const bg_switch bg_switches[]", rows, f"{{{', '.join('0' * 8)}}}")
+    rows = [f"{{{one.port}, {one.sign}, {one.place}, {one.value}}}" for one in program.resets]
+    lines += array("const bg_reset bg_resets[]", rows, "{0, 0, 0, 0}")
     return [*lines, "", *_layout(program)]
 
 

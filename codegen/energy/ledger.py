@@ -36,10 +36,11 @@ class Energetic(Protocol):
 
 
 class Integrated(NamedTuple):
-    """A run with accounts integrated: S x K, what jumps took, and what storages hold, at the samples."""
+    """A run with accounts integrated: S x K, what jumps and resets took, what storages hold, at samples."""
 
     totals: Array
     impacts: Array
+    resets: Array
     observer: Energetic
 
 
@@ -79,9 +80,9 @@ class Ledger:
             elif side is not None:
                 (gave if side == GAVE else lost)[node] = float(self.work(node)[-1])
         rest = tuple(node for node, side in told.items() if side is None)
-        impacts = float(self._balance[1].impacts[-1])
-        turned = turned_over((gave, took, lost), impacts, held)
-        return Audit(gave, took, lost, rest, impacts, turned)
+        jumps = [float(taken[-1]) for taken in self._balance[1][1:3]]
+        turned = turned_over((gave, took, lost), jumps, held)
+        return Audit(gave, took, lost, rest, jumps[0], turned, jumps[1])
 
     def _taken(self, node: Hashable) -> tuple[float, float]:
         """What a storage took, and the magnitudes of what it holds at both ends."""

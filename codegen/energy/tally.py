@@ -24,7 +24,7 @@ class Tally:
     the products are those of storages. ``held``: the energies
     of storages as a function of time and snapshot. ``total``: the integrals so far; ``taken``: what
     ports that came to rest and impacts took from the storages. ``rows``: both at each sample, at a step or
-    an event just after it.
+    an event just after it. ``renewed``: what resets took from the storages.
     """
 
     model: ClosedModel
@@ -35,6 +35,7 @@ class Tally:
     times: Array
     total: Array = field(init=False)
     taken: float = 0.0
+    renewed: float = 0.0
     rows: list[Array] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -137,9 +138,17 @@ class Tally:
         a, b = (self.held(t, self.model.at(t, s, pieces, slipping)) for s in (before, after))
         self.taken += a - b
 
+    def reset(
+        self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, after: Array
+    ) -> None:
+        """States that were reset at t, which takes what storages hold less by that."""
+        slipping = tuple(sign or 1 for sign in mode)
+        a, b = (self.held(t, self.model.at(t, s, pieces, slipping)) for s in (before, after))
+        self.renewed += a - b
+
     def record(self) -> None:
         """The next sample."""
-        self.rows.append(np.append(self.total, self.taken))
+        self.rows.append(np.append(self.total, (self.taken, self.renewed)))
 
     def unrecord(self, count: int) -> None:
         """Forget samples beyond so many."""

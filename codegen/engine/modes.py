@@ -13,7 +13,7 @@ from codegen.engine.places import FEWEST, Places
 from codegen.engine.sizes import DIGITS, Engine, view
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.keeping import impacts_of, keeping
+from codegen.modes.keeping import becoming, impacts_of, keeping
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
 from codegen.program.affine import AffineMap
@@ -41,6 +41,8 @@ class Tables:
         for at, port in enumerate(model.program.friction):
             self.record.own[at] = port.input
             self.record.switches[at] = port.in_c
+        for at, one in enumerate(model.program.resets):
+            self.record.resets[at] = (one.port, one.sign, one.place, one.value)
 
     def _fill_stops(self) -> None:
         """The gaps of stops where all states are zero, and their restitutions."""
@@ -203,6 +205,8 @@ class Tables:
         """What keeps switches; where friction slips forwards also what they do as they come to hold."""
         model, size = self.model, self.engine.sizes.numbers
         self._fill_by.rows(made.stay, keeping(model, mode, affine))
+        if model.program.resets:
+            self._fill_by.rows(made.become, becoming(model, mode, affine))
         if any(sign != 1 and s is None for sign, s in zip(mode, model.switching, strict=True)):
             return
         found = impacts_of(model, mode)

@@ -17,4 +17,5 @@ def sizes(model: ClosedModel, slots: int) -> Sizes:
         W=max(len(program.external), 1),
         K=len(program.friction),
         G=next((size for size in SLOTS if size >= slots), slots),
+        R=len(program.resets),
     )

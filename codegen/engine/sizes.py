@@ -29,7 +29,7 @@ ALIGNMENT = 64
 
 @dataclass(frozen=True)
 class Sizes:
-    """What ``config.h`` says: lengths of s, x and u, external inputs, friction ports, slots."""
+    """What ``config.h`` says: lengths of s, x and u, external inputs, friction ports, slots, resets."""
 
     N: int
     X: int
@@ -37,6 +37,7 @@ class Sizes:
     W: int
     K: int
     G: int
+    R: int = 0
 
     @property
     def config(self) -> str:
@@ -45,6 +46,7 @@ class Sizes:
         lines = ",\n".join(f"    EX_{name} = {value}" for name, value in named.items())
         guard = "#ifndef EXACT_SIZES_H\n#define EXACT_SIZES_H\n"
         ports = f"#ifndef BG_PORTS\n#define BG_PORTS {max(self.K, 1)}\n#endif\n"
+        ports += f"#ifndef BG_RESETS\n#define BG_RESETS {self.R}\n#endif\n"
         return f"/* The sizes of one model. */\n{guard}{ports}enum {{\n{lines}\n}};\n#endif\n"
 
     @property
@@ -58,7 +60,7 @@ class Sizes:
         return {
             **vars(self), "MODES": min(3**self.K, most), "PORTS": ports, "ROW": row,
             "SHOT": shot, "WORDS": -(-ports // DIGITS), "L": length,
-            "SHARP": 1 if self.K else length,
+            "SHARP": 1 if self.K else length, "MOST_RESETS": max(self.R, 1),
         }  # fmt: skip
 
 

@@ -6,6 +6,7 @@ higher than displacements are known, stays where it is.
 
 import math
 from collections.abc import Collection, Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -63,6 +64,64 @@ def gap_rounding(here: Sight, mode: Mode, peaks: Peaks | None) -> Array:
     return near
 
 
+class _Touch(NamedTuple):
+    """A stop that is touched and lets go: its slip and what speeds that up, as gaps open; gap, restitution.
+
+    ``still``, ``near``: below these slip and gap count as zero.
+    """
+
+    slip: float
+    push: float
+    gap: float
+    back: float
+    still: float
+    near: float
+
+    @property
+    def pressed(self) -> float:
+        """How strongly it is pushed to close."""
+        return max(-self.push, 0.0)
+
+    def seen(self, speed: float) -> bool:
+        """Whether what leaves with a speed leaps higher than displacements are known."""
+        return speed**2 > 2 * TUNING.leap * self.pressed * self.near
+
+    @property
+    def leaving(self) -> float:
+        """How fast what closes is thrown back; 0 if it closes no faster than rounding, or hardly leaves."""
+        if self.back <= 0 or self.slip >= -TUNING.bounce * self.still:
+            return 0.0
+        depth = -self.gap if self.gap < -self.near else 0.0
+        # What is found late, beyond the bound, had another speed there.
+        speed = self.back * math.sqrt(max(self.slip**2 + 2 * self.push * depth, 0.0))
+        return speed if self.seen(speed) else 0.0
+
+
+def _touching(
+    here: Sight, mode: Mode, stops: Collection[int], peaks: Peaks | None
+) -> Mapping[int, _Touch]:
+    """Those of these stops that let go in a mode, as they are touched."""
+    model = here.model
+    if not stops:
+        return {}
+    # What is held is pressed with what holds it.
+    known, now = here.evaluated(mode, slipping=False)
+    told, size = model.guards(here.t, now), scales(model, now, here.t, peaks)
+    near, rates = gap_rounding(here, known, peaks), slip_rates(model, now)
+    found = {}
+    for i in sorted(stops):
+        one = model.switching[i]
+        assert one is not None
+        if one.on or not one.is_on(mode[i]):
+            continue
+        slip = float(now.y[model.friction_readings[i]])
+        found[i] = _Touch(
+            one.side * slip, one.side * float(rates[i]), float(told[one.guard]),
+            float(told[one.guard + 1]), float(size.slip[i]), float(near[one.guard]),
+        )  # fmt: skip
+    return found
+
+
 def closing(
     here: Sight, mode: Mode, stops: Collection[int], peaks: Peaks | None
 ) -> Mapping[int, float]:
@@ -70,30 +129,24 @@ def closing(
 
     Those that would hardly leave again, as all that has bounced long enough, do not bounce.
     """
-    model = here.model
-    if not stops:
-        return {}
-    # What is held is pressed with what holds it.
-    known, now = here.evaluated(mode, slipping=False)
-    told = model.guards(here.t, now)
-    size = scales(model, now, here.t, peaks)
-    near, rates = gap_rounding(here, known, peaks), slip_rates(model, now)
-    found = {}
-    for i in sorted(stops):
-        one = model.switching[i]
-        assert one is not None
-        back, slip = float(told[one.guard + 1]), one.side * float(now.y[model.friction_readings[i]])
-        least = TUNING.bounce * float(size.slip[i])
-        if one.on or not one.is_on(mode[i]) or back <= 0 or slip >= -least:
-            continue
-        pull, limit = one.side * float(rates[i]), float(near[one.guard])
-        depth = max(-float(told[one.guard]), 0.0)
-        # What is found late, beyond the bound, had another speed there.
-        gained = -2 * pull * depth if depth > limit else 0.0
-        speed = back * math.sqrt(max(slip**2 - gained, 0.0))
-        if speed**2 > 2 * TUNING.leap * max(-pull, 0.0) * limit:
-            found[i] = speed
-    return found
+    touching = _touching(here, mode, stops, peaks)
+    return {i: one.leaving for i, one in touching.items() if one.leaving > 0}
+
+
+def creeping(
+    here: Sight, mode: Mode, stops: Collection[int], peaks: Peaks | None
+) -> Mapping[int, float]:
+    """Of these stops, if one closes that does not bounce but so slowly that no impact would see it, the slow.
+
+    A graze: the impact that joins what it meets leaves what is an event's own rounding, and a push
+    that has turned by then would find neither way consistent.
+    """
+    touching = _touching(here, mode, stops, peaks)
+    slow = {
+        i: one for i, one in touching.items()
+        if one.leaving == 0 and one.slip >= -2 * TUNING.wide * one.still
+    }  # fmt: skip
+    return dict.fromkeys(slow, 0.0) if any(t.slip < -t.still for t in slow.values()) else {}
 
 
 def hardly_leaving(
@@ -104,21 +157,10 @@ def hardly_leaving(
     What is joined to them came to rest and they go on; unless they were stopped, too, the two might take
     turns for ever below what is seen of gaps.
     """
-    model = here.model
-    # What is held is pressed with what holds it.
-    known, now = here.evaluated(mode, slipping=False)
-    size = scales(model, now, here.t, peaks)
-    near, rates = gap_rounding(here, known, peaks), slip_rates(model, now)
-    found = {}
-    for i in sorted(stops):
-        one = model.switching[i]
-        assert one is not None
-        slip = one.side * float(now.y[model.friction_readings[i]])
-        pressed = max(-one.side * float(rates[i]), 0.0)
-        apart = not one.on and one.is_on(mode[i]) and slip > float(size.slip[i])
-        if apart and slip**2 <= 2 * TUNING.leap * pressed * float(near[one.guard]):
-            found[i] = 0.0
-    return found
+    touching = _touching(here, mode, stops, peaks)
+    return {
+        i: 0.0 for i, one in touching.items() if one.slip > one.still and not one.seen(one.slip)
+    }
 
 
 def stopped(here: Sight, mode: Mode, wanted: Mapping[int, float]) -> Impact | None:
@@ -139,7 +181,7 @@ def thrown_back(here: Sight, mode: Mode, wanted: Mapping[int, float]) -> Impact 
     if strike is None:
         return None
     given = strike.given[here.model.friction_inputs]
-    return _impact(here, mode, strike, tuple(i for i in wanted if given[i] != 0))
+    return _impact(here, mode, strike, tuple(i for i in wanted if given[i] != 0 and wanted[i] > 0))
 
 
 def _meeting(here: Sight, mode: Mode, wanted: Mapping[int, float]) -> Meeting:

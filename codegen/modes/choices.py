@@ -1,4 +1,4 @@
-"""Choices of mode that a first look has made, and makes again where each mode on the way tells the same.
+"""Where modes are decided, and choices that a first look makes again where every mode tells the same.
 
 What a mode tells are signs of combinations that are linear in the integrated vector and the inputs, as long
 as none of them is near zero: those of all modes that were tried are looked at in one product.
@@ -10,7 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from codegen.model.snapshot import Mode
+from codegen.inputs.pieces import Piece
+from codegen.model.snapshot import Impact, Mode
+from codegen.modes.closed import ClosedModel
 from codegen.modes.glances import GENEROUS, Bounds, Glances, Judged
 from codegen.modes.rounding import Peaks
 from codegen.modes.trials import Sight
@@ -144,3 +146,40 @@ def _signs(
     # Which way an impulse goes is told by the slip.
     free = [i for i in asked if not shocked[i]]
     return told + [(np.copysign(1.0, now[i]) * rows[i], bounds.least[i]) for i in free]
+
+
+class Occasion(NamedTuple):
+    """An instant at which a mode is to be decided.
+
+    ``loose``: friction ports that stick if they are at rest and can. ``touched``: ports whose event it
+    is. ``ahead`` [s]: how far to look where the instant itself does not decide.
+    """
+
+    model: ClosedModel
+    t: float
+    pieces: Sequence[Piece]
+    previous: Mode
+    ahead: float
+    peaks: Peaks | None = None
+    loose: frozenset[int] = frozenset()
+    touched: frozenset[int] = frozenset()
+    #: What a first look at affine modes needs.
+    glances: Glances | None = None
+    #: What it has come to.
+    choices: Choices | None = None
+    #: Stops that are apart, or about to throw back what meets them, and so let go.
+    barred: frozenset[int] = frozenset()
+
+    def seen(self, s: Array) -> Sight:
+        """The model at this instant with another integrated vector."""
+        return Sight(self.model, self.t, s, self.pieces)
+
+
+class Decision(NamedTuple):
+    """A mode, the integrated vector with which it begins, and the impact that led to it, if any."""
+
+    mode: Mode
+    s: Array
+    impacts: tuple[Impact, ...]
+    #: Whether all that could change it is far from doing so.
+    clear: bool = False

@@ -7,61 +7,28 @@ from typing import NamedTuple
 import numpy as np
 
 from bondgraph.errors import SimulationError
-from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Impact, Mode, Snapshot
 from codegen.modes.blocks import blocks_of, slipping_as, turned_to, ways_to_rub
-from codegen.modes.bounce import closed_up, closing, hardly_leaving, met, stopped, thrown_back
-from codegen.modes.choices import Choices
-from codegen.modes.closed import ClosedModel
-from codegen.modes.glances import Glances
+from codegen.modes.bounce import (
+    closed_up,
+    closing,
+    creeping,
+    hardly_leaving,
+    met,
+    stopped,
+    thrown_back,
+)
+from codegen.modes.choices import Decision, Occasion
 from codegen.modes.impact import impact, pushed
-from codegen.modes.rounding import Peaks, scales
+from codegen.modes.rounding import scales
 from codegen.modes.timed import told
 from codegen.modes.trials import Sight
 from codegen.modes.verdicts import Look, look_at, ruled_out, ruled_out_later, torn
-from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
 from codegen.standalone.switchings import Broken, switchings
 from codegen.tuning import TUNING
 
 NONE: Broken = frozenset()
-
-
-class Occasion(NamedTuple):
-    """An instant at which a mode is to be decided.
-
-    ``loose``: friction ports that stick if they are at rest and can. ``touched``: ports whose event it
-    is. ``ahead`` [s]: how far to look where the instant itself does not decide.
-    """
-
-    model: ClosedModel
-    t: float
-    pieces: Sequence[Piece]
-    previous: Mode
-    ahead: float
-    peaks: Peaks | None = None
-    loose: frozenset[int] = frozenset()
-    touched: frozenset[int] = frozenset()
-    #: What a first look at affine modes needs.
-    glances: Glances | None = None
-    #: What it has come to.
-    choices: Choices | None = None
-    #: Stops that are apart, or about to throw back what meets them, and so let go.
-    barred: frozenset[int] = frozenset()
-
-    def seen(self, s: Array) -> Sight:
-        """The model at this instant with another integrated vector."""
-        return Sight(self.model, self.t, s, self.pieces)
-
-
-class Decision(NamedTuple):
-    """A mode, the integrated vector with which it begins, and the impact that led to it, if any."""
-
-    mode: Mode
-    s: Array
-    impacts: tuple[Impact, ...]
-    #: Whether all that could change it is far from doing so.
-    clear: bool = False
 
 
 class _Refusal(NamedTuple):
@@ -132,6 +99,10 @@ def _struck(now: Occasion, here: Sight, free: Sequence[int]) -> Decision:
     impacts: tuple[Impact, ...] = ()
     joined = 0
     for _ in range(TUNING.bounces):
+        slow = creeping(here, now.previous, met_now, now.peaks)
+        if slow and (stilled := thrown_back(here, now.previous, slow)) is not None:
+            impacts += (stilled,)
+            here = now.seen(stilled.s)
         wanted = closing(here, now.previous, met_now, now.peaks)
         now = now._replace(barred=apart | wanted.keys())
         found = _decided(now, here, [i for i in free if i not in now.barred])

@@ -180,15 +180,20 @@ class ClosedModel:
         """The same of an instant as formulas see it."""
         values = self._guards(now)
         if not np.isfinite(values).all():
-            at = int(np.argmin(np.isfinite(values)))
-            port = next(
-                port for port in self.program.switches
-                if port.switch is not None and port.switch.guard in (at, at - 1)
-            )  # fmt: skip
-            raise SimulationError(
-                f"at t = {now.t:.9g} the condition of switch {port.name!r} has no finite value"
-            )
+            raise self._no_value(now.t, int(np.argmin(np.isfinite(values))))
         return values
+
+    def _no_value(self, t: float, at: int) -> SimulationError:
+        """Whose condition has no finite value, or what is reset to none."""
+        ports = self.program.friction
+        for one in self.program.resets:
+            if one.value == at:
+                what = f"what {ports[one.port].name!r} resets {self.place_name(one.place)} to"
+                return SimulationError(f"at t = {t:.9g} {what} has no finite value")
+        name = next(p.name for p in ports if p.switch and p.switch.guard in (at, at - 1))
+        return SimulationError(
+            f"at t = {t:.9g} the condition of switch {name!r} has no finite value"
+        )
 
     @cached_property
     def commands(self) -> tuple[Command, ...]:

@@ -8,7 +8,7 @@ from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
-from codegen.program.layout import INPUTS, READINGS
+from codegen.program.layout import INPUTS, READINGS, STATES
 from codegen.standalone.striking import rounded_by, struck
 from codegen.tuning import TUNING
 
@@ -103,3 +103,20 @@ def keeping(model: ClosedModel, mode: Mode, affine: AffineMap) -> Array:
             assert found is not None
             rows[i] = sign * found[at]
     return rows
+
+
+def becoming(model: ClosedModel, mode: Mode, affine: AffineMap) -> Array:
+    """What resets set s to in an affine mode, as rows over [s, w, w', 1].
+
+    What inputs that drive dependent storages add to states stays.
+    """
+    program, x = model.program, affine.rows(STATES)
+    guards = model.guard_rows(mode, len(program.external))
+    assert guards is not None
+    found = []
+    for one in program.resets:
+        row = guards[one.value].copy()
+        if one.place < len(x):
+            row += np.eye(1, len(row), one.place)[0] - x[one.place]
+        found.append(row)
+    return np.array(found)

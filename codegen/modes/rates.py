@@ -6,7 +6,8 @@ import numpy as np
 
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
-from codegen.modes.choose import Occasion, decide
+from codegen.modes.choices import Occasion
+from codegen.modes.choose import decide
 from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks
 from codegen.modes.trials import Sight

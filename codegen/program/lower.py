@@ -15,7 +15,16 @@ from codegen.program.closing import Closing, close_ports
 from codegen.program.gains import check_gains
 from codegen.program.moving import with_moving_slips
 from codegen.program.records import Program, block
-from codegen.program.sections import coefficients, friction, group, known_rates, switches, uses
+from codegen.program.sections import (
+    coefficients,
+    friction,
+    group,
+    known_rates,
+    reset_values,
+    resets,
+    switches,
+    uses,
+)
 from codegen.program.tangents import with_tangents
 from codegen.program.timed import Sources
 
@@ -42,8 +51,9 @@ def lower(
         told = ", ".join(name + nearest(name, given) for name in missing)
         raise ParameterError(f"missing parameter(s) {told}; give each a number in parameters")
     conditions = (
-        c for p in equations.ports if (s := p.element.switch) for c in (s.on, s.off, s.restitution)
-    )
+        c for p in equations.ports if (s := p.element.switch)
+        for c in (s.on, s.off, s.restitution, *(one.value for one in s.resets))
+    )  # fmt: skip
     watched = frozenset[sp.Symbol]().union(*(condition.free_symbols for condition in conditions))
     closing = close_ports(equations, {} if laws is None else laws, given, watched)
     closing, tangents = with_tangents(closing)
@@ -54,6 +64,8 @@ def lower(
     expressions, layout = coefficients(equations)
     sources = Sources(closing, given, taken)
     _, guards = switches(closing)
+    first = len(guards)
+    guards = [*guards, *reset_values(closing)]
     if timed:
         expressions = [sources.parted(entry) for entry in expressions]
         guards = [sources.parted(guard) for guard in guards]
@@ -86,6 +98,7 @@ def lower(
         joint=closing.joint,
         read=_read(closing),
         guards=block(guards, taken),
+        resets=resets(closing, rubbing, first),
         guards_affine=is_affine(guards, given),
         varying=varying,
         affine=not (varying or moving) and _is_affine(closing, values, given),

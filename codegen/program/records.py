@@ -7,7 +7,7 @@ from functools import cached_property
 import sympy as sp
 
 from bondgraph.equations import StateEquations
-from codegen.standalone.switchings import Switching
+from codegen.standalone.switchings import Reset, Switching
 
 TEMPORARY = "c"
 """Temporaries are c0, c1, ...; names that are taken are passed over."""
@@ -154,7 +154,9 @@ class Program:
     read: tuple[int, ...]
     #: Conditions of switches, to turn on and to turn off in turn: each changes over above zero.
     guards: Block
-    #: Whether these are affine, as long as everything else is.
+    #: What changes states over with them; these values come after the conditions.
+    resets: tuple[Reset, ...]
+    #: Whether all of these are affine, as long as everything else is.
     guards_affine: bool
     #: Whether coefficients change in time, with states, external inputs or the time itself.
     varying: bool

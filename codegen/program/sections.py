@@ -12,7 +12,7 @@ from codegen.program.closing import Closing
 from codegen.program.records import FrictionPort, Group, Pattern, block
 from codegen.program.sliding import Slider, halves_of
 from codegen.program.slopes import slope
-from codegen.standalone.switchings import Switching
+from codegen.standalone.switchings import Reset, Switching
 
 
 def coefficients(
@@ -157,3 +157,24 @@ def switches(closing: Closing) -> tuple[dict[sp.Symbol, Switching], list[sp.Expr
     for half in halves_of(closing.sliders).values():
         found[half.given] = Switching(True, -half.way, slides=True)
     return found, conditions
+
+
+def reset_values(closing: Closing) -> list[sp.Expr]:
+    """What states become as switches change over, in the order of `resets`."""
+    return [one.value for port in closing.equations.switches for one in port.switch.resets]
+
+
+def resets(closing: Closing, ports: Sequence[FrictionPort], first: int) -> tuple[Reset, ...]:
+    """Which state becomes which of these values, the ``first`` of which stands there, and when."""
+    states = [*closing.equations.states, *closing.law_states]
+    at = {port.input: place for place, port in enumerate(ports)}
+    found: list[Reset] = []
+    for one in closing.equations.switches:
+        place = at[closing.equations.inputs.index(one.port.given)]
+        switching = ports[place].switch
+        assert switching is not None
+        for reset in one.switch.resets:
+            sign = switching.sign(reset.event == "on")
+            value = first + len(found)
+            found.append(Reset(place, sign, states.index(reset.state), value))
+    return tuple(found)

@@ -53,7 +53,7 @@ class Model({base}):
 
     ``rhs`` and ``outputs`` take x in the order of STATES and u in that of INPUTS.
     """
-
+{resets}
     def __init__(self, parameters=None):
         self.parameters = named(parameters or {{}}, PARAMETERS, "parameter")
         super().__init__({arguments})
@@ -100,14 +100,15 @@ def needed(program: Program, slips: SlipRows | None) -> list[str]:
     """
     also = {
         "deadband": bool(program.friction) and not program.switched,
-        "switched": program.switched and not program.stopped,
+        "switched": program.switched and not program.stopped and not program.resets,
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
         "ranks": slips is not None,
     }
     names = ["formulas", "running", *(name for name, wanted in also.items() if wanted)]
-    stops = ["codegen.stops.stopping"] if program.stopped else []
-    return [*(f"codegen.standalone.{name}" for name in names), *stops]
+    events = {"stopping": program.stopped, "resetting": bool(program.resets)}
+    also_there = [f"codegen.stops.{name}" for name, wanted in events.items() if wanted]
+    return [*(f"codegen.standalone.{name}" for name in names), *also_there]
 
 
 def closing(program: Program, slips: SlipRows | None, told: bool) -> list[str]:
@@ -123,6 +124,8 @@ def closing(program: Program, slips: SlipRows | None, told: bool) -> list[str]:
         lines += [] if slips is None else slip_rows(slips)
     if program.switched:
         base = "StoppedSteps" if program.stopped else "SwitchedSteps"
+        if program.resets:
+            base = "ResettingSteps, StoppedSteps" if program.stopped else "ResettingSteps"
         arguments = f"{arguments}, switches(self.parameters)"
         lines += _switching(program)
     lines += ["", "", *_form(program)]
@@ -130,7 +133,9 @@ def closing(program: Program, slips: SlipRows | None, told: bool) -> list[str]:
     if program.switched:
         lines += _SWITCHES.format(count=len(program.guards.results)).splitlines()
     words = (_SWITCHED if program.switched else _PLAIN) | (_TOLD if told else _FROM_ZERO)
-    return [*lines, *_MODEL.format(base=base, arguments=arguments, **words).splitlines()]
+    resets = "\n    resets = RESETS\n" if program.resets else ""
+    model = _MODEL.format(base=base, arguments=arguments, resets=resets, **words)
+    return [*lines, *model.splitlines()]
 
 
 def _switching(program: Program) -> list[str]:
@@ -141,7 +146,14 @@ def _switching(program: Program) -> list[str]:
     rows = [
         f"    {None if port.switch is None else _told(port.switch)}," for port in program.friction
     ]
-    return ["", f"# {note}", "SWITCHING = (", *rows, ")"]
+    lines = ["", f"# {note}", "SWITCHING = (", *rows, ")"]
+    if not program.resets:
+        return lines
+    rows = [
+        f"    Reset({one.port}, {one.sign}, {one.place}, {one.value})," for one in program.resets
+    ]
+    note = "What resets states: the port and the mode it comes to; places of state and value."
+    return [*lines, "", f"# {note}", "RESETS = (", *rows, ")"]
 
 
 def _told(one: Switching) -> str:

@@ -142,6 +142,9 @@ def _functions(program: Program, names: Names) -> list[str]:
     if program.switched:
         rows = [f"{plain(str(p.name))}: {way}" for p in program.switches
                 if p.switch is not None for way in p.switch.guards]  # fmt: skip
+        states = (*program.states, *program.law_states)
+        rows += [f"{plain(str(states[one.place]))} reset by {plain(str(program.friction[one.port].name))}"
+                 for one in program.resets]  # fmt: skip
         doc = "Conditions of switches: to turn on and to turn off in turn, each above zero."
         lines += values_function("switch_conditions", doc, program.guards, rows, names)
     if program.joint:

@@ -52,8 +52,9 @@ class Run:
             shots = snapshots(model.within(run.track), self.times, signals, run.track)
         _, observer = named_columns(model, self.times, shots)
         rows = np.array(tally.rows)
-        totals, impacts = read_only(rows[:, :-1] @ shares(whole)), read_only(rows[:, -1])
-        return Integrated(totals, impacts, observer)
+        totals = read_only(rows[:, :-2] @ shares(whole))
+        impacts, renewed = (read_only(rows[:, at]) for at in (-2, -1))
+        return Integrated(totals, impacts, renewed, observer)
 
 
 def closed_model(

@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -10,9 +11,10 @@ from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
 from codegen.inputs.present import Inputs, Present
 from codegen.inputs.signal import Signal
-from codegen.model.snapshot import Impact, Mode
-from codegen.modes.choices import Choices
-from codegen.modes.choose import Decision, Occasion, decide
+from codegen.instants.parts import Part, hits, parts_of
+from codegen.model.snapshot import Mode
+from codegen.modes.choices import Choices, Occasion
+from codegen.modes.choose import decide
 from codegen.modes.closed import ClosedModel
 from codegen.modes.crossings import Crossings
 from codegen.modes.glances import Glances
@@ -124,32 +126,44 @@ class _Course:
         occasion = Occasion(
             model, t, pieces, self.mode, ahead, peaks, loose, self._touched, *self._first_looks
         )
-        new, after, impacts, self._clear = self._decided(occasion, here)
+        parts = self._decided(occasion, here)
+        new, self._clear = parts[-1].mode, parts[-1].clear
         if self._settled is not None:
-            changes = self._changes.of((self.mode, new), lambda: _changes(model, self.mode, new))
-            self.track.note(_told(model, t, changes, impacts))
+            self._note(parts)
         counted = self._touched - self._crossings.of(self.mode, new)
-        if self._settled is not None and counted and not any(i.thrown for i in impacts):
+        thrown = any(one.thrown for part in parts for one in part.impacts)
+        if self._settled is not None and counted and not thrown:
             _check_progress(self._rounds, t, hardly_apart(peaks.time), self.track.events)
-        if after is not here.s:
-            here = Sight(model, t, after, pieces)
+        if parts[-1].s is not here.s:
+            here = Sight(model, t, parts[-1].s, pieces)
         self._crossings.take(here, new, self._touched, peaks)
-        self._come_to_rest(here, new, impacts)
+        self._come_to_rest(here, parts)
         self.mode, self._touched, self._settled = new, frozenset(), t
         self._here = here if self.s is here.s else Sight(model, t, self.s, pieces)
 
-    def _decided(self, now: Occasion, here: Sight) -> Decision:
-        """The mode just after an instant; the last one where a run ends so soon that none needs to go on.
+    def _decided(self, now: Occasion, here: Sight) -> list[Part]:
+        """What an instant comes to; the last mode where a run ends so soon that none needs to go on.
 
-        As where a level comes down to zero at the end: what would follow, a level below, does not.
+        As where a level comes down to zero at the end: what would follow, a level below, does not. A
+        run begins with no event.
         """
+        if self._settled is None:
+            mode, s, impacts, clear = decide(now, here)
+            return [Part(self.mode, mode, impacts, s, clear=clear)]
         try:
-            return decide(now, here)
+            return parts_of(decide, now, here)
         except SimulationError:
-            if self.t + now.ahead < self.end or self._settled is None:
+            if self.t + now.ahead < self.end:
                 raise
             here.at(self.mode)
-            return Decision(self.mode, here.s, ())
+            return [Part(self.mode, self.mode, (), here.s)]
+
+    def _note(self, parts: Sequence[Part]) -> None:
+        """Tell what has happened."""
+        for part in parts:
+            modes = part.before, part.mode
+            changes = self._changes.of(modes, partial(_changes, self._model, *modes))
+            self.track.note(_told(self._model, self.t, changes, part))
 
     def _fastest(self, here: Sight, present: Present) -> float:
         """The largest rate [1/s] of what can be evaluated here, and of the inputs."""
@@ -163,15 +177,19 @@ class _Course:
         mode, _ = here.evaluated(self.mode, slipping=False)
         return self._leg(present.pieces, mode).fastest(here.t, here.s)
 
-    def _come_to_rest(self, here: Sight, mode: Mode, impacts: Sequence[Impact]) -> None:
-        before, tally, pieces = self.s, self.track.tally, here.pieces
+    def _come_to_rest(self, here: Sight, parts: Sequence[Part]) -> None:
+        before, tally, pieces, mode = self.s, self.track.tally, here.pieces, parts[-1].mode
         self.s = _at_rest(here, mode)
         # What happens before the first sample is not of the run.
         if tally is not None and self._before is not None:
             tally.step(self.t, self._before, pieces, before, mode)
-            for impact in impacts:
-                tally.impact(self.t, pieces, mode, before, impact)
-                before = impact.s
+            for part in parts:
+                for impact in part.impacts:
+                    tally.impact(self.t, pieces, mode, before, impact)
+                    before = impact.s
+                if part.reset is not None:
+                    tally.reset(self.t, pieces, mode, part.s, part.reset)
+                before = part.end
             tally.rest(self.t, pieces, mode, here.s, self.s)
         self._before = pieces
 
@@ -284,30 +302,26 @@ def _changes(model: ClosedModel, old: Mode, new: Mode) -> list[tuple[Hashable, s
 
 
 def _told(
-    model: ClosedModel, t: float, changes: Sequence[tuple[Hashable, str]], impacts: Sequence[Impact]
+    model: ClosedModel, t: float, changes: Sequence[tuple[Hashable, str]], part: Part
 ) -> list[Event]:
     """What has happened at an instant: first what was thrown back, impact by impact.
 
     The rest of a port's impulses goes with its change; of a stop that does not change, it is a hit.
     """
-    if not impacts:
+    if not part.impacts:
         return [Event(t, port, kind) for port, kind in changes]
     names = [port.name for port in model.program.friction]
-    hits, rest = list[Event](), dict[Hashable, float]()
-    for one in impacts:
+    told, rest = list[Event](), dict[Hashable, float]()
+    for one in part.impacts:
         given = one.strike.given[model.friction_inputs]
         for i in np.flatnonzero(given).tolist():
             if i in one.thrown:
-                hits.append(Event(t, names[i], "hit", float(given[i])))
+                told.append(Event(t, names[i], "hit", float(given[i])))
             else:
                 rest[names[i]] = rest.get(names[i], 0.0) + float(given[i])
-    changed = {port for port, _ in changes}
-    largest = max(map(abs, rest.values()), default=0.0)
-    for i in model.stopping:
-        left = rest.get(names[i], 0.0)
-        if names[i] not in changed and abs(left) > TUNING.rounding * largest:
-            hits.append(Event(t, names[i], "hit", left))
-    return hits + [Event(t, port, kind, rest.get(port, 0.0)) for port, kind in changes]
+    for i, impulse in hits(model, part.before, part.mode, part.impacts).items():
+        told.append(Event(t, names[i], "hit", impulse))
+    return told + [Event(t, port, kind, rest.get(port, 0.0)) for port, kind in changes]
 
 
 def _check_progress(rounds: deque[float], t: float, least: float, events: list[Event]) -> None:

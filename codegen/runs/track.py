@@ -68,6 +68,11 @@ class Accumulating(Protocol):
     ) -> None:
         """Ports that may have come to rest at t."""
 
+    def reset(
+        self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, after: Array
+    ) -> None:
+        """States that were reset at t."""
+
     def record(self) -> None:
         """The next sample."""
 

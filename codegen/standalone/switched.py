@@ -43,6 +43,8 @@ class SwitchedSteps(DeadBand):
         )
         self.rubs = np.array([one is None for one in self.switching])
         self.first = self.mode_of(())
+        #: Of the latest choice: what ports gave of impulses, but for what these stops threw back.
+        self.given, self.thrown_back = np.zeros(len(self.rubs)), set[int]()
 
     def mode_of(self, on: Collection[str]) -> Mode:
         """The mode in which these switches are on; friction takes no part."""
@@ -166,6 +168,7 @@ class SwitchedSteps(DeadBand):
         held = tuple(np.where(self.rubs, 1, switched).tolist())
         whole, s, begun = None, at.s, None
         # Where rows turn as states jump, each strike leaves what is bent of its way.
+        self.given = np.zeros(len(held))
         for _ in range(TUNING.impacts if 0 in held else 0):
             now, found = self.struck(at._replace(s=s), held, previous, h)
             if found is None:
@@ -177,6 +180,7 @@ class SwitchedSteps(DeadBand):
         if whole is None or begun is None:
             return at.s, [0] * len(held)
         places = self.efforts, self.slips
+        self.given = whole.given[self.efforts]
         return s, shocks(whole, begun, switched, self.switching, places, self.told)
 
     def struck(

@@ -79,6 +79,20 @@ class Switching:
         return 0 if on == self.on else 1
 
 
+@dataclass(frozen=True)
+class Reset:
+    """What a state becomes as a port changes over, or at an impact of a stop.
+
+    ``port``: its place; ``sign``: the mode that it comes to; ``place``: of the state in s;
+    ``value``: of what it becomes, among the guards.
+    """
+
+    port: int
+    sign: int
+    place: int
+    value: int
+
+
 def flipped(mode: Mode, ports: Iterable[int]) -> Mode:
     """The mode with these switches changed over.
 

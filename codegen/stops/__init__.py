@@ -1,1 +1,1 @@
-"""Stops: the impulses that throw back what meets them, and fixed steps with them."""
+"""Impulses of stops that throw back what meets them; fixed steps with stops, and with resets."""

@@ -55,17 +55,20 @@ class StoppedSteps(SwitchedSteps):
         met = self.met(at, first, h)
         apart = {i for i, _ in self.stops()} - {i for i, _ in met}
         at, depth = self.closed_up(at, first, met)
+        given, self.thrown_back = np.zeros(len(first)), set()
         for _ in range(TUNING.bounces):
             wanted = self.closing(at, first, met, depth, h)
             asked = [i for i in self.places if i not in apart and i not in wanted]
             mode, s = self.among(at, asked, first, previous, dead_band, h)
-            joined = not np.array_equal(s, at.s)
+            joined, given = not np.array_equal(s, at.s), given + self.given
             at, first = at._replace(s=s), tuple(np.where(self.rubs, first, mode).tolist())
             still = [(i, one) for i, one in met if i in wanted]
             wanted = self.closing(at, mode, still, depth, h)
             if wanted:
                 at, depth = at._replace(s=self.thrown(at, mode, wanted)), {}
+                self.thrown_back |= wanted.keys()
             elif not joined:
+                self.given = given
                 return mode, at.s
         raise EvaluationError(f"at t = {at.t:g} what meets stops still closes")
 

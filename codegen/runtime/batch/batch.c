@@ -58,6 +58,7 @@ static int bind(batch_room *room, const double *parameters)
     memcpy(record->own, bg_friction_inputs, sizeof(int) * EX_K);
     record->switched = BG_SWITCHES > 0;
     memcpy(record->switches, bg_switches, sizeof *bg_switches * EX_K);
+    memcpy(record->resets, bg_resets, sizeof *bg_resets * BG_RESETS);
     batch_fill_stops(record, &own->m);
     ex_forget(room->context);
     return BG_OK;

@@ -32,6 +32,17 @@ static void forget_instant(bg_model *m)
     memcpy(m->now.p, p, sizeof p);
 }
 
+/* What resets set s to; what inputs that drive dependent storages add to states stays. */
+static void fill_resets(const double *map, int column, const double *guards, double *become)
+{
+    for (int r = 0; r < BG_RESETS; r++) {
+        const int place = bg_resets[r].place;
+        become[r] = guards[bg_resets[r].value];
+        if (place < N)
+            become[r] += (column == place) - map[place * BG_MAP_COLUMNS + column];
+    }
+}
+
 void batch_fill_stops(ex_model *record, bg_model *m)
 {
     double guards[BG_ROOM(BG_GUARDS)] = {0};
@@ -60,6 +71,7 @@ void batch_fill_switches(ex_mode *made, const double *map, bg_model *m, const in
         if (column < 0)
             continue;
         guards_in(map, m, column, constant, guards);
+        fill_resets(map, column, guards, made->become[j]);
         for (int k = 0; k < EX_K; k++)
             if (bg_switches[k].kind != BG_RUBS)
                 made->stay[j][k] = bg_stay(bg_switches + k, mode[k], made->shot[j][EX_AT_SLIP + k],

@@ -16,6 +16,7 @@
 
 enum {
     EX_PORTS = EX_K > 0 ? EX_K : 1,
+    EX_MOST_RESETS = BG_RESETS > 0 ? BG_RESETS : 1,
     EX_DIGITS = 32,         /* of a word */
     EX_WORDS = (EX_PORTS + EX_DIGITS - 1) / EX_DIGITS,
     EX_Z = EX_N + EX_G,     /* state of a stretch: s and the slots of the generator */
@@ -61,6 +62,7 @@ typedef struct {
     double take_away[EX_PORTS][EX_N]; /* .. and what to add to s per unit of each */
     double mix[EX_PORTS][EX_PORTS]; /* what those slips are of the ports' own */
     double stay[EX_L][EX_PORTS];   /* what keeps switches */
+    double become[EX_L][EX_MOST_RESETS]; /* what resets set s to */
     /* where friction slips forwards, as switches come to hold: what s gains per unit of each slip,
      * how far the impulse goes with each switch's way, and what each port gives */
     double jump[EX_PORTS][EX_N], shock[EX_PORTS][EX_PORTS], blow[EX_PORTS][EX_PORTS];
@@ -87,6 +89,7 @@ typedef struct {
     int switched, stopping;         /* whether any port is a switch; a stop */
     double room[EX_PORTS], back[EX_PORTS]; /* of stops: the gap where s is zero; restitution */
     bg_switch switches[EX_PORTS];
+    bg_reset resets[EX_MOST_RESETS];
 } ex_model;
 
 /* The generator of inputs: chains y0' = r y0 + y1, y1' = r y1 + y2, .. with w = constant + Re y0.

@@ -41,6 +41,7 @@ void ex_round_stay(const ex_context *c, const ex_mode *mode, const double *v, co
                    double t, bg_port *ports);
 void ex_limit_stay(const ex_context *c, const ex_mode *mode, const double *most, const double *shot,
                    double t, bg_port *ports);
+int ex_become(void *context, const bg_instant *at, const int *mode, double *values);
 int ex_strike(void *context, const bg_instant *at, const int *mode, const double *speeds,
               double *s, bg_blow *blow);
 

@@ -158,7 +158,7 @@ static int advance(void *context, double stop)
 /* What is kept of strides and choices is of one run, which so is the same whatever was before. */
 static void start_anew(ex_context *c)
 {
-    c->glancing = c->model->switched;
+    c->glancing = c->model->switched && !BG_RESETS;
     for (int i = 0; i < EX_K; i++)
         c->glancing &= ex_switches(c, i);
     c->stridden = c->decided = c->chosen = c->looked = c->vain = 0;
@@ -173,7 +173,8 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
 {
     const bg_sight sight = {c, EX_N, EX_K, model->switched ? model->switches : NULL,
                             model->switches, model->stopping, model->coupled,
-                            c->shot + EX_AT_RATE, c->point, c->struck, look, tell, ex_strike, couple};
+                            c->shot + EX_AT_RATE, c->point, c->struck, look, tell, ex_strike, couple,
+                            BG_RESETS, model->resets, ex_become};
     const bg_engine engine = {sight, c, pass, see, fastest, ex_choose, rest, advance};
     c->model = model;
     c->inputs = inputs;

@@ -194,3 +194,20 @@ int ex_strike(void *context, const bg_instant *at, const int *mode, const double
             s[i] += holding->jump[k][i] * slips[k];
     return speeds ? round_struck(c, at, mode, blow) : BG_OK;
 }
+
+int ex_become(void *context, const bg_instant *at, const int *mode, double *values)
+{
+    ex_context *const c = context;
+    const ex_mode *here;
+    double v[EX_L];
+    const int status = ex_find(c, mode, &here);
+    if (status)
+        return status;
+    ex_vector(c, at->t, at->s, v);
+    for (int r = 0; r < BG_RESETS; r++) {
+        values[r] = 0.0;
+        for (int j = 0; j < EX_L; j++)
+            values[r] += here->become[j][r] * v[j];
+    }
+    return BG_OK;
+}

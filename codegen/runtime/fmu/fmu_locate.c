@@ -53,6 +53,7 @@ fmu_error fmu_locate(fmu_instance *f, double t, double end)
     memcpy(c->s, f->at.s, sizeof c->s);
     bg_located_set_out(c, &f->model, &fmu_signals, &asked, from, end, first);
     c->run.began = f->at.began;
+    c->run.goes_on = f->at.decided;
     c->stiff = BG_STIFF_STEP / (end - from);
     c->ahead = look_by;
     c->view.peaks = &f->at.peaks;

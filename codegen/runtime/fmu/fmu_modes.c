@@ -1,4 +1,5 @@
 /* Which ports are held and which way the others slip: one consistent mode at one instant. */
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -45,11 +46,13 @@ void fmu_note_stays(fmu_instance *f)
 fmu_error fmu_decide(fmu_instance *f)
 {
     const bg_sight sight = bg_view_sight(&f->located.view);
-    bg_instant at = {f->at.time, FMU_SHORTEST, INFINITY, f->at.s, {0}, NULL};
+    bg_log log = {.capacity = INT_MAX};
+    bg_instant at = {f->at.time, FMU_SHORTEST, INFINITY, f->at.s, {0}, f->at.decided ? &log : NULL};
     int slipping[BG_MOST_PORTS] = {0};
     if (K == 0)
         return NULL;
     f->stale = 1;
+    bg_begin_log(&log, f->at.mode);
     fmu_next_break(f, &at.following);
     note_touched(f, at.touched);
     memcpy(slipping, f->at.mode, sizeof f->at.mode);

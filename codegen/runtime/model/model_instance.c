@@ -150,6 +150,9 @@ const char *bg_model_message(int status)
         "a step must be a positive finite number",
         "a stop begins beyond its bound; start its displacement within",
         "stops were struck too often in one instant, and what meets them still closes",
+        "two ports reset one state to two values at once; let one of them do it",
+        "a reset contradicts what a switch holds; reset all that it binds alike, or as it lets go",
+        "resets set off one another without end; let what is set be away from where it is set off",
     };
     const int count = (int)(sizeof messages / sizeof *messages);
     return status >= 0 && status < count ? messages[status] : "unknown status";

@@ -35,6 +35,12 @@ static int find_met(const bg_sight *c, const bg_instant *at, const int *mode, bg
     return BG_OK;
 }
 
+/* Whether what leaves with a speed leaps higher than displacements are known. */
+static int is_seen(const bg_switch *one, const bg_port *now, double speed)
+{
+    return speed * speed > 2.0 * BG_LEAP * fmax(-one->side * now->push, 0.0) * now->near_gap;
+}
+
 /* How fast what meets a stop leaves it; 0 if it hardly would. One that was found late, beyond its
  * bound, had another speed there. */
 static double leaving_speed(const bg_switch *one, const bg_port *now)
@@ -44,23 +50,40 @@ static double leaving_speed(const bg_switch *one, const bg_port *now)
     if (now->back <= 0.0 || slip >= -BG_BOUNCE * now->near_slip)
         return 0.0;
     const double speed = now->back * sqrt(fmax(0.0, slip * slip + 2.0 * push * depth));
-    return speed * speed > 2.0 * BG_LEAP * fmax(-push, 0.0) * now->near_gap ? speed : 0.0;
+    return is_seen(one, now, speed) ? speed : 0.0;
 }
 
-/* Whether what an impact has opened would close again before its gap could be seen. What is joined
- * to it came to rest; unless it were stopped, too, the two might take turns for ever. */
-static int hardly_leaves(const bg_switch *one, const bg_port *now)
+/* What is looked for among stops that are touched and let go. Those that bounce as they close; if
+ * one of them closes so slowly that no impact would see it, all that are slow: an impact that joins
+ * leaves what is an event's own rounding, and a push that has turned by then would find neither way
+ * consistent; and what an impact has opened, but would close again before its gap could be seen:
+ * what is joined to it came to rest, and unless it were stopped, too, the two might take turns for
+ * ever. */
+enum wanted { BOUNCES, CREEPS, HARDLY_LEAVES };
+
+/* Whether a stop is wanted so, which bounces at a speed; of the slow tells if it closes. */
+static int is_wanted(enum wanted what, const bg_switch *one, const bg_port *now, double speed,
+                     int *closes)
 {
-    const double slip = one->side * now->slip, pressed = fmax(-one->side * now->push, 0.0);
-    return slip > now->near_slip && slip * slip <= 2.0 * BG_LEAP * pressed * now->near_gap;
+    const double slip = one->side * now->slip;
+    if (what == BOUNCES)
+        return speed > 0.0;
+    if (what == HARDLY_LEAVES) {
+        *closes = 1;
+        return slip > now->near_slip && !is_seen(one, now, slip);
+    }
+    const int slow = speed == 0.0 && slip >= -2.0 * BG_WIDE * now->near_slip;
+    *closes |= slow && slip < -now->near_slip;
+    return slow;
 }
 
-/* Those among some stops that bounce as they are met; or, if `leaving`, those that hardly leave,
- * to be stopped. What is held is pressed with what holds it. */
+/* Those among some stops that are wanted, and how fast they are to leave. What is held is pressed
+ * with what holds it. */
 static int find_wanted(const bg_sight *c, const bg_instant *at, const int *mode, bg_set among,
-                       int leaving, bg_throw *wanted)
+                       enum wanted what, bg_throw *wanted)
 {
     bg_port now[BG_MOST_PORTS];
+    int any = what == BOUNCES;
     memset(wanted, 0, sizeof *wanted);
     if (bg_is_empty(&among))
         return BG_OK;
@@ -71,10 +94,13 @@ static int find_wanted(const bg_sight *c, const bg_instant *at, const int *mode,
         const bg_switch *const one = c->switches + i;
         if (!bg_has(&among, i) || one->on || !bg_is_apart(one, mode[i]))
             continue;
-        wanted->speed[i] = leaving ? 0.0 : leaving_speed(one, now + i);
-        if (leaving ? hardly_leaves(one, now + i) : wanted->speed[i] > 0.0)
+        const double speed = leaving_speed(one, now + i);
+        wanted->speed[i] = what == BOUNCES ? speed : 0.0;
+        if (is_wanted(what, one, now + i, speed, &any))
             bg_add(&wanted->ports, i);
     }
+    if (!any)
+        memset(wanted, 0, sizeof *wanted);
     return BG_OK;
 }
 
@@ -90,6 +116,7 @@ static int take_blow(const bg_sight *c, const bg_instant *at, const bg_set *thro
             continue;
         }
         log->thrown = 1;
+        bg_add(&log->back, i);
         if (bg_append(log, (bg_event){at->t, i, BG_HIT, blow->given[i]}))
             return BG_EVENTS;
     }
@@ -111,18 +138,19 @@ static int close_up(const bg_sight *c, const bg_instant *at, const int *mode, co
     return BG_OK;
 }
 
-/* Stops what hardly leaves, at the end of what was struck. */
+/* Stops some that are met: what creeps, or what hardly leaves; whether there was any. */
 static int still(const bg_sight *c, const bg_instant *at, const bg_set *met, const int *mode,
-                 int *thrown)
+                 enum wanted what, int *stilled)
 {
     const bg_set none = {{0}};
     bg_throw wanted;
     bg_blow blow = {0};
-    int status = find_wanted(c, at, mode, *met, 1, &wanted);
+    int status = find_wanted(c, at, mode, *met, what, &wanted);
     if (status == BG_OK && !bg_is_empty(&wanted.ports))
-        status = bg_bring_to_rest(c, at, mode, &wanted, &blow);
-    *thrown = blow.struck;
-    return status == BG_OK && *thrown ? take_blow(c, at, &none, &blow) : status;
+        status = what == CREEPS ? bg_throw_back(c, at, mode, &wanted, &blow)
+                                : bg_bring_to_rest(c, at, mode, &wanted, &blow);
+    *stilled = blow.struck;
+    return status == BG_OK && *stilled ? take_blow(c, at, &none, &blow) : status;
 }
 
 /* One turn: joins, then throws back; whether anything was joined and thrown. */
@@ -131,14 +159,14 @@ static int strike_in_turn(const bg_sight *c, const bg_instant *at, const bg_set 
 {
     bg_throw wanted;
     bg_blow blow = {0};
-    int status = find_wanted(c, at, mode, *met, 0, &wanted);
+    int status = find_wanted(c, at, mode, *met, BOUNCES, &wanted);
     const bg_set barred = bg_turned(*apart, &wanted.ports);
     if (status == BG_OK)
         status = bg_choose_once(c, at, &barred, mode, &blow);
     *joined = blow.struck;
     blow.struck = 0;
     if (status == BG_OK)
-        status = find_wanted(c, at, mode, wanted.ports, 0, &wanted);
+        status = find_wanted(c, at, mode, wanted.ports, BOUNCES, &wanted);
     if (status == BG_OK && !bg_is_empty(&wanted.ports))
         status = bg_throw_back(c, at, mode, &wanted, &blow);
     *thrown = blow.struck;
@@ -151,11 +179,14 @@ int bg_choose_struck(const bg_sight *c, const bg_instant *at, int *mode)
     bg_set met = {{0}}, apart = {{0}};
     int status = find_met(c, at, mode, &met, &apart), joinings = 0, struck = 0;
     for (int turn = 0; turn < BG_BOUNCES && status == BG_OK; turn++) {
-        int joined, thrown;
-        status = strike_in_turn(c, &now, &met, &apart, mode, &joined, &thrown);
+        int joined = 0, thrown = 0, crept;
+        status = still(c, &now, &met, mode, CREEPS, &crept);
+        struck |= crept;
+        if (status == BG_OK)
+            status = strike_in_turn(c, &now, &met, &apart, mode, &joined, &thrown);
         memset(now.touched, 0, sizeof now.touched);
         if (status == BG_OK && struck && !joined && !thrown)
-            status = still(c, &now, &met, mode, &thrown);
+            status = still(c, &now, &met, mode, HARDLY_LEAVES, &thrown);
         struck |= joined | thrown;
         joinings += joined;
         if (status == BG_OK && !thrown && (!joined || joinings > BG_IMPACTS))

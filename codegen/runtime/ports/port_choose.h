@@ -10,6 +10,8 @@
 #include "run_status.h"
 #include "tuning.h"
 
+enum { BG_MOST_RESETS = BG_RESETS > 0 ? BG_RESETS : 1 };
+
 /* What an instant is to a port: none of its own, its event, or an event that may be long past, as
  * whoever steps the model finds it no better. */
 enum { BG_UNTOUCHED, BG_TOUCHED, BG_PASSED };
@@ -74,13 +76,18 @@ typedef struct {
     int (*strike)(void *self, const bg_instant *at, const int *mode, const double *speeds,
                   double *s, bg_blow *blow);
     int (*couple)(void *self, const int *mode, bg_set *touched);
+    int resets;
+    const bg_reset *reset;
+    /* What s becomes at the place of each reset, in a mode that can be looked at. */
+    int (*become)(void *self, const bg_instant *at, const int *mode, double *values);
 } bg_sight;
 
-/* From the mode so far to the one just after the instant: 0 sticks or is held, 1 slips forwards or
- * is let go, -1 backwards; s of the instant becomes what it is after an impact. Ports at rest, or
- * so close that it is an event's own rounding, stick if they can; switches stay as long as nothing
- * contradicts it. A status: where no mode is consistent BG_UNDECIDED or, if none could be looked
- * at, that of the first. */
+/* port_reset.c: from the mode so far to the one just after the instant: 0 sticks or is held, 1
+ * slips forwards or is let go, -1 backwards; s of the instant becomes what it is after an impact.
+ * Ports at rest, or so close that it is an event's own rounding, stick if they can; switches stay
+ * as long as nothing contradicts it. Where there is a log, resets set states, and the mode is
+ * decided anew. A status: where no mode is consistent BG_UNDECIDED or, if none could be looked at,
+ * that of the first. */
 int bg_choose(const bg_sight *sight, const bg_instant *at, int *mode);
 
 /* What to try where a mode cannot be evaluated, by number: slipping as it does, the same backwards

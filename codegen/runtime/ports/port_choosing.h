@@ -72,7 +72,16 @@ int bg_choose_rubbing(bg_choice *choice, int *mode, int *holds, bg_set *broken);
 int bg_choose_once(const bg_sight *sight, const bg_instant *at, const bg_set *barred, int *mode,
                    bg_blow *blow);
 
-/* port_bounce.c: the mode where stops may be met, as bg_choose tells it. */
+/* port_reset.c: which resets are set off by what changed over and by stops that were hit, whether
+ * any is; and s with what these set, a status where that is no number or one state is set twice. */
+int bg_find_fired(const bg_reset *resets, int count, const bg_switch *kinds, const int *before,
+                  const int *mode, const bg_set *hit, int *fired);
+int bg_set_states(const bg_reset *resets, int count, const int *fired, const double *values,
+                  double *s);
+
+/* port_switch.c: the mode as bg_choose tells it, without resets; port_bounce.c: the same where
+ * stops may be met. */
+int bg_choose_mode(const bg_sight *sight, const bg_instant *at, int *mode);
 int bg_choose_struck(const bg_sight *sight, const bg_instant *at, int *mode);
 
 /* Stops that throw back what meets them, and how fast slips are to open after that. */

@@ -46,16 +46,33 @@ static double given_by(const bg_log *log, const bg_switch *with, int port)
 }
 
 /* Whether a stop took a shock, which is more than rounding of the largest, and stays as it is. */
-static int is_hit(const bg_log *log, const bg_switch *with, int port, int changed, double largest)
+static int is_hit(const bg_log *log, const bg_switch *with, int port, const int *mode,
+                  double largest)
 {
-    return with->kind == BG_STOPS && !changed
+    return with->kind == BG_STOPS && log->before[port] == mode[port]
         && fabs(log->given[port]) > BG_ROUNDING * largest;
 }
 
-void bg_begin_log(bg_log *log)
+static double largest_given(const bg_log *log, int ports, const bg_switch *switches)
+{
+    double largest = 0.0;
+    for (int i = 0; i < ports; i++)
+        largest = fmax(largest, fabs(given_by(log, switches + i, i)));
+    return largest;
+}
+
+/* Begins what comes after a mode. */
+static void begin_part(bg_log *log, int ports, const int *mode)
+{
+    memcpy(log->before, mode, sizeof(int) * (size_t)ports);
+    memset(log->given, 0, sizeof log->given);
+    memset(&log->back, 0, sizeof log->back);
+}
+
+void bg_begin_log(bg_log *log, const int *mode)
 {
     log->thrown = 0;
-    memset(log->given, 0, sizeof log->given);
+    begin_part(log, BG_MOST_PORTS, mode);
 }
 
 int bg_append(bg_log *log, bg_event event)
@@ -68,22 +85,30 @@ int bg_append(bg_log *log, bg_event event)
     return 0;
 }
 
-int bg_note(bg_log *log, double t, int ports, const bg_switch *switches, const int *before,
-            const int *mode)
+bg_set bg_hits(const bg_log *log, int ports, const bg_switch *switches, const int *mode)
 {
-    double largest = 0.0;
+    const double largest = largest_given(log, ports, switches);
+    bg_set found = log->back;
     for (int i = 0; i < ports; i++)
-        largest = fmax(largest, fabs(given_by(log, switches + i, i)));
+        if (is_hit(log, switches + i, i, mode, largest))
+            bg_add(&found, i);
+    return found;
+}
+
+int bg_note(bg_log *log, double t, int ports, const bg_switch *switches, const int *mode)
+{
+    const double largest = largest_given(log, ports, switches);
     for (int i = 0; i < ports && largest > 0.0; i++)
-        if (is_hit(log, switches + i, i, before[i] != mode[i], largest)
+        if (is_hit(log, switches + i, i, mode, largest)
             && bg_append(log, (bg_event){t, i, BG_HIT, log->given[i]}))
             return -1;
     for (int switched = 1; switched >= 0; switched--)
         for (int i = 0; i < ports; i++) {
-            const int kind = happened(switches + i, switched, before + i, mode + i);
+            const int kind = happened(switches + i, switched, log->before + i, mode + i);
             if (kind >= 0
                 && bg_append(log, (bg_event){t, i, kind, given_by(log, switches + i, i)}))
                 return -1;
         }
+    begin_part(log, ports, mode);
     return 0;
 }

@@ -121,11 +121,28 @@ static int couple_ports(void *view, const int *mode, bg_set *touched)
     return BG_OK;
 }
 
+/* What inputs that drive dependent storages add to states stays. */
+static int become(void *view, const bg_instant *at, const int *mode, double *values)
+{
+    bg_view *const v = view;
+    double guards[BG_ROOM(BG_GUARDS)];
+    const int status = bg_view_look(view, at->t, at->s, mode);
+    if (status)
+        return status;
+    bg_guards(&v->model->now, guards);
+    for (int r = 0; r < BG_RESETS; r++) {
+        const int place = bg_resets[r].place;
+        const double state = place < N ? v->shot.x[place] : at->s[place];
+        values[r] = guards[bg_resets[r].value] + (at->s[place] - state);
+    }
+    return BG_OK;
+}
+
 bg_sight bg_view_sight(bg_view *v)
 {
     return (bg_sight){v, BG_SIZE, K, BG_SWITCHES ? bg_switches : NULL, bg_switches, BG_STOPPING,
                       bg_beside, v->shot.rate, v->point, v->struck, bg_view_look, tell_ports,
-                      bg_view_strike, couple_ports};
+                      bg_view_strike, couple_ports, BG_RESETS, bg_resets, become};
 }
 
 /* A term is the effect of a small relative change of a state. */

@@ -22,8 +22,7 @@ static int is_struck(const step_search *c, const bg_hold *held, const double *sl
     return bg_have_slips(held, slips, near);
 }
 
-/* s after the impulses of what the switches of a mode hold; how far these go with the mode. */
-static int strike(step_search *c, const int *mode, double *ways)
+int bg_strike_in_step(step_search *c, const int *mode, double *ways)
 {
     double impulses[PORTS * PORTS], slips[PORTS], given[PORTS] = {0};
     bg_model *const m = c->m;
@@ -42,6 +41,7 @@ static int strike(step_search *c, const int *mode, double *ways)
         if (!is_struck(c, held, slips))
             return BG_OK;
         bg_stop(m, mode, held, impulses, slips, c->s, given, ways);
+        memcpy(c->tried, given, sizeof given);
     }
     return BG_OK;
 }
@@ -141,6 +141,7 @@ static int try_in_step(void *self, const bg_set *held, int *holds, bg_set *broke
     double ways[PORTS] = {0};
     int rubbing = 0, status = BG_OK;
     memcpy(c->s, c->begun, sizeof c->begun);
+    memset(c->tried, 0, sizeof c->tried);
     for (int i = 0; i < K; i++) {
         const int is_switch = bg_switches[i].kind != BG_RUBS;
         m->mode[i] = is_switch ? !bg_has(held, i) : c->at.before[i];
@@ -149,7 +150,7 @@ static int try_in_step(void *self, const bg_set *held, int *holds, bg_set *broke
         rubbing |= !is_switch;
     }
     if (!bg_is_empty(held))
-        status = strike(c, m->mode, ways);
+        status = bg_strike_in_step(c, m->mode, ways);
     if (status == BG_OK && rubbing)
         status = bg_stick(m, &c->at);
     if (status == BG_OK)
@@ -176,28 +177,41 @@ int bg_search_ways(step_search *c, const int *before)
                 bg_add(&first, i);
         }
     const int status = bg_try_ways(K, &switches, &guarded, first, try_in_step, c, &holds);
+    for (int i = 0; i < K && holds; i++)
+        c->given[i] += c->tried[i];
     if (status == BG_OK && holds)
         return BG_OK;
     memcpy(c->s, c->begun, sizeof c->begun);
     return status ? status : c->why ? c->why : BG_UNDECIDED;
 }
 
+static int search_once(step_search *c, const int *before)
+{
+    return BG_STOPPING  ? bg_search_struck(c)
+        : BG_SWITCHES ? bg_search_ways(c, before)
+                      : bg_stick(c->m, &c->at);
+}
+
 int bg_decide_step(bg_model *m, double t, double h, double *s, const double *w)
 {
-    int before[BG_ROOM(K)];
+    int before[BG_ROOM(K)], old[BG_ROOM(K)], again = BG_RESETS && m->started;
     step_search c = {.m = m, .s = s, .at = {t, h, s, w, m->work.rates[0], before, m->started}};
     memcpy(before, m->mode, sizeof before);
+    memcpy(old, m->mode, sizeof old);
     double begun[BG_SIZE];
     memcpy(c.begun, s, sizeof c.begun);
     memcpy(begun, s, sizeof begun);
-    const int status = BG_STOPPING ? bg_search_struck(&c)
-        : BG_SWITCHES              ? bg_search_ways(&c, before)
-                                   : bg_stick(m, &c.at);
+    int status = search_once(&c, before);
+    for (int k = 0; status == BG_OK && again; k++) {
+        status = k < BG_RENEWALS ? bg_set_in_step(&c, before, &again) : BG_SET_ENDLESSLY;
+        if (status == BG_OK && again)
+            status = search_once(&c, before);
+    }
     if (status == BG_OK) {
         m->started = 1;
         return BG_OK;
     }
     memcpy(s, begun, sizeof begun);
-    memcpy(m->mode, before, sizeof before);
+    memcpy(m->mode, old, sizeof old);
     return status;
 }

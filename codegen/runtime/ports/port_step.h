@@ -7,17 +7,26 @@
 
 /* A search: the start of the step, with s after the impulses of the way that is tried; s before
  * them; stops that stay apart; why there is no mode. Of those that are met `depth`: how far beyond
- * their bounds displacements were. */
+ * their bounds displacements were. `given`: what ports have given of impulses, but for what stops
+ * have thrown back, which `back` tells; `tried`: the same of the way that is tried. */
 typedef struct {
     bg_model *m;
     bg_start at;
     double *s, begun[BG_SIZE], struck[BG_SIZE], depth[BG_ROOM(BG_FRICTION)];
-    bg_set barred;
+    double given[BG_ROOM(BG_FRICTION)], tried[BG_ROOM(BG_FRICTION)];
+    bg_set barred, back;
     int why;
 } step_search;
 
 /* port_step.c: a mode, where some ports are switches; a step that has none leaves all as it was. */
 int bg_search_ways(step_search *c, const int *before);
+
+/* port_step.c: s after the impulses of what switches hold in a mode; how far these go with it. */
+int bg_strike_in_step(step_search *c, const int *mode, double *ways);
+
+/* port_step_reset.c: sets what states are reset to at the events from the mode before to the
+ * present one, which then is that before; `any`: whether there were such. A status. */
+int bg_set_in_step(step_search *c, int *before, int *any);
 
 /* port_step_stop.c: the same where stops may be met: what joins first, then what closes is thrown
  * back; again until nothing closes. */

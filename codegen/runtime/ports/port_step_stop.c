@@ -117,6 +117,12 @@ static int give_back(step_search *c, const bg_throw *wanted, int *thrown)
     *thrown = status == BG_OK && blow.struck;
     if (*thrown)
         memcpy(c->s, c->struck, sizeof c->struck);
+    for (int i = 0; i < K && *thrown; i++) {
+        if (bg_has(&wanted->ports, i) && blow.given[i] != 0.0)
+            bg_add(&c->back, i);
+        else
+            c->given[i] += blow.given[i];
+    }
     memset(c->depth, 0, sizeof c->depth);
     return status;
 }

@@ -94,7 +94,7 @@ int bg_choose_once(const bg_sight *c, const bg_instant *at, const bg_set *barred
     return BG_OK;
 }
 
-int bg_choose(const bg_sight *c, const bg_instant *at, int *mode)
+int bg_choose_mode(const bg_sight *c, const bg_instant *at, int *mode)
 {
     const bg_set none = {{0}};
     bg_instant again = *at;

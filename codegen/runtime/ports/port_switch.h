@@ -16,6 +16,12 @@ typedef struct {
     int kind, on, side, guard, slides, place, opening, bound;
 } bg_switch;
 
+/* What a state becomes as a port comes to a mode, `sign`, or at an impact of a stop: its place in
+ * s, and that of the value among the conditions. */
+typedef struct {
+    int port, sign, place, value;
+} bg_reset;
+
 /* The place of the condition that changes a switch over in its mode. */
 int bg_condition(const bg_switch *s, int sign);
 

@@ -99,15 +99,15 @@ static int settle(const bg_engine *e, bg_course *c, int started)
     if (status)
         return status;
     c->at.time = bg_time_constant(fastest, c->at.t - c->began);
-    bg_begin_log(&c->log);
-    c->at.log = started ? &c->log : NULL;
+    bg_begin_log(&c->log, c->mode);
+    c->at.log = started || c->goes_on ? &c->log : NULL;
     status = decide(e, c, started);
     c->at.log = NULL;
     /* A jump that is crossed may be so as often as it is. */
     for (int i = 0; i < sight->ports; i++)
         touched |= c->at.touched[i] && !(is_jump(sight->kinds + i) && before[i] && c->mode[i]);
     if (status == BG_OK && started) {
-        if (bg_note(&c->log, c->at.t, sight->ports, sight->kinds, before, c->mode))
+        if (bg_note(&c->log, c->at.t, sight->ports, sight->kinds, c->mode))
             status = BG_EVENTS;
         else if (touched && !c->log.thrown && bg_stalls(&c->rounds, c->at.t, c->at.time))
             status = BG_STALLS;
@@ -121,6 +121,7 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
 {
     c->at = (bg_instant){.t = t, .s = s};
     c->began = t;
+    c->goes_on = 0;
     c->end = end;
     c->span = (bg_span){0, -INFINITY, INFINITY};
     c->log.count = c->rounds.next = c->rounds.full = 0;

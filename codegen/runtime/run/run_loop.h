@@ -7,11 +7,13 @@
 #include "port_events.h"
 #include "run_pace.h"
 
-/* Where a run is. `began`, `end` [s]: of all of it; `span`: the pieces of its inputs. */
+/* Where a run is. `began`, `end` [s]: of all of it; `span`: the pieces of its inputs;
+ * `goes_on`: whether it goes on with one before, so that its begin may have events. */
 typedef struct {
     bg_instant at;
     double began, end;
     bg_span span;
+    int goes_on;
     int mode[BG_MOST_PORTS];
     bg_log log;
     bg_rounds rounds;

@@ -24,6 +24,9 @@ enum bg_status {
     BG_BAD_STEP,     /* a step is no positive number */
     BG_BEYOND,       /* a stop begins beyond its bound */
     BG_STRUCK,       /* stops are struck in one instant, and what meets them still closes */
+    BG_SET_TWICE,    /* two ports reset one state to two values at once */
+    BG_SET_HELD,     /* a reset contradicts what is held */
+    BG_SET_ENDLESSLY, /* resets set off one another without end */
     /* of exact steps alone */
     BG_MISSING,      /* a mode is not in the table */
     BG_NEGATIVE,     /* a friction level falls below zero */

@@ -257,6 +257,20 @@ def test_bodies_that_take_turns_at_two_stops_come_to_rest() -> None:
     assert abs(result["v0"][-1]) + abs(result["v1"][-1]) < 1e-9
 
 
+@pytest.mark.parametrize(("backend", "method"), ROUTES)
+@pytest.mark.parametrize("speed", [1e-10, 1e-9, 1e-8])
+def test_what_closes_hardly_faster_than_rounding_is_stopped(
+    speed: float, backend: str, method: str
+) -> None:
+    """It touches as the force already pulls it off: then v = t, q = t^2/2, up to the bound beyond."""
+    stops = (_stop("s.low", 0, None, 0.0, 0.0), _stop("s.high", 0, None, 1.0, 0.0, -1))
+    line = Line((1.0,), (0.0,), (-speed,), stops, (Wave(1.0),))
+    result = run(line, [0.0, 0.5, 1.0], backend, method)
+    assert result["v0"] == pytest.approx([0.0, 0.5, 1.0], abs=1e-12)
+    assert result["q_s"] == pytest.approx([0.0, 0.125, 0.5], abs=1e-12)
+    assert not result.events
+
+
 def test_a_start_beyond_a_bound_is_refused() -> None:
     with pytest.raises(bg.SimulationError, match="beyond its bound"):
         run(Line((1.0,), (-0.1,), (0.0,), (_stop("s", 0, None, 0.0, 0.0),)), [0.0, 1.0])

@@ -4,10 +4,11 @@ from oracles.routes.friction import FRICTION
 from oracles.routes.jumping import JUMPING
 from oracles.routes.lawful import LAWFUL
 from oracles.routes.plain import PLAIN
+from oracles.routes.resetting import RESETTING
 from oracles.routes.sloped import SLOPED
 from oracles.routes.stops import STOPS
 from oracles.routes.switches import SWITCHES
 
-EVERY = (*FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *PLAIN, *LAWFUL)
+EVERY = (*FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *PLAIN, *LAWFUL)
 
 KINDS = {make.__name__: make for make in EVERY}

@@ -1,0 +1,1 @@
+"""All that happens at one instant: modes, impacts, and what events set states to."""
