@@ -6,14 +6,60 @@ zero both (sliding of second order: Levant, International Journal of Control 58,
 says that. ``run_loop.c`` decides the same way.
 """
 
-from collections.abc import Collection
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+import numpy as np
 
 from bondgraph.errors import SimulationError
-from codegen.model.snapshot import Mode
+from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.rounding import Peaks, scales, slip_rates
+from codegen.modes.rounding import TINY, Peaks, Scales, scales, slip_rates
 from codegen.modes.trials import Sight
 from codegen.tuning import TUNING
+
+
+def hung_rounding(here: Sight, now: Snapshot) -> Mapping[int, float]:
+    """Below these what jumps of second order hang on counts as zero: of what it has been, and of the time's."""
+    model = here.model
+    if not model.hung:
+        return {}
+    sizes = np.append(model.largest(here.s), 1.0)
+    terms, late = np.abs(model.hung_rows(now)) @ sizes, TUNING.late * np.spacing(abs(here.t))
+    rates = np.abs(now.y[[model.friction_readings[i] for i in model.hung]])
+    near = TUNING.together * terms + late * rates + TINY
+    return dict(zip(model.hung, near.tolist(), strict=True))
+
+
+def with_leaps(size: Scales, here: Sight, now: Snapshot) -> Scales:
+    """What counts as zero, with speeds of jumps of second order that leap no higher than could be seen.
+
+    What their whole height throws back leaps by v^2/2 over that.
+    """
+    model = here.model
+    if not model.hung:
+        return size
+    slips, by = size.slip.copy(), model.moves(now.numbers).mobility
+    for i, near in hung_rounding(here, now).items():
+        thrown = float(now.caps[i]) / float(by[i]) if by[i] > 0 else 0.0
+        unseen = math.sqrt(2 * TUNING.leap * near * thrown)
+        slips[i] = max(slips[i], unseen / TUNING.wide)
+    return replace(size, slip=slips)
+
+
+def sides(here: Sight, mode: Mode, loose: Collection[int] = ()) -> Mapping[int, int]:
+    """On which sides jumps of second order are, of those that are not at their jump; ``loose``: about there."""
+    model, found = here.model, dict[int, int]()
+    if not model.hung:
+        return found
+    now = here.at(mode)
+    gaps = model.guards(here.t, now)
+    for i, near in hung_rounding(here, now).items():
+        gap = float(gaps[model.hung[i]])
+        if abs(gap) > (TUNING.wide if i in loose else 1.0) * near:
+            found[i] = 1 if gap > 0 else -1
+    return found
 
 
 class Crossings:
@@ -39,6 +85,8 @@ class Crossings:
             return
         model, now = here.model, here.at(mode)
         near, rates = scales(model, now, here.t, peaks).slip, slip_rates(model, now)
+        for i, least in hung_rounding(here, now).items():
+            near[i], rates[i] = least, now.y[model.friction_readings[i]]
         for i in crossed:
             between = here.t - self._last.get(i, -float("inf"))
             self._last[i] = here.t

@@ -15,7 +15,7 @@ from codegen.program.closing import Closing, close_ports
 from codegen.program.gains import check_gains
 from codegen.program.moving import with_moving_slips
 from codegen.program.records import Program, block
-from codegen.program.sections import coefficients, friction, group, known_rates, switches, uses
+from codegen.program.sections import coefficients, friction, group, hung_on, known_rates, switches, uses
 from codegen.program.tangents import with_tangents
 from codegen.program.timed import Sources
 
@@ -54,7 +54,7 @@ def lower(
     taken = _all_names(equations, closing) | watched
     expressions, layout = coefficients(equations)
     sources = Sources(closing, given, taken)
-    _, guards = switches(closing)
+    guards = [*switches(closing)[1], *hung_on(closing)]
     if timed:
         expressions = [sources.parted(entry) for entry in expressions]
         guards = [sources.parted(guard) for guard in guards]
