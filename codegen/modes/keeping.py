@@ -101,7 +101,10 @@ def _guards_pushed(model: ClosedModel, given: Array, received: Array) -> Array:
 
 
 def keeping(model: ClosedModel, mode: Mode, affine: AffineMap) -> Array:
-    """What keeps each switch of an affine mode, as rows over [s, w, w', 1]; of friction nothing."""
+    """What keeps each switch of an affine mode, as rows over [s, w, w', 1]; of friction nothing.
+
+    Of jumps of second order what they hang on.
+    """
     rows = np.zeros((len(mode), affine.matrix.shape[1]))
     guards = model.guard_rows(mode, len(model.program.external))
     slips = affine.rows(READINGS)[model.friction_readings]
@@ -112,4 +115,6 @@ def keeping(model: ClosedModel, mode: Mode, affine: AffineMap) -> Array:
             found = (slips, efforts, guards)[part]
             assert found is not None
             rows[i] = sign * found[at]
+        elif i in model.hung and guards is not None:
+            rows[i] = guards[model.hung[i]]
     return rows

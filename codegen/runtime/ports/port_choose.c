@@ -131,6 +131,14 @@ static int search_blocks(bg_choice *choice, int blocks, bg_port_block *block, in
     return search_block(choice, &all, &choice->open, mode, holds, &broken);
 }
 
+/* On which side a jump of second order is, that is not where it jumps; 0 of any other port. */
+static int side_of(const bg_switch *one, const bg_port *now, int loose)
+{
+    if (!bg_hangs(one) || fabs(now->gap) <= (loose ? BG_WIDE : 1.0) * now->near_gap)
+        return 0;
+    return now->gap > 0 ? 1 : -1;
+}
+
 /* The friction ports that may stick, where `now` is with friction slipping; the others slip as they
  * do. How many. */
 static int find_open(bg_choice *choice, const bg_port *now, const int *mode, int *slipping,
@@ -150,7 +158,10 @@ static int find_open(bg_choice *choice, const bg_port *now, const int *mode, int
                 bg_add(&choice->switches, i);
             continue;
         }
-        slipping[i] = now[i].slip > 0 ? 1 : -1;
+        const int side = side_of(c->kinds + i, now + i, loose);
+        slipping[i] = side ? side : now[i].slip > 0 ? 1 : -1;
+        if (side)
+            continue;
         if (c->coupled[i] || slip <= near || (passed && !choice->blow.struck)
             || (loose && slip <= BG_WIDE * near)) {
             ports[count++] = i;

@@ -15,8 +15,9 @@
 enum { BG_UNTOUCHED, BG_TOUCHED, BG_PASSED };
 
 /* One port at one instant in one mode. `push`: how fast the slip changes; `stay`: what keeps a
- * switch from changing over; `gap`, `back`: of a stop, its restitution the latter; `near_..`: below
- * these slip, margin, push, stay and gap count as zero. */
+ * switch from changing over; `gap`, `back`: of a stop, its restitution the latter; `gap`: what
+ * a jump of second order hangs on; `near_..`: below these slip, margin, push, stay and gap count as
+ * zero. */
 typedef struct {
     double slip, effort, cap, push, stay, gap, back;
     double near_slip, near_effort, near_push, near_stay, near_gap;

@@ -77,6 +77,29 @@ static int invert_system(bg_hold *held)
     return bg_inverse(count, system, pivots, held->inverse);
 }
 
+/* Directions in which efforts move nothing: combinations of slips, unless factors are others: the
+ * jump of a law acts with another one than what it hangs on has. */
+static void find_ways(bg_hold *held)
+{
+    const int count = held->count, ruled = held->ranks.direct + held->ranks.kept;
+    int lopsided = 0;
+    for (int r = 0; r < ruled; r++)
+        for (int d = 0; d < held->share_count; d++) {
+            double moved = 0.0, size = 0.0;
+            for (int c = 0; c < count; c++) {
+                const double term = held->U[r * M + bg_friction_inputs[held->ports[c]]]
+                    * held->share[d * count + c];
+                moved += term;
+                size += fabs(term);
+            }
+            lopsided |= fabs(moved) > BG_CONSISTENT * size;
+        }
+    for (int d = 0; d < held->share_count; d++)
+        for (int c = 0; c < count; c++)
+            held->ways[d * count + c] = lopsided ? held->inverse[c * count + ruled + d]
+                                                 : held->share[d * count + c];
+}
+
 /* -A^-1 S^T (S A^-1 S^T)^-1: the impulse that stops the slips S x, and moves nothing else. */
 static int find_take_away(bg_model *m, bg_hold *held)
 {
@@ -137,6 +160,9 @@ static int build(bg_model *m, bg_hold *held)
     /* Where laws answer as well, all are searched for together. */
     if ((s->moved == 0 && !invert_system(held)) || !find_take_away(m, held))
         return BG_NO_HOLD;
+    memcpy(held->ways, held->share, sizeof held->ways);
+    if (s->moved == 0)
+        find_ways(held);
     if (!BG_VARYING)
         list_rules(held);
     return check_slopes(held);
