@@ -251,7 +251,7 @@ def _undecided(now: Occasion, here: Sight, mode: Mode, away: Collection[int]) ->
     """The friction ports that may stick: at rest, or moved by efforts at once, and not ``away``."""
     model, shot = now.model, here.at(mode)
     slips = np.abs(shot.y[model.friction_readings])
-    near = with_leaps(scales(model, shot, now.t, now.peaks), here, shot).slip
+    near = with_leaps(scales(model, shot, now.t, now.peaks), here, shot, now.peaks).slip
     near[list(now.loose)] *= TUNING.wide
     return [
         i

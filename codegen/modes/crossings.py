@@ -32,10 +32,11 @@ def hung_rounding(here: Sight, now: Snapshot) -> Mapping[int, float]:
     return dict(zip(model.hung, near.tolist(), strict=True))
 
 
-def with_leaps(size: Scales, here: Sight, now: Snapshot) -> Scales:
+def with_leaps(size: Scales, here: Sight, now: Snapshot, peaks: Peaks | None) -> Scales:
     """What counts as zero, with speeds of jumps of second order that leap no higher than could be seen.
 
-    What their whole height throws back leaps by v^2/2 over that.
+    What their whole height throws back leaps by v^2/2 over that. Of swings that hardly shrink larger ones
+    count: there are as many as one is smaller.
     """
     model = here.model
     if not model.hung:
@@ -44,6 +45,8 @@ def with_leaps(size: Scales, here: Sight, now: Snapshot) -> Scales:
     for i, near in hung_rounding(here, now).items():
         thrown = float(now.caps[i]) / float(by[i]) if by[i] > 0 else 0.0
         unseen = math.sqrt(2 * TUNING.leap * near * thrown)
+        if peaks is not None and i in peaks.lingering:
+            unseen *= TUNING.lingering
         slips[i] = max(slips[i], unseen / TUNING.wide)
     return replace(size, slip=slips)
 
@@ -69,6 +72,7 @@ class Crossings:
         self._ports = model.program.friction
         self._jumps = [i for i, port in enumerate(self._ports) if port.jumps]
         self._last, self._unseen = dict[int, float](), dict.fromkeys(self._jumps, 0)
+        self._speeds = {i: (math.inf, math.inf) for i in model.hung}
 
     def of(self, before: Mode, after: Mode) -> frozenset[int]:
         """The jumps that slide neither before nor after an instant: they may be crossed ever so often."""
@@ -91,10 +95,20 @@ class Crossings:
             between = here.t - self._last.get(i, -float("inf"))
             self._last[i] = here.t
             # At a rate v, and back with it after a time T, it leaps by v T/4.
+            self._linger(i, math.inf if mode[i] == 0 else abs(float(rates[i])), peaks)
             seen = mode[i] == 0 or abs(float(rates[i])) * between > 4 * TUNING.leap * float(near[i])
             self._unseen[i] = 0 if seen else self._unseen[i] + 1
             if self._unseen[i] >= TUNING.stalled:
                 raise _accumulates(model, i, here.t)
+
+
+    def _linger(self, port: int, speed: float, peaks: Peaks | None) -> None:
+        """Tell swings that hardly shrink, by the speeds of crossings to the same side."""
+        if peaks is None or port not in self._speeds:
+            return
+        before, self._speeds[port] = self._speeds[port][0], (self._speeds[port][1], speed)
+        stays = TUNING.lingers * before < speed < math.inf
+        peaks.lingering = peaks.lingering - {port} | ({port} if stays else set())
 
 
 def _accumulates(model: ClosedModel, port: int, t: float) -> SimulationError:

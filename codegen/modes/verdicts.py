@@ -148,7 +148,7 @@ class Look:
 def look_at(here: Sight, mode: Mode, peaks: Peaks | None = None) -> Look:
     """A mode at an instant, with what counts as zero there. Raises `SimulationError` if it is no mode."""
     now, model = here.at(mode), here.model
-    size = with_leaps(scales(model, now, here.t, peaks), here, now)
+    size = with_leaps(scales(model, now, here.t, peaks), here, now, peaks)
     if model.switches:
         size = holding(size, model, mode, now, peaks)
     return Look(here, mode, here.t, now, size, peaks)

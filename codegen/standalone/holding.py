@@ -57,7 +57,7 @@ class Hold:
     them: the ports hold only while these are zero. ``slip_x``, ``slip_u``: the slips that constrain
     the states, independent, as ``slip_x x + slip_u u``; ``fixed``: how their rates beside those of
     s depend on u'. ``take_away``: what to add to x per unit of those slips to remove them, along
-    ``A^-1 F^T``. ``mix``: what those slips are of the ports' own; ``free``: directions, by columns,
+    ``A^-1 F^T``, or what the efforts themselves move. ``mix``: what those slips are of the ports' own; ``free``: directions, by columns,
     in which efforts may be impulses, as they change no slip at once.
     """
 
@@ -167,7 +167,7 @@ def hold(
         slip_x=slip_x,
         slip_u=slip_u,
         fixed=slip_u if varying else slip_u + slip_x @ numbers.R,
-        take_away=_take_away(numbers, slip_x),
+        take_away=_take_away(numbers, slip_x, numbers.Q[:, [] if direct else chosen]),
         mix=null[kept],
         free=_free(answers, held, len(stuck)),
     )
@@ -235,12 +235,22 @@ def _free(answers: Array, held: HeldSet, count: int) -> Array:
     return np.array(result).reshape(-1, count).T
 
 
-def _take_away(numbers: Numbers, slip_x: Array) -> Array:
-    """``-A^-1 S^T (S A^-1 S^T)^-1``: the impulse that stops the slips S x and moves no others."""
+def _take_away(numbers: Numbers, slip_x: Array, pushed: Array) -> Array:
+    """``-A^-1 S^T (S A^-1 S^T)^-1``: the impulse that stops the slips S x and moves no others.
+
+    ``pushed``: what impulses of the ports move, by columns; that is another where ports do not act as
+    they are acted on, as those of jumps: then such impulses stop the slips.
+    """
     if not len(slip_x):
         return np.zeros((slip_x.shape[1], 0))
     moved = scaled_solve(numbers.A, slip_x.T)
-    return np.asarray(-moved @ _inverse(slip_x @ moved), dtype=float)
+    found = np.asarray(-moved @ _inverse(slip_x @ moved), dtype=float)
+    by = slip_x @ pushed
+    beside, sizes = np.abs(pushed + found @ by), np.abs(pushed) + np.abs(found) @ np.abs(by)
+    square = by @ by.T
+    if not (beside > TUNING.consistent * sizes).any() or np.linalg.matrix_rank(square) < len(square):
+        return found
+    return np.asarray(-pushed @ by.T @ _inverse(square), dtype=float)
 
 
 def _inverse(matrix: Array) -> Array:

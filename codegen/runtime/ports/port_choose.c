@@ -201,7 +201,7 @@ int bg_choose_rubbing(bg_choice *choice, int *mode, int *holds, bg_set *broken)
         choice->why = choice->why ? choice->why : status;
         return bg_ends_search(status) ? status : BG_OK;
     }
-    c->tell(c->self, found, choice->at, now, NULL);
+    bg_tell(choice, found, now, NULL);
     choice->before = mode;
     const int count = find_open(choice, now, mode, found, ports);
     status = stick(choice, count, ports, found, holds, broken);

@@ -100,6 +100,59 @@ static void find_ways(bg_hold *held)
                                                  : held->share[d * count + c];
 }
 
+/* What impulses of the ports move, by columns: whether that is another than what stops their slips
+ * and moves no others, as that of jumps, which do not act as they are acted on. `by`: how those
+ * impulses move the slips. */
+static int is_pushed_aside(const bg_model *m, const bg_hold *held, double *by)
+{
+    const int count = held->count, kept = held->kept;
+    int aside = 0;
+    memset(by, 0, sizeof(double) * PORTS * PORTS);
+    if (held->ranks.direct > 0)
+        return 0;
+    for (int c = 0; c < count; c++) {
+        const double *const Q = m->numbers.Q + bg_friction_inputs[held->ports[c]];
+        for (int k = 0; k < kept; k++)
+            for (int i = 0; i < N; i++)
+                by[k * count + c] += held->slip_x[k * N + i] * Q[i * M];
+        for (int i = 0; i < N; i++) {
+            double beside = Q[i * M], size = fabs(Q[i * M]);
+            for (int k = 0; k < kept; k++) {
+                beside += held->take_away[i * kept + k] * by[k * count + c];
+                size += fabs(held->take_away[i * kept + k] * by[k * count + c]);
+            }
+            aside |= fabs(beside) > BG_CONSISTENT * size;
+        }
+    }
+    return aside;
+}
+
+/* Those impulses stop the slips, where they can. */
+static void stop_by_ports(const bg_model *m, bg_hold *held)
+{
+    double by[PORTS * PORTS], square[PORTS * PORTS] = {0}, inverse[PORTS * PORTS];
+    int pivots[PORTS];
+    const int count = held->count, kept = held->kept;
+    if (!is_pushed_aside(m, held, by))
+        return;
+    for (int k = 0; k < kept; k++)
+        for (int l = 0; l < kept; l++)
+            for (int c = 0; c < count; c++)
+                square[k * kept + l] += by[k * count + c] * by[l * count + c];
+    if (!bg_inverse(kept, square, pivots, inverse))
+        return;
+    memset(held->take_away, 0, sizeof held->take_away);
+    for (int c = 0; c < count; c++)
+        for (int l = 0; l < kept; l++) {
+            double share = 0.0;
+            for (int k = 0; k < kept; k++)
+                share += by[k * count + c] * inverse[k * kept + l];
+            for (int i = 0; i < N; i++)
+                held->take_away[i * kept + l] -=
+                    m->numbers.Q[i * M + bg_friction_inputs[held->ports[c]]] * share;
+        }
+}
+
 /* -A^-1 S^T (S A^-1 S^T)^-1: the impulse that stops the slips S x, and moves nothing else. */
 static int find_take_away(bg_model *m, bg_hold *held)
 {
@@ -119,6 +172,7 @@ static int find_take_away(bg_model *m, bg_hold *held)
     for (int i = 0; i < N; i++)
         for (int k = 0; k < kept; k++)
             add_row(kept, -moved[i * kept + k], inverse, k, held->take_away + i * kept);
+    stop_by_ports(m, held);
     return 1;
 }
 

@@ -60,8 +60,8 @@ static inline void bg_round_ports(int states, int inputs, int count, const bg_ma
 static inline void bg_count_leaps(bg_port *port, double terms, double inertia, double spacing)
 {
     port->near_gap = BG_TOGETHER * terms + BG_LATE * spacing * fabs(port->slip) + DBL_MIN;
-    const double unseen = sqrt(2.0 * BG_LEAP * port->near_gap * inertia * port->cap);
-    port->near_slip = bg_greater(port->near_slip, unseen / BG_WIDE);
+    port->unseen = sqrt(2.0 * BG_LEAP * port->near_gap * inertia * port->cap) / BG_WIDE;
+    port->near_slip = bg_greater(port->near_slip, port->unseen);
 }
 
 /* Below this the gap of a stop counts as closed, where its displacement, which changes at a rate,

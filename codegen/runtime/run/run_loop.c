@@ -56,6 +56,15 @@ static int is_jump(const bg_switch *one)
     return one->order != 0;
 }
 
+/* Tells swings that hardly shrink, by the speeds of crossings to the same side. */
+static void linger(bg_course *c, int port, double speed)
+{
+    double *const before = c->crossings.speed[port];
+    c->at.lingers[port] = BG_LINGERS * before[0] < speed && speed < INFINITY;
+    before[0] = before[1];
+    before[1] = speed;
+}
+
 /* Counts the crossings of jumps at an instant; whether one comes to rest on its jump: crossed so
  * often in a row without leaping higher than what counts as zero. As codegen/modes/crossings.py. */
 static int count_crossings(const bg_engine *e, bg_course *c)
@@ -80,6 +89,7 @@ static int count_crossings(const bg_engine *e, bg_course *c)
         const double near = hangs ? now[i].near_gap : now[i].near_slip;
         const double leap = fabs(speed) * (c->at.t - c->crossings.last[i]) / 4;
         c->crossings.last[i] = c->at.t;
+        linger(c, i, hangs && c->mode[i] ? fabs(speed) : INFINITY);
         *unseen = c->mode[i] == 0 || leap > BG_LEAP * near ? 0 : *unseen + 1;
         gathers |= *unseen >= BG_STALLED;
     }
@@ -146,8 +156,11 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
     c->log.count = c->rounds.next = c->rounds.full = 0;
     for (int i = 0; i < BG_MOST_PORTS; i++)
         c->mode[i] = first ? first[i] : 1;
-    for (int i = 0; i < BG_MOST_PORTS; i++)
-        c->crossings.last[i] = -INFINITY, c->crossings.unseen[i] = 0;
+    for (int i = 0; i < BG_MOST_PORTS; i++) {
+        c->crossings.last[i] = -INFINITY;
+        c->crossings.unseen[i] = 0;
+        c->crossings.speed[i][0] = c->crossings.speed[i][1] = INFINITY;
+    }
 }
 
 int bg_run(const bg_engine *e, bg_course *c)
