@@ -190,7 +190,7 @@ class Tables:
         made.fastest = motion.fastest
         view(self.engine, made.weight)[:] = motion.weight
         self._tell_rates(made, motion)
-        if model.program.switched or model.hung:
+        if model.program.guarded:
             self._fill_switches(made, mode, affine)
         if 0 in mode:
             held = model.hold(mode, model.constant)

@@ -77,7 +77,7 @@ class ClosedModel:
         #: The places of stops.
         self.stopping = [i for i, switch in enumerate(self.switching) if switch and switch.stops]
         #: Jumps of second order, with the guards that they hang on.
-        self.hung = {i: p.hung for i, p in enumerate(program.friction) if p.hung is not None}
+        self.hung = dict(program.hanging)
         self.timed = timed_ports(program)
         self.opposed = opposed_ports(program, self.timed)
         self.rubbing = len(self.switches) < len(program.friction)
@@ -215,6 +215,13 @@ class ClosedModel:
             found = moves(numbers, self.friction_readings, self.friction_inputs)
             self._moves = numbers, found
         return self._moves[1]
+
+    def hangs_on(self, t: float, now: Snapshot) -> Array:
+        """What tells on which side each port is: its slip, of jumps of second order what they hang on."""
+        found: Array = now.y[self.friction_readings]
+        if self.hung:
+            found[list(self.hung)] = self.guards(t, now)[list(self.hung.values())]
+        return found
 
     def hung_rows(self, now: Snapshot) -> Array:
         """What jumps of second order hang on, as rows over [s, 1]: these do not change."""

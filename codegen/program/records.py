@@ -220,6 +220,16 @@ class Program:
         return any(port.switch is not None for port in self.friction)
 
     @property
+    def hanging(self) -> tuple[tuple[int, int], ...]:
+        """The ports that are jumps of second order, with the guards that they hang on."""
+        return tuple((i, p.hung) for i, p in enumerate(self.friction) if p.hung is not None)
+
+    @property
+    def guarded(self) -> bool:
+        """Whether more than slips and efforts tells what any port does."""
+        return self.switched or bool(self.hanging)
+
+    @property
     def stopped(self) -> bool:
         """Whether any port is a stop."""
         return any(port.switch is not None and port.switch.stops for port in self.friction)

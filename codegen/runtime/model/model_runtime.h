@@ -108,6 +108,7 @@ typedef struct {
     double entries[BG_ROOM(BG_ENTRIES)], moved[BG_TABLE(BG_STATES, BG_FRICTION)];
     double law[BG_ROOM(BG_LARGEST)], more[BG_ROOM(BG_INPUTS)];
     double u[BG_ROOM(BG_INPUTS)], y[BG_ROOM(BG_READINGS)];
+    double aim[BG_ROOM(BG_FRICTION)]; /* slips that ports which hold are brought to; as a rule 0 */
     double stage[4][BG_SIZE], point[BG_SIZE];
     double weight[BG_SIZE], reach[BG_SIZE], image[BG_SIZE], next[BG_SIZE];
     double given[3][BG_ROOM(BG_EXTERNAL)], rates[3][BG_ROOM(BG_EXTERNAL)];

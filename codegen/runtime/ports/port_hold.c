@@ -328,6 +328,10 @@ int bg_remove_slips(bg_model *m, const int *mode, const bg_snapshot *shot, doubl
     if (status != BG_OK)
         return status;
     bg_held_slips(held, shot, slips);
+    for (int k = 0; k < held->kept; k++)
+        for (int c = 0; c < held->count; c++)
+            slips[k] -= held->mix[k * held->count + c] * m->work.aim[held->ports[c]];
+    memset(m->work.aim, 0, sizeof m->work.aim);
     bg_multiply_add(N, held->kept, held->take_away, slips, s);
     return BG_OK;
 }
