@@ -151,7 +151,9 @@ static int find_open(bg_choice *choice, const bg_port *now, const int *mode, int
     for (int i = 0; i < c->ports; i++) {
         const double slip = fabs(now[i].slip), near = now[i].near_slip;
         const int touched = choice->at->touched[i];
-        const int loose = touched || mode[i] == 0, passed = touched == BG_PASSED;
+        const int loose = touched || mode[i] == 0;
+        /* A jump of second order is crossed as a rule, at a speed that tells. */
+        const int passed = touched == BG_PASSED && !bg_hangs(c->kinds + i);
         if (c->switches && c->switches[i].kind != BG_RUBS) {
             slipping[i] = mode[i];
             if (!bg_has(&choice->barred, i))
