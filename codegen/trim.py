@@ -142,14 +142,18 @@ def _residual(
 ) -> tuple[Array, Array]:
     """Rates and held slips, and what they are small against."""
     now = model.at(0.0, s, pieces, mode)
-    stuck = [model.friction_readings[i] for i, sign in enumerate(mode) if sign == 0]
+    held = [i for i, sign in enumerate(mode) if sign == 0]
+    stuck = [model.friction_readings[i] for i in held]
     numbers, n = now.numbers, len(now.x)
     terms = np.abs(numbers.P) @ np.abs(now.x) + np.abs(numbers.Q) @ np.abs(now.u)
     rates = np.concatenate([terms, np.ones(len(now.rate) - n)])
-    held = np.abs(numbers.F[stuck]) @ np.abs(now.x) + np.abs(numbers.D[stuck]) @ np.abs(now.u)
-    return np.concatenate([now.rate, now.y[stuck]]), np.concatenate(
-        [rates, held]
-    ) + TUNING.trim_floor
+    slips = np.abs(numbers.F[stuck]) @ np.abs(now.x) + np.abs(numbers.D[stuck]) @ np.abs(now.u)
+    for at, i in enumerate(held):
+        if i in model.hung:
+            row = np.abs(model.hung_rows(now))[[*model.hung].index(i)]
+            slips[at] = row @ np.append(np.abs(s), 1.0)
+    left = np.concatenate([now.rate, model.hangs_on(0.0, now)[held]])
+    return left, np.concatenate([rates, slips]) + TUNING.trim_floor
 
 
 def _slopes(
@@ -167,7 +171,7 @@ def _slopes(
 
 def _broken(model: ClosedModel, mode: Mode, now: Snapshot) -> Broken:
     """The friction ports whose slip has another sign, or that would need more than they can to hold."""
-    slips, efforts = now.y[model.friction_readings], now.u[model.friction_inputs]
+    slips, efforts = model.hangs_on(0.0, now), now.u[model.friction_inputs]
     return frozenset(
         i for i, m in enumerate(mode)
         if model.switching[i] is None

@@ -62,6 +62,8 @@ class Tuning:
     # Stops
     bounce: float = _told(10.0, "of what counts as zero of a slip: what closes no faster stays")
     leap: float = _told(4.0, "of what counts as zero of a gap: what leaps no higher stays")
+    lingers: float = _told(0.99, "of a speed two crossings before: swings that shrink no faster")
+    lingering: float = _told(10.0, "speeds of theirs that count as unseen are so many times larger")
     bounces: int = _told(2000, "so often stops are struck in one instant, at most")
 
     # Laws that determine one another

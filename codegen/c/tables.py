@@ -87,6 +87,7 @@ def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:
         "FRICTION": ports,
         "PORTS": max(ports, 1),
         "SWITCHES": sum(port.switch is not None for port in program.friction),
+        "HUNG": sum(port.order == 2 for port in program.friction),
         "STOPPING": int(program.stopped),
         "GUARDS": len(program.guards.results),
         "RESETS": len(program.resets),
@@ -144,7 +145,7 @@ def program_tables(
     for name, numbers in tables:
         lines += integers(name, numbers)
     rows = [_switch(port) for port in friction]
-    lines += array("const bg_switch bg_switches[]", rows, f"{{{', '.join('0' * 8)}}}")
+    lines += array("const bg_switch bg_switches[]", rows, f"{{{', '.join('0' * 9)}}}")
     rows = [f"{{{one.port}, {one.sign}, {one.place}, {one.value}}}" for one in program.resets]
     lines += array("const bg_reset bg_resets[]", rows, "{0, 0, 0, 0}")
     return [*lines, "", *_layout(program)]

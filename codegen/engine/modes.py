@@ -36,7 +36,7 @@ class Tables:
             self.record.supply = self._answer
         self._magnitudes(*moved[:2])
         self.record.switched = model.program.switched
-        self.record.stopping = model.program.stopped
+        self.record.stopping, self.record.hung = model.program.stopped, len(model.hung)
         self._fill_stops()
         for at, port in enumerate(model.program.friction):
             self.record.own[at] = port.input
@@ -192,7 +192,7 @@ class Tables:
         made.fastest = motion.fastest
         view(self.engine, made.weight)[:] = motion.weight
         self._tell_rates(made, motion)
-        if model.program.switched:
+        if model.program.guarded:
             self._fill_switches(made, mode, affine)
         if 0 in mode:
             held = model.hold(mode, model.constant)

@@ -18,12 +18,12 @@ TURNS = 20
 """So often for each port of a large block one turns, before it is given up."""
 
 
-def slipping_as(model: ClosedModel, shot: Snapshot, mode: Mode) -> Mode:
-    """The mode with friction slipping the way it moves; switches as they are."""
+def slipping_as(model: ClosedModel, shot: Snapshot, mode: Mode, sides: Mapping[int, int]) -> Mode:
+    """The mode with friction slipping the way it moves, or on these ``sides``; switches as they are."""
     slips = shot.y[model.friction_readings]
     return tuple(
-        sign if switch is not None else 1 if slip > 0 else -1
-        for sign, switch, slip in zip(mode, model.switching, slips, strict=True)
+        sign if switch is not None else sides.get(i, 1 if slip > 0 else -1)
+        for i, (sign, switch, slip) in enumerate(zip(mode, model.switching, slips, strict=True))
     )
 
 

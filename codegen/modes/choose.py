@@ -1,6 +1,6 @@
 """Which ports hold and which are let go, and which way these slip: one consistent mode at one instant."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -19,6 +19,7 @@ from codegen.modes.bounce import (
     thrown_back,
 )
 from codegen.modes.choices import Decision, Occasion
+from codegen.modes.crossings import sides, with_leaps
 from codegen.modes.impact import impact, pushed
 from codegen.modes.rounding import scales
 from codegen.modes.timed import told
@@ -197,13 +198,14 @@ def _tried(now: Occasion, here: Sight, switched: Mode, switches: list[int]) -> D
     try:
         jump = impact(here, switched, now.peaks)
         here = here if jump is None else now.seen(jump.s)
-        _, shot = here.evaluated(switched)
+        known, shot = here.evaluated(switched)
     except SlopeNeededError:
         raise
     except SimulationError as error:
         return _Refusal(str(error), NONE)
-    undecided = _undecided(now, shot) if model.rubbing else []
-    mode = slipping_as(model, shot, switched)
+    away = sides(here, known, now.loose)
+    undecided = _undecided(now, here, known, away) if model.rubbing else []
+    mode = slipping_as(model, shot, switched, away)
     blocks = blocks_of(model, shot.numbers, undecided)
     if len(blocks) > 1:
         found = _in_blocks(now, here, mode, blocks)
@@ -216,16 +218,18 @@ def _tried(now: Occasion, here: Sight, switched: Mode, switches: list[int]) -> D
     return Decision(found, here.s, () if jump is None else (jump,))
 
 
-def _undecided(now: Occasion, shot: Snapshot) -> list[int]:
-    """The friction ports that may stick: at rest, or moved by efforts at once."""
-    model = now.model
+def _undecided(now: Occasion, here: Sight, mode: Mode, away: Collection[int]) -> list[int]:
+    """The friction ports that may stick: at rest, or moved by efforts at once, and not ``away``."""
+    model, shot = now.model, here.at(mode)
     slips = np.abs(shot.y[model.friction_readings])
-    near = scales(model, shot, now.t, now.peaks).slip
+    near = with_leaps(scales(model, shot, now.t, now.peaks), here, shot, now.peaks).slip
     near[list(now.loose)] *= TUNING.wide
     return [
         i
         for i, slip in enumerate(slips)
-        if model.switching[i] is None and (model.coupled_directly(i) or slip <= near[i])
+        if model.switching[i] is None
+        and i not in away
+        and (model.coupled_directly(i) or slip <= near[i])
     ]
 
 

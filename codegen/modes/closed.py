@@ -77,6 +77,8 @@ class ClosedModel:
         )
         #: The places of stops.
         self.stopping = [i for i, switch in enumerate(self.switching) if switch and switch.stops]
+        #: Jumps of second order, with the guards that they hang on.
+        self.hung = dict(program.hanging)
         self.timed = timed_ports(program)
         self.opposed = opposed_ports(program, self.timed)
         self.rubbing = len(self.switches) < len(program.friction)
@@ -94,6 +96,7 @@ class ClosedModel:
         self.maps = AffineMaps(program, self._form, self._friction, self._constant)
         self._guard_maps = Latest[Mode, Array]()
         self._mixing = Latest[Mode, bool]()
+        self._hung_rows: Array | None = None
         self._moves: tuple[Numbers, Moves] | None = None
         self._run: Run | None = None
         #: The latest time, pieces, external inputs and rates: an instant is looked at many times.
@@ -218,6 +221,27 @@ class ClosedModel:
             found = moves(numbers, self.friction_readings, self.friction_inputs)
             self._moves = numbers, found
         return self._moves[1]
+
+    def hangs_on(self, t: float, now: Snapshot) -> Array:
+        """What tells on which side each port is: its slip, of jumps of second order what they hang on."""
+        found: Array = now.y[self.friction_readings]
+        if self.hung:
+            found[list(self.hung)] = self.guards(t, now)[list(self.hung.values())]
+        return found
+
+    def hung_rows(self, now: Snapshot) -> Array:
+        """What jumps of second order hang on, as rows over [s, 1]: these do not change."""
+        if self._hung_rows is None:
+            states, size = len(now.x), self.size
+
+            def point(s: Array) -> list[Array]:
+                y = now.numbers.F @ s[:states]
+                zero, w = np.zeros(len(now.u)), np.zeros(len(now.external))
+                still = now._replace(x=s[:states], z=s[states:], u=zero, du=zero, y=y, external=w)
+                return [self._guards(still.instant(0.0))[list(self.hung.values())]]
+
+            self._hung_rows = probed(point, size, 0).matrix
+        return self._hung_rows
 
     def guard_rows(self, mode: Mode, inputs: int) -> Array | None:
         """The conditions of switches in a mode as rows over [s, w, w', 1]; None where they are not affine."""

@@ -6,14 +6,63 @@ zero both (sliding of second order: Levant, International Journal of Control 58,
 says that. ``run_loop.c`` decides the same way.
 """
 
-from collections.abc import Collection
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+import numpy as np
 
 from bondgraph.errors import SimulationError
-from codegen.model.snapshot import Mode
+from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.rounding import Peaks, scales, slip_rates
+from codegen.modes.rounding import TINY, Peaks, Scales, scales, slip_rates
 from codegen.modes.trials import Sight
 from codegen.tuning import TUNING
+
+
+def hung_rounding(here: Sight, now: Snapshot) -> Mapping[int, float]:
+    """Below these what jumps of second order hang on counts as zero: of what it has been, and of the time's."""
+    model = here.model
+    if not model.hung:
+        return {}
+    sizes = np.append(model.largest(here.s), 1.0)
+    terms, late = np.abs(model.hung_rows(now)) @ sizes, TUNING.late * np.spacing(abs(here.t))
+    rates = np.abs(now.y[[model.friction_readings[i] for i in model.hung]])
+    near = TUNING.together * terms + late * rates + TINY
+    return dict(zip(model.hung, near.tolist(), strict=True))
+
+
+def with_leaps(size: Scales, here: Sight, now: Snapshot, peaks: Peaks | None) -> Scales:
+    """What counts as zero, with speeds of jumps of second order that leap no higher than could be seen.
+
+    What their whole height throws back leaps by v^2/2 over that. Of swings that hardly shrink larger ones
+    count: there are as many as one is smaller.
+    """
+    model = here.model
+    if not model.hung:
+        return size
+    slips, by = size.slip.copy(), model.moves(now.numbers).mobility
+    for i, near in hung_rounding(here, now).items():
+        thrown = float(now.caps[i]) / float(by[i]) if by[i] > 0 else 0.0
+        unseen = math.sqrt(2 * TUNING.leap * near * thrown)
+        if peaks is not None and i in peaks.lingering:
+            unseen *= TUNING.lingering
+        slips[i] = max(slips[i], unseen / TUNING.wide)
+    return replace(size, slip=slips)
+
+
+def sides(here: Sight, mode: Mode, loose: Collection[int] = ()) -> Mapping[int, int]:
+    """On which sides jumps of second order are, of those that are not at their jump; ``loose``: about there."""
+    model, found = here.model, dict[int, int]()
+    if not model.hung:
+        return found
+    now = here.at(mode)
+    gaps = model.guards(here.t, now)
+    for i, near in hung_rounding(here, now).items():
+        gap = float(gaps[model.hung[i]])
+        if abs(gap) > (TUNING.wide if i in loose else 1.0) * near:
+            found[i] = 1 if gap > 0 else -1
+    return found
 
 
 class Crossings:
@@ -23,6 +72,7 @@ class Crossings:
         self._ports = model.program.friction
         self._jumps = [i for i, port in enumerate(self._ports) if port.jumps]
         self._last, self._unseen = dict[int, float](), dict.fromkeys(self._jumps, 0)
+        self._speeds = dict.fromkeys(model.hung, (math.inf, math.inf))
 
     def of(self, before: Mode, after: Mode) -> frozenset[int]:
         """The jumps that slide neither before nor after an instant: they may be crossed ever so often."""
@@ -39,14 +89,25 @@ class Crossings:
             return
         model, now = here.model, here.at(mode)
         near, rates = scales(model, now, here.t, peaks).slip, slip_rates(model, now)
+        for i, least in hung_rounding(here, now).items():
+            near[i], rates[i] = least, now.y[model.friction_readings[i]]
         for i in crossed:
             between = here.t - self._last.get(i, -float("inf"))
             self._last[i] = here.t
             # At a rate v, and back with it after a time T, it leaps by v T/4.
+            self._linger(i, math.inf if mode[i] == 0 else abs(float(rates[i])), peaks)
             seen = mode[i] == 0 or abs(float(rates[i])) * between > 4 * TUNING.leap * float(near[i])
             self._unseen[i] = 0 if seen else self._unseen[i] + 1
             if self._unseen[i] >= TUNING.stalled:
                 raise _accumulates(model, i, here.t)
+
+    def _linger(self, port: int, speed: float, peaks: Peaks | None) -> None:
+        """Tell swings that hardly shrink, by the speeds of crossings to the same side."""
+        if peaks is None or port not in self._speeds:
+            return
+        before, self._speeds[port] = self._speeds[port][0], (self._speeds[port][1], speed)
+        stays = TUNING.lingers * before < speed < math.inf
+        peaks.lingering = peaks.lingering - {port} | ({port} if stays else set())
 
 
 def _accumulates(model: ClosedModel, port: int, t: float) -> SimulationError:

@@ -25,8 +25,18 @@ def kept_by(model: ClosedModel, mode: Mode, port: int) -> tuple[int, int, int]:
     return (SLIPS, port, switch.side) if sign else (EFFORTS, port, -switch.side)
 
 
+def is_kept(model: ClosedModel, mode: Mode, port: int) -> bool:
+    """Whether `watched_by` tells what is watched: of a switch, and of a jump of second order on a side."""
+    return model.switching[port] is not None or (port in model.hung and mode[port] != 0)
+
+
 def watched_by(model: ClosedModel, mode: Mode, port: int) -> tuple[int, int, int]:
-    """The same of what is watched while the mode lasts: of a stop that is apart its gap."""
+    """The same of what is watched while the mode lasts: of a stop that is apart its gap.
+
+    Of a jump of second order what it hangs on.
+    """
+    if port in model.hung:
+        return GUARDS, model.hung[port], mode[port]
     switch = model.switching[port]
     if switch is not None and switch.stops and switch.is_on(mode[port]):
         return GUARDS, switch.guard, 1
@@ -91,7 +101,10 @@ def _guards_pushed(model: ClosedModel, given: Array, received: Array) -> Array:
 
 
 def keeping(model: ClosedModel, mode: Mode, affine: AffineMap) -> Array:
-    """What keeps each switch of an affine mode, as rows over [s, w, w', 1]; of friction nothing."""
+    """What keeps each switch of an affine mode, as rows over [s, w, w', 1]; of friction nothing.
+
+    Of jumps of second order what they hang on.
+    """
     rows = np.zeros((len(mode), affine.matrix.shape[1]))
     guards = model.guard_rows(mode, len(model.program.external))
     slips = affine.rows(READINGS)[model.friction_readings]
@@ -102,6 +115,8 @@ def keeping(model: ClosedModel, mode: Mode, affine: AffineMap) -> Array:
             found = (slips, efforts, guards)[part]
             assert found is not None
             rows[i] = sign * found[at]
+        elif i in model.hung and guards is not None:
+            rows[i] = guards[model.hung[i]]
     return rows
 
 

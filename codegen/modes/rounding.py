@@ -53,6 +53,8 @@ class Peaks:
     both: Array
     states: int
     time: float = 0.0
+    #: Jumps of second order whose swings hardly shrink.
+    lingering: frozenset[int] = frozenset()
 
     @classmethod
     def none(cls, model: ClosedModel) -> "Peaks":

@@ -113,7 +113,7 @@ def _shown(model: ClosedModel, pieces: Sequence[Piece], start: Array) -> Mode:
     loose = tuple(1 for _ in model.switching)
     seen = Sight(model, 0.0, start, pieces)
     _, now = seen.evaluated(loose)
-    slips = np.sign(np.round(now.y[model.friction_readings], 12)).astype(int).tolist()
+    slips = np.sign(np.round(model.hangs_on(0.0, now), 12)).astype(int).tolist()
     if not model.program.switched:
         return tuple(slips)
     off = tuple(1 if one is None else one.sign(False) for one in model.switching)

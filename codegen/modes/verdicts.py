@@ -8,7 +8,8 @@ import numpy as np
 
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.keeping import GUARDS, SLIPS, kept_by, watched_by
+from codegen.modes.crossings import hung_rounding, with_leaps
+from codegen.modes.keeping import GUARDS, SLIPS, is_kept, kept_by, watched_by
 from codegen.modes.rounding import Peaks, Scales, guard_rounding, holding, scales, slip_rates
 from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
@@ -68,6 +69,8 @@ class Look:
 
     def watched_least(self, port: int) -> float:
         """The same of what is watched of it."""
+        if port in self.model.hung:
+            return hung_rounding(self.here, self.now)[port]
         return self._zero(*watched_by(self.model, self.mode, port))
 
     def _zero(self, part: int, at: int, _: int) -> float:
@@ -145,7 +148,7 @@ class Look:
 def look_at(here: Sight, mode: Mode, peaks: Peaks | None = None) -> Look:
     """A mode at an instant, with what counts as zero there. Raises `SimulationError` if it is no mode."""
     now, model = here.at(mode), here.model
-    size = scales(model, now, here.t, peaks)
+    size = with_leaps(scales(model, now, here.t, peaks), here, now, peaks)
     if model.switches:
         size = holding(size, model, mode, now, peaks)
     return Look(here, mode, here.t, now, size, peaks)
@@ -155,8 +158,8 @@ def limits_of(look: Look) -> Array:
     """Below these what is watched of a port in its mode counts as zero."""
     size, mode = look.size, look.mode
     limits = np.where(np.array(mode, dtype=int) == 0, size.effort, size.slip)
-    for i, switch in enumerate(look.model.switching):
-        if switch is not None:
+    for i in range(len(mode)):
+        if is_kept(look.model, mode, i):
             limits[i] = look.watched_least(i)
     return limits
 

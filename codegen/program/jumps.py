@@ -5,15 +5,21 @@ along ``v = w``, by that mixture of both which keeps it there (Filippov, Differe
 Discontinuous Righthand Sides, section 4). That is what friction of level 1 does whose slip is ``v - w``: it
 gives 1 or -1, or holds its slip at zero by what that takes in between. So a jump is one more port: it gives
 its mixture, an input with the columns of what the law gives, and receives what it hangs on.
+
+A jump that moves no first rate of what it hangs on, but the second (``x'' = -2 sign(x) - sign(x')``), is of
+second order: it can hold that rate, and rests where both are zero (sliding of second order: Levant,
+International Journal of Control 58, 1993, section 3). It receives the rate, and its sign is of what it
+hangs on.
 """
 
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Container, Hashable, Iterable, Mapping
 from dataclasses import dataclass
 
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.laws import ExpressionLaw, Law
+from bondgraph.analyse.degrees import Degrees
+from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.structure import Port
@@ -27,6 +33,7 @@ class Jump:
     """``mixture``: the input from -1 to 1 that it gives; ``depends``: the reading that it is the sign of.
 
     ``offset``: the input that is what no sum of signals makes up of that, and ``law`` gives it.
+    ``hangs``: of one of second order what it is the sign of, of which ``depends`` is the rate; else None.
     """
 
     node: Hashable
@@ -34,6 +41,7 @@ class Jump:
     depends: sp.Symbol
     offset: sp.Symbol
     law: sp.Expr
+    hangs: sp.Expr | None = None
 
 
 @dataclass(frozen=True)
@@ -53,7 +61,8 @@ def jumps_of(
     ``still``: the names of parameters. A law whose jump has a factor that moves, or hangs on time and inputs
     alone, stays as it is.
     """
-    steps = _Steps(equations, set(still))
+    still = set(still)
+    steps = _Steps(equations, still)
     found: dict[Port, tuple[sp.Expr, dict[sp.Expr, sp.Expr]]] = {}
     driven = _driving(equations)
     for port in equations.ports:
@@ -65,7 +74,9 @@ def jumps_of(
             found[port] = rest, factors
     if not found:
         return equations, (), ()
-    return _with_jumps(equations, found)
+    abrupt = {port.element.name for port in found}
+    abrupt |= {name for name, law in laws.items() if isinstance(law, DryFriction)}
+    return _with_jumps(equations, found, Degrees(equations, still, laws, abrupt))
 
 
 def _driving(equations: StateEquations) -> set[sp.Symbol]:
@@ -114,7 +125,9 @@ class _Steps:
 
 
 def _with_jumps(
-    equations: StateEquations, found: Mapping[Port, tuple[sp.Expr, Mapping[sp.Expr, sp.Expr]]]
+    equations: StateEquations,
+    found: Mapping[Port, tuple[sp.Expr, Mapping[sp.Expr, sp.Expr]]],
+    degrees: Degrees,
 ) -> tuple[StateEquations, tuple[Jump, ...], tuple[Smooth, ...]]:
     """The equations with an input for each jump and each offset, and smooth laws in place of the others."""
     arguments, owners = dict[sp.Expr, dict[int, sp.Expr]](), dict[sp.Expr, Hashable]()
@@ -129,17 +142,38 @@ def _with_jumps(
     told = {argument: told_of(equations, argument) for argument in arguments}
     named = {name for parts, _ in told.values() for name in parts}
     equations = equations.with_readings(named)
+    rows = {
+        argument: _sum((row_of(equations, name), factor) for name, factor in parts.items())
+        for argument, (parts, _) in told.items()
+    }
+    rates = {
+        argument: rate
+        for argument, columns in arguments.items()
+        if (rate := degrees.rate(rows[argument], told[argument][1])) is not None
+        and degrees.moves(rate, columns)
+    }
     smooth = tuple(
         Smooth(port, unused(f"smooth_{port.given}", taken), ExpressionLaw(rest))
         for port, (rest, _) in found.items()
     )
     jumps = tuple(
         Jump(owners[argument], unused(f"jump_{at}", taken), unused(f"hangs_{at}", taken),
-             unused(f"offset_{at}", taken), told[argument][1])
+             unused(f"offset_{at}", taken), *_of(argument, told[argument][1], rates))
         for at, argument in enumerate(arguments, 1)
     )  # fmt: skip
-    parts = [told[argument][0] for argument in arguments]
-    return _widened(equations, tuple(arguments.values()), parts, jumps, smooth), jumps, smooth
+    rows |= rates
+    return (
+        _widened(equations, tuple(arguments.values()), [*rows.values()], jumps, smooth),
+        jumps,
+        smooth,
+    )
+
+
+def _of(
+    argument: sp.Expr, rest: sp.Expr, rates: Container[sp.Expr]
+) -> tuple[sp.Expr, sp.Expr | None]:
+    """What its row lacks of what a jump receives; and of one of second order what it hangs on."""
+    return (sp.Integer(0), argument) if argument in rates else (rest, None)
 
 
 def _known(argument: sp.Expr, arguments: Iterable[sp.Expr]) -> tuple[sp.Expr, sp.Expr]:
@@ -153,7 +187,7 @@ def _known(argument: sp.Expr, arguments: Iterable[sp.Expr]) -> tuple[sp.Expr, sp
 
 def _widened(
     equations: StateEquations, columns: tuple[Mapping[int, sp.Expr], ...],
-    told: Iterable[Mapping[sp.Symbol, sp.Expr]], jumps: tuple[Jump, ...], smooth: tuple[Smooth, ...],
+    told: Iterable[Reading], jumps: tuple[Jump, ...], smooth: tuple[Smooth, ...],
 ) -> StateEquations:  # fmt: skip
     count = len(equations.inputs)
     renamed = {one.port.given: one.given for one in smooth}
@@ -161,14 +195,14 @@ def _widened(
     inputs += tuple(name for jump in jumps for name in (jump.mixture, jump.offset))
     copies = {count + 2 * at: own for at, own in enumerate(columns)}
     rows = {name: spread(row, copies) for name, row in equations.readings.items()}
-    for one in smooth:
-        own = {equations.inputs.index(one.port.given): sp.Integer(1)}
-        rows[one.port.given] = spread(Reading({}, own, {}, {}), copies)
-    for at, (jump, parts) in enumerate(zip(jumps, told, strict=True)):
-        rows[jump.depends] = _sum(
-            [(Reading({}, {count + 2 * at + 1: sp.Integer(1)}, {}, {}), sp.Integer(1))]
-            + [(spread(row_of(equations, name), copies), factor) for name, factor in parts.items()]
-        )
+    for each in smooth:
+        own = {equations.inputs.index(each.port.given): sp.Integer(1)}
+        rows[each.port.given] = spread(Reading({}, own, {}, {}), copies)
+    one = sp.Integer(1)
+    for at, (jump, row) in enumerate(zip(jumps, told, strict=True)):
+        # Without one the slips of two jumps of one signal are the same.
+        offset = Reading({}, {} if jump.law == 0 else {count + 2 * at + 1: one}, {}, {})
+        rows[jump.depends] = _sum([(offset, one), (spread(row, copies), one)])
     return widened(equations, inputs, copies, rows)
 
 

@@ -19,6 +19,7 @@ from codegen.program.sections import (
     coefficients,
     friction,
     group,
+    hung_on,
     known_rates,
     reset_values,
     resets,
@@ -63,9 +64,9 @@ def lower(
     taken = _all_names(equations, closing) | watched
     expressions, layout = coefficients(equations)
     sources = Sources(closing, given, taken)
-    _, guards = switches(closing)
+    guards = [*switches(closing)[1], *hung_on(closing)]
     first = len(guards)
-    guards = [*guards, *reset_values(closing)]
+    guards += reset_values(closing)
     if timed:
         expressions = [sources.parted(entry) for entry in expressions]
         guards = [sources.parted(guard) for guard in guards]

@@ -58,7 +58,8 @@ class FrictionPort:
     ``plain``: the reading that it receives as the graph has it, where ``reading`` is the same along the
     tangents of laws; else None. ``level``, ``slip``: of one way of friction that gives a flow (backwards
     follows forwards), the input that is its level and the reading that is its whole slip. ``offset``: of
-    a jump of a law, which is friction, too, the input that is part of what it hangs on.
+    a jump of a law, which is friction, too, the input that is part of what it hangs on. ``hung``: of one of
+    second order, which receives how fast that changes, the guard that is what it hangs on.
     """
 
     name: Hashable
@@ -70,6 +71,7 @@ class FrictionPort:
     slip: int | None = None
     plain: int | None = None
     offset: int | None = None
+    hung: int | None = None
 
     @property
     def received(self) -> int:
@@ -77,19 +79,19 @@ class FrictionPort:
         return self.reading if self.plain is None else self.plain
 
     @property
-    def in_c(self) -> tuple[int, int, int, int, int, int, int, int]:
+    def in_c(self) -> tuple[int, int, int, int, int, int, int, int, int]:
         """The fields of its ``bg_switch``: kind, on while held?, side, first condition, way of slipping.
 
         Then those of a stop: the place of its displacement, how its gap opens with that, whether it is
-        declared as one; of the jump of a law, that it is one.
+        declared as one; of the jump of a law its order.
         """
         one = self.switch
         if one is None:
-            return 0, 0, 0, 0, 0, 0, 0, int(self.jumps)
+            return 0, 0, 0, self.hung or 0, 0, 0, 0, 0, self.order
         kind = 3 if one.stops else 1 if one.side else 2
         place = max(one.place, 0)
         guard = max(one.guard, 0)
-        return kind, int(one.on), one.side, guard, self.way, place, one.opening, int(one.bound)
+        return kind, int(one.on), one.side, guard, self.way, place, one.opening, int(one.bound), 0
 
     @property
     def words(self) -> tuple[str, str, str]:
@@ -100,6 +102,11 @@ class FrictionPort:
     def jumps(self) -> bool:
         """Whether it is the jump of a law."""
         return self.offset is not None
+
+    @property
+    def order(self) -> int:
+        """Of the jump of a law which derivative of what it hangs on it moves, 1 or 2; of others 0."""
+        return 0 if not self.jumps else 1 if self.hung is None else 2
 
     @property
     def slides(self) -> bool:
@@ -213,6 +220,16 @@ class Program:
     def switched(self) -> bool:
         """Whether any port is a switch, or slips one way as one."""
         return any(port.switch is not None for port in self.friction)
+
+    @property
+    def hanging(self) -> tuple[tuple[int, int], ...]:
+        """The ports that are jumps of second order, with the guards that they hang on."""
+        return tuple((i, p.hung) for i, p in enumerate(self.friction) if p.hung is not None)
+
+    @property
+    def guarded(self) -> bool:
+        """Whether more than slips and efforts tells what any port does."""
+        return self.switched or bool(self.hanging)
 
     @property
     def stopped(self) -> bool:

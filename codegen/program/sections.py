@@ -93,10 +93,12 @@ def friction(
     readings along tangents of laws; ``shapes``: those whose ranks count instead of jumps' own.
     """
     readings, inputs = list(closing.equations.readings), closing.equations.inputs
-    switching, _ = switches(closing)
+    switching, conditions = switches(closing)
     called = {port.given: port.element.switch for port in closing.equations.ports}
     sliders = {half.given: one for one in closing.sliders for half in one.halves}
     mixed = {jump.mixture: inputs.index(jump.offset) for jump in closing.jumps}
+    second = (jump.mixture for jump in closing.jumps if jump.hangs is not None)
+    hung = {name: len(conditions) + at for at, name in enumerate(second)}
     ports: list[FrictionPort] = []
     values: list[sp.Expr] = []
     for name in closing.friction:
@@ -115,12 +117,18 @@ def friction(
                 None if slider is None else readings.index(slider.port.given),
                 readings.index(shapes.get(name, received)) if name in along else None,
                 mixed.get(name),
+                hung.get(name),
             )
         )
         curves = [law.curve.subs(SLIP, slip) for slip in (sp.Abs(received), 0)]
         limit = law.breakaway * law.level if slider is None else _checked_level(closing, slider)
         values += [law.level, limit, *curves]
     return tuple(ports), values
+
+
+def hung_on(closing: Closing) -> list[sp.Expr]:
+    """What jumps of second order hang on: guards that follow the conditions of switches."""
+    return [jump.hangs for jump in closing.jumps if jump.hangs is not None]
 
 
 def _checked_level(closing: Closing, slider: Slider) -> sp.Expr:

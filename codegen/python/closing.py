@@ -44,7 +44,7 @@ _SWITCHES = '''
 def switches(parameters):
     """When the ports change over that are ideal switches."""
     guards = BlockFormula(switch_conditions, parameters, {count})
-    return Switches(SWITCHING, FRICTION, guards, {count})'''
+    return {record}(SWITCHING, FRICTION, guards, {count}{hung})'''
 
 _MODEL = '''
 
@@ -99,14 +99,14 @@ def needed(program: Program, slips: SlipRows | None) -> list[str]:
     ``slips``: what ports receive; None where every set's slips bind the states, each by itself.
     """
     also = {
-        "deadband": bool(program.friction) and not program.switched,
-        "switched": program.switched and not program.stopped and not program.resets,
+        "deadband": bool(program.friction) and not program.guarded,
+        "switched": program.guarded and not (program.stopped or program.resets or program.hanging),
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
         "ranks": slips is not None,
     }
     names = ["formulas", "running", *(name for name, wanted in also.items() if wanted)]
-    events = {"stopping": program.stopped, "resetting": bool(program.resets)}
+    events = {"stopping": program.stopped, "resetting": program.resets, "hanging": program.hanging}
     also_there = [f"codegen.stops.{name}" for name, wanted in events.items() if wanted]
     return [*(f"codegen.standalone.{name}" for name in names), *also_there]
 
@@ -116,26 +116,39 @@ def closing(program: Program, slips: SlipRows | None, told: bool) -> list[str]:
 
     ``slips``: as `needed` takes them. ``told``: whether there is a table STARTS.
     """
-    names = "STATES, INPUTS, SHOWN, SWITCHES" if program.switched else "STATES, INPUTS, SHOWN"
+    names = "STATES, INPUTS, SHOWN, SWITCHES" if program.guarded else "STATES, INPUTS, SHOWN"
     lines = [RULE, "# How this model is put together.", "", f"NAMES = Names({names})"]
     base, arguments = "FixedSteps", "form(self.parameters), NAMES"
     if program.friction:
         base, arguments = "DeadBand", "NAMES, friction(self.parameters)"
         lines += [] if slips is None else slip_rows(slips)
-    if program.switched:
-        base = "StoppedSteps" if program.stopped else "SwitchedSteps"
-        if program.resets:
-            base = "ResettingSteps, StoppedSteps" if program.stopped else "ResettingSteps"
+    if program.guarded:
+        base = _base(program)
         arguments = f"{arguments}, switches(self.parameters)"
         lines += _switching(program)
     lines += ["", "", *_form(program)]
     lines += _friction(program, slips) if program.friction else []
-    if program.switched:
-        lines += _SWITCHES.format(count=len(program.guards.results)).splitlines()
-    words = (_SWITCHED if program.switched else _PLAIN) | (_TOLD if told else _FROM_ZERO)
+    if program.guarded:
+        lines += _switches(program)
+    words = (_SWITCHED if program.guarded else _PLAIN) | (_TOLD if told else _FROM_ZERO)
     resets = "\n    resets = RESETS\n" if program.resets else ""
     model = _MODEL.format(base=base, arguments=arguments, resets=resets, **words)
     return [*lines, *model.splitlines()]
+
+
+def _base(program: Program) -> str:
+    """The classes of fixed steps that a model with switches, stops or jumps of second order is of."""
+    bases = ["ResettingSteps"] if program.resets else []
+    bases += ["HangingSteps"] if program.hanging else []
+    bases += ["StoppedSteps"] if program.stopped else []
+    return ", ".join(bases or ["SwitchedSteps"])
+
+
+def _switches(program: Program) -> list[str]:
+    words = {"record": "Switches", "hung": ""}
+    if program.hanging:
+        words = {"record": "Hanging", "hung": f", {program.hanging}"}
+    return _SWITCHES.format(count=len(program.guards.results), **words).splitlines()
 
 
 def _switching(program: Program) -> list[str]:

@@ -139,9 +139,12 @@ def _functions(program: Program, names: Names) -> list[str]:
         rows = [f"{plain(str(port.name))}: {part}" for port in program.friction for part in what]
         doc = "For each friction port u = level * curve(|slip|) * sign(slip)."
         lines += values_function("friction_values", doc, program.friction_values, rows, names)
-    if program.switched:
+    if program.guarded:
         rows = [f"{plain(str(p.name))}: {way}" for p in program.switches
                 if p.switch is not None for way in p.switch.guards]  # fmt: skip
+        rows += [
+            f"{plain(str(program.friction[i].name))}: what it jumps by" for i, _ in program.hanging
+        ]
         states = (*program.states, *program.law_states)
         rows += [f"{plain(str(states[one.place]))} reset by {plain(str(program.friction[one.port].name))}"
                  for one in program.resets]  # fmt: skip

@@ -53,7 +53,7 @@ def friction_tables(program: Program, slips: SlipRows) -> list[str]:
     """The friction ports: their names, and where they stand."""
     switches = names_tuple("SWITCHES", [str(port.name) for port in program.switches])
     return [
-        *(["", "# Ports that are ideal switches.", *switches] if program.switched else ()),
+        *(["", "# Ports that are ideal switches.", *switches] if program.guarded else ()),
         "",
         "# Friction ports, the inputs they give, the slips they receive, by tangents of laws and as they",
         "# are, what tells how the factors of these move; is a resistance beside?",

@@ -7,7 +7,7 @@ import numpy as np
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.keeping import watched_by
+from codegen.modes.keeping import is_kept, watched_by
 from codegen.modes.pace import moment
 from codegen.modes.rounding import Peaks
 from codegen.modes.trials import Sight
@@ -49,7 +49,7 @@ class Watch:
             affine.rows(CAPS),
         )  # fmt: skip
         self._look = look_at(Sight(model, t, s, pieces), mode, peaks)
-        self._switching = [i for i, switch in enumerate(model.switching) if switch is not None]
+        self._kept = [i for i in range(len(mode)) if is_kept(model, mode, i)]
         self._limits = limits_of(self._look)
         self._armed = [False] * len(self._limits)
         self._before = self._triggers(t, self._look.now)
@@ -119,7 +119,7 @@ class Watch:
             rest = caps + 4 * self._look.size.effort
             margins = np.minimum(margins, rest * room(self._look, slips))
         found = np.where(signs == 0, margins, signs * slips)
-        for i in self._switching:
+        for i in self._kept:
             if i in self._model.timed:
                 # Its instants are known before.
                 found[:, i] = np.inf

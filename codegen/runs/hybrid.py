@@ -16,7 +16,7 @@ from codegen.model.snapshot import Mode
 from codegen.modes.choices import Choices, Occasion
 from codegen.modes.choose import decide
 from codegen.modes.closed import ClosedModel
-from codegen.modes.crossings import Crossings
+from codegen.modes.crossings import Crossings, sides
 from codegen.modes.glances import Glances
 from codegen.modes.pace import hardly_apart, look_ahead, time_constant
 from codegen.modes.rounding import Peaks, scales
@@ -138,8 +138,12 @@ class _Course:
             here = Sight(model, t, parts[-1].s, pieces)
         self._crossings.take(here, new, self._touched, peaks)
         self._come_to_rest(here, parts)
+        rests = any(self.mode[i] and new[i] == 0 for i in model.hung)
         self.mode, self._touched, self._settled = new, frozenset(), t
         self._here = here if self.s is here.s else Sight(model, t, self.s, pieces)
+        if rests:
+            # What was left of a leap is gone, and what goes with it may rest, too.
+            self.settle()
 
     def _decided(self, now: Occasion, here: Sight) -> list[Part]:
         """What an instant comes to; the last mode where a run ends so soon that none needs to go on.
@@ -262,11 +266,15 @@ def _still(here: Sight, mode: Mode, ports: frozenset[int], peaks: Peaks) -> froz
     ports -= {*here.model.stopping}
     if not ports:
         return frozenset()
-    _, now = here.evaluated(mode)
+    known, now = here.evaluated(mode)
     model = here.model
+    ports -= sides(here, known, ports).keys()
     slips = np.abs(now.y[model.friction_readings])
     limits = TUNING.wide * scales(model, now, here.t, peaks).slip
-    return frozenset(i for i in ports if slips[i] <= limits[i] or model.coupled_directly(i))
+    return frozenset(
+        i for i in ports
+        if i in model.hung or slips[i] <= limits[i] or model.coupled_directly(i)
+    )  # fmt: skip
 
 
 def _at_rest(here: Sight, mode: Mode) -> Array:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from codegen.inputs.generators import Generator
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
-from codegen.modes.keeping import GUARDS, watched_by
+from codegen.modes.keeping import GUARDS, is_kept, watched_by
 from codegen.numbers.arrays import Array, read_only
 from codegen.numbers.latest import Latest
 from codegen.program.affine import AffineMap, balanced_norm
@@ -71,7 +71,7 @@ def inputs_of(model: ClosedModel, affine: AffineMap, mode: Mode, n: int) -> list
         affine.rows(READINGS)[model.friction_readings],
     ]  # fmt: skip
     guards = model.guard_rows(mode, m)
-    for i in model.switches:
+    for i in (i for i in range(len(mode)) if is_kept(model, mode, i)):
         part, at, _ = watched_by(model, mode, i)
         if guards is not None and part == GUARDS and i not in model.timed:
             asked.append(guards[[at]])
@@ -110,7 +110,7 @@ def watched(
     for i, sign in enumerate(mode):
         if i in model.timed:
             continue
-        if model.switching[i] is not None and not np.isfinite(rest[i]):
+        if is_kept(model, mode, i) and not np.isfinite(rest[i]):
             part, at, way = watched_by(model, mode, i)
             triggers.append(way * (slips, efforts, conditions)[part][[at]])
             ports.append(i)

@@ -54,6 +54,7 @@ class DeadBand(FixedSteps):
             self.turning = 2 * h * np.abs(slip_rates(now, self.slips, self.moving))
             near |= (slips * previous < 0) & (np.abs(slips) <= self.turning)
         near &= self.rubs
+        mode, near = self.brought(now, mode, near, dead_band, h)
         self.part = np.abs(slips) / (self.least(now, dead_band) + self.turning + TUNING.tiny)
         for i in np.flatnonzero(near):
             mode[i] = 0
@@ -67,6 +68,12 @@ class DeadBand(FixedSteps):
                 break
             mode[change[0]] = change[1]
         return tuple(mode)
+
+    def brought(
+        self, now: Instant, mode: Sequence[int], near: Array, dead_band: float, h: float
+    ) -> tuple[list[int], Array]:
+        """The modes of ports that slip, and which may stick, as far as more than slips tells."""
+        return list(mode), near
 
     def any_of(self, at: Point, mode: Mode) -> Instant:
         """Every variable in the first mode that has values: laws may have no solution one way."""

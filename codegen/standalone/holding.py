@@ -51,12 +51,13 @@ def plain_set(count: int) -> HeldSet:
 class Hold:
     """The holding equations ``X x + U u + V u' = 0`` of one set of sticking ports.
 
-    ``inputs``: what they give. ``share``: directions in which the holding efforts may change
-    without moving anything. ``ruled``: the same as combinations of slips, where other inputs rule
+    ``inputs``: what they give. ``share``: combinations of slips that the others make up; ``ways``:
+    directions in which the holding efforts may change without moving anything, the same where
+    ports act as they are acted on. ``ruled``: those combinations where other inputs rule
     them: the ports hold only while these are zero. ``slip_x``, ``slip_u``: the slips that constrain
     the states, independent, as ``slip_x x + slip_u u``; ``fixed``: how their rates beside those of
     s depend on u'. ``take_away``: what to add to x per unit of those slips to remove them, along
-    ``A^-1 F^T``. ``mix``: what those slips are of the ports' own; ``free``: directions, by columns,
+    ``A^-1 F^T``, or what the efforts themselves move. ``mix``: what those slips are of the ports' own; ``free``: directions, by columns,
     in which efforts may be impulses, as they change no slip at once.
     """
 
@@ -68,6 +69,7 @@ class Hold:
     #: Inverse of the square system for the efforts, the rows of ``share`` appended.
     inverse: Array
     share: Array
+    ways: Array
     ruled: Array
     slip_x: Array
     slip_u: Array
@@ -93,7 +95,7 @@ class Hold:
         if not len(self.share):
             return np.asarray(self.inverse @ -known, dtype=float)
         efforts = self.inverse @ np.concatenate([-known, np.zeros(len(self.share))])
-        return fair_share(efforts, self.share, now.caps[self.ports])
+        return fair_share(efforts, self.ways, now.caps[self.ports])
 
     def rule(self, now: Instant) -> Array:
         """What has to vanish while the ports hold."""
@@ -150,20 +152,22 @@ def hold(
     slip_x, slip_u, share = null[kept] @ F, null[kept] @ D, share @ null
     by_x, by_u, by_rates = (null[kept] @ matrix for matrix in moved)
     U = np.vstack([D[direct], slip_x @ numbers.Q + by_u])
+    # Where laws answer as well, all are searched for together.
+    inverse = np.zeros((0, 0)) if held.moved else _inverse(np.vstack([U[:, chosen], share]))
     return Hold(
         stuck,
         chosen,
         X=np.vstack([F[direct], slip_x @ numbers.P + by_x]),
         U=U,
         V=np.vstack([G[direct], slip_x @ numbers.R + slip_u + by_rates]),
-        # Where laws answer as well, all are searched for together.
-        inverse=np.zeros((0, 0)) if held.moved else _inverse(np.vstack([U[:, chosen], share])),
+        inverse=inverse,
         share=share,
+        ways=_ways(U[:, chosen], share, inverse),
         ruled=share if held.ruled else share[:0],
         slip_x=slip_x,
         slip_u=slip_u,
         fixed=slip_u if varying else slip_u + slip_x @ numbers.R,
-        take_away=_take_away(numbers, slip_x),
+        take_away=_take_away(numbers, slip_x, numbers.Q[:, [] if direct else chosen]),
         mix=null[kept],
         free=_free(answers, held, len(stuck)),
     )
@@ -204,6 +208,17 @@ def vanishing(
     return result
 
 
+def _ways(answers: Array, share: Array, inverse: Array) -> Array:
+    """Directions in which efforts move nothing: combinations of slips, unless factors are others.
+
+    The jump of a law acts with another factor than what it hangs on has.
+    """
+    moved, sizes = np.abs(answers @ share.T), np.abs(answers) @ np.abs(share.T)
+    if not len(inverse) or not (moved > TUNING.consistent * sizes).any():
+        return share
+    return np.asarray(inverse[:, len(answers) :].T)
+
+
 def _free(answers: Array, held: HeldSet, count: int) -> Array:
     """The right null space of ``D_ss`` as it is over the ports' own inputs, by columns.
 
@@ -220,12 +235,24 @@ def _free(answers: Array, held: HeldSet, count: int) -> Array:
     return np.array(result).reshape(-1, count).T
 
 
-def _take_away(numbers: Numbers, slip_x: Array) -> Array:
-    """``-A^-1 S^T (S A^-1 S^T)^-1``: the impulse that stops the slips S x and moves no others."""
+def _take_away(numbers: Numbers, slip_x: Array, pushed: Array) -> Array:
+    """``-A^-1 S^T (S A^-1 S^T)^-1``: the impulse that stops the slips S x and moves no others.
+
+    ``pushed``: what impulses of the ports move, by columns; that is another where ports do not act as
+    they are acted on, as those of jumps: then such impulses stop the slips.
+    """
     if not len(slip_x):
         return np.zeros((slip_x.shape[1], 0))
     moved = scaled_solve(numbers.A, slip_x.T)
-    return np.asarray(-moved @ _inverse(slip_x @ moved), dtype=float)
+    found = np.asarray(-moved @ _inverse(slip_x @ moved), dtype=float)
+    by = slip_x @ pushed
+    beside, sizes = np.abs(pushed + found @ by), np.abs(pushed) + np.abs(found) @ np.abs(by)
+    square = by @ by.T
+    if not (beside > TUNING.consistent * sizes).any() or np.linalg.matrix_rank(square) < len(
+        square
+    ):
+        return found
+    return np.asarray(-pushed @ by.T @ _inverse(square), dtype=float)
 
 
 def _inverse(matrix: Array) -> Array:

@@ -37,5 +37,5 @@ class JointFriction(Friction):
         self.every.solve(now, left)
         if held and len(held.share):
             efforts = now.u[held.inputs]
-            fair = fair_share(efforts, held.share, now.caps[held.ports])
+            fair = fair_share(efforts, held.ways, now.caps[held.ports])
             now.give(held.inputs, fair - efforts)

@@ -57,6 +57,7 @@ static int bind(batch_room *room, const double *parameters)
     memcpy(record->coupled, bg_beside, sizeof(int) * EX_K);
     memcpy(record->own, bg_friction_inputs, sizeof(int) * EX_K);
     record->switched = BG_SWITCHES > 0;
+    record->hung = BG_HUNG;
     memcpy(record->switches, bg_switches, sizeof *bg_switches * EX_K);
     memcpy(record->resets, bg_resets, sizeof *bg_resets * BG_RESETS);
     batch_fill_stops(record, &own->m);

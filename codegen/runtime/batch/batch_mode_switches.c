@@ -76,6 +76,8 @@ void batch_fill_switches(ex_mode *made, const double *map, bg_model *m, const in
             if (bg_switches[k].kind != BG_RUBS)
                 made->stay[j][k] = bg_stay(bg_switches + k, mode[k], made->shot[j][EX_AT_SLIP + k],
                                            made->shot[j][EX_AT_EFFORT + k], guards);
+            else if (bg_hangs(bg_switches + k))
+                made->stay[j][k] = guards[bg_switches[k].guard];
     }
     for (int k = 0; k < EX_K; k++)
         forwards &= bg_switches[k].kind != BG_RUBS || mode[k] == 1;

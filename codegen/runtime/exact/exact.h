@@ -61,7 +61,7 @@ typedef struct {
     double left[EX_L][EX_PORTS];   /* the slips that are to be removed .. */
     double take_away[EX_PORTS][EX_N]; /* .. and what to add to s per unit of each */
     double mix[EX_PORTS][EX_PORTS]; /* what those slips are of the ports' own */
-    double stay[EX_L][EX_PORTS];   /* what keeps switches */
+    double stay[EX_L][EX_PORTS];   /* what keeps switches, and what jumps of second order hang on */
     double become[EX_L][EX_MOST_RESETS]; /* what resets set s to */
     /* where friction slips forwards, as switches come to hold: what s gains per unit of each slip,
      * how far the impulse goes with each switch's way, and what each port gives */
@@ -86,7 +86,7 @@ typedef struct {
     double P[EX_X][EX_X], Q[EX_U][EX_X], inertia[EX_PORTS];
     int coupled[EX_PORTS];          /* whether the slip depends at once on friction */
     int own[EX_PORTS];              /* the input that each port gives */
-    int switched, stopping;         /* whether any port is a switch; a stop */
+    int switched, stopping, hung;   /* whether any port is a switch; a stop; a jump of second order */
     double room[EX_PORTS], back[EX_PORTS]; /* of stops: the gap where s is zero; restitution */
     bg_switch switches[EX_PORTS];
     bg_reset resets[EX_MOST_RESETS];

@@ -58,7 +58,8 @@ void ex_triggers(const ex_context *c, const ex_mode *record, const double *shot,
         }
         const double moved = shot[(rests ? EX_AT_SLIP : EX_AT_EFFORT) + i];
         const double cap = shot[EX_AT_CAP + i], below = rests ? 0.0 : cap;
-        to[2 * i] = mode[i] ? mode[i] * shot[EX_AT_SLIP + i] : below - moved;
+        const double slip = ex_hangs(c, i) ? stay[i] : shot[EX_AT_SLIP + i];
+        to[2 * i] = mode[i] ? mode[i] * slip : below - moved;
         to[2 * i + 1] = mode[i] ? cap : below + moved;
     }
 }
@@ -122,7 +123,7 @@ void ex_assemble(ex_context *c, ex_entry *e)
     memset(slots, 0, sizeof slots);
     memset(keeping, 0, sizeof keeping);
     over_slots(&e->chains, EX_SHOT, e->mode->shot[0], slots[0]);
-    if (c->model->switched)
+    if (c->model->switched || c->model->hung)
         over_slots(&e->chains, EX_PORTS, e->mode->stay[0], keeping[0]);
     generate(&e->chains, e->M);
     for (int j = 0; j < EX_Z; j++) {

@@ -45,6 +45,14 @@ int ex_become(void *context, const bg_instant *at, const int *mode, double *valu
 int ex_strike(void *context, const bg_instant *at, const int *mode, const double *speeds,
               double *s, bg_blow *blow);
 
+/* exact_hung.c: whether a port is a jump of second order; of those what they hang on, at v, and below
+ * what that counts as zero; how far it has been. */
+int ex_hangs(const ex_context *c, int port);
+void ex_hang(const ex_context *c, const ex_mode *mode, const double *v, bg_port *ports);
+void ex_round_hung(const ex_context *c, const ex_mode *mode, const double *v, double t,
+                   bg_port *ports);
+void ex_see_hung(ex_context *c, const ex_mode *mode, const double *v);
+
 /* exact_stop.c: whether a port is a stop that is apart in the context's mode; gaps and restitutions at
  * s, and below what gaps count as closed, where s changes at these rates; where displacements have
  * been. What is watched of switches, in a column of a stretch's state; -1: in its

@@ -50,6 +50,10 @@ static void tell(void *context, const int *mode, const bg_instant *at, bg_port *
         ex_round_stay(c, found, c->seen, c->shot, at->t, ports);
     else
         ex_keep(c, found, c->seen, ports);
+    if (at)
+        ex_round_hung(c, found, c->seen, at->t, ports);
+    else
+        ex_hang(c, found, c->seen, ports);
     if (!ruling)
         return;
     *ruling = (bg_ruling){.width = EX_PORTS, .count = found->ruled, .kept = found->held,
@@ -107,6 +111,7 @@ static void see(void *context, const int *slipping)
     for (int i = 0; i < EX_U; i++)
         c->peaks.u[i] = bg_greater(c->peaks.u[i], terms[i]);
     ex_see_places(c, c->s);
+    ex_see_hung(c, mode, v);
 }
 
 static int fastest(void *context, double *fastest)

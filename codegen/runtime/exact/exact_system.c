@@ -132,6 +132,7 @@ int ex_begin(ex_context *c, double stop)
         return status;
     ex_round(c, now, c->run.at.t, ports);
     ex_round_stay(c, stretch->entry->mode, c->seen, now, c->run.at.t, ports);
+    ex_round_hung(c, stretch->entry->mode, c->seen, c->run.at.t, ports);
     for (int i = 0; i < EX_T; i++) {
         const int port = i / 2, rests = ex_rests(stretch->entry->mode, port);
         stretch->limit[i] = c->run.mode[port] || rests ? ports[port].near_slip
@@ -139,6 +140,8 @@ int ex_begin(ex_context *c, double stop)
         if (ex_switches(c, port) && !rests)
             stretch->limit[i] = ex_is_apart(c, port) ? ports[port].near_gap
                                                      : ports[port].near_stay;
+        if (ex_hangs(c, port) && c->run.mode[port])
+            stretch->limit[i] = ports[port].near_gap;
         stretch->level[i] += rests ? BG_LEFT * ports[port].near_slip : 0.0;
         /* caps need not be */
         stretch->armed[i] = i % 2 && ex_single(c, stretch->entry->mode, port);

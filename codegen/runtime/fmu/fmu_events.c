@@ -31,7 +31,9 @@ static void keep_switches(fmu_instance *f, const bg_snapshot *now, double *value
     }
     bg_view_keep(&f->located.view, f->at.mode, ports);
     for (int i = 0; i < K; i++)
-        if (bg_switches[i].kind != BG_RUBS) {
+        if (bg_hangs(bg_switches + i) && f->at.mode[i])
+            values[2 * i] = f->at.mode[i] * ports[i].gap + f->at.margin[i];
+        else if (bg_switches[i].kind != BG_RUBS) {
             const int apart = bg_is_apart(bg_switches + i, f->at.mode[i]);
             values[2 * i] = (apart ? ports[i].gap : ports[i].stay) + f->at.margin[i];
             values[2 * i + 1] = 1.0;
@@ -55,7 +57,7 @@ void fmu_indicators_of(fmu_instance *f, const bg_snapshot *now, double *values)
         }
     }
     keep_at_rest(f, now, values);
-    if (BG_SWITCHES)
+    if (BG_SWITCHES || BG_HUNG)
         keep_switches(f, now, values);
     for (int k = 0; k < FMU_SWITCHES; k++)
         values[2 * K + k] = f->at.side[k] * f->switches[k] + f->at.switch_rest[k];
@@ -98,20 +100,34 @@ static fmu_error remove_slips(fmu_instance *f)
     return status == BG_OK ? NULL : bg_model_message(status);
 }
 
+/* Whether a jump of second order has come to rest: what was left of its leap is gone then, and what
+ * goes with it may rest, too. */
+static int comes_to_rest(const fmu_instance *f, const int *before)
+{
+    int any = 0;
+    for (int i = 0; i < K; i++)
+        any |= bg_hangs(bg_switches + i) && before[i] && f->at.mode[i] == 0;
+    return any;
+}
+
 /* Everything just after the instance's time; whether an impact, or what is held, moved the states. */
 static fmu_error settle_event(fmu_instance *f, int *states_changed)
 {
     double before[BG_SIZE];
+    int mode[BG_ROOM(K)];
     fmu_error failed;
     memcpy(before, f->at.s, sizeof before);
     fmu_pass(f, f->at.time);
     failed = fmu_apply(f);
     bg_have_seen(&f->model, f->at.s);
     memcpy(f->at.seen, f->model.seen, sizeof f->at.seen);
-    if (!failed)
-        failed = fmu_decide(f);
-    if (!failed)
-        failed = remove_slips(f);
+    do {
+        memcpy(mode, f->at.mode, sizeof mode);
+        if (!failed)
+            failed = fmu_decide(f);
+        if (!failed)
+            failed = remove_slips(f);
+    } while (!failed && comes_to_rest(f, mode));
     if (!failed)
         failed = fmu_refresh(f);
     *states_changed = memcmp(before, f->at.s, sizeof before) != 0;

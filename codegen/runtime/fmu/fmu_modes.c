@@ -32,7 +32,7 @@ static void note_sizes(fmu_instance *f)
 void fmu_note_stays(fmu_instance *f)
 {
     bg_port ports[BG_ROOM(K)];
-    if (!BG_SWITCHES)
+    if (!BG_SWITCHES && !BG_HUNG)
         return;
     bg_view_ports(&f->located.view, f->at.mode, FMU_SHORTEST, ports);
     for (int i = 0; i < K; i++)
@@ -40,6 +40,8 @@ void fmu_note_stays(fmu_instance *f)
             f->at.margin[i] = BG_HYSTERESIS
                 * (bg_is_apart(bg_switches + i, f->at.mode[i]) ? ports[i].near_gap
                                                                : ports[i].near_stay);
+        else if (bg_hangs(bg_switches + i) && f->at.mode[i])
+            f->at.margin[i] = BG_HYSTERESIS * ports[i].near_gap;
 }
 
 /* The mode just after the instance's time; ports at rest, or that crossed it, stick if they can. */

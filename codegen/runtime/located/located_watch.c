@@ -29,6 +29,8 @@ static void triggers_now(const bg_located *c, double *values)
             values[i] = bg_stay(bg_switches + i, c->run.mode[i], slip, effort, guards);
         if (bg_is_apart(bg_switches + i, c->run.mode[i]))
             values[i] = guards[bg_switches[i].guard];
+        if (bg_hangs(bg_switches + i) && c->run.mode[i])
+            values[i] = c->run.mode[i] * guards[bg_switches[i].guard];
         sticking |= c->run.mode[i] == 0;
     }
     if (!sticking || bg_hold_of(c->model, c->run.mode, &held) != BG_OK || held->ruled == 0)
@@ -150,7 +152,8 @@ int bg_watch_begin(bg_located *c)
         c->watch.limit[i] = c->run.mode[i] ? ports[i].near_slip : ports[i].near_effort;
         if (bg_switches[i].kind != BG_RUBS)
             c->watch.limit[i] = ports[i].near_stay;
-        if (bg_is_apart(bg_switches + i, c->run.mode[i]))
+        if (bg_is_apart(bg_switches + i, c->run.mode[i])
+            || (bg_hangs(bg_switches + i) && c->run.mode[i]))
             c->watch.limit[i] = ports[i].near_gap;
         c->watch.near[i] = BG_LEFT * ports[i].near_slip;
         c->watch.armed[i] = 0;

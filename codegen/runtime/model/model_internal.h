@@ -167,6 +167,10 @@ typedef struct {
 int bg_look(bg_model *m, const bg_start *at, const int *mode);
 int bg_look_slipping(bg_model *m, const bg_start *at, const int *mode);
 int bg_stick(bg_model *m, const bg_start *at);
+
+/* port_hang.c: of jumps of second order at the latest look, before a step of h, which may hold, and
+ * on which sides the others are; to what slips those that hold are brought. */
+void bg_bring(bg_model *m, double h, int *near);
 int bg_held(bg_model *m, const bg_start *at);
 
 /* port_step.c: m->mode for a step of h, and s after the impulses of switches that come to hold;

@@ -81,7 +81,8 @@ typedef struct {
 /* The holding equations X x + U u + V u' = 0 of one set of sticking ports, `stuck`, where `used`
  * tells when they were asked for; `ready`: whether there are some at the present numbers.
  * Of `count` ports, the slips of `kept` combinations are states' and kept zero by taking away;
- * those of the first `ruled` rows of `share` are other inputs' and must be zero. */
+ * those of the first `ruled` rows of `share` are other inputs' and must be zero. Along `ways`, by
+ * rows, efforts may change without moving anything. */
 typedef struct {
     bg_set stuck;
     unsigned used;
@@ -90,6 +91,7 @@ typedef struct {
     double X[BG_TABLE(BG_FRICTION, BG_STATES)];
     double U[BG_TABLE(BG_FRICTION, BG_INPUTS)], V[BG_TABLE(BG_FRICTION, BG_INPUTS)];
     double inverse[BG_TABLE(BG_FRICTION, BG_FRICTION)], share[BG_TABLE(BG_FRICTION, BG_FRICTION)];
+    double ways[BG_TABLE(BG_FRICTION, BG_FRICTION)];
     double slip_x[BG_TABLE(BG_FRICTION, BG_STATES)], slip_u[BG_TABLE(BG_FRICTION, BG_INPUTS)];
     double fixed[BG_TABLE(BG_FRICTION, BG_INPUTS)];
     double take_away[BG_TABLE(BG_STATES, BG_FRICTION)];
@@ -106,6 +108,7 @@ typedef struct {
     double entries[BG_ROOM(BG_ENTRIES)], moved[BG_TABLE(BG_STATES, BG_FRICTION)];
     double law[BG_ROOM(BG_LARGEST)], more[BG_ROOM(BG_INPUTS)];
     double u[BG_ROOM(BG_INPUTS)], y[BG_ROOM(BG_READINGS)];
+    double aim[BG_ROOM(BG_FRICTION)]; /* slips that ports which hold are brought to; as a rule 0 */
     double stage[4][BG_SIZE], point[BG_SIZE];
     double weight[BG_SIZE], reach[BG_SIZE], image[BG_SIZE], next[BG_SIZE];
     double given[3][BG_ROOM(BG_EXTERNAL)], rates[3][BG_ROOM(BG_EXTERNAL)];

@@ -131,6 +131,14 @@ static int search_blocks(bg_choice *choice, int blocks, bg_port_block *block, in
     return search_block(choice, &all, &choice->open, mode, holds, &broken);
 }
 
+/* On which side a jump of second order is, that is not where it jumps; 0 of any other port. */
+static int side_of(const bg_switch *one, const bg_port *now, int loose)
+{
+    if (!bg_hangs(one) || fabs(now->gap) <= (loose ? BG_WIDE : 1.0) * now->near_gap)
+        return 0;
+    return now->gap > 0 ? 1 : -1;
+}
+
 /* The friction ports that may stick, where `now` is with friction slipping; the others slip as they
  * do. How many. */
 static int find_open(bg_choice *choice, const bg_port *now, const int *mode, int *slipping,
@@ -143,14 +151,19 @@ static int find_open(bg_choice *choice, const bg_port *now, const int *mode, int
     for (int i = 0; i < c->ports; i++) {
         const double slip = fabs(now[i].slip), near = now[i].near_slip;
         const int touched = choice->at->touched[i];
-        const int loose = touched || mode[i] == 0, passed = touched == BG_PASSED;
+        const int loose = touched || mode[i] == 0;
+        /* A jump of second order is crossed as a rule, at a speed that tells. */
+        const int passed = touched == BG_PASSED && !bg_hangs(c->kinds + i);
         if (c->switches && c->switches[i].kind != BG_RUBS) {
             slipping[i] = mode[i];
             if (!bg_has(&choice->barred, i))
                 bg_add(&choice->switches, i);
             continue;
         }
-        slipping[i] = now[i].slip > 0 ? 1 : -1;
+        const int side = side_of(c->kinds + i, now + i, loose);
+        slipping[i] = side ? side : now[i].slip > 0 ? 1 : -1;
+        if (side)
+            continue;
         if (c->coupled[i] || slip <= near || (passed && !choice->blow.struck)
             || (loose && slip <= BG_WIDE * near)) {
             ports[count++] = i;
@@ -190,7 +203,7 @@ int bg_choose_rubbing(bg_choice *choice, int *mode, int *holds, bg_set *broken)
         choice->why = choice->why ? choice->why : status;
         return bg_ends_search(status) ? status : BG_OK;
     }
-    c->tell(c->self, found, choice->at, now, NULL);
+    bg_tell(choice, found, now, NULL);
     choice->before = mode;
     const int count = find_open(choice, now, mode, found, ports);
     status = stick(choice, count, ports, found, holds, broken);

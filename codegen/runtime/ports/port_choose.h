@@ -17,11 +17,12 @@ enum { BG_MOST_RESETS = BG_RESETS > 0 ? BG_RESETS : 1 };
 enum { BG_UNTOUCHED, BG_TOUCHED, BG_PASSED };
 
 /* One port at one instant in one mode. `push`: how fast the slip changes; `stay`: what keeps a
- * switch from changing over; `gap`, `back`: of a stop, its restitution the latter; `near_..`: below
- * these slip, margin, push, stay and gap count as zero. */
+ * switch from changing over; `gap`, `back`: of a stop, its restitution the latter; `gap`: what
+ * a jump of second order hangs on; `near_..`: below these slip, margin, push, stay and gap count as
+ * zero; `unseen`: the part of near_slip that leaps unseen. */
 typedef struct {
     double slip, effort, cap, push, stay, gap, back;
-    double near_slip, near_effort, near_push, near_stay, near_gap;
+    double near_slip, near_effort, near_push, near_stay, near_gap, unseen;
 } bg_port;
 
 /* Combinations of the slips of `width` ports, those of `ports` (NULL: the first), by rows. `count`
@@ -36,12 +37,13 @@ typedef struct {
 } bg_ruling;
 
 /* An instant: the shortest time constant there, and the inputs' next breakpoint; `log`: where to
- * tell of impacts, or NULL. */
+ * tell of impacts, or NULL; `lingers`: jumps of second order whose swings hardly shrink. */
 typedef struct {
     double t, time, following;
     double *s;
     int touched[BG_MOST_PORTS];
     bg_log *log;
+    int lingers[BG_MOST_PORTS];
 } bg_instant;
 
 /* An impact: whether there is one; what each port gives; 1 where that goes with its switch's mode,

@@ -48,6 +48,10 @@ typedef struct {
     } ways[BG_BLOCK_WAYS];
 } bg_tried;
 
+/* port_verdict.c: the ports of the latest look, with what counts as zero; of swings that hardly
+ * shrink larger leaps count as unseen: there are as many as one is smaller. */
+void bg_tell(const bg_choice *choice, const int *mode, bg_port *now, bg_ruling *ruling);
+
 /* port_verdict.c: what contradicts a mode, of the ports asked; a status that ends the search. */
 int bg_find(bg_choice *choice, const int *mode, const bg_set *asked, bg_finding *found);
 

@@ -30,7 +30,7 @@ static int happened(const bg_switch *with, int switched, const int *before, cons
     if (with->slides)
         return rubbed(bg_slides(before), bg_slides(now));
     if (!switched)
-        return with->bound ? jumped(*before, *now) : rubbed(*before, *now);
+        return with->order ? jumped(*before, *now) : rubbed(*before, *now);
     if (*now == *before)
         return -1;
     const int on = with->on == (*now == 0);

@@ -77,6 +77,82 @@ static int invert_system(bg_hold *held)
     return bg_inverse(count, system, pivots, held->inverse);
 }
 
+/* Directions in which efforts move nothing: combinations of slips, unless factors are others: the
+ * jump of a law acts with another one than what it hangs on has. */
+static void find_ways(bg_hold *held)
+{
+    const int count = held->count, ruled = held->ranks.direct + held->ranks.kept;
+    int lopsided = 0;
+    for (int r = 0; r < ruled; r++)
+        for (int d = 0; d < held->share_count; d++) {
+            double moved = 0.0, size = 0.0;
+            for (int c = 0; c < count; c++) {
+                const double term = held->U[r * M + bg_friction_inputs[held->ports[c]]]
+                    * held->share[d * count + c];
+                moved += term;
+                size += fabs(term);
+            }
+            lopsided |= fabs(moved) > BG_CONSISTENT * size;
+        }
+    for (int d = 0; d < held->share_count; d++)
+        for (int c = 0; c < count; c++)
+            held->ways[d * count + c] = lopsided ? held->inverse[c * count + ruled + d]
+                                                 : held->share[d * count + c];
+}
+
+/* What impulses of the ports move, by columns: whether that is another than what stops their slips
+ * and moves no others, as that of jumps, which do not act as they are acted on. `by`: how those
+ * impulses move the slips. */
+static int is_pushed_aside(const bg_model *m, const bg_hold *held, double *by)
+{
+    const int count = held->count, kept = held->kept;
+    int aside = 0;
+    memset(by, 0, sizeof(double) * PORTS * PORTS);
+    if (held->ranks.direct > 0)
+        return 0;
+    for (int c = 0; c < count; c++) {
+        const double *const Q = m->numbers.Q + bg_friction_inputs[held->ports[c]];
+        for (int k = 0; k < kept; k++)
+            for (int i = 0; i < N; i++)
+                by[k * count + c] += held->slip_x[k * N + i] * Q[i * M];
+        for (int i = 0; i < N; i++) {
+            double beside = Q[i * M], size = fabs(Q[i * M]);
+            for (int k = 0; k < kept; k++) {
+                beside += held->take_away[i * kept + k] * by[k * count + c];
+                size += fabs(held->take_away[i * kept + k] * by[k * count + c]);
+            }
+            aside |= fabs(beside) > BG_CONSISTENT * size;
+        }
+    }
+    return aside;
+}
+
+/* Those impulses stop the slips, where they can. */
+static void stop_by_ports(const bg_model *m, bg_hold *held)
+{
+    double by[PORTS * PORTS], square[PORTS * PORTS] = {0}, inverse[PORTS * PORTS];
+    int pivots[PORTS];
+    const int count = held->count, kept = held->kept;
+    if (!is_pushed_aside(m, held, by))
+        return;
+    for (int k = 0; k < kept; k++)
+        for (int l = 0; l < kept; l++)
+            for (int c = 0; c < count; c++)
+                square[k * kept + l] += by[k * count + c] * by[l * count + c];
+    if (!bg_inverse(kept, square, pivots, inverse))
+        return;
+    memset(held->take_away, 0, sizeof held->take_away);
+    for (int c = 0; c < count; c++)
+        for (int l = 0; l < kept; l++) {
+            double share = 0.0;
+            for (int k = 0; k < kept; k++)
+                share += by[k * count + c] * inverse[k * kept + l];
+            for (int i = 0; i < N; i++)
+                held->take_away[i * kept + l] -=
+                    m->numbers.Q[i * M + bg_friction_inputs[held->ports[c]]] * share;
+        }
+}
+
 /* -A^-1 S^T (S A^-1 S^T)^-1: the impulse that stops the slips S x, and moves nothing else. */
 static int find_take_away(bg_model *m, bg_hold *held)
 {
@@ -96,6 +172,7 @@ static int find_take_away(bg_model *m, bg_hold *held)
     for (int i = 0; i < N; i++)
         for (int k = 0; k < kept; k++)
             add_row(kept, -moved[i * kept + k], inverse, k, held->take_away + i * kept);
+    stop_by_ports(m, held);
     return 1;
 }
 
@@ -137,6 +214,9 @@ static int build(bg_model *m, bg_hold *held)
     /* Where laws answer as well, all are searched for together. */
     if ((s->moved == 0 && !invert_system(held)) || !find_take_away(m, held))
         return BG_NO_HOLD;
+    memcpy(held->ways, held->share, sizeof held->ways);
+    if (s->moved == 0)
+        find_ways(held);
     if (!BG_VARYING)
         list_rules(held);
     return check_slopes(held);
@@ -248,6 +328,10 @@ int bg_remove_slips(bg_model *m, const int *mode, const bg_snapshot *shot, doubl
     if (status != BG_OK)
         return status;
     bg_held_slips(held, shot, slips);
+    for (int k = 0; k < held->kept; k++)
+        for (int c = 0; c < held->count; c++)
+            slips[k] -= held->mix[k * held->count + c] * m->work.aim[held->ports[c]];
+    memset(m->work.aim, 0, sizeof m->work.aim);
     bg_multiply_add(N, held->kept, held->take_away, slips, s);
     return BG_OK;
 }

@@ -19,7 +19,8 @@ void bg_view_keep(const bg_view *v, const int *mode, bg_port *ports)
         if (bg_switches[i].kind == BG_STOPS) {
             ports[i].gap = guards[bg_switches[i].guard];
             ports[i].back = guards[bg_switches[i].guard + 1];
-        }
+        } else if (bg_hangs(bg_switches + i))
+            ports[i].gap = guards[bg_switches[i].guard];
 }
 
 /* Of efforts that hold: the rounding of the equations that they follow from. */
@@ -70,6 +71,8 @@ void bg_view_stay(bg_view *v, const int *mode, double time, const double *x, con
                 BG_ROUNDING * terms[at] + BG_LATE * spacing * slopes[at] + DBL_MIN;
         else
             ports[i].near_stay = mode[i] ? ports[i].near_slip : ports[i].near_effort;
+        if (bg_hangs(s))
+            bg_count_leaps(ports + i, terms[s->guard], v->inertia[i], spacing);
     }
     round_gaps(v, spacing, ports);
 }

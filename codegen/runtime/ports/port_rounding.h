@@ -54,6 +54,16 @@ static inline void bg_round_ports(int states, int inputs, int count, const bg_ma
     }
 }
 
+/* Of a jump of second order, where `inertia` is how its effort moves its slip: what counts as zero
+ * of what it hangs on, whose terms have been so large; and slips that leap no higher than that, by
+ * v^2/2 over what its whole height throws back. */
+static inline void bg_count_leaps(bg_port *port, double terms, double inertia, double spacing)
+{
+    port->near_gap = BG_TOGETHER * terms + BG_LATE * spacing * fabs(port->slip) + DBL_MIN;
+    port->unseen = sqrt(2.0 * BG_LEAP * port->near_gap * inertia * port->cap) / BG_WIDE;
+    port->near_slip = bg_greater(port->near_slip, port->unseen);
+}
+
 /* Below this the gap of a stop counts as closed, where its displacement, which changes at a rate,
  * has been as far as `seen`; `spacing`: of the time. */
 static inline double bg_gap_rounding(const bg_switch *s, double gap, double displacement,

@@ -1,7 +1,7 @@
 /* Redundant ports share a load so that the largest fraction of a port's breakaway effort is the
  * least possible, then the next largest of the ports that remain.
  *
- * Efforts may change along the rows of `share`. A weighted sum of efforts that no row changes is a
+ * Efforts may change along the rows of `ways`. A weighted sum of efforts that no row changes is a
  * load that its ports carry, whatever they share: at the least the fraction |load| / sum of
  * |weight| cap. The ports for which that is highest reach it; the others share along what
  * directions are left. */
@@ -104,7 +104,7 @@ int bg_fair_share(const bg_hold *held, const double *caps, double *efforts)
     const double least = BG_LEAST_CAP * bg_largest(held->count, efforts) + BG_TINY;
     d.free = held->share_count;
     d.count = load.size = held->count;
-    memcpy(d.rows, held->share, sizeof(double) * (size_t)(d.free * d.count));
+    memcpy(d.rows, held->ways, sizeof(double) * (size_t)(d.free * d.count));
     for (int i = 0; i < d.count; i++) {
         load.left[i] = i;
         load.efforts[i] = efforts[i];

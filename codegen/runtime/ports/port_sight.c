@@ -68,7 +68,7 @@ void bg_view_ports(bg_view *v, const int *mode, double time, bg_port *ports)
         u[j] = fmax(fabs(v->shot.u[j]), v->peaks->u[j]);
     show_ports(v, ports);
     bg_round_ports(N, M, K, &sizes, v->t, time, x, u, rate, ports);
-    if (BG_SWITCHES)
+    if (BG_SWITCHES || BG_HUNG)
         bg_view_stay(v, mode, time, x, u, ports);
 }
 
@@ -93,7 +93,7 @@ static void tell_ports(void *view, const int *mode, const bg_instant *at, bg_por
         bg_view_ports(v, mode, at->time, ports);
     else {
         show_ports(v, ports);
-        if (BG_SWITCHES)
+        if (BG_SWITCHES || BG_HUNG)
             bg_view_keep(v, mode, ports);
     }
     if (ruling)

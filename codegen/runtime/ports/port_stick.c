@@ -49,8 +49,10 @@ static int first_guess(bg_model *m, const bg_start *at, int *near)
         m->work.part[i] =
             fabs(slip) / (least_slip(m, i, around) + m->work.turning[i] + BG_TINY);
         m->mode[i] = near[i] ? 0 : slip > 0 ? 1 : -1;
-        count += near[i];
     }
+    bg_bring(m, at->h, near);
+    for (int i = 0; i < K; i++)
+        count += near[i];
     return count;
 }
 

@@ -21,6 +21,11 @@ int bg_is_apart(const bg_switch *s, int sign)
     return s->kind == BG_STOPS && s->on == (sign == 0);
 }
 
+int bg_hangs(const bg_switch *s)
+{
+    return s->order == 2;
+}
+
 /* A search among the ways of the switches. `mode`: what is found. */
 typedef struct {
     bg_choice choice;

@@ -10,10 +10,12 @@ enum bg_way { BG_RUBS, BG_ONE_SIDED, BG_TOLD, BG_STOPS };
  * for the ways in which friction slips that gives a flow, one after the other: held it slips. Of a
  * stop, which is on while it is apart and has its sides where the gap is closed: `guard`: the place
  * of its gap, before its restitution; `place`: that of its displacement in s, with which the gap
- * changes by `opening`; `bound`: whether it is told as one, that touches and is apart; of
- * what rubs, whether it is the jump of a law, which slides while it is held. */
+ * changes by `opening`; `bound`: whether it is told as one, that touches and is apart. `order`: of
+ * the jump of a law, which rubs, and slides while it is held, the derivative of what it hangs on
+ * that it moves, 1 or 2; of second order it receives how fast that changes, and `guard` is its
+ * place. */
 typedef struct {
-    int kind, on, side, guard, slides, place, opening, bound;
+    int kind, on, side, guard, slides, place, opening, bound, order;
 } bg_switch;
 
 /* What a state becomes as a port comes to a mode, `sign`, or at an impact of a stop: its place in
@@ -30,5 +32,8 @@ double bg_stay(const bg_switch *s, int sign, double slip, double effort, const d
 
 /* Whether it is a stop that is apart in its mode: its gap is watched as long as that lasts. */
 int bg_is_apart(const bg_switch *s, int sign);
+
+/* Whether it is a jump of second order. */
+int bg_hangs(const bg_switch *s);
 
 #endif

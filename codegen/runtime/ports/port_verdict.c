@@ -155,6 +155,15 @@ static int late(const bg_choice *choice, const int *mode, const bg_port *now, co
     return BG_OK;
 }
 
+void bg_tell(const bg_choice *choice, const int *mode, bg_port *now, bg_ruling *ruling)
+{
+    const bg_sight *const c = choice->sight;
+    c->tell(c->self, mode, choice->at, now, ruling);
+    for (int i = 0; i < c->ports; i++)
+        if (bg_hangs(c->kinds + i) && choice->at->lingers[i])
+            now[i].near_slip = fmax(now[i].near_slip, BG_LINGERING * now[i].unseen);
+}
+
 int bg_find(bg_choice *choice, const int *mode, const bg_set *asked, bg_finding *found)
 {
     const bg_sight *const c = choice->sight;
@@ -168,7 +177,7 @@ int bg_find(bg_choice *choice, const int *mode, const bg_set *asked, bg_finding 
         return bg_ends_search(status) ? status : BG_OK;
     }
     choice->why = BG_UNDECIDED;
-    c->tell(c->self, mode, choice->at, now, &ruling);
+    bg_tell(choice, mode, now, &ruling);
     if (ruled_out(&ruling, now, NULL) || is_torn(&ruling, now, choice->at->touched))
         return BG_OK;
     if (ruling.unknown)

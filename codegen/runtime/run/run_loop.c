@@ -23,6 +23,8 @@ static int come_to_end(const bg_engine *e, bg_course *c, int *undecided)
             c->at.touched[i] |= now[i].gap <= now[i].near_gap;
         else if (sight->switches && sight->switches[i].kind != BG_RUBS)
             c->at.touched[i] |= now[i].stay <= BG_WIDE * now[i].near_stay;
+        else if (bg_hangs(sight->kinds + i) && c->mode[i])
+            c->at.touched[i] |= fabs(now[i].gap) <= BG_WIDE * now[i].near_gap;
         else if (c->mode[i] == 0)
             c->at.touched[i] |= now[i].cap - fabs(now[i].effort) <= BG_WIDE * now[i].near_effort;
         else if (!sight->coupled[i])
@@ -51,7 +53,16 @@ static int decide(const bg_engine *e, bg_course *c, int started)
 
 static int is_jump(const bg_switch *one)
 {
-    return one->kind == BG_RUBS && one->bound;
+    return one->order != 0;
+}
+
+/* Tells swings that hardly shrink, by the speeds of crossings to the same side. */
+static void linger(bg_course *c, int port, double speed)
+{
+    double *const before = c->crossings.speed[port];
+    c->at.lingers[port] = BG_LINGERS * before[0] < speed && speed < INFINITY;
+    before[0] = before[1];
+    before[1] = speed;
 }
 
 /* Counts the crossings of jumps at an instant; whether one comes to rest on its jump: crossed so
@@ -73,23 +84,25 @@ static int count_crossings(const bg_engine *e, bg_course *c)
         int *const unseen = c->crossings.unseen + i;
         if (!c->at.touched[i] || !is_jump(sight->kinds + i))
             continue;
-        const double leap = fabs(now[i].push) * (c->at.t - c->crossings.last[i]) / 4;
+        const int hangs = bg_hangs(sight->kinds + i);
+        const double speed = hangs ? now[i].slip : now[i].push;
+        const double near = hangs ? now[i].near_gap : now[i].near_slip;
+        const double leap = fabs(speed) * (c->at.t - c->crossings.last[i]) / 4;
         c->crossings.last[i] = c->at.t;
-        *unseen = c->mode[i] == 0 || leap > BG_LEAP * now[i].near_slip ? 0 : *unseen + 1;
+        linger(c, i, hangs && c->mode[i] ? fabs(speed) : INFINITY);
+        *unseen = c->mode[i] == 0 || leap > BG_LEAP * near ? 0 : *unseen + 1;
         gathers |= *unseen >= BG_STALLED;
     }
     return gathers ? BG_STALLS : BG_OK;
 }
 
-/* Takes the present instant into account, decides the mode there and removes slips that stick. */
-static int settle(const bg_engine *e, bg_course *c, int started)
+/* Takes the present instant into account, decides the mode there and removes slips that stick; from
+ * the mode before it. */
+static int settle_once(const bg_engine *e, bg_course *c, const int *before, int started)
 {
     const bg_sight *const sight = &e->sight;
-    int before[BG_MOST_PORTS], slipping[BG_MOST_PORTS], touched = 0;
+    int slipping[BG_MOST_PORTS], touched = 0;
     double fastest = 0.0;
-    if (sight->ports == 0)
-        return BG_OK;
-    memcpy(before, c->mode, sizeof before);
     memcpy(slipping, c->mode, sizeof slipping);
     int status = bg_evaluated(sight, &c->at, 1, slipping);
     if (status == BG_OK)
@@ -117,6 +130,23 @@ static int settle(const bg_engine *e, bg_course *c, int started)
     return status ? status : e->rest(e->self);
 }
 
+/* The same until no jump of second order comes to rest any more: what was left of its leap is gone
+ * then, and what goes with it may rest, too. */
+static int settle(const bg_engine *e, bg_course *c, int started)
+{
+    int before[BG_MOST_PORTS], rests = e->sight.ports > 0, status = BG_OK;
+    while (rests && status == BG_OK) {
+        memcpy(before, c->mode, sizeof before);
+        status = settle_once(e, c, before, started);
+        rests = 0;
+        for (int i = 0; i < e->sight.ports; i++)
+            rests |= bg_hangs(e->sight.kinds + i) && before[i] && c->mode[i] == 0;
+        memset(c->at.touched, 0, sizeof c->at.touched);
+        started = 1;
+    }
+    return status;
+}
+
 void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
 {
     c->at = (bg_instant){.t = t, .s = s};
@@ -127,8 +157,11 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
     c->log.count = c->rounds.next = c->rounds.full = 0;
     for (int i = 0; i < BG_MOST_PORTS; i++)
         c->mode[i] = first ? first[i] : 1;
-    for (int i = 0; i < BG_MOST_PORTS; i++)
-        c->crossings.last[i] = -INFINITY, c->crossings.unseen[i] = 0;
+    for (int i = 0; i < BG_MOST_PORTS; i++) {
+        c->crossings.last[i] = -INFINITY;
+        c->crossings.unseen[i] = 0;
+        c->crossings.speed[i][0] = c->crossings.speed[i][1] = INFINITY;
+    }
 }
 
 int bg_run(const bg_engine *e, bg_course *c)

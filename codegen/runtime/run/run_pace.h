@@ -12,11 +12,12 @@ typedef struct {
     int next, full;
 } bg_rounds;
 
-/* Of each port that is the jump of a law when it was crossed last, and how many of its latest leaps
- * could not be seen. */
+/* Of each port that is the jump of a law when it was crossed last, how many of its latest leaps
+ * could not be seen, and how fast it was crossed the last two times. */
 typedef struct {
     double last[BG_MOST_PORTS];
     int unseen[BG_MOST_PORTS];
+    double speed[BG_MOST_PORTS][2];
 } bg_crossings;
 
 /* The shortest time constant at the largest rate; what has none of its own is as slow as a run is

@@ -9,6 +9,7 @@ import bondgraph as bg
 from oracles.routes.kind import Array, Kind, stepwise
 
 N, A, P, LEVEL = 4.0, 6.0, 7.0, 0.5
+BRAKE, PULL = 2.0, 20.0
 
 
 def _relay():
@@ -45,4 +46,30 @@ def crossed() -> Kind:
     )  # fmt: skip
 
 
-JUMPING = (relay, crossed)
+def resting() -> Kind:
+    """m x'' = P - N sign(x) - A sign(x'): swings shrink by (N - A)/(N + A) to rest, until P is beyond both."""
+    m, out, back = 1.0, N + BRAKE, N - BRAKE
+    leaves = 3.2 + out / PULL
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        parts, begin, top, side = [], 0.0, 1.0, 1.0
+        while top > 1e-13:
+            fall, rise = np.sqrt(2 * top * m / back), np.sqrt(2 * top * m * back) / out
+            height = back * top / out
+            parts.append((begin, lambda s, a=side * top, b=side: a - b * back * s**2 / 2 / m))
+            parts.append((begin + fall, lambda s, h=-side * height, r=rise, b=side:
+                          h + b * out * (r - s) ** 2 / 2 / m))  # fmt: skip
+            begin, top, side = begin + fall + rise, height, -side
+        rest = (begin, lambda s: 0 * s), (leaves, lambda s: PULL / m * s**3 / 6)
+        return {"x": stepwise(t, *parts, *rest)}
+
+    nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"), bg.Df("d", integrate="x"),
+             bg.R("relay", flow="w", law="N*sign(x) + A*sign(w)")]  # fmt: skip
+    return Kind(
+        "relay of second order", bond_graph(nodes, "push>n>m n>relay n>d"), {"m": m, "N": N, "A": BRAKE},
+        {"P": f"ramp(3.2, {PULL})"}, known, 4.0, {"x": 1.0}, at=0.3,
+        rest={"inputs": {"P": 2.0}, "initial": {"x": 0.1}},
+    )  # fmt: skip
+
+
+JUMPING = (relay, crossed, resting)
