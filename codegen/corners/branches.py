@@ -10,7 +10,7 @@ from sympy.core.relational import Ge, Gt, Le, Lt
 class Branch(sp.Function):  # type: ignore[misc]
     """``Branch(side, above, below)``: ``above`` where the side is 1, ``below`` where it is -1.
 
-    Only one of the two is evaluated.
+    A side may be an expression of sides. Only one of the two is evaluated.
 
     >>> side, x = sp.symbols("side x")
     >>> f = sp.lambdify([side, x], Branch(side, x, 1/x))
@@ -87,21 +87,33 @@ class Sided:
         if condition in (sp.true, sp.false):
             return yes if condition == sp.true else no
         if isinstance(condition, Gt | Ge | Lt | Le):
-            size = condition.lhs - condition.rhs
             above, below = (yes, no) if isinstance(condition, Gt | Ge) else (no, yes)
-            return self._at(size, above, below, sp.Piecewise((yes, condition), (no, True)))
+            plain = sp.Piecewise((yes, condition), (no, True))
+            return self._at(condition.lhs - condition.rhs, above, below, plain)
+        return Branch(self._holds(condition), yes, no)
+
+    def _holds(self, condition: sp.Basic) -> sp.Expr:
+        """1 where a condition holds, else -1."""
+        one, parts = sp.Integer(1), sorted(condition.args, key=sp.default_sort_key)
         if isinstance(condition, sp.Not):
-            return self.chosen(condition.args[0], no, yes)
-        if isinstance(condition, sp.And):
-            for part in sorted(condition.args, key=sp.default_sort_key):
-                yes = self.chosen(part, yes, no)
-            return yes
-        if isinstance(condition, sp.Or):
-            for part in sorted(condition.args, key=sp.default_sort_key):
-                no = self.chosen(part, yes, no)
-            return no
+            return -self._holds(parts[0])
+        if isinstance(condition, sp.And | sp.Or):
+            first, *others = map(self._holds, parts)
+            for other in others:
+                first = (
+                    Branch(first, other, -one)
+                    if isinstance(condition, sp.And)
+                    else Branch(first, one, other)
+                )
+            return first
+        told = None
+        if isinstance(condition, Gt | Ge | Lt | Le):
+            told = self._side(condition.lhs - condition.rhs)
+        if told is not None:
+            side, way = told
+            return way * side if isinstance(condition, Gt | Ge) else -way * side
         # What is so at single points, or is no comparison, has no side.
-        return sp.Piecewise((yes, condition), (no, True))
+        return sp.Piecewise((one, condition), (-one, True))
 
 
 KINDS = (sp.Abs, sp.sign, sp.Heaviside, sp.Max, sp.Min, sp.Piecewise)

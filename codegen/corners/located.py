@@ -163,13 +163,18 @@ def _ways(
 ) -> list[set[Way]]:
     """For each side the ways to where it is asked for."""
     found: dict[sp.Symbol, set[Way]] = {side: set() for side in sides}
-    hangs = dict(zip(sides, arguments, strict=True))
+    hangs, named = dict(zip(sides, arguments, strict=True)), set(sides)
+
+    def count(side: sp.Symbol, way: Way) -> None:
+        if not {(side, 1), (side, -1)} & way and not any(known <= way for known in found[side]):
+            found[side] = {known for known in found[side] if not way <= known} | {way}
+            walk(hangs[side], way)
 
     def walk(expr: sp.Expr, way: Way) -> None:
-        if not expr.has(Branch):
-            return
-        if not isinstance(expr, Branch):
-            for part in expr.args:
+        if expr in found:
+            count(expr, way)
+        if not (isinstance(expr, Branch) and expr.args[0] in found):
+            for part in expr.args if expr.free_symbols & named else ():
                 walk(part, way)
             return
         side, above, below = expr.args
@@ -177,9 +182,7 @@ def _ways(
             walk(above, way | {(side, 1)})
         if (side, 1) not in way:
             walk(below, way | {(side, -1)})
-        if not {(side, 1), (side, -1)} & way and not any(known <= way for known in found[side]):
-            found[side] = {known for known in found[side] if not way <= known} | {way}
-            walk(hangs[side], way)
+        count(side, way)
 
     for law in laws:
         walk(law, frozenset())

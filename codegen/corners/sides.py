@@ -5,13 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bondgraph.algebra.expressions import TIME
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.numbers.falling import Falling
-from codegen.program.records import Program
 from codegen.standalone.instant import Instant
 from codegen.tuning import TUNING
 
@@ -43,7 +41,7 @@ class Sight:
     def instant(self, t: float, s: Array) -> Instant:
         """An instant with all that corners hang on."""
         model = self.model
-        if not _by_states(model.program):
+        if not model.program.corners_told:
             return model.at(t, s, self.pieces, self.mode).instant(t)
         n, program = len(model.program.states), model.program
         w, dw = model.given(t, self.pieces)
@@ -74,15 +72,6 @@ class Sight:
         corners = self.model.corners
         assert corners is not None
         return corners(now).reshape(2, -1)
-
-
-def _by_states(program: Program) -> bool:
-    """Whether states, inputs and the time tell what corners hang on."""
-    assert program.corners is not None
-    known = {TIME, *program.states, *program.law_states, *program.external}
-    known |= {*program.parameters, *program.sides}
-    driven = not program.varying and bool(program.layout["E"].rows)
-    return not driven and known >= set(program.corners.values.arguments)
 
 
 def begun(sight: Sight, t: float, s: Array, ahead: float) -> Sides:

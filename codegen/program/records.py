@@ -6,6 +6,7 @@ from functools import cached_property
 
 import sympy as sp
 
+from bondgraph.algebra.expressions import TIME
 from bondgraph.equations import StateEquations
 from codegen.standalone.switchings import Switching
 
@@ -203,6 +204,22 @@ class Program:
     def sides(self) -> tuple[sp.Symbol, ...]:
         """The sides of corners that are located."""
         return () if self.corners is None else self.corners.sides
+
+    @property
+    def happening(self) -> tuple[Hashable, ...]:
+        """Where events happen, as C counts it: at ports, then at nodes whose laws have corners."""
+        corners = () if self.corners is None else self.corners.nodes
+        return (*(port.name for port in self.friction), *corners)
+
+    @property
+    def corners_told(self) -> bool:
+        """Whether states, external inputs and the time alone tell what corners hang on."""
+        if self.corners is None or (not self.varying and self.layout["E"].rows):
+            return False
+        known = {*self.states, *self.law_states, *self.external, TIME}
+        known |= {*self.parameters, *self.sides}
+        read = {*self.corners.values.arguments, *self.corners.on_sides.arguments}
+        return known >= read
 
     @cached_property
     def on_sides(self) -> "Program":

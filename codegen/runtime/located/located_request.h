@@ -13,7 +13,7 @@ enum bg_method { BG_AUTO, BG_DOP853, BG_RADAU };
  * those there, law states last. `record` is called for each sample in turn, with the instant just
  * after it if it is an event's. `smooth`, if there is one, is called for the part of each step that
  * is kept, with the run; it gives a status. The run tells `count` events and `time`, where it
- * ended. */
+ * ended. `corners`: whether those of laws are events. */
 typedef struct {
     const double *times, *states;
     int samples, method;
@@ -22,7 +22,7 @@ typedef struct {
     void (*record)(void *to, int sample, const double *w, const int *mode,
                    const bg_snapshot *shot);
     bg_event *events;
-    int capacity, count;
+    int capacity, count, corners;
     double time;
     int (*smooth)(void *to, void *run, double begin, double end);
     const int *first; /* a mode for each port before the run; NULL: all switches are off */
