@@ -226,9 +226,9 @@ def _functions(program: Program) -> list[str]:
         lines += function(name, what, code, where, False, sided)
     known, coupled = program.known.values, program.coupled.values
     lines += function("known_values", "What known laws give", known, where, True, on.known.values)
-    for at, (group, sided) in enumerate(zip(program.groups, on.groups, strict=True)):
+    for at, (group, beside) in enumerate(zip(program.groups, on.groups, strict=True)):
         ports = ", ".join(str(port) for port in group.ports)
         what = f"What {ports} gives"
-        lines += function(f"group_{at}_values", what, group.values, where, True, sided.values)
+        lines += function(f"group_{at}_values", what, group.values, where, True, beside.values)
     what = "Laws solved with friction"
     return [*lines, *function("coupled_values", what, coupled, where, True, on.coupled.values)]

@@ -111,13 +111,16 @@ class CornerWatch:
 
     def __init__(self, sight: Sight, sides: Sides, t: float, s: Array, blind: float) -> None:
         self._sight, self._sides = sight, np.array(sides)
-        limits = sight.limits(t, s).tolist()
-        self._falling = Falling(limits, blind, self._triggers(t, s))
+        self._falling = Falling(sight.limits(t, s), blind, self._triggers(t, s))
 
     def first(
         self, t_old: float, t_new: float, dense: Dense
     ) -> tuple[float, frozenset[int]] | None:
         """The first time in a step at which corners are crossed, and these."""
+        middle = 0.5 * (t_old + t_new)
+        ends = self._triggers(middle, dense(middle)), self._triggers(t_new, dense(t_new))
+        if self._falling.passes(*ends):
+            return None
         return self._falling.first(
             t_old, t_new,
             lambda times: [self._triggers(t, dense(t)) for t in times],

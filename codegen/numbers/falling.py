@@ -24,8 +24,8 @@ class Falling:
     out of rest makes progress. ``before``: all where the stretch begins.
     """
 
-    def __init__(self, limits: Sequence[float], blind: float, before: Array) -> None:
-        self._limits, self._blind, self._before = limits, blind, before
+    def __init__(self, limits: Array, blind: float, before: Array) -> None:
+        self._limits, self._blind, self._before = limits.tolist(), blind, before
         self._armed = [False] * len(limits)
 
     def first(
@@ -47,6 +47,20 @@ class Falling:
         time = min(roots.values())
         near = time + TUNING.together * max(abs(time), t_new - t_old)
         return time, frozenset(i for i, root in roots.items() if root <= near)
+
+    def passes(self, middle: Array, end: Array) -> bool:
+        """Whether nothing falls in a step, as its ends and its middle alone tell: it is behind then.
+
+        All are further above zero than three times the larger change from one of these to the next.
+        """
+        most = np.maximum(np.abs(middle - self._before), np.abs(end - middle))
+        clear = np.minimum(np.minimum(self._before, middle), end) > TUNING.clear * most
+        if not bool((clear | np.isinf(end)).all()):
+            return False
+        self._before = end
+        for i, limit in enumerate(self._limits):
+            self._armed[i] = self._armed[i] or bool(end[i] > limit)
+        return True
 
     def _first_fall(
         self, i: int, grid: Sequence[float], values: Sequence[float], above: Above

@@ -124,6 +124,13 @@ static int away_at(void *located, double t, double *values)
 int bg_corners_step(bg_located *c, double *time)
 {
     const bg_triggers of = {c, away_at, BG_CORNERS};
+    const double begin = c->solver.t_old, stop = c->solver.t;
+    double middle[BG_WATCHED], end[BG_WATCHED];
+    int status = away_at(c, begin + 0.5 * (stop - begin), middle);
+    if (status == BG_OK)
+        status = away_at(c, stop, end);
+    if (status != BG_OK || bg_all_pass(&c->corners.of, BG_CORNERS, middle, end))
+        return status;
     return bg_first_fall(&c->corners.of, &of, c->solver.t_old, c->solver.t, time,
                          c->corners.crossed);
 }

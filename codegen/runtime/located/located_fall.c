@@ -102,6 +102,21 @@ static int first_fall(root_search *asked, const double *times, double values[POI
     return 0;
 }
 
+int bg_all_pass(bg_falling *f, int count, const double *middle, const double *end)
+{
+    for (int i = 0; i < count; i++) {
+        const double first = f->before[i];
+        const double most = fmax(fabs(middle[i] - first), fabs(end[i] - middle[i]));
+        if (!isinf(end[i]) && !(fmin(fmin(first, middle[i]), end[i]) > BG_CLEAR * most))
+            return 0;
+    }
+    for (int i = 0; i < count; i++) {
+        f->before[i] = end[i];
+        f->armed[i] |= end[i] > f->limit[i];
+    }
+    return 1;
+}
+
 int bg_first_fall(bg_falling *f, const bg_triggers *of, double begin, double end, double *time,
                   int *which)
 {

@@ -45,11 +45,13 @@ int bg_corners_go(bg_located *c, double stop);
 int bg_located_stretch(bg_located *c, double stop, double first, int *ended);
 
 /* located_fall.c: so many triggers of something inside a step, each positive until its event; a
- * status. The first time in a step at which one falls, infinite where none does, and which do. */
+ * status. Whether none falls in a step, as its ends and its middle tell: it is behind then. The
+ * first time in a step at which one falls, infinite where none does, and which do. */
 typedef struct {
     void *self;
     int (*at)(void *self, double t, double *values), count;
 } bg_triggers;
+int bg_all_pass(bg_falling *f, int count, const double *middle, const double *end);
 int bg_first_fall(bg_falling *f, const bg_triggers *of, double begin, double end, double *time,
                   int *which);
 

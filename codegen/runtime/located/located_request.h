@@ -13,7 +13,7 @@ enum bg_method { BG_AUTO, BG_DOP853, BG_RADAU };
  * those there, law states last. `record` is called for each sample in turn, with the instant just
  * after it if it is an event's. `smooth`, if there is one, is called for the part of each step that
  * is kept, with the run; it gives a status. The run tells `count` events and `time`, where it
- * ended. `corners`: whether those of laws are events. */
+ * ended. */
 typedef struct {
     const double *times, *states;
     int samples, method;
@@ -22,12 +22,13 @@ typedef struct {
     void (*record)(void *to, int sample, const double *w, const int *mode,
                    const bg_snapshot *shot);
     bg_event *events;
-    int capacity, count, corners;
+    int capacity, count;
     double time;
     int (*smooth)(void *to, void *run, double begin, double end);
     const int *first; /* a mode for each port before the run; NULL: all switches are off */
     const int *named; /* whether each state is kept as it is; NULL: all are */
     double *moved;    /* NULL, or for what each state gains as the start is completed */
+    int corners;      /* whether those of laws are events, too */
 } bg_request;
 
 #endif
