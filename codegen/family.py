@@ -15,6 +15,7 @@ from bondgraph.analyse.closures import merged_laws
 from bondgraph.analyse.turned import turned
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, SignalError
+from codegen.corners.located import with_corners
 from codegen.engine.located import LocatedLibrary
 from codegen.model.doubts import warn_of_doubts
 from codegen.model.exact_values import exact_parameters
@@ -67,7 +68,7 @@ class Family:
     @cached_property
     def program(self) -> Program:
         """The equations lowered, for parameters of these names."""
-        program = lower(self.equations, self.laws, self.parameters, timed=True)
+        program = with_corners(lower(self.equations, self.laws, self.parameters, timed=True))
         # Once for the family's own numbers, not for every run's.
         warn_of_doubts(program, self.equations, exact_parameters(self.parameters))
         return program

@@ -8,6 +8,7 @@ from typing import Any
 from bondgraph.analyse.turned import turned
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, SignalError
+from codegen.corners.located import with_corners
 from codegen.engine.located import LocatedLibrary, LocatedRuns
 from codegen.engine.runs import CRuns
 from codegen.model.doubts import warn_of_doubts
@@ -69,7 +70,9 @@ def bare_simulator(
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
     equations = turned(equations, laws)
-    return bound(lower(equations, laws, parameters, timed), equations, parameters, laws)
+    return bound(
+        with_corners(lower(equations, laws, parameters, timed)), equations, parameters, laws
+    )
 
 
 def bound(

@@ -98,6 +98,7 @@ class Simulator:
         atol: float = TUNING.atol,
         initially_on: Iterable[Hashable] = (),
         events: bool = True,
+        corners: bool = False,
     ) -> Result:
         """Integrate over the given times [s] and sample every signal at them.
 
@@ -109,7 +110,9 @@ class Simulator:
         switch is a column of the result, 1 or 0. States that are not named then follow what these hold:
         the result's ``completed`` has them, and a `ModelWarning` tells. One tells, too, of a switch that
         stays on while its command rests at zero. ``events``: whether the result keeps what happened; without,
-        a run of any length takes no more memory than its samples and inputs.
+        a run of any length takes no more memory than its samples and inputs. ``corners``: whether it
+        keeps, too, where laws with `abs`, `max`, `min`, `sign` or `Piecewise` come over a corner, where the
+        integration stops and goes on, asked for or not.
 
         What backend "c" cannot go on with is run by numpy, and a `BackendWarning` tells why.
 
@@ -117,7 +120,7 @@ class Simulator:
         `MissingExtraError` for what the method needs.
         """
         done = self.run_telling(
-            tell, time, initial, inputs, method, rtol, atol, initially_on, events
+            tell, time, initial, inputs, method, rtol, atol, initially_on, events, corners
         )
         tell_completed(done.completed)
         tell_resting(self.closed, done)
@@ -134,6 +137,7 @@ class Simulator:
         atol: float = TUNING.atol,
         initially_on: Iterable[Hashable] = (),
         events: bool = True,
+        corners: bool = False,
     ) -> Result:
         """As `run`; ``tell`` is called where numpy runs what C was asked to.
 
@@ -154,7 +158,7 @@ class Simulator:
         with np.errstate(all="ignore"):
             pieces = [signal.piece(begin) for signal in signals]
             begun = beginning(self.closed, begin, start, pieces, on, {str(n) for n in initial})
-            asked = Request(times, states + begun.moved, begun, signals, settings, events)
+            asked = Request(times, states + begun.moved, begun, signals, settings, events, corners)
             found = None
             if self.located is not None:
                 found = in_c(self.closed, asked, self.engine, self.located)

@@ -89,6 +89,7 @@ class Tuning:
     dip: float = _told(1e-9, "of a step, to which the bottom of a dip is found")
     dip_looks: int = _told(60, "so often, at most")
     dip_inside: float = _told(0.1, "of the distance of two points, next to which none is looked at")
+    clear: float = _told(3.0, "changes over half a step above which nothing falls to zero in it")
     first_small: float = _told(1e-5, "states or rates so small in tolerances tell no first step")
     first_step: float = _told(1e-6, "s, the first step then")
     first_part: float = _told(1e-2, "of what moves a state by itself: a first try; of a tolerance")

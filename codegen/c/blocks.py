@@ -62,20 +62,34 @@ def body(code: Block, where: Mapping[sp.Symbol, str], result: str) -> list[str]:
 
 
 def function(
-    name: str, what: str, code: Block, where: Mapping[sp.Symbol, str], local: bool = True
+    name: str,
+    what: str,
+    code: Block,
+    where: Mapping[sp.Symbol, str],
+    local: bool = True,
+    on_sides: Block | None = None,
 ) -> list[str]:
-    """A block as a function that writes its results to ``out``."""
+    """A block as a function that writes its results to ``out``; ``on_sides``: on one side of each corner."""
+    if on_sides is not None and on_sides != code:
+        beside = function(
+            f"{name}_on_sides", f"{what}, on one side of each corner", on_sides, where
+        )
+        turn = [f"    if (v->sided > 0) {{ {name}_on_sides(v, out); return; }}"]
+    else:
+        beside, turn = [], []
     count = code.operations
     counted = f"{count} operation{'s' if count != 1 else ''}"
     unused = [
-        *([] if code.arguments else ["    (void)v;"]),
+        *([] if code.arguments or turn else ["    (void)v;"]),
         *([] if code.results else ["    (void)out;"]),
     ]
     return [
+        *beside,
         "",
         *comment(f"{what}: {counted}."),
         f"{'static ' if local else ''}void {name}(const bg_values *v, double *out)",
         "{",
+        *turn,
         *body(code, where, "out"),
         *unused,
         "}",

@@ -8,7 +8,7 @@ from bondgraph.equations import StateEquations
 from codegen.c.blocks import function, places
 from codegen.c.prefix import external_symbols, renamed
 from codegen.c.rates import plain_rates, straight_rates
-from codegen.c.rhs import straight
+from codegen.c.rhs import straights
 from codegen.c.runtime import runtime_file, runtime_names
 from codegen.c.scenario import scenario_text
 from codegen.c.tables import config, group_tables, name_tables, program_tables, slip_tables
@@ -157,7 +157,7 @@ def texts(
     macros = renamed(prefix, external_symbols(headers))
     program, equations = closed.program, closed.equations
     check_sets(program, closed.slips)
-    ports, fast = range(len(program.friction)), straight(program)
+    ports, fast = range(len(program.friction)), straights(program)
     lines = [
         *_head(program, equations, name, prefix),
         *name_tables(program, equations, name),
@@ -209,20 +209,26 @@ def _head(program: Program, equations: StateEquations, name: str, prefix: str) -
 
 def _functions(program: Program) -> list[str]:
     """The blocks of the program as functions."""
-    where = places(program)
+    where, on = places(program), program.on_sides
     rows = [
-        ("bg_coefficients", "Nonzero entries of A, J, B, E, F, D, H, K", program.coefficients),
-        ("bg_known_rates", "Rates of what known laws give", program.known_rates),
+        ("bg_coefficients", "Nonzero entries of A, J, B, E, F, D, H, K", program.coefficients,
+         on.coefficients),
+        ("bg_known_rates", "Rates of what known laws give", program.known_rates, on.known_rates),
         ("bg_friction_values", "Level, breakaway level, curve and curve at rest of each friction port",
-         program.friction_values),
-        ("bg_guards", "Conditions of switches, to turn on and to turn off in turn", program.guards),
+         program.friction_values, on.friction_values),
+        ("bg_guards", "Conditions of switches, to turn on and to turn off in turn", program.guards, None),
     ]  # fmt: skip
+    if program.corners is not None:
+        what = "What corners hang on, and for each whether it counts"
+        rows.append(("bg_corners", what, program.corners.values, program.corners.on_sides))
     lines: list[str] = []
-    for name, what, code in rows:
-        lines += function(name, what, code, where, local=False)
-    lines += function("known_values", "What known laws give", program.known.values, where)
-    for at, group in enumerate(program.groups):
+    for name, what, code, sided in rows:
+        lines += function(name, what, code, where, False, sided)
+    known, coupled = program.known.values, program.coupled.values
+    lines += function("known_values", "What known laws give", known, where, True, on.known.values)
+    for at, (group, beside) in enumerate(zip(program.groups, on.groups, strict=True)):
         ports = ", ".join(str(port) for port in group.ports)
-        lines += function(f"group_{at}_values", f"What {ports} gives", group.values, where)
-    coupled = program.coupled.values
-    return [*lines, *function("coupled_values", "Laws solved with friction", coupled, where)]
+        what = f"What {ports} gives"
+        lines += function(f"group_{at}_values", what, group.values, where, True, beside.values)
+    what = "Laws solved with friction"
+    return [*lines, *function("coupled_values", what, coupled, where, True, on.coupled.values)]

@@ -39,6 +39,14 @@ def straight(program: Program) -> Straight | None:
     return _Builder(program, blocks).built()
 
 
+def straights(program: Program) -> tuple[Straight, ...]:
+    """Straight-line code for the rates, where there is some: of laws as they are, and on one side of each
+    corner, where they have any."""
+    kinds = [program] if program.corners is None else [program, program.on_sides]
+    found = tuple(fast for one in kinds if (fast := straight(one)) is not None)
+    return found if len(found) == len(kinds) else ()
+
+
 def _blocks(program: Program) -> list[list[int]]:
     """States that A couples, each with those it is coupled to."""
     coupled: nx.Graph[int] = nx.Graph()
@@ -64,7 +72,7 @@ class _Builder:
         taken = {
             name.name
             for part in (program.states, program.law_states, program.inputs, program.external,
-                         program.readings, program.parameters)
+                         program.readings, program.parameters, program.sides)
             for name in part
         }  # fmt: skip
         self._constants = Constants(self._parameters, taken)

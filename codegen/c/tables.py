@@ -28,7 +28,7 @@ LARGE = 16
 
 def config(
     program: Program,
-    fast: Straight | None,
+    fast: Sequence[Straight],
     name: str,
     macros: Sequence[str] = (),
     longest: float | None = None,
@@ -66,7 +66,7 @@ def _steps(longest: float | None, ports: int) -> list[str]:
     ]
 
 
-def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:
+def _sizes(program: Program, fast: Sequence[Straight]) -> dict[str, int]:
     ports, coupled = len(program.friction), len(program.coupled.inputs)
     sizes = [len(group.inputs) for group in program.groups]
     loops = [len(group.inputs) for group in program.groups if group.loop]
@@ -93,14 +93,21 @@ def _sizes(program: Program, fast: Straight | None) -> dict[str, int]:
         "RESETS": len(program.resets),
         "COUPLED": coupled,
         "HOLDS": min(FEW_HOLDS if program.varying or ports > LARGE else MOST_HOLDS, 2**ports),
-        "CONSTANTS": len(fast.constants) if fast else 0,
+        "CONSTANTS": sum(len(one.constants) for one in fast),
         "VARYING": int(program.varying),
         "AFFINE": int(program.affine),
         "JOINT": int(program.joint),
         "DRIVEN": int(bool(program.layout["E"].rows)),
         "RATED": int(program.rated),
-        "STRAIGHT": int(fast is not None),
+        "STRAIGHT": int(bool(fast)),
+        **_corners(program),
     }
+
+
+def _corners(program: Program) -> dict[str, int]:
+    """How many there are, and whether states, inputs and time tell what they hang on; of no others a word."""
+    count = len(program.sides)
+    return {"CORNERS": count, "CORNERS_TOLD": int(program.corners_told)} if count else {}
 
 
 def name_tables(program: Program, equations: StateEquations, name: str) -> list[str]:

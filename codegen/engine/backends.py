@@ -20,7 +20,10 @@ from codegen.runs.track import Settings, Track
 
 @dataclass(frozen=True)
 class Request:
-    """A run ready to begin. ``states``: at its start, completed; ``events``: whether they are kept."""
+    """A run ready to begin. ``states``: at its start, completed; ``events``: whether they are kept.
+
+    ``corners``: whether those of laws are events.
+    """
 
     times: Array
     states: Array
@@ -28,13 +31,14 @@ class Request:
     signals: Sequence[Signal]
     settings: Settings
     events: bool
+    corners: bool = False
 
 
 def in_numpy(model: ClosedModel, asked: Request) -> Recorded:
     """The run in numpy; `SimulationError` where it cannot go on."""
     run = run_hybrid(
         model, asked.times, asked.begun.s, asked.signals, asked.settings, first=asked.begun.mode,
-        keeping=asked.events,
+        keeping=asked.events, corners=asked.corners,
     )  # fmt: skip
     return _recorded(model, asked, run.track, "numpy")
 
@@ -58,7 +62,7 @@ def in_c(
     if method not in LOCATED_METHODS:
         return stopped
     return located.run(
-        asked.times, asked.states, asked.signals, asked.settings, first, asked.events
+        asked.times, asked.states, asked.signals, asked.settings, first, asked.events, asked.corners
     )
 
 

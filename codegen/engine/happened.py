@@ -8,7 +8,7 @@ import numpy as np
 
 from codegen.runs.track import Event
 
-KINDS = ("stick", "slip", "cross", "on", "off", "hit", "touch", "apart", "slide", "leave")
+KINDS = ("stick", "slip", "cross", "on", "off", "hit", "touch", "apart", "slide", "leave", "corner")
 
 EVENT = np.dtype(
     [("time", np.float64), ("port", np.intc), ("kind", np.intc), ("impulse", np.float64)],

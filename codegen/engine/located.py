@@ -103,11 +103,11 @@ class LocatedRuns:
 
     def run(
         self, times: Array, states: Array, signals: Sequence[Signal], settings: Settings,
-        first: Mode = (), keeping: bool = True,
+        first: Mode = (), keeping: bool = True, corners: bool = False,
     ) -> Recorded | Stopped:  # fmt: skip
         """Run and record, or why it could not go on; ``first``: the mode before, all let go unless told.
 
-        ``keeping``: whether events are kept.
+        ``keeping``: whether events are kept; ``corners``: whether those of laws are among them.
         """
         if not has_table(signals):
             return Stopped(NO_TABLE, limit=True)
@@ -118,7 +118,7 @@ class LocatedRuns:
         asked = ffi.new("bg_request *")
         asked.times, asked.states = _pointer(ffi, times), _pointer(ffi, start)
         asked.samples, asked.method = len(times), METHODS.index(settings.method)
-        asked.rtol, asked.atol = settings.rtol, settings.atol
+        asked.rtol, asked.atol, asked.corners = settings.rtol, settings.atol, corners
         asked.first = _pointer(ffi, begin, "int *")
         table = signal_table(signals, float(times[0]), float(times[-1]))
         events = self._called(asked, rows, table, keeping)
@@ -151,7 +151,7 @@ class LocatedRuns:
         if status != 0:
             reason = ffi.string(library.bg_model_message(status)).decode()
             return Stopped(reason, float(asked.time), status == Status.EVENTS)
-        names = [port.name for port in self.model.program.friction]
+        names = self.model.program.happening
         return tuple(told_events(ffi, events, asked.count, names)) if keeping else ()
 
     @cached_property

@@ -14,11 +14,14 @@ from codegen.standalone.instant import Formula, Instant
 
 
 class Binding:
-    """Blocks of a program with its parameters' numbers filled in."""
+    """Blocks of a program with its parameters' numbers filled in, and the sides of its corners."""
 
-    def __init__(self, program: Program, parameters: Mapping[str, sp.Rational]) -> None:
+    def __init__(
+        self, program: Program, parameters: Mapping[str, sp.Rational], sides: Sequence[int] = ()
+    ) -> None:
         self.places = readable(program, lambda place, *_: place)
-        self.constants = np.array([float(parameters[name.name]) for name in program.parameters])
+        numbers = [float(parameters[name.name]) for name in program.parameters]
+        self.constants = np.array([*numbers, *(sides or [0] * len(program.sides))], dtype=float)
 
     def function(self, code: Block) -> "BoundBlock":
         """A block as a function of an instant, giving its results as an array."""

@@ -83,21 +83,20 @@ class ClosedModel:
         self.opposed = opposed_ports(program, self.timed)
         self.rubbing = len(self.switches) < len(program.friction)
         binding = Binding(program, exact)
-        self._guards = binding.function(program.guards)
-        self._coefficients = binding.function(program.coefficients)
+        self._bind(binding)
         self._constant = None if program.varying else numbers(program, self.equations, exact)
         if program.varying:
             check_values(self.equations, exact)
         #: What friction ports receive, exact.
         self.slips = slip_rows(program, self.equations, exact)
-        self._form = formed(program, binding, self.numbers)
-        self._friction = rubbing(program, binding, self._form, self.slips)
+        self._evaluate_by(binding)
         #: Of affine models the maps of modes in which no load is shared.
         self.maps = AffineMaps(program, self._form, self._friction, self._constant)
         self._guard_maps = Latest[Mode, Array]()
         self._mixing = Latest[Mode, bool]()
         self._hung_rows: Array | None = None
         self._moves: tuple[Numbers, Moves] | None = None
+        self._on_sides: Latest[tuple[int, ...], ClosedModel] = Latest()
         self._run: Run | None = None
         #: The latest time, pieces, external inputs and rates: an instant is looked at many times.
         self._latest: tuple[float, tuple[Piece, ...], Array, Array] = (np.nan, (), NONE, NONE)
@@ -105,8 +104,31 @@ class ClosedModel:
     def within(self, run: Run) -> "ClosedModel":
         """The same model in a run: a level that a state rules rounds by what that state has been there."""
         made = copy(self)
-        made._run = run
+        made._run, made._on_sides = run, Latest()
         return made
+
+    def on_sides(self, sides: tuple[int, ...]) -> "ClosedModel":
+        """The same with laws on one side of each corner: 1 above what it hangs on is zero, -1 below."""
+        return self._on_sides.of(sides, lambda: self._with_sides(sides))
+
+    def _with_sides(self, sides: tuple[int, ...]) -> "ClosedModel":
+        made = copy(self)
+        made.program, made._moves = self.program.on_sides, None
+        binding = Binding(made.program, self.parameters, sides)
+        made._bind(binding)
+        made._evaluate_by(binding)
+        return made
+
+    def _bind(self, binding: Binding) -> None:
+        program = self.program
+        self._guards = binding.function(program.guards)
+        self._coefficients = binding.function(program.coefficients)
+        #: What corners hang on, and for each whether it counts.
+        self.corners = None if program.corners is None else binding.function(program.corners.values)
+
+    def _evaluate_by(self, binding: Binding) -> None:
+        self._form = formed(self.program, binding, self.numbers)
+        self._friction = rubbing(self.program, binding, self._form, self.slips)
 
     def place_name(self, place: int) -> str:
         """What a place in the integrated vector is called."""

@@ -69,17 +69,18 @@ def readable(
 ) -> dict[sp.Symbol, Where]:
     """For each name that formulas read where its value stands; a parameter before an input that it holds.
 
-    ``where``: of the place among all (t, x, z, y, u, w, w', parameters), part, place in that, and name.
+    ``where``: of the place among all (t, x, z, y, u, w, w', parameters, sides), part, place in that, name.
     """
     parts = {
         "t": (TIME,), "x": program.states, "z": program.law_states, "y": program.readings,
         "u": program.inputs, "w": program.external, "dw": program.external_rates,
-        "p": program.parameters,
+        "p": program.parameters, "side": program.sides,
     }  # fmt: skip
     listed = [(part, at, name) for part, names in parts.items() for at, name in enumerate(names)]
-    first = len(listed) - len(program.parameters)
+    last = len(listed) - len(program.sides)
+    first = last - len(program.parameters)
     found: dict[sp.Symbol, Where] = {}
-    for k in (*range(first, len(listed)), *range(first)):
+    for k in (*range(first, last), *range(first), *range(last, len(listed))):
         part, at, name = listed[k]
         found.setdefault(name, where(k, part, at, name.name))
     return found

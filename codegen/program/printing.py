@@ -53,6 +53,10 @@ class _C(C99CodePrinter):  # type: ignore[misc]
             text = f"({text})"
         return text
 
+    def _print_Branch(self, expr: sp.Expr) -> str:
+        side, above, below = map(self._print, expr.args)
+        return f"(({side} > 0) ? ({above}) : ({below}))"
+
     def _print_And(self, expr: sp.And) -> str:
         return " && ".join(f"({self._print(part)})" for part in expr.args)
 

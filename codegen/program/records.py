@@ -1,11 +1,12 @@
 """What a program is made of: straight-line code, patterns of matrices, groups of laws."""
 
 from collections.abc import Container, Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import sympy as sp
 
+from bondgraph.algebra.expressions import TIME
 from bondgraph.equations import StateEquations
 from codegen.standalone.switchings import Reset, Switching
 
@@ -120,6 +121,23 @@ class FrictionPort:
 
 
 @dataclass(frozen=True)
+class Corners:
+    """Where laws have corners or jump: at the zeros of what these hang on.
+
+    ``sides``: of each the name of its side, 1 where that is above zero, -1 below. ``nodes``: whose law it
+    is. ``values``: what each hangs on, and 1 for each, by the laws as they are; ``on_sides``: the same with
+    what they hang on, too, on one side of each of its own, and 0 for those that sides leave no part in.
+    ``blocks``: those of a program, in their order, with laws on one side of each corner.
+    """
+
+    sides: tuple[sp.Symbol, ...]
+    nodes: tuple[Hashable, ...]
+    values: Block
+    blocks: tuple[Block, ...]
+    on_sides: Block
+
+
+@dataclass(frozen=True)
 class Program:
     """Everything a simulator needs, as assignments; numbered as in the tuples of names.
 
@@ -177,6 +195,8 @@ class Program:
     hung: tuple[int, ...]
     #: The equations over these inputs, which know all of these readings.
     equations: StateEquations = field(repr=False, compare=False)
+    #: Where laws have corners, of a program that is run with these located; else None.
+    corners: Corners | None = None
 
     @property
     def size(self) -> int:
@@ -188,6 +208,42 @@ class Program:
         """Every block that a target evaluates."""
         laws = (group.values for group in (self.known, *self.groups, self.coupled))
         return (self.coefficients, *laws, self.known_rates, self.friction_values, self.guards)
+
+    @property
+    def sides(self) -> tuple[sp.Symbol, ...]:
+        """The sides of corners that are located."""
+        return () if self.corners is None else self.corners.sides
+
+    @property
+    def happening(self) -> tuple[Hashable, ...]:
+        """Where events happen, as C counts it: at ports, then at nodes whose laws have corners."""
+        corners = () if self.corners is None else self.corners.nodes
+        return (*(port.name for port in self.friction), *corners)
+
+    @property
+    def corners_told(self) -> bool:
+        """Whether states, external inputs and the time alone tell what corners hang on."""
+        if self.corners is None or (not self.varying and self.layout["E"].rows):
+            return False
+        known = {*self.states, *self.law_states, *self.external, TIME}
+        known |= {*self.parameters, *self.sides}
+        read = {*self.corners.values.arguments, *self.corners.on_sides.arguments}
+        return known >= read
+
+    @cached_property
+    def on_sides(self) -> "Program":
+        """The same with laws on one side of each corner, which ``sides`` tell."""
+        if self.corners is None:
+            return self
+        coefficients, known, *more = self.corners.blocks
+        groups, (coupled, rates, friction, guards) = more[:-4], more[-4:]
+        return replace(
+            self, coefficients=coefficients, known=replace(self.known, values=known),
+            groups=tuple(replace(g, values=v) for g, v in zip(self.groups, groups, strict=True)),
+            coupled=replace(self.coupled, values=coupled), known_rates=rates,
+            friction_values=friction, guards=guards,
+            corners=replace(self.corners, values=self.corners.on_sides),
+        )  # fmt: skip
 
     @property
     def moving(self) -> tuple[int, ...]:

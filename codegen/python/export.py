@@ -69,7 +69,7 @@ def to_python(
 
     Raises what `simulator` raises; `ExpressionError` for functions Python lacks.
     """
-    start = start_of(equations, parameters, laws, initial, inputs)
+    start = start_of(equations, parameters, laws, initial, inputs, located=False)
     closed = start.closed
     program, exact = closed.program, closed.parameters
     warn_of_doubts(program, equations, exact)

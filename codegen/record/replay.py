@@ -9,6 +9,7 @@ import sympy as sp
 
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError
+from codegen.corners.located import with_corners
 from codegen.energy.accounts import Account, Product
 from codegen.energy.ledger import Integrated
 from codegen.energy.stored import stored_energy
@@ -62,7 +63,9 @@ def closed_model(
     parameters: Mapping[str, sp.Rational],
 ) -> ClosedModel:  # fmt: skip
     """The model of a run, with more signals told."""
-    return ClosedModel(lower(equations, laws, parameters, timed=True), equations, parameters)
+    return ClosedModel(
+        with_corners(lower(equations, laws, parameters, timed=True)), equations, parameters
+    )
 
 
 def tally_of(model: ClosedModel, whole: Sequence[Account], times: Array) -> Tally:

@@ -24,6 +24,7 @@ from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
 from codegen.numbers.latest import Latest
 from codegen.runs.clock import NONE, Clock
+from codegen.runs.cornered import CorneredLeg, leg_of
 from codegen.runs.exact import ExactLeg
 from codegen.runs.free import FreeLeg
 from codegen.runs.legs import Leg
@@ -52,15 +53,17 @@ def run_hybrid(
     tally: Accumulating | None = None,
     first: Mode | None = None,
     keeping: bool = True,
+    corners: bool = False,
 ) -> Stretch:
     """Integrate over ``times`` [s], recording the vector at each of them.
 
     At a breakpoint or an event a sample shows the instant just after. ``tally``: what is integrated on
     the way. ``first``: how switches are before the run begins, friction as it likes; all let go unless told.
     ``keeping``: whether events are kept; without them nothing grows with the length of a run but its samples.
+    ``corners``: whether those of laws are among them.
     """
     course = _Course(model, times, start, signals, settings, first)
-    course.track.tally, course.track.keeping = tally, keeping
+    course.track.tally, course.track.keeping, course.track.cornered = tally, keeping, corners
     if tally is not None:
         tally.within(course.track)
     while course.unfinished:
@@ -234,8 +237,8 @@ class _Course:
             vectors = np.vstack([s, self.track.vectors[own], self.s])
             tally.exact(pieces, self.mode, points, vectors)
 
-    def _leg(self, pieces: Sequence[Piece], mode: Mode) -> Leg:
-        return Leg(self._model, pieces, mode, self._settings, self._origin, self._peaks)
+    def _leg(self, pieces: Sequence[Piece], mode: Mode) -> Leg | CorneredLeg:
+        return leg_of(self._model, pieces, mode, self._settings, self._origin, self._peaks)
 
     def _exact(self, pieces: Sequence[Piece], stop: float) -> ExactLeg | FreeLeg | None:
         """The stretch ahead as an exact one, where the mode is affine and exact steps are asked for."""

@@ -7,6 +7,7 @@ import numpy as np
 import scipy
 
 from bondgraph.errors import SimulationError
+from codegen.corners.sides import CornerWatch
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
@@ -24,7 +25,10 @@ STEP_BOUND = 1.0
 
 
 class Leg:
-    """A smooth stretch in one mode; ``origin`` [s] is where the run began."""
+    """A smooth stretch in one mode; ``origin`` [s] is where the run began.
+
+    ``corners``: watches those of its laws, where it is to end at the next; ``first_step`` [s]: tried first.
+    """
 
     def __init__(
         self,
@@ -34,9 +38,14 @@ class Leg:
         settings: Settings,
         origin: float,
         peaks: Peaks | None = None,
+        corners: CornerWatch | None = None,
+        first_step: float | None = None,
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
         self._settings, self._origin, self._peaks = settings, origin, peaks
+        self._corners, self._first_step = corners, first_step
+        #: The corners at which it ended, its latest step [s], and the largest rate [1/s].
+        self.crossed, self.step, self.rate = frozenset[int](), first_step, 0.0
         self._rates = model.rates(pieces, mode)
 
     def fastest(self, t: float, s: Array) -> float:
@@ -63,12 +72,13 @@ class Leg:
                 if track.tally is not None:
                     track.tally.record()
             return stop, s, frozenset()
-        fastest = self.fastest(t, s)
+        self.rate = fastest = self.fastest(t, s)
         name = self._integrator(fastest, float(times[-1]) - self._origin)
         explicit = name == "DOP853"
+        first = {} if self._first_step is None else {"first_step": min(self._first_step, stop - t)}
         solver = integrator(name)(
             self._rate, t, s, stop, rtol=self._settings.rtol, atol=self._settings.atol,
-            max_step=self._bound(explicit, fastest, t),
+            max_step=self._bound(explicit, fastest, t), **first,
         )  # fmt: skip
         watch = Watch(self._model, self._pieces, self._mode, t, s, self._peaks)
         steps, progress = 0, self._progress(t)
@@ -77,7 +87,8 @@ class Leg:
             if solver.status == "failed":
                 raise _failed(solver, message)
             dense = solver.dense_output()
-            found = watch.first_event(solver.t_old, solver.t, dense)
+            self.step = solver.t - solver.t_old
+            found = self._next(watch, solver.t_old, solver.t, dense)
             until = solver.t if found is None else found[0]
             track.see(solver.y[None])
             self._sample(times, track, until, dense)
@@ -91,6 +102,17 @@ class Leg:
                 fastest = self.fastest(solver.t, solver.y)
             solver.max_step = self._bound(explicit, fastest, solver.t)
         return stop, solver.y, frozenset()
+
+    def _next(
+        self, watch: Watch, t_old: float, t_new: float, dense: Dense
+    ) -> tuple[float, frozenset[int]] | None:
+        """The first event in a step, of no port where it is a corner."""
+        found = watch.first_event(t_old, t_new, dense)
+        turn = None if self._corners is None else self._corners.first(t_old, t_new, dense)
+        if turn is None or (found is not None and found[0] <= turn[0]):
+            return found
+        self.crossed = turn[1]
+        return turn[0], frozenset()
 
     def _progress(self, t: float) -> Progress:
         driven = max((piece.fastest for piece in self._pieces), default=0.0)

@@ -8,6 +8,7 @@ from bondgraph.analyse.turned import turned
 from bondgraph.declare.switching import checked_modes
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
+from codegen.corners.located import with_corners
 from codegen.inputs.signal import Signal
 from codegen.model.starts import told_starts
 from codegen.modes.closed import ClosedModel
@@ -38,8 +39,11 @@ def start_of(
     initial: Mapping[str, float] | None,
     inputs: Mapping[str, object] | None,
     initially_on: Iterable[Hashable] = (),
+    located: bool = True,
 ) -> Start:
     """Arguments as of `to_c`: states and inputs that are not named are zero.
+
+    ``located``: whether the export locates events, and with them the corners of laws.
 
     Raises what `simulator` raises.
     """
@@ -47,6 +51,7 @@ def start_of(
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
     equations = turned(equations, laws)
     program = lower(equations, laws, parameters)
+    program = with_corners(program) if located else program
     closed = ClosedModel(program, equations, parameters)
     names = [symbol.name for symbol in (*program.states, *program.law_states)]
     external = [symbol.name for symbol in program.external]

@@ -15,30 +15,32 @@ class Cvode:
 
     ``formulas``: "Adams" (orders 1 to 12), or "BDF" (backward differences, orders 1 to 5) for stiff rates.
     ``status``: "running", "finished" at ``t_bound``, or "failed". Steps are never longer than
-    ``max_step`` and never end beyond ``t_bound``.
+    ``max_step`` and never end beyond ``t_bound``; ``first_step``: 0 where CVODE is to find it.
 
     Raises `MissingExtraError` without scikit-sundae.
     """
 
     def __init__(
         self, formulas: str, rates: Callable[[float, Array], Array], t0: float, y0: Array,
-        t_bound: float, *, rtol: float, atol: float, max_step: float,
+        t_bound: float, *, rtol: float, atol: float, max_step: float, first_step: float = 0.0,
     ) -> None:  # fmt: skip
         def fill(t: float, y: Array, out: Array) -> None:
             out[:] = rates(t, y)
 
-        def begun(t: float, y: Array, longest: float) -> Any:
+        def begun(t: float, y: Array, longest: float, first: float = 0.0) -> Any:
             solver = _solver_class()(
                 fill,
                 method=formulas,
                 rtol=TUNING.tighter * rtol,
                 atol=TUNING.tighter * atol,
                 max_step=longest,
+                first_step=first,
             )
             solver.init_step(t, y)
             return solver
 
-        self._begun, self._solver, self._longest = begun, begun(t0, y0, max_step), max_step
+        self._begun, self._solver = begun, begun(t0, y0, max_step, min(first_step, max_step))
+        self._longest = max_step
         self.status, self._bound, self.max_step = "running", t_bound, max_step
         self.t_old, self.t, self.y = t0, t0, y0
 

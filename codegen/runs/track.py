@@ -20,7 +20,8 @@ class Event(NamedTuple):
 
     At a switch or a controlled junction "on" or "off"; at a `Stop` "touch", "apart", or "hit" where what met
     it is thrown back, or it takes a shock and stays as it is. At a law that jumps "slide" and "leave": it
-    stays where the law jumps, by a mixture of both sides; a jump that is crossed is no event. ``impulse``: of
+    stays where the law jumps, by a mixture of both sides; a jump that is crossed is no event. Where they are
+    asked for, "corner" at a node whose law comes over one. ``impulse``: of
     an impact, that of what the port gives; a port's events of one instant share it. Impacts with which a run
     begins are none: they complete a start that no mode holds.
     """
@@ -33,6 +34,10 @@ class Event(NamedTuple):
 
 Ended = tuple[float, Array, frozenset[int]]
 """How a stretch ended: time, integrated vector, and the ports whose event it was."""
+
+
+CORNER = "corner"
+"""What happens where a law has one, or jumps, and the run crosses it."""
 
 
 LATEST = 4
@@ -96,12 +101,19 @@ class Track:
     tally: Accumulating | None = None
     #: Whether all events are kept, or only the latest few.
     keeping: bool = True
+    #: Whether corners of laws are events.
+    cornered: bool = False
 
     def note(self, events: Sequence[Event]) -> None:
         """What has happened."""
         self.events += events
         if not self.keeping:
             del self.events[:-LATEST]
+
+    def cross(self, t: float, nodes: Sequence[Hashable]) -> None:
+        """Laws of these nodes have come over corners."""
+        if self.cornered:
+            self.note([Event(t, node, CORNER) for node in nodes])
 
     def see(self, vectors: Array) -> None:
         """Take the magnitudes of some vectors, the rows, into account."""

@@ -24,10 +24,36 @@ int bg_located_calm(bg_located *c, double *fastest);
 void bg_progress_begin(bg_located *c);
 int bg_progress_check(bg_located *c);
 
-/* located_watch.c: triggers from c->t on; the first event of the solver's latest step: 1 in *found,
- * with its time and ports. */
+/* located_watch.c: triggers from c->t on; the first event of the solver's latest step: its time,
+ * which is infinite where there is none, and ports. */
 int bg_watch_begin(bg_located *c);
-int bg_watch_step(bg_located *c, int *found, double *time, int *ports);
+int bg_watch_step(bg_located *c, double *time, int *ports);
+
+/* located_corner.c, where laws have any: which side of each laws are on from the present instant
+ * on, at the largest rate `fastest`; how corners are watched from there; the first that are crossed
+ * in the solver's latest step, as events are; on which side laws are after these. */
+int bg_corners_begin(bg_located *c, double fastest);
+int bg_corners_watch(bg_located *c, double fastest);
+int bg_corners_step(bg_located *c, double *time);
+int bg_corners_cross(bg_located *c);
+
+/* located_sides.c: as a stretch, from corner to corner. located_run.c: from the present instant to
+ * `stop`, or to the first event, or corner where laws are on one side of each: that in `ended`, 0
+ * where there is none. Its first step is tried as long as `first`, if that is above zero. */
+enum { BG_AT_EVENT = 1, BG_AT_CORNER };
+int bg_corners_go(bg_located *c, double stop);
+int bg_located_stretch(bg_located *c, double stop, double first, int *ended);
+
+/* located_fall.c: so many triggers of something inside a step, each positive until its event; a
+ * status. Whether none falls in a step, as its ends and its middle tell: it is behind then. The
+ * first time in a step at which one falls, infinite where none does, and which do. */
+typedef struct {
+    void *self;
+    int (*at)(void *self, double t, double *values), count;
+} bg_triggers;
+int bg_all_pass(bg_falling *f, int count, const double *middle, const double *end);
+int bg_first_fall(bg_falling *f, const bg_triggers *of, double begin, double end, double *time,
+                  int *which);
 
 /* located_dip.c: 1 where what is above zero at points k and k + 1, of `count`, is not at one
  * between them, which is found. */

@@ -28,6 +28,7 @@ typedef struct {
     const int *first; /* a mode for each port before the run; NULL: all switches are off */
     const int *named; /* whether each state is kept as it is; NULL: all are */
     double *moved;    /* NULL, or for what each state gains as the start is completed */
+    int corners;      /* whether those of laws are events, too */
 } bg_request;
 
 #endif

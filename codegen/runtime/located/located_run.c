@@ -73,9 +73,11 @@ static int take_away(void *run)
 static int hand_over(bg_located *c, const double *s)
 {
     const bg_request *const asked = c->asked;
-    const double t = asked->times[c->next];
+    const double t = asked->times[c->next], sided = c->model->now.sided;
     double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
+    c->model->now.sided = 0.0; /* told are laws as they are */
     const int status = bg_view_look(&c->view, t, s, c->run.mode);
+    c->model->now.sided = sided;
     if (status != BG_OK)
         return status;
     c->view.given(c->view.self, t, w, dw);
@@ -107,6 +109,24 @@ static double longest_now(const bg_located *c, int method, double fastest)
     return fastest > 0 ? fmin(bound, 1.0 / fastest) : bound;
 }
 
+/* The first event or corner in the latest step. */
+static int find_end(bg_located *c, double *until, int *ended)
+{
+    double corner = INFINITY;
+    int status = bg_watch_step(c, until, c->run.at.touched);
+#if BG_CORNERS > 0
+    if (status == BG_OK && c->model->now.sided > 0.0)
+        status = bg_corners_step(c, &corner);
+#endif
+    *ended = *until < INFINITY ? BG_AT_EVENT : 0;
+    if (corner < *until) {
+        *ended = BG_AT_CORNER;
+        *until = corner;
+        memset(c->run.at.touched, 0, sizeof c->run.at.touched);
+    }
+    return status;
+}
+
 /* A step: its end, or the event in it; samples before that are recorded. */
 static int step(bg_located *c, double stop, int *ended)
 {
@@ -114,7 +134,7 @@ static int step(bg_located *c, double stop, int *ended)
     double until = INFINITY, s[BG_SIZE];
     int status = bg_solver_step(c, stop);
     if (status == BG_OK)
-        status = bg_watch_step(c, ended, &until, c->run.at.touched);
+        status = find_end(c, &until, ended);
     if (status == BG_OK)
         status = sample(c, *ended ? until : c->solver.t);
     if (status == BG_OK && asked->smooth)
@@ -129,31 +149,50 @@ static int step(bg_located *c, double stop, int *ended)
     return BG_OK;
 }
 
-/* From the present instant to `stop`, to where one has to look, or to the first event. */
-static int go_on(void *run, double stop)
+int bg_located_stretch(bg_located *c, double stop, double first, int *ended)
 {
-    bg_located *const c = run;
     double fastest;
-    int status = bg_located_fastest(c, c->run.at.t, c->s, &fastest), ended = 0;
+    int status = bg_located_fastest(c, c->run.at.t, c->s, &fastest);
     int method = c->asked->method;
-    if (c->ahead)
-        stop = c->ahead(c->view.self, c->run.at.t, stop);
+    *ended = 0;
     if (method == BG_AUTO)
         method = fastest > c->stiff ? BG_RADAU : BG_DOP853;
     if (status == BG_OK)
         status = bg_solver_begin(c, method, longest_now(c, method, fastest), stop);
+    if (first > 0.0)
+        c->solver.next = fmin(first, c->solver.longest);
     if (status == BG_OK)
         status = bg_watch_begin(c);
+#if BG_CORNERS > 0
+    if (status == BG_OK && c->model->now.sided > 0.0)
+        status = bg_corners_watch(c, c->corners.fastest);
+    c->corners.fastest = fastest;
+#endif
     bg_progress_begin(c);
-    for (long count = 1; status == BG_OK && c->run.at.t < stop && !ended; count++) {
-        status = step(c, stop, &ended);
-        if (status == BG_OK && !ended)
+    for (long count = 1; status == BG_OK && c->run.at.t < stop && !*ended; count++) {
+        status = step(c, stop, ended);
+        if (status == BG_OK && !*ended)
             status = bg_progress_check(c);
         if (status == BG_OK && !BG_AFFINE && count % BG_REFRESH == 0)
             status = bg_located_fastest(c, c->run.at.t, c->s, &fastest);
         c->solver.longest = longest_now(c, method, fastest);
     }
     return status;
+}
+
+/* From the present instant to `stop`, to where one has to look, or to the first event. */
+static int go_on(void *run, double stop)
+{
+    bg_located *const c = run;
+    int ended;
+    if (c->ahead)
+        stop = c->ahead(c->view.self, c->run.at.t, stop);
+#if BG_CORNERS > 0
+    (void)ended;
+    return bg_corners_go(c, stop);
+#else
+    return bg_located_stretch(c, stop, 0.0, &ended);
+#endif
 }
 
 void bg_located_set_out(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked,

@@ -23,13 +23,31 @@ typedef struct {
     int real_pivots[BG_SIZE], complex_pivots[2 * BG_SIZE];
 } bg_solver;
 
-/* The triggers of a stretch, one for each port, positive while its mode holds: the slip, or the
- * margin to the breakaway effort. Armed when they have risen above rounding. */
+/* So many things are watched at a time: ports, or corners. */
+enum { BG_WATCHED = BG_ROOM(BG_FRICTION > BG_CORNERS ? BG_FRICTION : BG_CORNERS) };
+
+/* What is watched of each through a stretch: armed when it has risen above what counts as zero;
+ * `blind`: in the moment up to then nothing that begins at zero falls. */
 typedef struct {
-    double blind, limit[BG_ROOM(BG_FRICTION)], before[BG_ROOM(BG_FRICTION)];
+    double blind, limit[BG_WATCHED], before[BG_WATCHED];
+    int armed[BG_WATCHED];
+} bg_falling;
+
+/* The triggers of a stretch, one for each port, positive while its mode holds: the slip, or the
+ * margin to the breakaway effort. */
+typedef struct {
+    bg_falling of;
     double near[BG_ROOM(BG_FRICTION)]; /* where slips that inputs rule have left zero */
-    int armed[BG_ROOM(BG_FRICTION)];
 } bg_watch;
+
+/* Corners of laws: what they hang on, as far from zero as on this side; those crossed latest; when
+ * they were, and how long they are gone over where that was too often; the largest rate. */
+typedef struct {
+    bg_falling of;
+    int crossed[BG_WATCHED];
+    bg_rounds rounds;
+    double over, fastest;
+} bg_corner_watch;
 
 /* The steps of a stretch: when the latest lot of them began, and whether the one before went
  * nowhere. */
@@ -56,6 +74,7 @@ typedef struct {
     int known, rated[BG_ROOM(BG_FRICTION)]; /* .. it is known */
     int next;
     bg_watch watch;
+    bg_corner_watch corners;
     bg_progress progress;
     bg_solver solver;
 } bg_located;

@@ -66,6 +66,7 @@ void bg_coefficients(const bg_values *v, double *out);
 void bg_known_rates(const bg_values *v, double *out);
 void bg_friction_values(const bg_values *v, double *out);
 void bg_guards(const bg_values *v, double *out);
+void bg_corners(const bg_values *v, double *out); /* what they hang on; whether each counts */
 void bg_prepare_rhs(bg_model *m);
 
 /* model_linear.c: by rows; n small or large. The largest magnitude; a copy, and what is behind. */

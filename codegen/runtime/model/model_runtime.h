@@ -12,6 +12,11 @@
 #include "run_status.h"
 #include "tuning.h"
 
+/* Of models whose laws have none. */
+#ifndef BG_CORNERS
+#define BG_CORNERS 0
+#endif
+
 /* Arrays of a length that may be zero have room for one. */
 #define BG_ROOM(n) ((n) > 0 ? (n) : 1)
 #define BG_TABLE(rows, columns) (BG_ROOM(rows) * BG_ROOM(columns))
@@ -34,12 +39,13 @@ enum {
 #define BG_PLACE(part, count) BG_AT_##part, BG_LAST_##part = BG_AT_##part + (count) - 1,
 enum { BG_PARTS(BG_PLACE) BG_MAP_ROWS };
 
-/* One instant: time, states, law states, readings, inputs, external inputs and their rates. */
+/* One instant: time, states, law states, readings, inputs, external inputs and their rates. Where
+ * `sided`, laws are on a side of each of their corners: 1 above the zero of what it hangs on. */
 typedef struct {
     double t;
     double x[BG_ROOM(BG_STATES)], z[BG_ROOM(BG_LAW_STATES)], y[BG_ROOM(BG_READINGS)];
     double u[BG_ROOM(BG_INPUTS)], w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
-    double p[BG_ROOM(BG_PARAMETERS)];
+    double p[BG_ROOM(BG_PARAMETERS)], side[BG_ROOM(BG_CORNERS)], sided;
 } bg_values;
 
 /* Everything at one instant: states, law states, inputs and their rates, readings, the rate of s,

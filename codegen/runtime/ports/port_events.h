@@ -15,10 +15,11 @@ enum bg_kind {
     BG_TOUCH,
     BG_APART,
     BG_SLIDE,
-    BG_LEAVE
+    BG_LEAVE,
+    BG_CORNER
 };
 
-/* `impulse`: of an impact, that of what the port gives. */
+/* `impulse`: of an impact, that of what the port gives. Corners of laws are counted after ports. */
 typedef struct {
     double time;
     int port, kind;

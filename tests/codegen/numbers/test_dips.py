@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import pytest
 
-from codegen.runs.dips import dip, may_dip
+from codegen.numbers.dips import dip, may_dip
 
 TIMES = (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0)
 """Points at equal distances, as of a step; the shapes are those of the distance to a place between two."""

@@ -1,0 +1,84 @@
+"""Stretches of one mode of a model whose laws have corners: cut where one is crossed."""
+
+from collections import deque
+from collections.abc import Hashable, Sequence
+
+from codegen.corners.sides import CornerWatch, Sight, begun, turned
+from codegen.inputs.pieces import Piece
+from codegen.model.snapshot import Mode
+from codegen.modes.closed import ClosedModel
+from codegen.modes.pace import hardly_apart, moment, time_constant
+from codegen.modes.rounding import Peaks
+from codegen.numbers.arrays import Array
+from codegen.runs.legs import Leg
+from codegen.runs.track import Ended, Settings, Track
+from codegen.tuning import TUNING
+
+
+class CorneredLeg:
+    """As a `Leg`, on one side of each corner, up to the next that is crossed, and so on from there.
+
+    What both sides give there is the same, or jumps; so nothing is to be decided. Where a run crosses
+    corners so often that it goes nowhere, it goes over them for a while, which costs a continuous law no
+    more than the steps' own error.
+    """
+
+    def __init__(
+        self, model: ClosedModel, pieces: Sequence[Piece], mode: Mode, settings: Settings,
+        origin: float, peaks: Peaks | None = None,
+    ) -> None:  # fmt: skip
+        self._model, self._parts = model, (pieces, mode, settings, origin, peaks)
+        self._sight = Sight(model, pieces, mode, settings.rtol, settings.atol)
+        self._plain, self._origin = Leg(model, *self._parts), origin
+        self._rounds = deque[float](maxlen=TUNING.stalled)
+
+    def fastest(self, t: float, s: Array) -> float:
+        """See `Leg.fastest`."""
+        return self._plain.fastest(t, s)
+
+    def run(self, t: float, s: Array, stop: float, times: Array, track: Track) -> Ended:
+        """See `Leg.run`."""
+        fastest, step, over = self._plain.fastest(t, s), None, 0.0
+        sides = begun(self._sight, t, s, moment(self._time(fastest, t)))
+        while True:
+            blind = t + moment(self._time(fastest, t))
+            watch = CornerWatch(self._sight.on(sides), sides, t, s, blind)
+            leg = Leg(self._model.on_sides(sides), *self._parts, watch, step)
+            t, s, ended = leg.run(t, s, stop, times, track)
+            if not leg.crossed:
+                return t, s, ended
+            track.cross(t, [self._nodes[i] for i in sorted(leg.crossed)])
+            sides, step, fastest = turned(self._sight, sides, leg.crossed, t, s), leg.step, leg.rate
+            if self._stalls(t, fastest):
+                over = max(2 * over, self._time(fastest, t))
+                t, s, ended = self._plain.run(t, s, min(stop, t + over), times, track)
+                if ended or t >= stop:
+                    return t, s, ended
+                sides = begun(self._sight, t, s, moment(self._time(fastest, t)))
+
+    @property
+    def _nodes(self) -> Sequence[Hashable]:
+        corners = self._model.program.corners
+        return () if corners is None else corners.nodes
+
+    def _time(self, fastest: float, t: float) -> float:
+        return time_constant(fastest, t - self._origin)
+
+    def _stalls(self, t: float, fastest: float) -> bool:
+        """Whether so many of the latest crossings lie within next to no time."""
+        rounds = self._rounds
+        rounds.append(t)
+        within = hardly_apart(self._time(fastest, t))
+        if len(rounds) < TUNING.stalled or t - rounds[0] >= within:
+            return False
+        rounds.clear()
+        return True
+
+
+def leg_of(
+    model: ClosedModel, pieces: Sequence[Piece], mode: Mode, settings: Settings, origin: float,
+    peaks: Peaks | None = None,
+) -> Leg | CorneredLeg:  # fmt: skip
+    """A stretch of a model, cut at corners where it has some."""
+    kind = CorneredLeg if model.program.sides else Leg
+    return kind(model, pieces, mode, settings, origin, peaks)
