@@ -35,11 +35,12 @@ def test_a_neuron_fires_with_its_period(backend: str, method: str) -> None:
     nodes = [bg.Sf("source", "I"), bg.Zero("n"), bg.C("m", "C", effort="v"), bg.R("leak", "R"),
              bg.One("pivot"), bg.R("rest", 1), bg.Sw("spike", "v - 1", reset={"v": "v_0"})]  # fmt: skip
     graph = bond_graph(nodes, "source>n>m n>leak pivot>rest pivot>spike")
-    C, R, v_0, I = 0.5, 2.0, -0.3, 0.8
+    C, R, v_0, current = 0.5, 2.0, -0.3, 0.8
     made = simulator(bg.derive(graph), {"C": C, "R": R, "v_0": v_0}, backend=backend)
-    run = made.run(np.linspace(0, 10, 21), inputs={"I": I}, method=method)
-    period = R * C * np.log((I * R - v_0) / (I * R - 1))
-    times = R * C * np.log(I * R / (I * R - 1)) + period * np.arange(100)
+    run = made.run(np.linspace(0, 10, 21), inputs={"I": current}, method=method)
+    final = current * R
+    period = R * C * np.log((final - v_0) / (final - 1))
+    times = R * C * np.log(final / (final - 1)) + period * np.arange(100)
     times = times[times < 10]
     assert run.backend == backend
     for kind in ("on", "off"):
@@ -87,7 +88,12 @@ def test_one_reset_sets_off_another_and_each_has_its_event(backend: str) -> None
     )
     at = [2.0, 3.5, 5.0]
     known = [(t, "full", kind) for t in at for kind in ("on", "off")]
-    assert _told(run) == [*known[:5], (5.0, "full", "off"), (5.0, "third", "on"), (5.0, "third", "off")]
+    assert _told(run) == [
+        *known[:5],
+        (5.0, "full", "off"),
+        (5.0, "third", "on"),
+        (5.0, "third", "off"),
+    ]
     rise = np.array([0, 0.25, 0.5, 0.75, 0.25, 0.5, 0.75, 0.25, 0.5, 0.75, 0.125, 0.375, 0.625])
     assert run["v"] == pytest.approx(rise, abs=1e-12)
     assert run["count"].tolist() == [0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 0, 0, 0]
@@ -131,7 +137,8 @@ def test_a_state_beside_a_driven_dependent_storage_is_what_it_is_reset_to(
 
 
 def _key_across(reset: object) -> nx.DiGraph:
-    nodes = [bg.Sf("source", "I"), bg.Zero("n"), bg.C("c", "C", effort="v"), bg.Sw("key", "t - 1", reset=reset)]  # fmt: skip
+    nodes = [bg.Sf("source", "I"), bg.Zero("n"), bg.C("c", "C", effort="v")]
+    nodes += [bg.Sw("key", "t - 1", reset=reset)]
     return bond_graph(nodes, "source>n>c n>key")
 
 
@@ -140,7 +147,8 @@ def _key_across(reset: object) -> nx.DiGraph:
 @pytest.mark.parametrize(
     ("graph", "says"),
     [
-        (_beside(bg.Sw("a", "v - 1", reset={"on": {"v": "0"}, "off": {"v": "2"}})), "resets at .* set off one another without end"),
+        (_beside(bg.Sw("a", "v - 1", reset={"on": {"v": "0"}, "off": {"v": "2"}})),
+         "resets at .* set off one another without end"),
         (_beside(bg.Sw("a", "v - 1", reset={"v": "0"}), bg.Sw("b", "v - 1", reset={"v": "1/2"})),
          "'a' and 'b' reset v to 0 and 0.5 at once"),
         (_key_across({"v": "1"}), "the reset of v contradicts what 'key' holds"),
@@ -170,7 +178,8 @@ def test_a_stop_counts_what_is_thrown_back_and_what_stays(backend: str, method: 
     """Thrown at 1 m/s from one wall to another 1 m off, e = 1/2: hits at 1, 3, 7 .. s."""
     nodes = [bg.One("n"), bg.I("m", 1, flow="v"), bg.Sf("none", "0*L"), bg.One("still"),
              bg.Df("counter", integrate="count"),
-             bg.Stop("walls", low=0, high="L", restitution="e", reset={"count": "count + abs(v)"})]  # fmt: skip
+             bg.Stop("walls", low=0, high="L", restitution="e",
+                     reset={"count": "count + abs(v)"})]  # fmt: skip
     graph = bond_graph(nodes, "n>m n>walls none>still>counter")
     for e, counts in ((0.5, [0, 0.5, 0.5, 0.75, 0.75]), (0.0, [0, 0, 0, 0, 0])):
         made = simulator(bg.derive(graph), {"L": 1.0, "e": e}, backend=backend)
