@@ -44,6 +44,9 @@ MEANINGS = {
     Status.UNDECIDED: "no way of sticking and slipping is consistent",
     Status.STALLS: "events follow one another and time makes no progress",
     Status.STRUCK: "stops were struck too often in one instant, and what meets them still closes",
+    Status.SET_TWICE: "two ports reset one state to two values at once",
+    Status.SET_HELD: "a reset contradicts what is held",
+    Status.SET_ENDLESSLY: "resets set off one another without end",
     Status.STIFF: "time constants are too short for the span",
     Status.EVENTS: "more events than there is room for",
     Status.WORK: "the search for an event has no end",
@@ -220,7 +223,8 @@ class CRuns:
 def not_affine(program: Program) -> str | None:
     """Why a model is not affine in each friction mode; None if it is."""
     if not program.guards_affine:
-        return "a condition of a switch is not affine"
+        what = ", or what one resets a state to," if program.resets else ""
+        return f"a condition of a switch{what} is not affine"
     if not program.restitution_given:
         return "the restitution of a stop is not told by parameters alone"
     if program.affine:

@@ -252,7 +252,8 @@ class _Course:
                 return FreeLeg(model.sharp_rates, pieces, self.t, self.s)
             return leg if leg.quick(stop, method == EXACT) else None
         if method == EXACT:
-            reason = "a condition of a switch is not affine"
+            reset = ", or what one resets a state to," if model.program.resets else ""
+            reason = f"a condition of a switch{reset} is not affine"
             if affine is None:
                 reason = "the model is not affine, or ports that stick share a load"
             raise SimulationError(

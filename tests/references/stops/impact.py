@@ -15,8 +15,8 @@ import numpy as np
 
 from references.stops.line import Array
 
-MOST = 100_000
-"""Strikes in one instant."""
+MOST = 20_000
+"""Strikes in one instant: more do not get less, as of a body between a wall and another that comes."""
 
 
 class JammedError(RuntimeError):
@@ -80,4 +80,4 @@ def strikes(
         y += D @ p
         found.append(Strike(tuple(i for i in thrown if p[i] > 0), p))
         if len(found) > MOST:
-            raise RuntimeError("stops are struck again and again")
+            raise JammedError("stops are struck without end")

@@ -20,6 +20,9 @@ SMALL, SLOW, TOGETHER = 1e-12, 1e-7, 1e-10
 """Of the fastest, closing speeds in an instant that are rounding, and those of bounces that end; of a step,
 what is one instant."""
 
+STILL = 1e-10
+"""Of the fastest, speeds of gaps that are at rest: stops that take turns ever faster end in that."""
+
 PRESSED = 1e-9
 """Of the largest, a force that presses."""
 
@@ -96,7 +99,7 @@ class Machine:
                 hits.append((t, self._line.stops[i].name, "hit", float(strike.impulse[i])))
                 rest[i] -= strike.impulse[i]
         y = m.rates @ X
-        resting = [i for i in shut if abs(y[i]) <= 10 * SMALL * self._speed]
+        resting = [i for i in shut if abs(y[i]) <= STILL * self._speed]
         X = self._placed(X, shut, resting)
         mode = self._mode(X, resting)
         if old is not None:
@@ -174,7 +177,7 @@ class Machine:
             )
             for row, i in zip(series, free, strict=False):
                 if i in apart:
-                    row[: 1 if y[i] > 10 * SMALL * self._speed else 2] = 0.0
+                    row[: 1 if y[i] > STILL * self._speed else 2] = 0.0
             falls = [first_fall(row) for row in series]
             first = min((f for f in falls if f is not None), default=None)
             until = t + step * (1.0 if first is None else first)

@@ -79,4 +79,23 @@ def reset_stop() -> Kind:
     )  # fmt: skip
 
 
-RESETTING = (reset, reset_bent, reset_stop)
+def reset_told() -> Kind:
+    """A tank that fills at 2 a second and is half emptied as a gate opens, at 0.3 and at 0.8 s."""
+    nodes = [
+        bg.Sf("source", "Q"), bg.Zero("n"), bg.C("tank", "A", effort="h"), bg.One("pivot"),
+        bg.R("rest", 1), bg.Sw("gate", "g - 0.5", reset={"h": "h/2"}),
+    ]  # fmt: skip
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        parts = (0, lambda s: 1 + 2 * s), (0.3, lambda s: 0.8 + 2 * s), (0.8, lambda s: 0.9 + 2 * s)
+        return {"h": stepwise(t, *parts)}
+
+    return Kind(
+        "switch that an input commands and that resets a state",
+        bond_graph(nodes, "source>n>tank pivot>rest pivot>gate"), {"A": 0.5},
+        {"Q": "1", "g": "step(0.3, 1, 0) + step(0.6, -1, 0) + step(0.8, 1, 0)"}, known, 0.99,
+        {"h": 1.0}, at=0.5, mode={"gate": "on"}, rest={"inputs": {"Q": 0.0, "g": 0.0}},
+    )  # fmt: skip
+
+
+RESETTING = (reset, reset_bent, reset_told, reset_stop)
