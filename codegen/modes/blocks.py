@@ -18,9 +18,7 @@ TURNS = 20
 """So often for each port of a large block one turns, before it is given up."""
 
 
-def slipping_as(
-    model: ClosedModel, shot: Snapshot, mode: Mode, sides: Mapping[int, int]
-) -> Mode:
+def slipping_as(model: ClosedModel, shot: Snapshot, mode: Mode, sides: Mapping[int, int]) -> Mode:
     """The mode with friction slipping the way it moves, or on these ``sides``; switches as they are."""
     slips = shot.y[model.friction_readings]
     return tuple(

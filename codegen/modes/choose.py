@@ -13,13 +13,12 @@ from codegen.modes.blocks import blocks_of, slipping_as, turned_to, ways_to_rub
 from codegen.modes.bounce import closed_up, closing, hardly_leaving, met, stopped, thrown_back
 from codegen.modes.choices import Choices
 from codegen.modes.closed import ClosedModel
-from codegen.modes.crossings import sides, with_leaps
 from codegen.modes.glances import Glances
 from codegen.modes.impact import impact, pushed
 from codegen.modes.rounding import Peaks, scales
 from codegen.modes.timed import told
-from codegen.modes.trials import Sight
-from codegen.modes.verdicts import Look, look_at, ruled_out, ruled_out_later, torn
+from codegen.modes.trials import Sight, sides
+from codegen.modes.verdicts import Look, look_at, ruled_out, ruled_out_later, torn, with_leaps
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
 from codegen.standalone.switchings import Broken, switchings

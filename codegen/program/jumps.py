@@ -162,7 +162,11 @@ def _with_jumps(
         for at, argument in enumerate(arguments, 1)
     )  # fmt: skip
     rows |= rates
-    return _widened(equations, tuple(arguments.values()), [*rows.values()], jumps, smooth), jumps, smooth
+    return (
+        _widened(equations, tuple(arguments.values()), [*rows.values()], jumps, smooth),
+        jumps,
+        smooth,
+    )
 
 
 def _of(

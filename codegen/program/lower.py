@@ -15,7 +15,15 @@ from codegen.program.closing import Closing, close_ports
 from codegen.program.gains import check_gains
 from codegen.program.moving import with_moving_slips
 from codegen.program.records import Program, block
-from codegen.program.sections import coefficients, friction, group, hung_on, known_rates, switches, uses
+from codegen.program.sections import (
+    coefficients,
+    friction,
+    group,
+    hung_on,
+    known_rates,
+    switches,
+    uses,
+)
 from codegen.program.tangents import with_tangents
 from codegen.program.timed import Sources
 

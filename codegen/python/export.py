@@ -142,7 +142,9 @@ def _functions(program: Program, names: Names) -> list[str]:
     if program.guarded:
         rows = [f"{plain(str(p.name))}: {way}" for p in program.switches
                 if p.switch is not None for way in p.switch.guards]  # fmt: skip
-        rows += [f"{plain(str(program.friction[i].name))}: what it jumps by" for i, _ in program.hanging]
+        rows += [
+            f"{plain(str(program.friction[i].name))}: what it jumps by" for i, _ in program.hanging
+        ]
         doc = "Conditions of switches: to turn on and to turn off in turn, each above zero."
         lines += values_function("switch_conditions", doc, program.guards, rows, names)
     if program.joint:

@@ -1,9 +1,9 @@
-"""Jumps of second order in fixed steps: each is on the side where the step would end, or comes to its jump.
+"""Jumps of second order in fixed steps: on the side where a step would end, or brought to the jump.
 
-A jump that was crossed somewhere in a step cannot be on its old side for all of it, or swings would grow.
-So its side is that of what it hangs on as the step would end with its share in between: that of an implicit
-step (Acary and Brogliato, Systems and Control Letters 59, 2010). Where one share between both sides ends the
-step at the jump, it takes that, and rests there from the next step on.
+A jump that is crossed inside a step cannot be on its old side for all of it, or swings would grow.
+So its side is that of what it hangs on as the step would end without it: that of an implicit step
+(Acary and Brogliato, Systems and Control Letters 59, 2010). Where a share between both sides ends
+the step at the jump, it takes that, and rests there from the next step on.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ from codegen.standalone.switched import SwitchedSteps, Switches
 
 @dataclass(frozen=True)
 class Hanging(Switches):
-    """``hung``: of jumps of second order, by port, the places among the guards of what they hang on."""
+    """``hung``: jumps of second order by port, with the guards that are what they hang on."""
 
     hung: Sequence[tuple[int, int]] = ()
 
@@ -38,7 +38,7 @@ class HangingSteps(SwitchedSteps):
     def brought(
         self, now: Instant, mode: Sequence[int], near: Array, dead_band: float, h: float
     ) -> tuple[list[int], Array]:
-        """The ports that may hold, and on which sides the others are, jumps of second order as they end."""
+        """Which ports may hold, and on which sides the others are, such jumps as they end."""
         sides, near, told = list(mode), near.copy(), self.told(now)
         rates = slip_rates(now, self.slips, self.moving)
         self.aims = np.zeros(len(self.slips))
@@ -48,7 +48,9 @@ class HangingSteps(SwitchedSteps):
             free = float(rates[i]) - pull * float(now.u[self.efforts[i]])
             ahead = gap + h * (slip + h * free)
             # Without a step it is where it is, and rests where neither it nor its rate is seen.
-            near[i] = abs(ahead) <= max(-pull, 0.0) * h**2 if h > 0 else abs(gap) + abs(slip) <= dead_band
+            near[i] = (
+                abs(ahead) <= max(-pull, 0.0) * h**2 if h > 0 else abs(gap) + abs(slip) <= dead_band
+            )
             sides[i] = 1 if (ahead if pull < 0 else gap) > 0 else -1
             self.aims[i] = -gap / h if h > 0 else 0.0
         return sides, near
@@ -59,7 +61,7 @@ class HangingSteps(SwitchedSteps):
         return float(m.F[self.slips[port]] @ m.Q[:, self.efforts[port]])
 
     def at_rest(self, at: Point, mode: Mode) -> Array:
-        """The vector s in which what jumps of second order hang on comes to zero, or stays there."""
+        """The vector s in which what such jumps hang on comes to zero, or stays there."""
         moved = super().at_rest(at, mode)
         if 0 not in mode or not self.aims.any():
             return moved
