@@ -65,16 +65,19 @@ class Degrees:
         parts = [(self._resolved(row), sp.Integer(1))]
         for j, entry in row.D.items():
             for name, slope in self._slopes(j).items():
-                if (read := self._read(name)) is not None:
-                    parts.append((self._resolved(read), entry * slope))
-                else:
-                    parts.append(
-                        (self._equations.readings[self._equations.integrals[name]], entry * slope)
-                    )
-        total = sp.Add(
-            *(factor * row.D.get(j, 0) * by for row, by in parts for j, factor in columns.items())
+                read = self._read(name)
+                rate = self._rate_of(name) if read is None else self._resolved(read)
+                parts.append((rate, entry * slope))
+        terms = (
+            factor * part.D.get(j, sp.Integer(0)) * by
+            for part, by in parts
+            for j, factor in columns.items()
         )
-        return not is_zero(total)
+        return not is_zero(sp.Add(*terms))
+
+    def _rate_of(self, integral: sp.Symbol) -> Reading:
+        equations = self._equations
+        return equations.readings[equations.integrals[integral]]
 
     def _slopes(self, column: int) -> Mapping[sp.Symbol, sp.Expr]:
         """How what a law gives hangs on states, integrals and readings; nothing of an open input."""
@@ -96,15 +99,11 @@ class Degrees:
         total = ReadingSum(row)
         for j, entry in row.D.items():
             slopes, law = self._slopes(j), self._laws.get(j)
-            read = {name: self._read(name) for name in slopes}
-            if (
-                not slopes
-                or not isinstance(law, ExpressionLaw)
-                or not self._constant(slopes.values())
-            ):
+            read = {name: own for name in slopes if (own := self._read(name)) is not None}
+            if not isinstance(law, ExpressionLaw) or len(read) < max(len(slopes), 1):
                 continue
             rest = sp.expand(law.expression - sp.Add(*(n * by for n, by in slopes.items())))
-            if rest != 0 or not all(read.values()):
+            if rest != 0 or not self._constant(slopes.values()):
                 continue
             del total.D[j]
             for name, by in slopes.items():

@@ -19,12 +19,11 @@ from codegen.modes.bounce import (
     thrown_back,
 )
 from codegen.modes.choices import Decision, Occasion
-from codegen.modes.crossings import sides, with_leaps
 from codegen.modes.impact import impact, pushed
 from codegen.modes.rounding import scales
 from codegen.modes.timed import told
-from codegen.modes.trials import Sight
-from codegen.modes.verdicts import Look, look_at, ruled_out, ruled_out_later, torn
+from codegen.modes.trials import Sight, sides
+from codegen.modes.verdicts import Look, look_at, ruled_out, ruled_out_later, torn, with_leaps
 from codegen.ports.refusals import SlopeNeededError
 from codegen.standalone.switchings import Broken, switchings
 from codegen.tuning import TUNING

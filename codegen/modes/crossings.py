@@ -7,62 +7,14 @@ says that. ``run_loop.c`` decides the same way.
 """
 
 import math
-from collections.abc import Collection, Mapping
-from dataclasses import replace
-
-import numpy as np
+from collections.abc import Collection
 
 from bondgraph.errors import SimulationError
-from codegen.model.snapshot import Mode, Snapshot
+from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
-from codegen.modes.rounding import TINY, Peaks, Scales, scales, slip_rates
-from codegen.modes.trials import Sight
+from codegen.modes.rounding import Peaks, scales, slip_rates
+from codegen.modes.trials import Sight, hung_rounding
 from codegen.tuning import TUNING
-
-
-def hung_rounding(here: Sight, now: Snapshot) -> Mapping[int, float]:
-    """Below these what jumps of second order hang on counts as zero: of what it has been, and of the time's."""
-    model = here.model
-    if not model.hung:
-        return {}
-    sizes = np.append(model.largest(here.s), 1.0)
-    terms, late = np.abs(model.hung_rows(now)) @ sizes, TUNING.late * np.spacing(abs(here.t))
-    rates = np.abs(now.y[[model.friction_readings[i] for i in model.hung]])
-    near = TUNING.together * terms + late * rates + TINY
-    return dict(zip(model.hung, near.tolist(), strict=True))
-
-
-def with_leaps(size: Scales, here: Sight, now: Snapshot, peaks: Peaks | None) -> Scales:
-    """What counts as zero, with speeds of jumps of second order that leap no higher than could be seen.
-
-    What their whole height throws back leaps by v^2/2 over that. Of swings that hardly shrink larger ones
-    count: there are as many as one is smaller.
-    """
-    model = here.model
-    if not model.hung:
-        return size
-    slips, by = size.slip.copy(), model.moves(now.numbers).mobility
-    for i, near in hung_rounding(here, now).items():
-        thrown = float(now.caps[i]) / float(by[i]) if by[i] > 0 else 0.0
-        unseen = math.sqrt(2 * TUNING.leap * near * thrown)
-        if peaks is not None and i in peaks.lingering:
-            unseen *= TUNING.lingering
-        slips[i] = max(slips[i], unseen / TUNING.wide)
-    return replace(size, slip=slips)
-
-
-def sides(here: Sight, mode: Mode, loose: Collection[int] = ()) -> Mapping[int, int]:
-    """On which sides jumps of second order are, of those that are not at their jump; ``loose``: about there."""
-    model, found = here.model, dict[int, int]()
-    if not model.hung:
-        return found
-    now = here.at(mode)
-    gaps = model.guards(here.t, now)
-    for i, near in hung_rounding(here, now).items():
-        gap = float(gaps[model.hung[i]])
-        if abs(gap) > (TUNING.wide if i in loose else 1.0) * near:
-            found[i] = 1 if gap > 0 else -1
-    return found
 
 
 class Crossings:

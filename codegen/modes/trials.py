@@ -1,6 +1,6 @@
 """Friction modes on trial: a mode in which the laws have no solution is none, and another is looked at."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from itertools import chain
 
 import numpy as np
@@ -13,6 +13,7 @@ from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
 from codegen.program.affine import ONE
 from codegen.standalone.friction import ways
+from codegen.tuning import TUNING
 
 
 class Sight:
@@ -53,3 +54,29 @@ class Sight:
             except SimulationError as error:
                 refused = refused or error
         raise refused or SimulationError("there is no mode")
+
+
+def hung_rounding(here: Sight, now: Snapshot) -> Mapping[int, float]:
+    """Below these what jumps of second order hang on counts as zero: of what it has been, and of the time."""
+    model = here.model
+    if not model.hung:
+        return {}
+    sizes = np.append(model.largest(here.s), 1.0)
+    terms, late = np.abs(model.hung_rows(now)) @ sizes, TUNING.late * np.spacing(abs(here.t))
+    rates = np.abs(now.y[[model.friction_readings[i] for i in model.hung]])
+    near = TUNING.together * terms + late * rates + np.finfo(float).tiny
+    return dict(zip(model.hung, near.tolist(), strict=True))
+
+
+def sides(here: Sight, mode: Mode, loose: Collection[int] = ()) -> Mapping[int, int]:
+    """On which sides jumps of second order are, but for those at their jump; ``loose``: about there."""
+    model, found = here.model, dict[int, int]()
+    if not model.hung:
+        return found
+    now = here.at(mode)
+    gaps = model.guards(here.t, now)
+    for i, near in hung_rounding(here, now).items():
+        gap = float(gaps[model.hung[i]])
+        if abs(gap) > (TUNING.wide if i in loose else 1.0) * near:
+            found[i] = 1 if gap > 0 else -1
+    return found

@@ -1,17 +1,17 @@
 """Whether a port goes with a mode, and whether what only sources rule lets a set of ports hold."""
 
+import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
-from codegen.modes.crossings import hung_rounding, with_leaps
 from codegen.modes.keeping import GUARDS, SLIPS, is_kept, kept_by, watched_by
 from codegen.modes.rounding import Peaks, Scales, guard_rounding, holding, scales, slip_rates
-from codegen.modes.trials import Sight
+from codegen.modes.trials import Sight, hung_rounding
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING
 
@@ -152,6 +152,25 @@ def look_at(here: Sight, mode: Mode, peaks: Peaks | None = None) -> Look:
     if model.switches:
         size = holding(size, model, mode, now, peaks)
     return Look(here, mode, here.t, now, size, peaks)
+
+
+def with_leaps(size: Scales, here: Sight, now: Snapshot, peaks: Peaks | None) -> Scales:
+    """What counts as zero, with speeds of jumps of second order that leap no higher than could be seen.
+
+    What their whole height throws back leaps by v^2/2 over that. Of swings that hardly shrink larger ones
+    count: there are as many as one is smaller.
+    """
+    model = here.model
+    if not model.hung:
+        return size
+    slips, by = size.slip.copy(), model.moves(now.numbers).mobility
+    for i, near in hung_rounding(here, now).items():
+        thrown = float(now.caps[i]) / float(by[i]) if by[i] > 0 else 0.0
+        unseen = math.sqrt(2 * TUNING.leap * near * thrown)
+        if peaks is not None and i in peaks.lingering:
+            unseen *= TUNING.lingering
+        slips[i] = max(slips[i], unseen / TUNING.wide)
+    return replace(size, slip=slips)
 
 
 def limits_of(look: Look) -> Array:

@@ -16,11 +16,11 @@ from codegen.model.snapshot import Mode
 from codegen.modes.choices import Choices, Occasion
 from codegen.modes.choose import decide
 from codegen.modes.closed import ClosedModel
-from codegen.modes.crossings import Crossings, sides
+from codegen.modes.crossings import Crossings
 from codegen.modes.glances import Glances
 from codegen.modes.pace import hardly_apart, look_ahead, time_constant
 from codegen.modes.rounding import Peaks, scales
-from codegen.modes.trials import Sight
+from codegen.modes.trials import Sight, sides
 from codegen.numbers.arrays import Array
 from codegen.numbers.latest import Latest
 from codegen.runs.clock import NONE, Clock

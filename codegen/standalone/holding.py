@@ -51,14 +51,15 @@ def plain_set(count: int) -> HeldSet:
 class Hold:
     """The holding equations ``X x + U u + V u' = 0`` of one set of sticking ports.
 
-    ``inputs``: what they give. ``share``: combinations of slips that the others make up; ``ways``:
-    directions in which the holding efforts may change without moving anything, the same where
-    ports act as they are acted on. ``ruled``: those combinations where other inputs rule
+    ``inputs``: what they give. ``share``: combinations of slips that are none; ``ways``: directions
+    in which the holding efforts may change without moving anything, the same where ports act as
+    they are acted on. ``ruled``: those combinations where other inputs rule
     them: the ports hold only while these are zero. ``slip_x``, ``slip_u``: the slips that constrain
     the states, independent, as ``slip_x x + slip_u u``; ``fixed``: how their rates beside those of
     s depend on u'. ``take_away``: what to add to x per unit of those slips to remove them, along
-    ``A^-1 F^T``, or what the efforts themselves move. ``mix``: what those slips are of the ports' own; ``free``: directions, by columns,
-    in which efforts may be impulses, as they change no slip at once.
+    ``A^-1 F^T``, or what the efforts move. ``mix``: what those slips are of the ports' own;
+    ``free``: directions, by columns, in which efforts may be impulses, as they change no slip at
+    once.
     """
 
     ports: Places
@@ -238,8 +239,8 @@ def _free(answers: Array, held: HeldSet, count: int) -> Array:
 def _take_away(numbers: Numbers, slip_x: Array, pushed: Array) -> Array:
     """``-A^-1 S^T (S A^-1 S^T)^-1``: the impulse that stops the slips S x and moves no others.
 
-    ``pushed``: what impulses of the ports move, by columns; that is another where ports do not act as
-    they are acted on, as those of jumps: then such impulses stop the slips.
+    ``pushed``: what impulses of the ports move, by columns; that is another where ports do not act
+    as they are acted on, as those of jumps: then such impulses stop the slips.
     """
     if not len(slip_x):
         return np.zeros((slip_x.shape[1], 0))
@@ -248,9 +249,8 @@ def _take_away(numbers: Numbers, slip_x: Array, pushed: Array) -> Array:
     by = slip_x @ pushed
     beside, sizes = np.abs(pushed + found @ by), np.abs(pushed) + np.abs(found) @ np.abs(by)
     square = by @ by.T
-    if not (beside > TUNING.consistent * sizes).any() or np.linalg.matrix_rank(square) < len(
-        square
-    ):
+    aside = bool((beside > TUNING.consistent * sizes).any())
+    if not aside or np.linalg.matrix_rank(square) < len(square):
         return found
     return np.asarray(-pushed @ by.T @ _inverse(square), dtype=float)
 

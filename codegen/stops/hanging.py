@@ -1,9 +1,9 @@
-"""Jumps of second order in fixed steps: each is on the side where the step would end, or comes to its jump.
+"""Jumps of second order in fixed steps: on the side where a step would end, or brought to the jump.
 
-A jump that was crossed somewhere in a step cannot be on its old side for all of it, or swings would grow.
-So its side is that of what it hangs on as the step would end with its share in between: that of an implicit
-step (Acary and Brogliato, Systems and Control Letters 59, 2010). Where one share between both sides ends the
-step at the jump, it takes that, and rests there from the next step on.
+A jump that is crossed inside a step cannot be on its old side for all of it, or swings would grow.
+So its side is that of what it hangs on as the step would end without it: that of an implicit step
+(Acary and Brogliato, Systems and Control Letters 59, 2010). Where a share between both sides ends
+the step at the jump, it takes that, and rests there from the next step on.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ from codegen.standalone.switched import SwitchedSteps, Switches
 
 @dataclass(frozen=True)
 class Hanging(Switches):
-    """``hung``: of jumps of second order, by port, the places among the guards of what they hang on."""
+    """``hung``: jumps of second order by port, with the guards that are what they hang on."""
 
     hung: Sequence[tuple[int, int]] = ()
 
@@ -38,7 +38,7 @@ class HangingSteps(SwitchedSteps):
     def brought(
         self, now: Instant, mode: Sequence[int], near: Array, dead_band: float, h: float
     ) -> tuple[list[int], Array]:
-        """The ports that may hold, and on which sides the others are, jumps of second order as they end."""
+        """Which ports may hold, and on which sides the others are, such jumps as they end."""
         sides, near, told = list(mode), near.copy(), self.told(now)
         rates = slip_rates(now, self.slips, self.moving)
         self.aims = np.zeros(len(self.slips))
@@ -61,7 +61,7 @@ class HangingSteps(SwitchedSteps):
         return float(m.F[self.slips[port]] @ m.Q[:, self.efforts[port]])
 
     def at_rest(self, at: Point, mode: Mode) -> Array:
-        """The vector s in which what jumps of second order hang on comes to zero, or stays there."""
+        """The vector s in which what such jumps hang on comes to zero, or stays there."""
         moved = super().at_rest(at, mode)
         if 0 not in mode or not self.aims.any():
             return moved

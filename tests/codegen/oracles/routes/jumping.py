@@ -47,7 +47,7 @@ def crossed() -> Kind:
 
 
 def resting() -> Kind:
-    """m x'' = P - N sign(x) - A sign(x'): swings shrink by (N - A)/(N + A) to rest, until P is beyond both."""
+    """m x'' = P - N sign(x) - A sign(x'): swings shrink to rest, until P is beyond both."""
     m, out, back = 1.0, N + BRAKE, N - BRAKE
     leaves = 3.2 + out / PULL
 

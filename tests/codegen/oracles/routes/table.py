@@ -29,9 +29,9 @@ REFUSALS = (
     ),
     Refusal(
         ("together", "bridge", "two_dogs", "resting"), ("C, exact",), True,
-        "Redundant ports (two brakes at rest, two dogs, two jumps, four diodes without a current) share a load so that "
-        "the largest part of what one can bear is the least: which one that is changes with loads and "
-        "levels, so it is not one affine map of a mode. `method=\"auto\"` locates events with step "
+        "Redundant ports (two brakes at rest, two dogs, two jumps, four diodes without a current) share a "
+        "load so that the largest part of what one can bear is the least: which one that is changes with "
+        "loads and levels, so it is not one affine map of a mode. `method=\"auto\"` locates events with step "
         "control instead.",
         "not affine|not one affine map",
     ),
