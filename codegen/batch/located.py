@@ -56,6 +56,7 @@ class _Room:
         self.record.events, self.record.capacity = events, room_for_events(kept.eventful)
         self.record.method = METHODS.index(settings.method)
         self.record.rtol, self.record.atol = settings.rtol, settings.atol
+        self.record.corners = kept.cornered
 
 
 class LocatedLoop:

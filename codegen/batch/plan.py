@@ -12,6 +12,7 @@ from codegen.numbers.arrays import Array
 from codegen.program.layout import places
 from codegen.program.records import Program
 from codegen.record.measures import READY, Measure
+from codegen.runs.track import CORNER
 
 WHATS = (
     "peak", "largest", "smallest", "start", "final", "samples", "total", "first_event", "event_count",
@@ -65,6 +66,11 @@ class Plan:
         """Whether a measure asks for events."""
         return any(entry.what >= EVENTS for entry in self.entries)
 
+    @property
+    def cornered(self) -> bool:
+        """Whether one asks for corners of laws."""
+        return any(entry.kind == KINDS.index(CORNER) for entry in self.entries)
+
     def told(self, found: Array, numbers: Numbers) -> tuple[Array, ...]:
         """The measures, from a row of results for each run."""
         return tuple(column(found, numbers) for column in self.columns)
@@ -75,7 +81,7 @@ class Gathering:
 
     def __init__(self, program: Program, samples: int) -> None:
         self._places, self._samples, self._width = places(program), samples, 0
-        self._ports = [port.name for port in program.friction]
+        self._places_of_events, self._ports = program.happening, len(program.friction)
         self._entries: dict[tuple[int, int, int, int], Entry] = {}
         self._rows: dict[int, int] = {}
         self._factors: dict[int, int] = {}
@@ -97,7 +103,10 @@ class Gathering:
 
     def event(self, what: str, node: Hashable, event: str) -> list[int]:
         """The places of what is kept of events, one for each of the node's ports."""
-        ports = [at for at, name in enumerate(self._ports) if name == node] or [-1]
+        places = enumerate(self._places_of_events)
+        ports = [
+            at for at, name in places if name == node and (at >= self._ports) == (event == CORNER)
+        ] or [-1]
         kind = KINDS.index(event) if event in KINDS else -1
         return [self._kept(WHATS.index(what), -1, port, kind) for port in ports]
 

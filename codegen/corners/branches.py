@@ -90,7 +90,7 @@ class Sided:
             above, below = (yes, no) if isinstance(condition, Gt | Ge) else (no, yes)
             plain = sp.Piecewise((yes, condition), (no, True))
             return self._at(condition.lhs - condition.rhs, above, below, plain)
-        return Branch(self._holds(condition), yes, no)
+        return _either(self._holds(condition), yes, no)
 
     def _holds(self, condition: sp.Basic) -> sp.Expr:
         """1 where a condition holds, else -1."""
@@ -100,11 +100,8 @@ class Sided:
         if isinstance(condition, sp.And | sp.Or):
             first, *others = map(self._holds, parts)
             for other in others:
-                first = (
-                    Branch(first, other, -one)
-                    if isinstance(condition, sp.And)
-                    else Branch(first, one, other)
-                )
+                both = isinstance(condition, sp.And)
+                first = _either(first, *((other, -one) if both else (one, other)))
             return first
         told = None
         if isinstance(condition, Gt | Ge | Lt | Le):
@@ -114,6 +111,11 @@ class Sided:
             return way * side if isinstance(condition, Gt | Ge) else -way * side
         # What is so at single points, or is no comparison, has no side.
         return sp.Piecewise((one, condition), (-one, True))
+
+
+def _either(side: sp.Expr, above: sp.Expr, below: sp.Expr) -> sp.Expr:
+    """A branch, of the side itself where that of its negative is asked for."""
+    return Branch(-side, below, above) if (-side).is_Symbol else Branch(side, above, below)
 
 
 KINDS = (sp.Abs, sp.sign, sp.Heaviside, sp.Max, sp.Min, sp.Piecewise)

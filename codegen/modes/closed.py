@@ -39,6 +39,7 @@ from codegen.program.layout import (
 )
 from codegen.program.records import Program
 from codegen.standalone.evaluation import Point, evaluated, vector
+from codegen.standalone.friction import Friction
 from codegen.standalone.holding import Hold
 from codegen.standalone.instant import Instant
 from codegen.standalone.levels import without_rounding
@@ -116,7 +117,7 @@ class ClosedModel:
         made.program, made._moves = self.program.on_sides, None
         binding = Binding(made.program, self.parameters, sides)
         made._bind(binding)
-        made._evaluate_by(binding)
+        made._evaluate_by(binding, self._friction)
         return made
 
     def _bind(self, binding: Binding) -> None:
@@ -126,9 +127,9 @@ class ClosedModel:
         #: What corners hang on, and for each whether it counts.
         self.corners = None if program.corners is None else binding.function(program.corners.values)
 
-    def _evaluate_by(self, binding: Binding) -> None:
+    def _evaluate_by(self, binding: Binding, plain: Friction | None = None) -> None:
         self._form = formed(self.program, binding, self.numbers)
-        self._friction = rubbing(self.program, binding, self._form, self.slips)
+        self._friction = rubbing(self.program, binding, self._form, self.slips, plain)
 
     def place_name(self, place: int) -> str:
         """What a place in the integrated vector is called."""

@@ -8,6 +8,7 @@ from codegen.model.hybrid import hybrid
 from codegen.model.instant import Binding
 from codegen.ports.slips import ExactSlips
 from codegen.program.records import Group, Program
+from codegen.standalone.arrays import Array, Mode
 from codegen.standalone.evaluation import Form, Laws
 from codegen.standalone.friction import Friction, Ports
 from codegen.standalone.instant import Instant
@@ -33,8 +34,13 @@ def formed(program: Program, binding: Binding, matrices: Callable[[Instant], Num
     )
 
 
-def rubbing(program: Program, binding: Binding, form: Form, slips: ExactSlips) -> Friction:
-    """The friction ports of a program; ``slips``: what these receive, exact."""
+def rubbing(
+    program: Program, binding: Binding, form: Form, slips: ExactSlips, plain: Friction | None = None
+) -> Friction:
+    """The friction ports of a program; ``slips``: what these receive, exact.
+
+    ``plain``: those of the same laws as they are, where these are on one side of each corner.
+    """
     ports = Ports(
         names=[port.name for port in program.friction],
         inputs=np.array([port.input for port in program.friction], dtype=int),
@@ -49,7 +55,32 @@ def rubbing(program: Program, binding: Binding, form: Form, slips: ExactSlips) -
         exact=True,
     )
     coupled = _laws(program.coupled, binding)
-    return JointFriction(ports, form, coupled, hybrid) if program.joint else Friction(ports, form)
+    if plain is None:
+        return (
+            JointFriction(ports, form, coupled, hybrid) if program.joint else Friction(ports, form)
+        )
+    if program.joint:
+        return _JointOnSides(ports, form, coupled, hybrid).beside(plain)
+    return _OnSides(ports, form).beside(plain)
+
+
+class _OnSides(Friction):
+    """Friction by laws on one side of each corner: beyond one its level may be below zero."""
+
+    def beside(self, plain: Friction) -> "_OnSides":
+        """What is checked is that of laws as they are."""
+        self._plain = plain
+        return self
+
+    def against(self, now: Instant, mode: Mode, checked: bool) -> Array:
+        """See `Friction.against`."""
+        if checked:
+            self._plain.against(now, mode, True)
+        return super().against(now, mode, False)
+
+
+class _JointOnSides(_OnSides, JointFriction):
+    """The same of friction that acts back at once."""
 
 
 def _laws(group: Group, binding: Binding) -> Laws:

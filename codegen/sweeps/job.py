@@ -14,6 +14,7 @@ from codegen.inputs.swept import settled
 from codegen.numbers.arrays import Array
 from codegen.record.measures import EVENTFUL, READY, Measure
 from codegen.record.result import Result
+from codegen.runs.track import CORNER
 from codegen.simulator import Simulator
 from codegen.tuning import TUNING
 
@@ -109,7 +110,8 @@ class Job:
         # Times differ from run to run; the reason is what is counted.
         return runner.run_telling(
             lambda stopped: fallen.append(stopped.reason),
-            self.time, initial, inputs, events=self._eventful, **self._settings,
+            self.time, initial, inputs, events=self._eventful, corners=self._cornered,
+            **self._settings,
         )  # fmt: skip
 
     @property
@@ -117,6 +119,12 @@ class Job:
         """Whether a measure may ask for events."""
         ready = (isinstance(m, Measure) and m.function in READY for m in self.measures.values())
         return (self.events and not all(ready)) or bool(self.asking)
+
+    @property
+    def _cornered(self) -> bool:
+        """Whether a ready measure asks for corners of laws."""
+        asking = [self.measures[name] for name in self.asking]
+        return any(CORNER in one.arguments for one in asking if isinstance(one, Measure))
 
     @property
     def asking(self) -> list[str]:

@@ -161,6 +161,12 @@ FAMILIES = (
     Family("files", "bondgraph/files/test_files.py::test_random_graphs_come_back", 15, 400),
     # Runs.
     Family(
+        "corners",
+        "codegen/runs/test_cornered.py::test_random_chains_are_what_scipy_finds_branch_by_branch",
+        3,
+        400,
+    ),
+    Family(
         "friction-chains",
         "codegen/ports/test_friction_random.py::test_every_sample_is_consistent",
         20,

@@ -64,6 +64,7 @@ static int run_located_once(located_room *room, const double *parameters, const 
         .rtol = room->rtol, .atol = room->atol, .to = room, .record = keep_signals,
         .events = room->events, .capacity = room->capacity, .smooth = job->products ? smooth : 0,
         .first = job->first, .named = job->named, .moved = moved,
+        .corners = room->corners,
     };
     for (int k = 0; k < job->products; k++)
         room->totals[k] = 0.0;

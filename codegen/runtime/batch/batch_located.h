@@ -17,14 +17,14 @@ typedef struct {
 } located_runs;
 
 /* Where runs are done, one at a time, and how. `values`: the signals times the samples; `totals`: of
- * the products. */
+ * the products; `corners`: whether those of laws are events. */
 typedef struct {
     bg_model *model;
     bg_located *run;
     const batch_job *job;
     bg_event *events;
     double *values, *totals, rtol, atol;
-    int capacity, method;
+    int capacity, method, corners;
 } located_room;
 
 /* Does every run; a status for each, nonzero where it has to be done another way. */

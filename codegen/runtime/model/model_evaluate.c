@@ -25,27 +25,41 @@ void bg_give(bg_model *m, int count, const int *columns, const double *values)
     }
 }
 
-/* Slipping ports' efforts, zero at sticking ones; notes every port's breakaway effort. */
-static int efforts_against(bg_model *m, const int *mode, int checked, double *efforts)
+/* What friction values are where they are checked, as laws are: beyond a corner those of its other
+ * side may be below zero. */
+static int checked_values(bg_model *m, double *values)
 {
-    double values[4 * BG_ROOM(K)] = {0};
+    const double sided = m->now.sided;
     int below = 0;
+    m->now.sided = 0.0;
     bg_friction_values(&m->now, values);
     for (int i = 0; i < 4 * K; i++)
         below |= values[i] < 0.0;
-    if (checked && below)
+    if (below)
         bg_without_rounding(m, values);
+    m->now.sided = sided;
     for (int i = 0; i < K; i++) {
-        const double level = values[4 * i], cap = values[4 * i + 1], curve = values[4 * i + 2];
-        const double at_rest = level * values[4 * i + 3];
-        m->caps[i] = cap;
-        efforts[i] = level * curve * mode[i];
-        if (checked && (level < 0 || curve < 0 || cap < at_rest * (1 - BG_BREAKAWAY))) {
+        const double *const of = values + 4 * i;
+        if (of[0] < 0 || of[2] < 0 || of[1] < of[0] * of[3] * (1 - BG_BREAKAWAY)) {
             m->where = i;
             return BG_BAD_FRICTION;
         }
     }
     return BG_OK;
+}
+
+/* Slipping ports' efforts, zero at sticking ones; notes every port's breakaway effort. */
+static int efforts_against(bg_model *m, const int *mode, int checked, double *efforts)
+{
+    double values[4 * BG_ROOM(K)] = {0};
+    const int status = checked ? checked_values(m, values) : BG_OK;
+    if (!checked || m->now.sided > 0.0)
+        bg_friction_values(&m->now, values);
+    for (int i = 0; i < K; i++) {
+        m->caps[i] = values[4 * i + 1];
+        efforts[i] = values[4 * i] * values[4 * i + 2] * mode[i];
+    }
+    return status;
 }
 
 static int friction_residual(bg_model *m, const bg_loop *loop, double *left)
