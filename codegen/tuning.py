@@ -62,6 +62,9 @@ class Tuning:
     # Stops
     bounce: float = _told(10.0, "of what counts as zero of a slip: what closes no faster stays")
     leap: float = _told(4.0, "of what counts as zero of a gap: what leaps no higher stays")
+    short_of: float = _told(
+        0.1, "of what a struck stop is to gain: one that lacks more hangs on another"
+    )
     bounces: int = _told(2000, "so often stops are struck in one instant, at most")
 
     # Laws that determine one another

@@ -193,7 +193,9 @@ def _meeting(here: Sight, mode: Mode, wanted: Mapping[int, float]) -> Meeting:
         return np.asarray(model.at(here.t, after, here.pieces, free).y[model.friction_readings])
 
     def near(strike: Strike) -> Array:
-        x = np.abs(now.x) + np.abs(now.numbers.Q) @ np.abs(strike.given)
+        # What is at rest has the rounding of what it was.
+        seen = model.largest(here.s)[: len(now.x)]
+        x = np.maximum(np.abs(now.x), seen) + np.abs(now.numbers.Q) @ np.abs(strike.given)
         terms = model.moves(now.numbers).terms[: len(mode)]
         return np.asarray(TUNING.rounding * (terms @ np.concatenate((x, np.abs(now.u)))))
 

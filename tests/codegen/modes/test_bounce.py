@@ -258,6 +258,21 @@ def test_bodies_that_take_turns_at_two_stops_come_to_rest() -> None:
 
 
 @pytest.mark.parametrize(("backend", "method"), ROUTES)
+@pytest.mark.parametrize("order", [1, -1])
+@pytest.mark.parametrize("bounce", [0.5, 1.0])
+def test_a_floor_throws_what_rides_on_a_lift(
+    bounce: float, order: int, backend: str, method: str
+) -> None:
+    """Down at 1 m/s, at the floor at 1/2 s: two stops at one motion, of which one lets go."""
+    stops = (_stop("lift", 0, 1, 0.0, bounce), _stop("floor", 0, None, -0.5, bounce))
+    line = Line((2.0,), (0.0, 0.0), (-1.0,), stops[::order], (Wave(-20.0),), (Wave(-1.0),))
+    result = run(line, [0.0, 0.25, 0.5 + 1e-6, 0.5 + bounce / 20], backend, method)
+    assert result["v0"] == pytest.approx([-1, -1, bounce, bounce / 2], abs=2e-5)
+    given = {(e.port, e.kind): e.impulse for e in result.events}
+    assert given["floor", "hit"] == pytest.approx(-2 * (1 + bounce), abs=1e-9)
+
+
+@pytest.mark.parametrize(("backend", "method"), ROUTES)
 @pytest.mark.parametrize("speed", [1e-10, 1e-9, 1e-8])
 def test_what_closes_hardly_faster_than_rounding_is_stopped(
     speed: float, backend: str, method: str
