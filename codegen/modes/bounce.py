@@ -133,6 +133,12 @@ def closing(
     return {i: one.leaving for i, one in touching.items() if one.leaving > 0}
 
 
+def opening(here: Sight, mode: Mode, stops: Collection[int], peaks: Peaks | None) -> frozenset[int]:
+    """Of these stops those that bounce and are about to open: what joins does not join them."""
+    touching = _touching(here, mode, stops, peaks)
+    return frozenset(i for i, one in touching.items() if one.back > 0 and one.slip > one.still)
+
+
 def creeping(
     here: Sight, mode: Mode, stops: Collection[int], peaks: Peaks | None
 ) -> Mapping[int, float]:

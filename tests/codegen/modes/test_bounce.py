@@ -258,6 +258,15 @@ def test_bodies_that_take_turns_at_two_stops_come_to_rest() -> None:
 
 
 @pytest.mark.parametrize(("backend", "method"), ROUTES)
+def test_what_joins_throws_back_what_touched_and_was_leaving(backend: str, method: str) -> None:
+    """1 and 2 join at 0 m/s; then 2 kg at -2 m/s meet their 2 kg, e = 1/2: 1 m/s apart about -1 m/s."""
+    stops = (_stop("throw", 0, 1, 1.0, 0.5), _stop("join", 1, 2, 1.0, 0.0))
+    line = Line((2.0, 1.0, 1.0), (1.0, 0.0, -1.0), (-2.0, -3.0, 3.0), stops)
+    result = run(line, [0.0, 0.5], backend, method)
+    assert [result[f"v{i}"][0] for i in range(3)] == pytest.approx([-0.5, -1.5, -1.5], abs=1e-12)
+
+
+@pytest.mark.parametrize(("backend", "method"), ROUTES)
 @pytest.mark.parametrize("order", [1, -1])
 @pytest.mark.parametrize("bounce", [0.5, 1.0])
 def test_a_floor_throws_what_rides_on_a_lift(
