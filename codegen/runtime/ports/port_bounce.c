@@ -55,10 +55,10 @@ static double leaving_speed(const bg_switch *one, const bg_port *now)
 
 /* What is looked for among stops that are touched and let go. Those that bounce as they close;
  * those that bounce and are about to open, which what joins does not join; if one closes so slowly
- * that no impact would see it, all that are slow: an impact that joins leaves what is an event's own
- * rounding, and a push that has turned by then would find neither way consistent; and what an impact
- * has opened, but would close again before its gap could be seen: what is joined to it came to rest,
- * and unless it were stopped, too, the two might take turns for ever. */
+ * that no impact would see it, all that are slow: an impact that joins leaves what is an event's
+ * own rounding, and a push that has turned by then would find neither way consistent; and what an
+ * impact has opened, but would close again before its gap could be seen: what is joined to it came
+ * to rest, and unless it were stopped, too, the two might take turns for ever. */
 enum wanted { BOUNCES, OPENS, CREEPS, HARDLY_LEAVES };
 
 /* Whether a stop is wanted so, which bounces at a speed; of the slow tells if it closes. */
