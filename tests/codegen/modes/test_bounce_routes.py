@@ -25,8 +25,14 @@ pytestmark = pytest.mark.usefixtures("compiled_quickly")
 END, SAMPLES, STEPS = 4.0, 41, 20_000
 TIMES = np.linspace(0.0, END, SAMPLES)
 
+SLACK = 40
+"""Speeds, of the largest, per second that a step is late."""
+
 TIGHT, BY_IMPORTER = 1e-7, 1e-5
 """How far located runs may be off, of the largest: by themselves, and where an importer locates."""
+
+COARSER = 8
+"""Python takes steps so many times as long."""
 
 EARLY = 3
 """Fixed steps, late by up to one at each event, are compared up to so many of them."""
@@ -77,7 +83,7 @@ def test_random_stops_everywhere(seed: int, tmp_path: Path) -> None:
     equations = bg.derive(made)
     early = [t for t, *_ in course.events][EARLY:]
     soon = min(upto, int(np.searchsorted(TIMES, early[0])) if early else SAMPLES)
-    late = 40 * END / STEPS
+    late = SLACK * END / STEPS
 
     files = codegen.to_c(equations, numbers, None, "kind", main=True, initial=start, inputs=given)
     program = compiled(tmp_path, written(tmp_path, files), "-O0")
@@ -86,10 +92,10 @@ def test_random_stops_everywhere(seed: int, tmp_path: Path) -> None:
     waves = {name: one if callable(one) else float(one) for name, one in given.items()}
     stepped = {
         "C": _printed(program, f"step={END / STEPS!r}"),
-        "Python": module.simulate(TIMES, start, waves, step=4 * END / STEPS),
+        "Python": module.simulate(TIMES, start, waves, step=COARSER * END / STEPS),
     }
     for name, run in stepped.items():
-        assert _off(line, course, run, soon) < (1 if name == "C" else 4) * late, name
+        assert _off(line, course, run, soon) < (1 if name == "C" else COARSER) * late, name
         assert _gaps(line, run) > -1e-9, name
 
     measures = {name: codegen.samples(name) for name in start}
@@ -100,9 +106,12 @@ def test_random_stops_everywhere(seed: int, tmp_path: Path) -> None:
     assert not swept.failed
     assert _off(line, course, {name: swept[name][0] for name in start}, upto) < TIGHT
 
-    case, names = Case(equations, numbers, None, start, given, END), [*start]
-    for version, kind in (("2.0", "CoSimulation"), ("3.0", "ModelExchange")):
-        path = case.written(tmp_path / f"unit{version[0]}.fmu", version)
+    case, names, version = (
+        Case(equations, numbers, None, start, given, END),
+        [*start],
+        "23"[seed % 2],
+    )
+    path = case.written(tmp_path / "unit.fmu", f"{version}.0")
+    for kind, near in (("CoSimulation", TIGHT), ("ModelExchange", BY_IMPORTER)):
         found = sampled(simulated(path, kind, case, names, SAMPLES), case, SAMPLES)
-        near = TIGHT if kind == "CoSimulation" else BY_IMPORTER
         assert _off(line, course, found, upto) < near, kind
