@@ -64,6 +64,9 @@ class Tuning:
     leap: float = _told(4.0, "of what counts as zero of a gap: what leaps no higher stays")
     lingers: float = _told(0.99, "of a speed two crossings before: swings that shrink no faster")
     lingering: float = _told(10.0, "speeds of theirs that count as unseen are so many times larger")
+    short_of: float = _told(
+        0.1, "of what a struck stop is to gain: one that lacks more hangs on another"
+    )
     bounces: int = _told(2000, "so often stops are struck in one instant, at most")
 
     # Laws that determine one another

@@ -133,6 +133,12 @@ def closing(
     return {i: one.leaving for i, one in touching.items() if one.leaving > 0}
 
 
+def opening(here: Sight, mode: Mode, stops: Collection[int], peaks: Peaks | None) -> frozenset[int]:
+    """Of these stops those that bounce and are about to open: what joins does not join them."""
+    touching = _touching(here, mode, stops, peaks)
+    return frozenset(i for i, one in touching.items() if one.back > 0 and one.slip > one.still)
+
+
 def creeping(
     here: Sight, mode: Mode, stops: Collection[int], peaks: Peaks | None
 ) -> Mapping[int, float]:
@@ -193,7 +199,9 @@ def _meeting(here: Sight, mode: Mode, wanted: Mapping[int, float]) -> Meeting:
         return np.asarray(model.at(here.t, after, here.pieces, free).y[model.friction_readings])
 
     def near(strike: Strike) -> Array:
-        x = np.abs(now.x) + np.abs(now.numbers.Q) @ np.abs(strike.given)
+        # What is at rest has the rounding of what it was.
+        seen = model.largest(here.s)[: len(now.x)]
+        x = np.maximum(np.abs(now.x), seen) + np.abs(now.numbers.Q) @ np.abs(strike.given)
         terms = model.moves(now.numbers).terms[: len(mode)]
         return np.asarray(TUNING.rounding * (terms @ np.concatenate((x, np.abs(now.u)))))
 

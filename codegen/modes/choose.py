@@ -15,6 +15,7 @@ from codegen.modes.bounce import (
     creeping,
     hardly_leaving,
     met,
+    opening,
     stopped,
     thrown_back,
 )
@@ -104,12 +105,13 @@ def _struck(now: Occasion, here: Sight, free: Sequence[int]) -> Decision:
             impacts += (stilled,)
             here = now.seen(stilled.s)
         wanted = closing(here, now.previous, met_now, now.peaks)
-        now = now._replace(barred=apart | wanted.keys())
+        opens = opening(here, now.previous, met_now, now.peaks)
+        now = now._replace(barred=apart | wanted.keys() | opens)
         found = _decided(now, here, [i for i in free if i not in now.barred])
         impacts += found.impacts
         joined += len(found.impacts)
         here, now = now.seen(found.s), now._replace(previous=found.mode, touched=frozenset())
-        wanted = closing(here, found.mode, wanted.keys(), now.peaks)
+        wanted = closing(here, found.mode, wanted.keys() | opens, now.peaks)
         thrown = thrown_back(here, found.mode, wanted) if wanted else None
         if thrown is None and not found.impacts and impacts:
             wanted = hardly_leaving(here, found.mode, met_now, now.peaks)

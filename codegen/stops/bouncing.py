@@ -84,6 +84,33 @@ class Meeting:
                 wrong.add(i)
         return wrong
 
+    @cached_property
+    def asked(self) -> Mapping[int, float]:
+        """By how much each has to open faster, or close less."""
+        slips = self.slips(self.none)
+        return {i: self.wanted.get(i, 0.0) - way * slips[i] for i, way in self.ways.items()}
+
+    @property
+    def none(self) -> Strike:
+        """No impulses at all."""
+        n, inputs = len(self.now.x), len(self.now.u)
+        return Strike(np.zeros(inputs), np.zeros(len(self.now.y)), np.zeros(n))
+
+    def short(self, strike: Strike, active: Set[int]) -> set[int]:
+        """Of these the ports that hang on others by their slips, and were left far from wanted."""
+        slips, near = self.slips(strike), self.near(strike)
+        left = {i: self.wanted.get(i, 0.0) - self.ways[i] * slips[i] for i in active}
+        return {i for i, by in left.items() if by > max(near[i], TUNING.short_of * self.asked[i])}
+
+    def hindering(self, active: Set[int], short: Set[int]) -> int:
+        """The port without which those left short get what is wanted."""
+        others = sorted(set(active) - short) or sorted(short)
+        for i in others:
+            strike = self.struck(set(active) - {i})
+            if strike is not None and not self.short(strike, short):
+                return i
+        return others[0]
+
 
 def thrown(meeting: Meeting) -> Strike | None:
     """The impulses, found by Murty's rule; None where no states move what closes.
@@ -96,6 +123,9 @@ def thrown(meeting: Meeting) -> Strike | None:
         if strike is None:
             return None
         wrong = meeting.contrary(strike, active)
+        if short := meeting.short(strike, active):
+            # Two stops at one motion, each with a speed of its own, do not both take part.
+            wrong = {meeting.hindering(active, short)}
         if not wrong:
             return strike
         active ^= {min(wrong)}

@@ -124,7 +124,8 @@ class StoppedSteps(SwitchedSteps):
 
         def near(strike: Strike) -> Array:
             gained = np.abs(now.numbers.Q) @ np.abs(strike.given)
-            moved = np.abs(now.numbers.F[self.slips]) @ gained
+            # What is at rest has the rounding of what it was.
+            moved = np.abs(now.numbers.F[self.slips]) @ (gained + self.seen[: len(gained)])
             return np.asarray(TUNING.step_rounding * (self.terms(now) + moved))
 
         strike = thrown(Meeting(

@@ -150,7 +150,7 @@ static int round_struck(ex_context *c, const bg_instant *at, const int *mode, bg
         return status;
     memset(blow->near, 0, sizeof blow->near);
     for (int j = 0; j < EX_X; j++) {
-        double size = fabs(c->shot[EX_AT_X + j]);
+        double size = bg_greater(fabs(c->shot[EX_AT_X + j]), c->peaks.x[j]);
         for (int k = 0; k < EX_K; k++)
             size += a->Q[a->own[k]][j] * fabs(blow->given[k]);
         for (int i = 0; i < EX_K; i++)

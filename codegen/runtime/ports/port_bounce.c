@@ -53,13 +53,13 @@ static double leaving_speed(const bg_switch *one, const bg_port *now)
     return is_seen(one, now, speed) ? speed : 0.0;
 }
 
-/* What is looked for among stops that are touched and let go. Those that bounce as they close; if
- * one of them closes so slowly that no impact would see it, all that are slow: an impact that joins
- * leaves what is an event's own rounding, and a push that has turned by then would find neither way
- * consistent; and what an impact has opened, but would close again before its gap could be seen:
- * what is joined to it came to rest, and unless it were stopped, too, the two might take turns for
- * ever. */
-enum wanted { BOUNCES, CREEPS, HARDLY_LEAVES };
+/* What is looked for among stops that are touched and let go. Those that bounce as they close;
+ * those that bounce and are about to open, which what joins does not join; if one closes so slowly
+ * that no impact would see it, all that are slow: an impact that joins leaves what is an event's
+ * own rounding, and a push that has turned by then would find neither way consistent; and what an
+ * impact has opened, but would close again before its gap could be seen: what is joined to it came
+ * to rest, and unless it were stopped, too, the two might take turns for ever. */
+enum wanted { BOUNCES, OPENS, CREEPS, HARDLY_LEAVES };
 
 /* Whether a stop is wanted so, which bounces at a speed; of the slow tells if it closes. */
 static int is_wanted(enum wanted what, const bg_switch *one, const bg_port *now, double speed,
@@ -68,10 +68,12 @@ static int is_wanted(enum wanted what, const bg_switch *one, const bg_port *now,
     const double slip = one->side * now->slip;
     if (what == BOUNCES)
         return speed > 0.0;
-    if (what == HARDLY_LEAVES) {
+    if (what == OPENS || what == HARDLY_LEAVES)
         *closes = 1;
+    if (what == OPENS)
+        return now->back > 0.0 && slip > now->near_slip;
+    if (what == HARDLY_LEAVES)
         return slip > now->near_slip && !is_seen(one, now, slip);
-    }
     const int slow = speed == 0.0 && slip >= -2.0 * BG_WIDE * now->near_slip;
     *closes |= slow && slip < -now->near_slip;
     return slow;
@@ -157,16 +159,21 @@ static int still(const bg_sight *c, const bg_instant *at, const bg_set *met, con
 static int strike_in_turn(const bg_sight *c, const bg_instant *at, const bg_set *met,
                           const bg_set *apart, int *mode, int *joined, int *thrown)
 {
-    bg_throw wanted;
+    *joined = *thrown = 0;
+    bg_throw wanted, opens;
     bg_blow blow = {0};
     int status = find_wanted(c, at, mode, *met, BOUNCES, &wanted);
-    const bg_set barred = bg_turned(*apart, &wanted.ports);
     if (status == BG_OK)
-        status = bg_choose_once(c, at, &barred, mode, &blow);
+        status = find_wanted(c, at, mode, *met, OPENS, &opens);
+    if (status)
+        return status;
+    const bg_set among = bg_turned(wanted.ports, &opens.ports);
+    const bg_set barred = bg_turned(*apart, &among);
+    status = bg_choose_once(c, at, &barred, mode, &blow);
     *joined = blow.struck;
     blow.struck = 0;
     if (status == BG_OK)
-        status = find_wanted(c, at, mode, wanted.ports, BOUNCES, &wanted);
+        status = find_wanted(c, at, mode, among, BOUNCES, &wanted);
     if (status == BG_OK && !bg_is_empty(&wanted.ports))
         status = bg_throw_back(c, at, mode, &wanted, &blow);
     *thrown = blow.struck;

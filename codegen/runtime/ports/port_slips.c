@@ -47,6 +47,9 @@ void bg_round_struck(const bg_model *m, const bg_snapshot *now, const double *gi
         const double *const F = a->F + bg_friction_readings[i] * N;
         double terms, gained = 0.0;
         bg_slip(m, now, i, &terms);
+        /* What is at rest has the rounding of what it was. */
+        for (int l = 0; l < N; l++)
+            gained += fabs(F[l]) * m->seen[l];
         for (int l = 0; l < N; l++)
             for (int k = 0; k < K; k++)
                 gained += fabs(F[l] * a->Q[l * M + bg_friction_inputs[k]] * given[k]);

@@ -258,6 +258,30 @@ def test_bodies_that_take_turns_at_two_stops_come_to_rest() -> None:
 
 
 @pytest.mark.parametrize(("backend", "method"), ROUTES)
+def test_what_joins_throws_back_what_touched_and_was_leaving(backend: str, method: str) -> None:
+    """1 and 2 join at 0 m/s; then 2 kg at -2 m/s meet their 2 kg, e = 1/2: 1 m/s apart about -1 m/s."""
+    stops = (_stop("throw", 0, 1, 1.0, 0.5), _stop("join", 1, 2, 1.0, 0.0))
+    line = Line((2.0, 1.0, 1.0), (1.0, 0.0, -1.0), (-2.0, -3.0, 3.0), stops)
+    result = run(line, [0.0, 0.5], backend, method)
+    assert [result[f"v{i}"][0] for i in range(3)] == pytest.approx([-0.5, -1.5, -1.5], abs=1e-12)
+
+
+@pytest.mark.parametrize(("backend", "method"), ROUTES)
+@pytest.mark.parametrize("order", [1, -1])
+@pytest.mark.parametrize("bounce", [0.5, 1.0])
+def test_a_floor_throws_what_rides_on_a_lift(
+    bounce: float, order: int, backend: str, method: str
+) -> None:
+    """Down at 1 m/s, at the floor at 1/2 s: two stops at one motion, of which one lets go."""
+    stops = (_stop("lift", 0, 1, 0.0, bounce), _stop("floor", 0, None, -0.5, bounce))
+    line = Line((2.0,), (0.0, 0.0), (-1.0,), stops[::order], (Wave(-20.0),), (Wave(-1.0),))
+    result = run(line, [0.0, 0.25, 0.5 + 1e-6, 0.5 + bounce / 20], backend, method)
+    assert result["v0"] == pytest.approx([-1, -1, bounce, bounce / 2], abs=2e-5)
+    given = {(e.port, e.kind): e.impulse for e in result.events}
+    assert given["floor", "hit"] == pytest.approx(-2 * (1 + bounce), abs=1e-9)
+
+
+@pytest.mark.parametrize(("backend", "method"), ROUTES)
 @pytest.mark.parametrize("speed", [1e-10, 1e-9, 1e-8])
 def test_what_closes_hardly_faster_than_rounding_is_stopped(
     speed: float, backend: str, method: str

@@ -131,5 +131,8 @@ def same(graph: nx.DiGraph, other: bg.StateEquations) -> None:
     one = bg.derive(graph)
     for name in ("A", "J", "B", "E", "F", "D", "G", "states", "inputs", "outputs", "laws"):
         assert getattr(one, name) == getattr(other, name), name
-    told = [[(s.name, s.on, s.off, s.guard, s.side) for s in e.switches] for e in (one, other)]
+    told = [
+        [(s.name, s.on, s.off, s.guard, s.side, s.switch.resets) for s in e.switches]
+        for e in (one, other)
+    ]
     assert told[0] == told[1]
