@@ -47,16 +47,19 @@ class Crossings:
             between = here.t - self._last.get(i, -float("inf"))
             self._last[i] = here.t
             # At a rate v, and back with it after a time T, it leaps by v T/4.
-            self._linger(i, math.inf if mode[i] == 0 else abs(float(rates[i])), peaks)
-            seen = mode[i] == 0 or abs(float(rates[i])) * between > 4 * TUNING.leap * float(near[i])
+            speed = abs(float(rates[i]))
+            leap = speed * between / 4
+            if peaks is not None and i in model.hung:
+                self._swing(i, math.inf if mode[i] == 0 else speed, leap, peaks)
+            seen = mode[i] == 0 or leap > TUNING.leap * float(near[i])
             self._unseen[i] = 0 if seen else self._unseen[i] + 1
             if self._unseen[i] >= TUNING.stalled:
                 raise _accumulates(model, i, here.t)
 
-    def _linger(self, port: int, speed: float, peaks: Peaks | None) -> None:
-        """Tell swings that hardly shrink, by the speeds of crossings to the same side."""
-        if peaks is None or port not in self._speeds:
-            return
+    def _swing(self, port: int, speed: float, leap: float, peaks: Peaks) -> None:
+        """Tell how high swings were, and whether they hardly shrink: by crossings to the same side."""
+        if math.isfinite(leap):
+            peaks.leapt[port] = max(peaks.leapt.get(port, 0.0), leap)
         before, self._speeds[port] = self._speeds[port][0], (self._speeds[port][1], speed)
         stays = TUNING.lingers * before < speed < math.inf
         peaks.lingering = peaks.lingering - {port} | ({port} if stays else set())
