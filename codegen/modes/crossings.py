@@ -1,9 +1,8 @@
-"""Jumps that are crossed at ever shorter intervals, which come to rest on the jump: an accumulation.
+"""Jumps that are crossed at ever shorter intervals: how high they leap between, and where that has no end.
 
-A jump that acts only on a higher derivative of what it hangs on (``x'' = -2 sign(x) - sign(x')``) holds
-nothing. It is crossed, and the crossings may gather towards an instant from which on ``x`` and its rate stay
-zero both (sliding of second order: Levant, International Journal of Control 58, 1993, section 3). No mode
-says that. ``run_loop.c`` decides the same way.
+A jump that acts only on a higher derivative of what it hangs on (``x'' = -2 sign(x) - sign(x')``) is crossed,
+and the crossings may gather towards an instant from which on ``x`` and its rate stay zero both. One of second
+order rests there. Of others no mode says that, and the run is refused. ``run_loop.c`` decides the same way.
 """
 
 import math
@@ -69,6 +68,7 @@ def _accumulates(model: ClosedModel, port: int, t: float) -> SimulationError:
     name = model.program.friction[port].name
     return SimulationError(
         f"at t = {t:.9g} a jump in the law at {name!r} is crossed ever sooner, and comes to rest there: it "
-        "moves no first rate of what it hangs on, so that it cannot slide; let it depend on that rate, too, "
-        "or end the run before"
+        "moves no first rate of what it hangs on, so that it cannot slide, nor is that a sum of states with "
+        "constant factors, of which it could hold the first rate by the second; let it be one, let it depend "
+        "on the rate, too, or end the run before"
     )
