@@ -1,9 +1,8 @@
-"""Jumps that are crossed at ever shorter intervals, which come to rest on the jump: an accumulation.
+"""Jumps that are crossed at ever shorter intervals: how high they leap between, and where that has no end.
 
-A jump that acts only on a higher derivative of what it hangs on (``x'' = -2 sign(x) - sign(x')``) holds
-nothing. It is crossed, and the crossings may gather towards an instant from which on ``x`` and its rate stay
-zero both (sliding of second order: Levant, International Journal of Control 58, 1993, section 3). No mode
-says that. ``run_loop.c`` decides the same way.
+A jump that acts only on a higher derivative of what it hangs on (``x'' = -2 sign(x) - sign(x')``) is crossed,
+and the crossings may gather towards an instant from which on ``x`` and its rate stay zero both. One of second
+order rests there. Of others no mode says that, and the run is refused. ``run_loop.c`` decides the same way.
 """
 
 import math
@@ -47,16 +46,19 @@ class Crossings:
             between = here.t - self._last.get(i, -float("inf"))
             self._last[i] = here.t
             # At a rate v, and back with it after a time T, it leaps by v T/4.
-            self._linger(i, math.inf if mode[i] == 0 else abs(float(rates[i])), peaks)
-            seen = mode[i] == 0 or abs(float(rates[i])) * between > 4 * TUNING.leap * float(near[i])
+            speed = abs(float(rates[i]))
+            leap = speed * between / 4
+            if peaks is not None and i in model.hung:
+                self._swing(i, math.inf if mode[i] == 0 else speed, leap, peaks)
+            seen = mode[i] == 0 or leap > TUNING.leap * float(near[i])
             self._unseen[i] = 0 if seen else self._unseen[i] + 1
             if self._unseen[i] >= TUNING.stalled:
                 raise _accumulates(model, i, here.t)
 
-    def _linger(self, port: int, speed: float, peaks: Peaks | None) -> None:
-        """Tell swings that hardly shrink, by the speeds of crossings to the same side."""
-        if peaks is None or port not in self._speeds:
-            return
+    def _swing(self, port: int, speed: float, leap: float, peaks: Peaks) -> None:
+        """Tell how high swings were, and whether they hardly shrink: by crossings to the same side."""
+        if math.isfinite(leap):
+            peaks.leapt[port] = max(peaks.leapt.get(port, 0.0), leap)
         before, self._speeds[port] = self._speeds[port][0], (self._speeds[port][1], speed)
         stays = TUNING.lingers * before < speed < math.inf
         peaks.lingering = peaks.lingering - {port} | ({port} if stays else set())
@@ -66,6 +68,7 @@ def _accumulates(model: ClosedModel, port: int, t: float) -> SimulationError:
     name = model.program.friction[port].name
     return SimulationError(
         f"at t = {t:.9g} a jump in the law at {name!r} is crossed ever sooner, and comes to rest there: it "
-        "moves no first rate of what it hangs on, so that it cannot slide; let it depend on that rate, too, "
-        "or end the run before"
+        "moves no first rate of what it hangs on, so that it cannot slide, nor is that a sum of states with "
+        "constant factors, of which it could hold the first rate by the second; let it be one, let it depend "
+        "on the rate, too, or end the run before"
     )

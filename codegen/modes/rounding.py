@@ -1,7 +1,7 @@
 """What counts as zero of slips, efforts, accelerations and conditions: the rounding of their terms."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -55,6 +55,8 @@ class Peaks:
     time: float = 0.0
     #: Jumps of second order whose swings hardly shrink.
     lingering: frozenset[int] = frozenset()
+    #: How high they have leapt between two crossings.
+    leapt: dict[int, float] = field(default_factory=dict)
 
     @classmethod
     def none(cls, model: ClosedModel) -> "Peaks":

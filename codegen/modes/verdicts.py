@@ -166,6 +166,8 @@ def with_leaps(size: Scales, here: Sight, now: Snapshot, peaks: Peaks | None) ->
     slips, by = size.slip.copy(), model.moves(now.numbers).mobility
     for i, near in hung_rounding(here, now).items():
         thrown = float(now.caps[i]) / float(by[i]) if by[i] > 0 else 0.0
+        if peaks is not None:
+            near = max(near, TUNING.together * peaks.leapt.get(i, 0.0))
         unseen = math.sqrt(2 * TUNING.leap * near * thrown)
         if peaks is not None and i in peaks.lingering:
             unseen *= TUNING.lingering

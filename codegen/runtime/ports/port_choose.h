@@ -37,13 +37,15 @@ typedef struct {
 } bg_ruling;
 
 /* An instant: the shortest time constant there, and the inputs' next breakpoint; `log`: where to
- * tell of impacts, or NULL; `lingers`: jumps of second order whose swings hardly shrink. */
+ * tell of impacts, or NULL; `lingers`: jumps of second order whose swings hardly shrink, and
+ * `leapt`: how high any of those has leapt between two crossings. */
 typedef struct {
     double t, time, following;
     double *s;
     int touched[BG_MOST_PORTS];
     bg_log *log;
     int lingers[BG_MOST_PORTS];
+    double leapt[BG_MOST_PORTS];
 } bg_instant;
 
 /* An impact: whether there is one; what each port gives; 1 where that goes with its switch's mode,

@@ -159,9 +159,14 @@ void bg_tell(const bg_choice *choice, const int *mode, bg_port *now, bg_ruling *
 {
     const bg_sight *const c = choice->sight;
     c->tell(c->self, mode, choice->at, now, ruling);
-    for (int i = 0; i < c->ports; i++)
-        if (bg_hangs(c->kinds + i) && choice->at->lingers[i])
-            now[i].near_slip = fmax(now[i].near_slip, BG_LINGERING * now[i].unseen);
+    for (int i = 0; i < c->ports; i++) {
+        if (!bg_hangs(c->kinds + i))
+            continue;
+        const double more = BG_TOGETHER * choice->at->leapt[i] / now[i].near_gap;
+        const double lingers = choice->at->lingers[i] ? BG_LINGERING : 1.0;
+        now[i].near_slip =
+            fmax(now[i].near_slip, sqrt(fmax(more, 1.0)) * lingers * now[i].unseen);
+    }
 }
 
 int bg_find(bg_choice *choice, const int *mode, const bg_set *asked, bg_finding *found)

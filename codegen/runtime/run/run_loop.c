@@ -88,6 +88,7 @@ static int count_crossings(const bg_engine *e, bg_course *c)
         const double speed = hangs ? now[i].slip : now[i].push;
         const double near = hangs ? now[i].near_gap : now[i].near_slip;
         const double leap = fabs(speed) * (c->at.t - c->crossings.last[i]) / 4;
+        c->at.leapt[i] = isfinite(leap) ? fmax(c->at.leapt[i], leap) : c->at.leapt[i];
         c->crossings.last[i] = c->at.t;
         linger(c, i, hangs && c->mode[i] ? fabs(speed) : INFINITY);
         *unseen = c->mode[i] == 0 || leap > BG_LEAP * near ? 0 : *unseen + 1;

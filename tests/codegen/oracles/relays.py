@@ -115,3 +115,20 @@ RELAYS: Mapping[str, Callable[[], Relay]] = {
     "moving": moving,
     "damped": damped,
 }  # fmt: skip
+
+
+def together() -> tuple[bg.StateEquations, Mapping[str, float]]:
+    """Relays of first and second order and two that cross, side by side, and where they start.
+
+    A thermostat of 20 degrees; ``x'' = -2 sign(x) - sign(x')``; and ``p' = -sign(p) + 2 sign(q)``,
+    ``q' = -sign(q) - 2 sign(p)``, whose quarter turns are each a third of the last. A sum of all makes it one.
+    """
+    heat = sp.Piecewise((10, sp.Symbol("T") < 20), (0, True))
+    nodes = [bg.Sf("heat", heat), bg.Zero("room"), bg.C("c", 1, effort="T"), bg.R("wall", 5),
+             bg.One("j"), bg.I("m", 1, flow="v"), bg.Df("d", integrate="x"),
+             bg.R("r", law="2*sign(x) + sign(v_r)", effort="F_r", flow="v_r"),
+             bg.Sf("a", "-sign(p) + 2*sign(q)"), bg.Zero("z"), bg.C("P", 1, effort="p"),
+             bg.Sf("b", "-sign(q) - 2*sign(p)"), bg.Zero("y"), bg.C("Q", 1, effort="q"),
+             bg.Sf("all", "T + x + p"), bg.Zero("w"), bg.C("W", 1, effort="sum")]  # fmt: skip
+    graph = bond_graph(nodes, "heat>room>c room>wall j>m j>r j>d a>z>P b>y>Q all>w>W")
+    return bg.derive(graph), {"T": 15.0, "x": 1.0, "q": 1.0}

@@ -94,21 +94,6 @@ def test_two_relays_spiral_to_where_both_slide(backend: str) -> None:
     assert result.events[-1].time == pytest.approx(0.5, abs=1e-6)
 
 
-@pytest.mark.parametrize("backend", ["numpy", "c"])
-def test_what_accumulates_on_a_higher_derivative_is_refused_by_name(backend: str) -> None:
-    """x'' = -2 sign(x) - sign(x'): each swing has a third of the last one's height, and all end at once."""
-    run = simulator(oscillating("2*sign(x) + sign(v_r)"), {}, backend=backend)
-    end = 4 * np.sqrt(2.0) / 3 / (1 - 1 / np.sqrt(3.0))
-    near = str(end)[:4].replace(".", r"\.")
-    with pytest.raises(
-        bg.SimulationError, match=rf"at t = {near}\d* a jump in the law at 'r' is crossed"
-    ):
-        run.run([0.0, 6.0], {"x": 1.0})
-    # Before, it runs: from x = 1 to 0 by 1, then with 3 to rest at -1/3.
-    stops = 4 * np.sqrt(2.0) / 3
-    assert run.run([0.0, stops], {"x": 1.0})["x"][-1] == pytest.approx(-1 / 3, abs=CLOSE)
-
-
 def test_a_trim_may_slide() -> None:
     from codegen import trim
 
