@@ -129,4 +129,6 @@ class CornerWatch:
 
     def _triggers(self, t: float, s: Array) -> Array:
         values, count = self._sight.values(t, s)
-        return np.asarray(np.where(count > 0, self._sides * values, np.inf), dtype=float)
+        # What a branch has no value for is beyond another corner, which comes before.
+        away = np.where((count > 0) & ~np.isnan(values), self._sides * values, np.inf)
+        return np.asarray(away, dtype=float)

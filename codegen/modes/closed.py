@@ -98,6 +98,8 @@ class ClosedModel:
         self._hung_rows: Array | None = None
         self._moves: tuple[Numbers, Moves] | None = None
         self._on_sides: Latest[tuple[int, ...], ClosedModel] = Latest()
+        #: The model whose laws these are on one side of each corner.
+        self._plain: ClosedModel | None = None
         self._run: Run | None = None
         #: The latest time, pieces, external inputs and rates: an instant is looked at many times.
         self._latest: tuple[float, tuple[Piece, ...], Array, Array] = (np.nan, (), NONE, NONE)
@@ -114,7 +116,7 @@ class ClosedModel:
 
     def _with_sides(self, sides: tuple[int, ...]) -> "ClosedModel":
         made = copy(self)
-        made.program, made._moves = self.program.on_sides, None
+        made.program, made._moves, made._plain = self.program.on_sides, None, self
         binding = Binding(made.program, self.parameters, sides)
         made._bind(binding)
         made._evaluate_by(binding, self._friction)
@@ -179,8 +181,13 @@ class ClosedModel:
         )
 
     def at(self, t: float, s: Array, pieces: Sequence[Piece], mode: Mode) -> Snapshot:
-        """Every variable at one time, with the inputs' pieces and the friction mode given."""
+        """Every variable at one time, with the inputs' pieces and the friction mode given.
+
+        Where a law has no value beyond a corner, as `sqrt(abs(p))` beyond zero, it is the law as it is.
+        """
         w, dw = self.given(t, pieces)
+        if self._plain is not None:
+            return self._on_a_side(t, s, pieces, mode) or self._plain.at(t, s, pieces, mode)
         if self.program.affine:
             affine = self.affine_map(mode, len(w))
             if affine is not None:
@@ -190,6 +197,17 @@ class ClosedModel:
                 if not affine.limited or caps.min() >= 0:
                     return Snapshot(x, z, u, du, y, rate, caps, w, self.constant)
         return self.evaluate(t, s, w, dw, mode)
+
+    def _on_a_side(
+        self, t: float, s: Array, pieces: Sequence[Piece], mode: Mode
+    ) -> Snapshot | None:
+        """The same by laws on one side of each corner; None where they have no value."""
+        try:
+            found = self.evaluate(t, s, *self.given(t, pieces), mode)
+        except SimulationError:
+            return None
+        finite = all(bool(np.isfinite(part).all()) for part in (found.rate, found.u, found.y))
+        return found if finite else None
 
     def vector(self, t: float, state: Array, given: Array) -> Array:
         """The integrated vector at a state: x less what inputs that drive dependent storages add."""

@@ -25,7 +25,7 @@ static int hung_at(bg_located *c, double t, const double *s, double *values)
             return status;
     }
     bg_corners(now, values);
-    return bg_finite(BG_CORNERS, values) ? BG_OK : BG_NOT_FINITE;
+    return BG_OK;
 }
 
 /* Below these what corners hang on counts as zero: what moves it where all that it reads is off by
@@ -87,11 +87,14 @@ int bg_corners_begin(bg_located *c, double fastest)
     return status;
 }
 
-/* On this side what each hangs on is positive; what does not count is far from zero. */
+/* On this side what each hangs on is positive; what does not count is far from zero, and what has
+ * no value: that is beyond another corner, which comes before. */
 static void away(const bg_values *now, double *values)
 {
-    for (int k = 0; k < BG_CORNERS; k++)
-        values[k] = values[BG_CORNERS + k] > 0.0 ? now->side[k] * values[k] : INFINITY;
+    for (int k = 0; k < BG_CORNERS; k++) {
+        const int counts = values[BG_CORNERS + k] > 0.0 && !isnan(values[k]);
+        values[k] = counts ? now->side[k] * values[k] : INFINITY;
+    }
 }
 
 int bg_corners_watch(bg_located *c, double fastest)

@@ -33,7 +33,13 @@ int bg_located_rate(bg_located *c, double t, const double *s, double *rate)
         return status;
     }
     c->view.given(c->view.self, t, w, dw);
-    const int status = bg_model_rhs(c->model, t, s, w, signs, rate);
+    int status = bg_model_rhs(c->model, t, s, w, signs, rate);
+    const double sided = c->model->now.sided;
+    if (status == BG_OK && sided > 0.0 && !bg_finite(BG_SIZE, rate)) {
+        c->model->now.sided = 0.0; /* a law without a value beyond its corner, as below */
+        status = bg_model_rhs(c->model, t, s, w, signs, rate);
+        c->model->now.sided = sided;
+    }
     return status == BG_OK && !bg_finite(BG_SIZE, rate) ? BG_NOT_FINITE : status;
 }
 

@@ -233,8 +233,8 @@ static int finish(bg_model *m, const bg_hold *held, bg_snapshot *shot)
     return BG_OK;
 }
 
-int bg_evaluate(bg_model *m, double t, const double *s, const double *w, const double *dw,
-                const int *mode, int checked, bg_snapshot *shot)
+static int evaluate(bg_model *m, double t, const double *s, const double *w, const double *dw,
+                    const int *mode, int checked, bg_snapshot *shot)
 {
     bg_hold *held = NULL;
     int status = begin(m, t, s, w, dw), sticking = 0;
@@ -251,6 +251,20 @@ int bg_evaluate(bg_model *m, double t, const double *s, const double *w, const d
     if (status == BG_OK && K > 0)
         status = rub(m, mode, held, checked);
     return status == BG_OK ? finish(m, held, shot) : status;
+}
+
+/* Where a law has no value beyond a corner, as sqrt(|p|) beyond zero, it is the law as it is. */
+int bg_evaluate(bg_model *m, double t, const double *s, const double *w, const double *dw,
+                const int *mode, int checked, bg_snapshot *shot)
+{
+    const double sided = m->now.sided;
+    int status = evaluate(m, t, s, w, dw, mode, checked, shot);
+    if (status == BG_OK || !(sided > 0.0))
+        return status;
+    m->now.sided = 0.0;
+    status = evaluate(m, t, s, w, dw, mode, checked, shot);
+    m->now.sided = sided;
+    return status;
 }
 
 int bg_model_evaluate(bg_model *m, double t, const double *s, const double *w, const double *dw,
