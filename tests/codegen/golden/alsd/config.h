@@ -17,6 +17,7 @@
 #define BG_FRICTION 1
 #define BG_PORTS 1
 #define BG_SWITCHES 0
+#define BG_HUNG 0
 #define BG_STOPPING 0
 #define BG_GUARDS 0
 #define BG_COUPLED 0

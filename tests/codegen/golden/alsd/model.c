@@ -59,7 +59,7 @@ const int bg_beside[] = {0};
 const int bg_outside_inputs[] = {0};
 const int bg_differentiable[] = {1, 1, 0, 0};
 const int bg_output_readings[] = {1, 4, 5, 6, 7};
-const bg_switch bg_switches[] = {{BG_RUBS, 0, 0, 0, 0, 0, 0, 0}};
+const bg_switch bg_switches[] = {{BG_RUBS, 0, 0, 0, 0, 0, 0, 0, 0}};
 
 static const int rows_A[] = {0, 0, 1, 1, 2, 3, 4, 5};
 static const int columns_A[] = {0, 1, 0, 1, 2, 3, 4, 5};
