@@ -99,7 +99,8 @@ static void keep_direction(bg_model *m, const fit *found, const double *next)
 static int on_one_side(const bg_model *m)
 {
     for (int i = 0; i < K; i++)
-        if (bg_switches[i].kind == BG_RUBS && !bg_hangs(bg_switches + i) && m->mode[i] * m->shot.y[bg_friction_readings[i]] < 0)
+        if (bg_switches[i].kind == BG_RUBS && !bg_hangs(bg_switches + i)
+            && m->mode[i] * m->shot.y[bg_friction_readings[i]] < 0)
             return 0;
     return 1;
 }

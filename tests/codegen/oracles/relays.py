@@ -121,7 +121,8 @@ def together() -> tuple[bg.StateEquations, Mapping[str, float]]:
     """Relays of first and second order and two that cross, side by side, and where they start.
 
     A thermostat of 20 degrees; ``x'' = -2 sign(x) - sign(x')``; and ``p' = -sign(p) + 2 sign(q)``,
-    ``q' = -sign(q) - 2 sign(p)``, whose quarter turns are each a third of the last. A sum of all makes it one.
+    ``q' = -sign(q) - 2 sign(p)``, whose quarter turns are each a third of the last. A sum of all
+    makes it one.
     """
     heat = sp.Piecewise((10, sp.Symbol("T") < 20), (0, True))
     nodes = [bg.Sf("heat", heat), bg.Zero("room"), bg.C("c", 1, effort="T"), bg.R("wall", 5),

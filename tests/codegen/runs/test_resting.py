@@ -100,12 +100,13 @@ def oscillating_pushed(law: object) -> bg.StateEquations:
 
 
 @pytest.mark.parametrize("backend", ["numpy", "c"])
-def test_what_is_left_goes_the_way_of_what_jumps(backend: str) -> None:
-    """z' is what the law gives: x' + z stays as it is, through all swings and in rest."""
-    model = two("2*y", "-sign(x)/2 - sign(y)/4")
-    result = simulator(model, {}, backend=backend).run(np.linspace(0.0, 12.0, 7), {"x": 1.0})
+def test_what_is_left_of_a_leap_is_taken_from_what_the_jump_moves(backend: str) -> None:
+    """Of x' = y - x the jump moves y alone: an impulse on x would be a step away from rest."""
+    model = two("y - x", "-2*sign(x) - sign(y - x)")
+    result = simulator(model, {}, backend=backend).run(np.linspace(0.0, 8.0, 5), {"x": 1.0})
     assert np.abs(result["x"][-2:]).max() < CLOSE
     assert np.abs(result["y"][-2:]).max() < CLOSE
+    assert [event.kind for event in result.events] == ["slide", "slide"]
 
 
 @pytest.mark.parametrize(("backend", "end"), [("numpy", 0.6), ("c", 1.5)])
