@@ -19,7 +19,7 @@ from codegen.model.resting import warn_of_rests
 from codegen.modes.closed import ClosedModel
 from codegen.ports.holds import check_sets
 from codegen.program.layout import layout_text
-from codegen.program.records import Program
+from codegen.program.records import Block, Program, block
 from codegen.runs.start import Start, start_of
 from codegen.tuning import tuning_text
 
@@ -217,10 +217,8 @@ def _functions(program: Program) -> list[str]:
         ("bg_friction_values", "Level, breakaway level, curve and curve at rest of each friction port",
          program.friction_values, on.friction_values),
         ("bg_guards", "Conditions of switches, to turn on and to turn off in turn", program.guards, None),
+        ("bg_corners", "What corners hang on, and for each whether it counts", *_hung(program)),
     ]  # fmt: skip
-    if program.corners is not None:
-        what = "What corners hang on, and for each whether it counts"
-        rows.append(("bg_corners", what, program.corners.values, program.corners.on_sides))
     lines: list[str] = []
     for name, what, code, sided in rows:
         lines += function(name, what, code, where, False, sided)
@@ -232,3 +230,9 @@ def _functions(program: Program) -> list[str]:
         lines += function(f"group_{at}_values", what, group.values, where, True, beside.values)
     what = "Laws solved with friction"
     return [*lines, *function("coupled_values", what, coupled, where, True, on.coupled.values)]
+
+
+def _hung(program: Program) -> tuple[Block, Block]:
+    """What corners hang on by laws as they are, and on one side of each; of no corners nothing."""
+    corners = program.corners
+    return (block([]), block([])) if corners is None else (corners.values, corners.on_sides)

@@ -100,14 +100,9 @@ def _sizes(program: Program, fast: Sequence[Straight]) -> dict[str, int]:
         "DRIVEN": int(bool(program.layout["E"].rows)),
         "RATED": int(program.rated),
         "STRAIGHT": int(bool(fast)),
-        **_corners(program),
+        "CORNERS": len(program.sides),
+        "CORNERS_TOLD": int(program.corners_told),
     }
-
-
-def _corners(program: Program) -> dict[str, int]:
-    """How many there are, and whether states, inputs and time tell what they hang on; of no others a word."""
-    count = len(program.sides)
-    return {"CORNERS": count, "CORNERS_TOLD": int(program.corners_told)} if count else {}
 
 
 def name_tables(program: Program, equations: StateEquations, name: str) -> list[str]:

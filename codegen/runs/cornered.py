@@ -1,18 +1,35 @@
 """Stretches of one mode of a model whose laws have corners: cut where one is crossed."""
 
 from collections import deque
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Sequence
+from typing import Protocol
 
 from codegen.corners.sides import CornerWatch, Sight, begun, turned
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.modes.pace import hardly_apart, moment, time_constant
-from codegen.modes.rounding import Peaks
 from codegen.numbers.arrays import Array
-from codegen.runs.legs import Leg
 from codegen.runs.track import Ended, Settings, Track
 from codegen.tuning import TUNING
+
+
+class Smooth(Protocol):
+    """A smooth stretch, of a `Leg`: the corners at which it ended, its latest step [s], the largest rate."""
+
+    crossed: frozenset[int]
+    step: float | None
+    rate: float
+
+    def fastest(self, t: float, s: Array) -> float:
+        """The largest rate [1/s] at an instant."""
+
+    def run(self, t: float, s: Array, stop: float, times: Array, track: Track) -> Ended:
+        """Integrate to ``stop``, or the first event or corner."""
+
+
+Making = Callable[[ClosedModel, CornerWatch | None, float | None], Smooth]
+"""A stretch of a model, from what watches its corners and the first step to try [s]."""
 
 
 class CorneredLeg:
@@ -25,11 +42,11 @@ class CorneredLeg:
 
     def __init__(
         self, model: ClosedModel, pieces: Sequence[Piece], mode: Mode, settings: Settings,
-        origin: float, peaks: Peaks | None = None,
+        origin: float, made: Making,
     ) -> None:  # fmt: skip
-        self._model, self._parts = model, (pieces, mode, settings, origin, peaks)
+        self._model, self._made = model, made
         self._sight = Sight(model, pieces, mode, settings.rtol, settings.atol)
-        self._plain, self._origin = Leg(model, *self._parts), origin
+        self._plain, self._origin = made(model, None, None), origin
         self._rounds = deque[float](maxlen=TUNING.stalled)
 
     def fastest(self, t: float, s: Array) -> float:
@@ -43,7 +60,7 @@ class CorneredLeg:
         while True:
             blind = t + moment(self._time(fastest, t))
             watch = CornerWatch(self._sight.on(sides), sides, t, s, blind)
-            leg = Leg(self._model.on_sides(sides), *self._parts, watch, step)
+            leg = self._made(self._model.on_sides(sides), watch, step)
             t, s, ended = leg.run(t, s, stop, times, track)
             if not leg.crossed:
                 return t, s, ended
@@ -73,12 +90,3 @@ class CorneredLeg:
             return False
         rounds.clear()
         return True
-
-
-def leg_of(
-    model: ClosedModel, pieces: Sequence[Piece], mode: Mode, settings: Settings, origin: float,
-    peaks: Peaks | None = None,
-) -> Leg | CorneredLeg:  # fmt: skip
-    """A stretch of a model, cut at corners where it has some."""
-    kind = CorneredLeg if model.program.sides else Leg
-    return kind(model, pieces, mode, settings, origin, peaks)

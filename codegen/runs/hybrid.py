@@ -24,10 +24,10 @@ from codegen.modes.trials import Sight, sides
 from codegen.numbers.arrays import Array
 from codegen.numbers.latest import Latest
 from codegen.runs.clock import NONE, Clock
-from codegen.runs.cornered import CorneredLeg, leg_of
+from codegen.runs.cornered import CorneredLeg
 from codegen.runs.exact import ExactLeg
 from codegen.runs.free import FreeLeg
-from codegen.runs.legs import Leg
+from codegen.runs.legs import Leg, leg_of
 from codegen.runs.methods import EXACT
 from codegen.runs.stretches import Stretches
 from codegen.runs.track import LATEST, Accumulating, Event, Settings, Track

@@ -14,6 +14,7 @@ from codegen.modes.closed import ClosedModel
 from codegen.modes.pace import longest_step
 from codegen.modes.rounding import Peaks
 from codegen.numbers.arrays import Array
+from codegen.runs.cornered import CorneredLeg
 from codegen.runs.events import Watch
 from codegen.runs.methods import METHODS, integrator
 from codegen.runs.progress import Progress, difference, no_progress
@@ -45,7 +46,8 @@ class Leg:
         self._settings, self._origin, self._peaks = settings, origin, peaks
         self._corners, self._first_step = corners, first_step
         #: The corners at which it ended, its latest step [s], and the largest rate [1/s].
-        self.crossed, self.step, self.rate = frozenset[int](), first_step, 0.0
+        self.crossed, self.rate = frozenset[int](), 0.0
+        self.step: float | None = first_step
         self._rates = model.rates(pieces, mode)
 
     def fastest(self, t: float, s: Array) -> float:
@@ -145,6 +147,20 @@ class Leg:
         if not np.isfinite(rate).all():
             raise SimulationError(f"at t = {t:.9g} the rates are not finite; state {s.tolist()}")
         return rate
+
+
+def leg_of(
+    model: ClosedModel, pieces: Sequence[Piece], mode: Mode, settings: Settings, origin: float,
+    peaks: Peaks | None = None,
+) -> Leg | CorneredLeg:  # fmt: skip
+    """A stretch of a model, cut at corners where it has some."""
+
+    def made(laws: ClosedModel, corners: CornerWatch | None, first: float | None) -> Leg:
+        return Leg(laws, pieces, mode, settings, origin, peaks, corners, first)
+
+    if not model.program.sides:
+        return made(model, None, None)
+    return CorneredLeg(model, pieces, mode, settings, origin, made)
 
 
 def _failed(solver: Any, message: str | None) -> SimulationError:

@@ -6,9 +6,11 @@
 
 #include "located_internal.h"
 
-#if BG_CORNERS > 0
-
-enum { FIRST = 1, END = offsetof(bg_values, dw) / sizeof(double) }; /* states to inputs */
+enum {
+    HUNG = BG_ROOM(BG_CORNERS),
+    FIRST = 1, /* states to inputs .. */
+    END = offsetof(bg_values, dw) / sizeof(double)
+};
 
 /* What corners hang on at t, s, then for each whether it counts; also in the model's instant. */
 static int hung_at(bg_located *c, double t, const double *s, double *values)
@@ -32,7 +34,7 @@ static int hung_at(bg_located *c, double t, const double *s, double *values)
  * a tolerance. Of the latest instant, where it is `values`. */
 static void find_limits(bg_located *c, const double *values, double *limits)
 {
-    double *const read = (double *)&c->model->now, moved[2 * BG_CORNERS];
+    double *const read = (double *)&c->model->now, moved[2 * HUNG];
     for (int k = 0; k < BG_CORNERS; k++)
         limits[k] = BG_TINY;
     for (int j = FIRST; j < END; j++) {
@@ -50,7 +52,7 @@ static void find_limits(bg_located *c, const double *values, double *limits)
 /* Which way what is at zero goes, in a moment. */
 static int look_ahead(bg_located *c, double moment, const double *values, double *ahead)
 {
-    double rate[BG_SIZE], s[BG_SIZE], moved[2 * BG_CORNERS];
+    double rate[BG_SIZE], s[BG_SIZE], moved[2 * HUNG];
     int status = bg_located_rate(c, c->run.at.t, c->s, rate);
     for (int i = 0; i < BG_SIZE; i++)
         s[i] = c->s[i] + moment * rate[i];
@@ -69,7 +71,7 @@ static double time_now(const bg_located *c, double fastest)
 int bg_corners_begin(bg_located *c, double fastest)
 {
     bg_values *const now = &c->model->now;
-    double values[2 * BG_CORNERS], limits[BG_CORNERS], ahead[BG_CORNERS] = {0};
+    double values[2 * HUNG], limits[HUNG], ahead[HUNG] = {0};
     int zero = 0;
     now->sided = 0.0;
     int status = hung_at(c, c->run.at.t, c->s, values);
@@ -100,7 +102,7 @@ static void away(const bg_values *now, double *values)
 int bg_corners_watch(bg_located *c, double fastest)
 {
     bg_falling *const f = &c->corners.of;
-    double values[2 * BG_CORNERS];
+    double values[2 * HUNG];
     const int status = hung_at(c, c->run.at.t, c->s, values);
     if (status != BG_OK)
         return status;
@@ -115,7 +117,7 @@ int bg_corners_watch(bg_located *c, double fastest)
 static int away_at(void *located, double t, double *values)
 {
     bg_located *const c = located;
-    double s[BG_SIZE], hung[2 * BG_CORNERS];
+    double s[BG_SIZE], hung[2 * HUNG];
     int status = bg_solver_dense(c, t, s);
     if (status == BG_OK)
         status = hung_at(c, t, s, hung);
@@ -140,7 +142,7 @@ int bg_corners_step(bg_located *c, double *time)
 
 int bg_corners_cross(bg_located *c)
 {
-    double *const side = c->model->now.side, values[2 * BG_CORNERS], limits[BG_CORNERS];
+    double *const side = c->model->now.side, values[2 * HUNG], limits[HUNG];
     const int *const crossed = c->corners.crossed;
     int wrong = 1;
     for (int k = 0; k < BG_CORNERS; k++)
@@ -160,5 +162,3 @@ int bg_corners_cross(bg_located *c)
     }
     return BG_OK;
 }
-
-#endif

@@ -1,6 +1,7 @@
 /* Where what is above zero at several points dips to zero between two of them: by chords, ever
  * closer, as numbers/dips.py, which says more. A function that bends upwards lies, between two
- * points, above the chords beside them drawn on; one that bends downwards beside them may go on to. */
+ * points, above the chords beside them drawn on; one that bends downwards beside them may go on
+ * to. */
 #include <math.h>
 #include <string.h>
 

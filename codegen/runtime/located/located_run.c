@@ -120,10 +120,8 @@ static int find_end(bg_located *c, double *until, int *ended)
 {
     double corner = INFINITY;
     int status = bg_watch_step(c, until, c->run.at.touched);
-#if BG_CORNERS > 0
-    if (status == BG_OK && c->model->now.sided > 0.0)
+    if (BG_CORNERS && status == BG_OK && c->model->now.sided > 0.0)
         status = bg_corners_step(c, &corner);
-#endif
     *ended = *until < INFINITY ? BG_AT_EVENT : 0;
     if (corner < *until) {
         *ended = BG_AT_CORNER;
@@ -169,11 +167,9 @@ int bg_located_stretch(bg_located *c, double stop, double first, int *ended)
         c->solver.next = fmin(first, c->solver.longest);
     if (status == BG_OK)
         status = bg_watch_begin(c);
-#if BG_CORNERS > 0
-    if (status == BG_OK && c->model->now.sided > 0.0)
+    if (BG_CORNERS && status == BG_OK && c->model->now.sided > 0.0)
         status = bg_corners_watch(c, c->corners.fastest);
     c->corners.fastest = fastest;
-#endif
     bg_progress_begin(c);
     for (long count = 1; status == BG_OK && c->run.at.t < stop && !*ended; count++) {
         status = step(c, stop, ended);
@@ -193,12 +189,7 @@ static int go_on(void *run, double stop)
     int ended;
     if (c->ahead)
         stop = c->ahead(c->view.self, c->run.at.t, stop);
-#if BG_CORNERS > 0
-    (void)ended;
-    return bg_corners_go(c, stop);
-#else
-    return bg_located_stretch(c, stop, 0.0, &ended);
-#endif
+    return BG_CORNERS ? bg_corners_go(c, stop) : bg_located_stretch(c, stop, 0.0, &ended);
 }
 
 void bg_located_set_out(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked,

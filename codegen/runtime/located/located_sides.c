@@ -4,8 +4,6 @@
 
 #include "located_internal.h"
 
-#if BG_CORNERS > 0
-
 /* Tells of those that were crossed, where they are asked for. */
 static int note_corners(bg_located *c)
 {
@@ -65,5 +63,3 @@ int bg_corners_go(bg_located *c, double stop)
     c->model->now.sided = 0.0;
     return status;
 }
-
-#endif

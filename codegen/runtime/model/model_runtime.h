@@ -12,11 +12,6 @@
 #include "run_status.h"
 #include "tuning.h"
 
-/* Of models whose laws have none. */
-#ifndef BG_CORNERS
-#define BG_CORNERS 0
-#endif
-
 /* Arrays of a length that may be zero have room for one. */
 #define BG_ROOM(n) ((n) > 0 ? (n) : 1)
 #define BG_TABLE(rows, columns) (BG_ROOM(rows) * BG_ROOM(columns))

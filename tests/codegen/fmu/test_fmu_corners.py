@@ -50,4 +50,4 @@ def test_what_steps_without_a_look_at_corners_knows_none_of_them() -> None:
     assert "side_" not in codegen.to_python(equations, {})
     assert "BG_CORNERS 1" in codegen.to_c(equations, {})["config.h"]
     plain = bg.derive(bond_graph([bg.One("n"), bg.I("m", 1), bg.C("s", 1)], "n>m n>s"))
-    assert "CORNERS" not in codegen.to_c(plain, {})["config.h"]
+    assert "BG_CORNERS 0" in codegen.to_c(plain, {})["config.h"]
