@@ -150,6 +150,9 @@ const char *bg_model_message(int status)
         "a step must be a positive finite number",
         "a stop begins beyond its bound; start its displacement within",
         "stops were struck too often in one instant, and what meets them still closes",
+        "which ports hold was not decided in a step's bounded number of pivots; the best way was "
+        "taken",
+        "the error of a step is beyond 1 % of a state's range; the step was taken: shorten it",
     };
     const int count = (int)(sizeof messages / sizeof *messages);
     return status >= 0 && status < count ? messages[status] : "unknown status";

@@ -160,13 +160,27 @@ typedef struct {
     int started;
 } bg_start;
 
-/* port_stick.c: everything in a mode, in m->shot; in the first that can be of those that slip as
- * this one. Friction in m->mode for a step, switches as they are there; then in m->shot as well,
- * unless what others rule of slips that are held is not zero: BG_UNDECIDED. */
+/* port_look.c: everything in a mode, in m->shot; in the first that can be of those that slip as
+ * this one, which it becomes in `tried`. */
 int bg_look(bg_model *m, const bg_start *at, const int *mode);
+int bg_look_any(bg_model *m, const bg_start *at, const int *mode, int *tried);
 int bg_look_slipping(bg_model *m, const bg_start *at, const int *mode);
-int bg_stick(bg_model *m, const bg_start *at);
-int bg_held(bg_model *m, const bg_start *at);
+
+/* port_response.c: what a unit of what each port gives does over a time, which may be `brief`; how
+ * much slips yield to it, and which it would push on; s after what ports give over that time. */
+void bg_respond(bg_model *m, double time, int brief, bg_response *of);
+void bg_yields(const bg_model *m, const bg_response *of, double *yields, int *reversed);
+void bg_push(const bg_response *of, const double *given, double *s);
+
+/* port_settle.c: bounds of what a switch gives in its mode, or of one that stays as it is; modes by
+ * ways. */
+void bg_bound_switch(int port, int mode, int stays, bg_boxed *box);
+void bg_take_ways(const bg_boxed *box, int *mode);
+
+/* port_correct.c: counts what ports give at m->shot into the mean of a step, which is zero at first;
+ * the end of a step, with s and m->mode after what changes in it. */
+void bg_note_given(bg_model *m, double part);
+int bg_correct_step(bg_model *m, double t, double h, double *s, const double *w);
 
 /* port_step.c: m->mode for a step of h, and s after the impulses of switches that come to hold;
  * rates of inputs are in m->work. */

@@ -8,6 +8,7 @@
 
 #include "config.h"
 #include "layout.h"
+#include "port_box.h"
 #include "port_set.h"
 #include "run_status.h"
 #include "tuning.h"
@@ -101,8 +102,16 @@ typedef struct {
     int take_away_list[BG_LIST(BG_STATES, BG_FRICTION)];
 } bg_hold;
 
+/* What a unit of what each friction port gives over a time adds to states and to readings, by
+ * ports. */
+typedef struct {
+    double time, gains[BG_TABLE(BG_FRICTION, BG_STATES)];
+    double readings[BG_TABLE(BG_FRICTION, BG_READINGS)];
+} bg_response;
+
 /* Room to work in, so that nothing large lies on the stack. */
 typedef struct {
+    int unshared; /* how redundant ports share a load is not asked, as it moves no state */
     double entries[BG_ROOM(BG_ENTRIES)], moved[BG_TABLE(BG_STATES, BG_FRICTION)];
     double law[BG_ROOM(BG_LARGEST)], more[BG_ROOM(BG_INPUTS)];
     double u[BG_ROOM(BG_INPUTS)], y[BG_ROOM(BG_READINGS)];
@@ -110,8 +119,13 @@ typedef struct {
     double weight[BG_SIZE], reach[BG_SIZE], image[BG_SIZE], next[BG_SIZE];
     double given[3][BG_ROOM(BG_EXTERNAL)], rates[3][BG_ROOM(BG_EXTERNAL)];
     double origin[BG_MAP_ROWS], external[2][BG_ROOM(BG_EXTERNAL)];
-    double turning[BG_ROOM(BG_FRICTION)]; /* what slips may change by in a step, twice */
-    double part[BG_ROOM(BG_FRICTION)];    /* slips of what counts as being at rest */
+    double mean[BG_ROOM(BG_FRICTION)], mean_caps[BG_ROOM(BG_FRICTION)]; /* over a step */
+    double yields[BG_TABLE(BG_FRICTION, BG_FRICTION)];
+    double system[BG_TABLE(BG_FRICTION, BG_FRICTION)];
+    double implicit[BG_SIZE * BG_SIZE], gained[BG_TABLE(BG_STATES, BG_FRICTION)];
+    int implicit_pivots[BG_SIZE];
+    bg_response response;
+    bg_boxed box;
     double loop[BG_ROOM(BG_LOOP)][6], slopes[BG_TABLE(BG_LOOP, BG_LOOP)];
     int pivots[BG_ROOM(BG_LOOP)];
     unsigned long long residues[BG_TABLE(BG_FRICTION, BG_RANKED)];
@@ -133,7 +147,7 @@ typedef struct {
  * own. */
 typedef struct {
     double band[BG_ROOM(BG_FRICTION)];
-    int mode[BG_ROOM(BG_FRICTION)], started, where;
+    int mode[BG_ROOM(BG_FRICTION)], started, where, decided;
     bg_fastest fastest;
     bg_values now;
     double seen[BG_SIZE]; /* the largest magnitudes of s at starts of steps: what it rounds by */

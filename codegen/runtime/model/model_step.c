@@ -29,21 +29,20 @@ int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w)
     status = bg_decide_step(m, t, h, s, w);
     for (int i = 0; i < K; i++)
         sticking |= m->mode[i] == 0;
-    if (status != BG_OK || !sticking)
-        return status;
-    status = bg_evaluate(m, t, s, w, m->work.rates[0], m->mode, 1, &m->shot);
-    return status == BG_OK ? bg_remove_slips(m, m->mode, &m->shot, s) : status;
+    if (status == BG_OK && sticking)
+        status = bg_remove_slips(m, m->mode, &m->shot, s);
+    return status == BG_OK ? m->decided : status;
 }
 
-int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w)
+/* A step in the mode, of Runge's and Kutta's fourth order. */
+static int run_on(bg_model *m, double t, double h, double *s, const double *w)
 {
     static const double along[4] = {0.0, 0.5, 0.5, 1.0};
     static const int instant[4] = {0, 1, 1, 2};
+    static const double part[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
     bg_work *const work = &m->work;
-    if (!(h > 0) || !isfinite(h))
-        return BG_BAD_STEP;
-    if (BG_RATED)
-        external_rates(h, w, work->rates);
+    memset(work->mean, 0, sizeof work->mean);
+    memset(work->mean_caps, 0, sizeof work->mean_caps);
     for (int k = 0; k < 4; k++) {
         const int at = instant[k];
         int status;
@@ -54,6 +53,7 @@ int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w
         if (status != BG_OK)
             return status;
         memcpy(work->stage[k], m->shot.rate, sizeof work->stage[k]);
+        bg_note_given(m, part[k]);
         if (BG_CHECK_STEP && k == 0)
             status = bg_check_step(m, t, h, s, w);
         if (status != BG_OK)
@@ -67,8 +67,23 @@ int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w
     return bg_finite(BG_SIZE, s) ? BG_OK : BG_NOT_FINITE;
 }
 
+int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w)
+{
+    if (!(h > 0) || !isfinite(h))
+        return BG_BAD_STEP;
+    if (BG_RATED)
+        external_rates(h, w, m->work.rates);
+    m->work.unshared = OWN == 0 && !BG_JOINT;
+    int status = run_on(m, t, h, s, w);
+    if (status == BG_OK)
+        status = bg_correct_step(m, t + h, h, s, w + 2 * BG_EXTERNAL);
+    m->work.unshared = 0;
+    return status;
+}
+
 int bg_model_step(bg_model *m, double t, double h, double *s, const double *w)
 {
-    const int status = bg_model_settle(m, t, h, s, w);
-    return status == BG_OK ? bg_model_advance(m, t, h, s, w) : status;
+    const int decided = bg_model_settle(m, t, h, s, w);
+    const int status = bg_is_taken(decided) ? bg_model_advance(m, t, h, s, w) : decided;
+    return status == BG_OK ? decided : status;
 }

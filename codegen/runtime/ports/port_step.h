@@ -5,18 +5,21 @@
 #include "model_internal.h"
 #include "port_choosing.h"
 
-/* A search: the start of the step, with s after the impulses of the way that is tried; s before
- * them; stops that stay apart; why there is no mode. Of those that are met `depth`: how far beyond
+/* A search: the start of the step, with s after impulses; s before them; stops that stay apart. Of
+ * those that are met `depth`: how far beyond
  * their bounds displacements were. */
 typedef struct {
     bg_model *m;
     bg_start at;
     double *s, begun[BG_SIZE], struck[BG_SIZE], depth[BG_ROOM(BG_FRICTION)];
     bg_set barred;
-    int why;
 } step_search;
 
-/* port_step.c: a mode, where some ports are switches; a step that has none leaves all as it was. */
+/* port_settle.c: a mode in which nothing contradicts that in m->shot, but for switches that are
+ * sent; whether it is another. BG_PIVOTS where that was not decided. */
+int bg_settle_ways(step_search *c, const bg_set *sent, int *changed);
+
+/* port_step.c: a mode in m->mode and m->shot; a step that has none leaves all as it was. */
 int bg_search_ways(step_search *c, const int *before);
 
 /* port_step_stop.c: the same where stops may be met: what joins first, then what closes is thrown

@@ -1,0 +1,105 @@
+/* Block principal pivoting with Murty's single changes where that does not help (J. J. Judice, F. M.
+ * Pires, A block principal pivoting algorithm for large-scale strictly monotone linear
+ * complementarity problems, Computers Oper. Res. 21, 1994), in a bounded number of turns. */
+#include <math.h>
+#include <string.h>
+
+#include "model_internal.h"
+#include "port_box.h"
+
+enum {
+    PATIENCE = 3, /* turns of all that contradict which need not better anything */
+    TURNS = 4 * BG_PORTS + 8
+};
+
+/* Where a port goes from its way: itself if nothing contradicts that. */
+static int next_way(const bg_boxed *b, int i)
+{
+    const int way = b->way[i];
+    if (way == 0 && b->given[i] > b->most[i] + b->extra[i] + b->slack[i])
+        return 1;
+    if (way == 0 && b->given[i] < b->least[i] - b->extra[i] - b->slack[i])
+        return -1;
+    if (way == 0 || b->least[i] == b->most[i] || !(way * b->slip[i] < -b->near[i] - b->shared[i]))
+        return way;
+    return b->reversed[i] ? -way : 0;
+}
+
+int bg_box_broken(int ports, const bg_boxed *b)
+{
+    int count = 0;
+    for (int i = 0; i < ports; i++)
+        count += next_way(b, i) != b->way[i] || (b->way[i] == 0 && b->slip[i] != 0.0);
+    return count;
+}
+
+/* What ports give and receive in their ways, from what they give and receive at first. */
+static void look(int ports, bg_boxed *b, const double *given, const double *slip,
+                 const double *yields, double *system)
+{
+    double right[BG_PORTS];
+    int held[BG_PORTS] = {0}, pivots[BG_PORTS], count = 0;
+    for (int i = 0; i < ports; i++) {
+        const double bound = b->way[i] > 0 ? b->most[i] : b->least[i];
+        b->given[i] = b->way[i] ? bound : given[i];
+        if (b->way[i] == 0)
+            held[count++] = i;
+    }
+    for (int i = 0; i < ports; i++) {
+        b->slip[i] = slip[i];
+        for (int j = 0; j < ports; j++)
+            b->slip[i] -= yields[i * ports + j] * (b->given[j] - given[j]);
+    }
+    for (int r = 0; r < count; r++) {
+        right[r] = b->slip[held[r]];
+        for (int c = 0; c < count; c++)
+            system[r * count + c] = yields[held[r] * ports + held[c]];
+    }
+    if (count > 0 && bg_factor(count, system, pivots)) {
+        bg_solve(count, system, pivots, 1, right);
+        for (int r = 0; r < count; r++)
+            b->given[held[r]] += right[r];
+        for (int i = 0; i < ports; i++)
+            for (int r = 0; r < count; r++)
+                b->slip[i] -= yields[i * ports + held[r]] * right[r];
+    }
+    for (int i = 0; i < ports; i++) {
+        b->slip[i] = b->way[i] ? b->slip[i] : 0.0;
+        b->shared[i] = 0.0;
+        for (int j = 0; j < ports; j++)
+            b->shared[i] += BG_LOOSE * fabs(yields[i * ports + j] * (b->given[j] - given[j]));
+    }
+}
+
+int bg_box_solve(int ports, bg_boxed *b, const double *yields, double *system)
+{
+    double given[BG_PORTS], slip[BG_PORTS];
+    int best[BG_PORTS] = {0}, fewest = ports + 1, patience = PATIENCE;
+    memcpy(given, b->given, sizeof given);
+    memcpy(slip, b->slip, sizeof slip);
+    for (int turn = 0; turn < TURNS; turn++) {
+        int changed = 0, last = -1, way[BG_PORTS];
+        look(ports, b, given, slip, yields, system);
+        for (int i = 0; i < ports; i++) {
+            way[i] = next_way(b, i);
+            changed += way[i] != b->way[i];
+            last = way[i] != b->way[i] ? i : last;
+        }
+        if (changed < fewest) {
+            fewest = changed;
+            memcpy(best, b->way, sizeof best);
+            patience = PATIENCE;
+        } else {
+            patience--;
+        }
+        if (changed == 0)
+            return BG_OK;
+        if (patience > 0)
+            memcpy(b->way, way, sizeof way);
+        else
+            b->way[last] = way[last];
+    }
+    memcpy(b->way, best, sizeof best);
+    look(ports, b, given, slip, yields, system);
+    return BG_PIVOTS;
+}
