@@ -99,15 +99,16 @@ def needed(program: Program, slips: SlipRows | None) -> list[str]:
     ``slips``: what ports receive; None where every set's slips bind the states, each by itself.
     """
     also = {
-        "deadband": bool(program.friction) and not program.switched,
+        "settling": bool(program.friction) and not program.switched,
         "switched": program.switched and not program.stopped,
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
         "ranks": slips is not None,
     }
-    names = ["formulas", "running", *(name for name, wanted in also.items() if wanted)]
+    folders = dict.fromkeys(also, "standalone") | {"settling": "fixed", "switched": "fixed"}
+    names = [f"codegen.{folders[name]}.{name}" for name, wanted in also.items() if wanted]
     stops = ["codegen.stops.stopping"] if program.stopped else []
-    return [*(f"codegen.standalone.{name}" for name in names), *stops]
+    return ["codegen.standalone.formulas", "codegen.standalone.running", *names, *stops]
 
 
 def closing(program: Program, slips: SlipRows | None, told: bool) -> list[str]:
@@ -119,7 +120,7 @@ def closing(program: Program, slips: SlipRows | None, told: bool) -> list[str]:
     lines = [RULE, "# How this model is put together.", "", f"NAMES = Names({names})"]
     base, arguments = "FixedSteps", "form(self.parameters), NAMES"
     if program.friction:
-        base, arguments = "DeadBand", "NAMES, friction(self.parameters)"
+        base, arguments = "PortSteps", "NAMES, friction(self.parameters)"
         lines += [] if slips is None else slip_rows(slips)
     if program.switched:
         base = "StoppedSteps" if program.stopped else "SwitchedSteps"

@@ -9,6 +9,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
+from codegen.fixed.switched import SwitchedSteps
 from codegen.standalone.arrays import Array, EvaluationError, Mode
 from codegen.standalone.evaluation import Point
 from codegen.standalone.friction import slip_rates
@@ -16,7 +17,6 @@ from codegen.standalone.instant import Instant
 from codegen.standalone.levels import level_terms
 from codegen.standalone.stepping import Chosen
 from codegen.standalone.striking import Strike
-from codegen.standalone.switched import SwitchedSteps
 from codegen.standalone.switchings import Switching
 from codegen.stops.bouncing import Meeting, thrown
 from codegen.tuning import TUNING

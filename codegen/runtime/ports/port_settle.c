@@ -114,7 +114,7 @@ static void find_slack(step_search *c, double *slack)
         slack[held->ports[i]] = terms[i];
 }
 
-int bg_settle_ways(step_search *c, const bg_set *sent, int *changed)
+int bg_settle_ways(step_search *c, const bg_set *sent, int *stopped, int *changed)
 {
     bg_model *const m = c->m;
     bg_boxed *const b = &m->work.box;
@@ -129,6 +129,8 @@ int bg_settle_ways(step_search *c, const bg_set *sent, int *changed)
     *changed = !bg_is_empty(sent) || bg_box_broken(K, b) > 0;
     if (!*changed)
         return BG_OK;
+    for (int i = 0; i < K; i++)
+        stopped[i] |= b->way[i] == 0 && b->slip[i] != 0.0;
     find_near(c, mode, b);
     bg_respond(m, BG_BRIEF * c->at.h, 1, &m->work.response);
     bg_yields(m, &m->work.response, m->work.yields, b->reversed);

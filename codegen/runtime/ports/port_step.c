@@ -113,19 +113,20 @@ static int any_switch_held(const int *mode)
     return any;
 }
 
-/* Those of the switches whose conditions change them over that have not done so twice. */
-static int turn(bg_set *found, int *turns)
+/* Whether switches change over again and again, or let go by what they have stopped. */
+static int goes_round(const bg_set *found, const int *stopped, int *turns)
 {
+    int round = 0;
     for (int i = 0; i < K; i++)
-        if (bg_has(found, i) && ++turns[i] > 2)
-            return BG_UNDECIDED;
-    return BG_OK;
+        round |= bg_has(found, i) && (++turns[i] > 2 || stopped[i]);
+    return round;
 }
 
 int bg_search_ways(step_search *c, const int *before)
 {
     bg_model *const m = c->m;
-    int turns[PORTS] = {0}, changed = 1, status = BG_OK, decided = BG_OK;
+    int turns[PORTS] = {0}, stopped[PORTS] = {0}, changed = 1;
+    int status = BG_OK, decided = BG_OK;
     memcpy(c->s, c->begun, sizeof c->begun);
     begin_mode(c, before);
     for (int round = 0; round < BG_ROUNDS && status == BG_OK && changed; round++) {
@@ -134,10 +135,10 @@ int bg_search_ways(step_search *c, const int *before)
         status = look_any(c);
         if (status == BG_OK && BG_GUARDS) {
             told = sent(c);
-            status = turn(&told, turns);
+            status = goes_round(&told, stopped, turns) ? BG_UNDECIDED : BG_OK;
         }
         if (status == BG_OK)
-            decided = bg_settle_ways(c, &told, &changed);
+            decided = bg_settle_ways(c, &told, stopped, &changed);
         if (status == BG_OK && changed && any_switch_held(m->mode))
             status = strike(c, m->mode, ways);
     }

@@ -16,8 +16,9 @@ typedef struct {
 } step_search;
 
 /* port_settle.c: a mode in which nothing contradicts that in m->shot, but for switches that are
- * sent; whether it is another. BG_PIVOTS where that was not decided. */
-int bg_settle_ways(step_search *c, const bg_set *sent, int *changed);
+ * sent; whether it is another; ports are `stopped` that come to hold as they move. BG_PIVOTS where
+ * that was not decided. */
+int bg_settle_ways(step_search *c, const bg_set *sent, int *stopped, int *changed);
 
 /* port_step.c: a mode in m->mode and m->shot; a step that has none leaves all as it was. */
 int bg_search_ways(step_search *c, const int *before);

@@ -1,0 +1,87 @@
+"""What a unit of what each port gives over a time does to states, to readings, and so to slips."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from codegen.standalone.arrays import Array, Places
+from codegen.standalone.evaluation import Laws
+from codegen.standalone.instant import Instant
+from codegen.tuning import TUNING
+
+
+@dataclass(frozen=True)
+class Response:
+    """By columns, of each port: what states gain over a time [s], what readings show at once."""
+
+    time: float
+    gains: Array
+    readings: Array
+
+    def yields(self, now: Instant, slips: Places, rubs: Array) -> tuple[Array, Array]:
+        """How much slips yield to what ports give, and the ports that push theirs on.
+
+        Ports that hold a slip together share it; what nothing moves none can hold.
+        """
+        found = -(self.readings[slips] + now.numbers.F[slips] @ self.gains)
+        own = np.diag(found)
+        largest = float(np.abs(own).max(initial=0.0))
+        pushing = rubs & (own < -TUNING.shared * largest)
+        least = np.where(own > TUNING.shared * largest, own, largest if largest > 0 else 1.0)
+        return found + np.diag(np.where(pushing, 0.0, TUNING.shared * least)), pushing
+
+    def pushed(self, given: Array, s: Array, law_rates: Places) -> Array:
+        """The vector s after what ports give over the time."""
+        n, after = len(self.gains), s.copy()
+        after[:n] += self.gains @ given
+        after[n : n + len(law_rates)] += self.time * (self.readings[law_rates] @ given)
+        return after
+
+
+def respond(
+    now: Instant, efforts: Places, coupled: Laws | None, time: float, brief: bool
+) -> Response:
+    """The response at an instant; laws that friction moves, ``coupled``, answer by their slopes.
+
+    States gain as in a step of Euler's implicit method with the rates of storages and resistances,
+    since what is passive yields so over any time; over a ``brief`` one straight on.
+    """
+    numbers = now.numbers
+    gains, readings = numbers.Q[:, efforts], numbers.D[:, efforts]
+    if coupled is not None and len(coupled.inputs):
+        given = _answers(now, efforts, coupled)
+        gains = gains + numbers.Q[:, coupled.inputs] @ given
+        readings = readings + numbers.D[:, coupled.inputs] @ given
+    gains = time * gains
+    system = np.eye(len(gains)) - time * numbers.P
+    if not brief and np.isfinite(system).all():
+        try:
+            gains = np.linalg.solve(system, gains)
+        except np.linalg.LinAlgError:
+            pass
+    return Response(time, gains, readings)
+
+
+def _answers(now: Instant, efforts: Places, coupled: Laws) -> Array:
+    """What coupled laws give per unit of what each port gives; zero without a common answer."""
+    before = coupled.formula(now)
+    step = TUNING.loop_difference * (float(np.abs(now.u).max(initial=0.0)) + TUNING.loop_floor)
+
+    def slopes(column: int) -> Array:
+        u, y = now.u, now.y
+        now.u = np.where(np.arange(len(u)) == column, u + step, u)
+        now.y = y + step * now.numbers.D[:, column]
+        after = coupled.formula(now)
+        now.u, now.y = u, y
+        return np.asarray((after - before) / step)
+
+    own = np.eye(len(coupled.inputs)) - np.column_stack([slopes(at) for at in coupled.inputs])
+    along = np.column_stack([slopes(at) for at in efforts])
+    none = np.zeros_like(along)
+    if not np.isfinite(own).all() or not np.isfinite(along).all():
+        return none
+    try:
+        found = np.linalg.solve(own, along)
+    except np.linalg.LinAlgError:
+        return none
+    return found if np.isfinite(found).all() else none
