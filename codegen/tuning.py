@@ -142,6 +142,8 @@ class Tuning:
     rounds: int = _told(6, "so often a step's start is decided again where one change causes others")
     step_drift: float = _told(1e-2, "of what moves a held slip in a step: the step's own error")
     difference: float = _told(1e-7, "of the states' magnitudes: a difference for the fastest rates")
+    part_in_time: float = _told(1e-5, "of a step: a difference for the slope of the rates in time")
+    range_part: float = _told(1e-2, "of a state's range: a larger error of a step is told")
     farther: float = _told(8.0, "a second one, so many times as large, must find a like slope")
     unexplained: float = _told(0.2, "part of a fit of the fastest rates that may be left over")
     sine: float = _told(1e-2, "closer to one another, two vectors count as one")

@@ -32,14 +32,17 @@ def config(
     name: str,
     macros: Sequence[str] = (),
     longest: float | None = None,
+    implicit: bool = False,
 ) -> str:
     """config.h: the sizes of everything, and macros that rename external symbols.
 
-    ``longest``: the longest stable step at the default point [s], None for no word on it.
+    ``longest``: the longest stable step at the default point [s], None for no word on it; ``implicit``:
+    whether fixed steps are linearly implicit.
     """
     lines = [*comment(f"Sizes of {name}; written by bondgraph-toolkit."), "#ifndef BG_CONFIG_H"]
     lines += ["#define BG_CONFIG_H", ""]
     lines += [f"#define BG_{key} {value}" for key, value in _sizes(program, fast).items()]
+    lines += [f"#define BG_ROSENBROCK {int(implicit)}"]
     lines += ["", *_steps(longest, len(program.friction))]
     lines += ["", *macros] if macros else []
     return "\n".join([*lines, "", "#endif", ""])

@@ -236,6 +236,8 @@ class PortSteps(FixedSteps):
             now = self.at(at, mode)
         except EvaluationError:
             return mode, at.s  # the next step tells
+        if self.implicit:
+            self.noted(now, 0.5)
         box = self.end_box(now, mode)
         if not ((box.least != box.most) & (box.way * box.slip < -box.near)).any():
             return mode, at.s

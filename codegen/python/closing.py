@@ -93,7 +93,7 @@ _SWITCHED = {
 }
 
 
-def needed(program: Program, slips: SlipRows | None) -> list[str]:
+def needed(program: Program, slips: SlipRows | None, implicit: bool) -> list[str]:
     """The modules that a program's model works with, beside those that these import.
 
     ``slips``: what ports receive; None where every set's slips bind the states, each by itself.
@@ -104,6 +104,7 @@ def needed(program: Program, slips: SlipRows | None) -> list[str]:
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
         "ranks": slips is not None,
+        "rosenbrock": implicit,
     }
     folders = dict.fromkeys(also, "standalone") | {"settling": "fixed", "switched": "fixed"}
     names = [f"codegen.{folders[name]}.{name}" for name, wanted in also.items() if wanted]
@@ -111,10 +112,13 @@ def needed(program: Program, slips: SlipRows | None) -> list[str]:
     return ["codegen.standalone.formulas", "codegen.standalone.running", *names, *stops]
 
 
-def closing(program: Program, slips: SlipRows | None, told: bool) -> list[str]:
+def closing(
+    program: Program, slips: SlipRows | None, told: bool, implicit: bool = False
+) -> list[str]:
     """Functions that bind formulas and tables to the rest, the class `Model`, and `simulate`.
 
-    ``slips``: as `needed` takes them. ``told``: whether there is a table STARTS.
+    ``slips``: as `needed` takes them. ``told``: whether there is a table STARTS;
+    ``implicit``: whether steps are linearly implicit.
     """
     names = "STATES, INPUTS, SHOWN, SWITCHES" if program.switched else "STATES, INPUTS, SHOWN"
     lines = [RULE, "# How this model is put together.", "", f"NAMES = Names({names})"]
@@ -126,6 +130,7 @@ def closing(program: Program, slips: SlipRows | None, told: bool) -> list[str]:
         base = "StoppedSteps" if program.stopped else "SwitchedSteps"
         arguments = f"{arguments}, switches(self.parameters)"
         lines += _switching(program)
+    base = f"Rosenbrock, {base}" if implicit else base
     lines += ["", "", *_form(program)]
     lines += _friction(program, slips) if program.friction else []
     if program.switched:

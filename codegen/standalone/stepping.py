@@ -35,6 +35,9 @@ class Names:
 class FixedSteps:
     """A model in fixed steps without friction; x in the order of states, u in that of inputs."""
 
+    implicit = False
+    """Whether steps are linearly implicit."""
+
     def __init__(self, form: Form, names: Names, contact: Contact | None = None) -> None:
         self.form, self.names, self.contact, self.fastest = form, names, contact, Fastest()
         self.seen = np.zeros(form.states + len(form.law_rates))

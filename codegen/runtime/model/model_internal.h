@@ -241,6 +241,11 @@ void bg_told_terms(bg_model *m, double *terms);
 /* Takes a vector that a run has come to into account: where it comes down to zero, it rounds. */
 void bg_have_seen(bg_model *m, const double *s);
 
+/* A step in m->mode, s in place: model_runge.c of the classical method, BG_UNSTABLE before anything
+ * is changed; model_rosenbrock.c of a linearly implicit one, BG_INACCURATE after it is taken. */
+int bg_runge_kutta(bg_model *m, double t, double h, double *s, const double *w);
+int bg_rosenbrock(bg_model *m, double t, double h, double *s, const double *w);
+
 /* model_evaluate.c */
 void bg_give(bg_model *m, int count, const int *columns, const double *values);
 int bg_residual(bg_model *m, const bg_loop *loop, double *left);

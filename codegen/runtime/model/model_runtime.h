@@ -26,6 +26,7 @@
 enum {
     /* The integrated vector s: states less what driven dependent storages add, then law states. */
     BG_SIZE = BG_ROOM(BG_STATES + BG_LAW_STATES),
+    BG_STAGES = 6, /* of a step, at the most */
     BG_MAP_COLUMNS = BG_SIZE + 2 * BG_EXTERNAL + 1,
     /* What ranks are found over: what friction and the laws that it moves give; states; inputs. */
     BG_RANKED = BG_FRICTION + BG_COUPLED + BG_STATES + BG_INPUTS
@@ -115,7 +116,7 @@ typedef struct {
     double entries[BG_ROOM(BG_ENTRIES)], moved[BG_TABLE(BG_STATES, BG_FRICTION)];
     double law[BG_ROOM(BG_LARGEST)], more[BG_ROOM(BG_INPUTS)];
     double u[BG_ROOM(BG_INPUTS)], y[BG_ROOM(BG_READINGS)];
-    double stage[4][BG_SIZE], point[BG_SIZE];
+    double stage[BG_STAGES][BG_SIZE], point[BG_SIZE];
     double weight[BG_SIZE], reach[BG_SIZE], image[BG_SIZE], next[BG_SIZE];
     double given[3][BG_ROOM(BG_EXTERNAL)], rates[3][BG_ROOM(BG_EXTERNAL)];
     double origin[BG_MAP_ROWS], external[2][BG_ROOM(BG_EXTERNAL)];

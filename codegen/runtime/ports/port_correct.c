@@ -66,6 +66,8 @@ int bg_correct_step(bg_model *m, double t, double h, double *s, const double *w)
     double change[PORTS];
     if (K == 0 || bg_evaluate(m, t, s, w, m->work.rates[2], m->mode, 1, &m->shot) != BG_OK)
         return BG_OK; /* whoever begins the next step tells */
+    if (BG_ROSENBROCK)
+        bg_note_given(m, 0.5);
     if (!find_box(m, b))
         return BG_OK;
     bg_respond(m, h, 0, &m->work.response);
