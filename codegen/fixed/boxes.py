@@ -86,14 +86,13 @@ class Boxed:
         """What ports give and receive in their ways, from what they give and receive at first."""
         bound = np.where(self.way > 0, self.most, self.least)
         given = np.where(self.way, bound, first.given)
-        slip = first.slip - yields @ (given - first.given)
         held = np.flatnonzero(self.way == 0)
         if len(held):
+            right = first.slip[held] - yields[held] @ (given - first.given)
             try:
-                more = np.linalg.solve(yields[np.ix_(held, held)], slip[held])
+                given[held] += np.linalg.solve(yields[np.ix_(held, held)], right)
             except np.linalg.LinAlgError:
-                more = np.zeros(len(held))
-            given[held] += more
-            slip -= yields[:, held] @ more
-        self.given, self.slip = given, np.where(self.way, slip, 0.0)
-        self.shared = TUNING.loose * (np.abs(yields) @ np.abs(given - first.given))
+                pass
+        moved = given - first.given
+        self.given, self.shared = given, TUNING.loose * (np.abs(yields) @ np.abs(moved))
+        self.slip = np.where(self.way, first.slip - yields @ moved, 0.0)

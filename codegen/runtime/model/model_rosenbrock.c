@@ -9,10 +9,10 @@
 
 #include "model_internal.h"
 
-enum { STAGES = BG_STAGES };
+enum { ROS_STAGES = BG_STAGES };
 
-static const double GAMMA = 0.25;
-static const double WEIGHTS[STAGES][STAGES - 1] = {
+static const double ROS_GAMMA = 0.25;
+static const double ROS_WEIGHTS[ROS_STAGES][ROS_STAGES - 1] = {
     {0.0},
     {3.0},
     {1.831036793486759, 0.4955183967433795},
@@ -20,7 +20,7 @@ static const double WEIGHTS[STAGES][STAGES - 1] = {
     {-7.170454962423024, -4.741636671481785, -16.31002631330971, -1.062004044111401},
     {-7.170454962423024, -4.741636671481785, -16.31002631330971, -1.062004044111401, 1.0},
 };
-static const double COUPLES[STAGES][STAGES - 1] = {
+static const double ROS_COUPLES[ROS_STAGES][ROS_STAGES - 1] = {
     {0.0},
     {-12.0},
     {-8.791795173947035, -2.207865586973518},
@@ -29,8 +29,8 @@ static const double COUPLES[STAGES][STAGES - 1] = {
     {34.62605830930532, 15.30084976114473, 56.99955578662667, 18.40807009793095,
      -5.714285714285717},
 };
-static const double ALONG[STAGES] = {0.0, 0.75, 0.21, 0.63, 1.0, 1.0};
-static const double IN_TIME[STAGES] = {0.25, -0.5, -0.023504, -0.0362, 0.0, 0.0};
+static const double ROS_ALONG[ROS_STAGES] = {0.0, 0.75, 0.21, 0.63, 1.0, 1.0};
+static const double ROS_IN_TIME[ROS_STAGES] = {0.25, -0.5, -0.023504, -0.0362, 0.0, 0.0};
 
 /* Inputs and their rates at a part of a step, by the parabola through three values. */
 static void inputs_along(bg_model *m, const double *w, double part)
@@ -46,7 +46,7 @@ static void inputs_along(bg_model *m, const double *w, double part)
 }
 
 /* The rates at m->work.point, a part of the step on. */
-static int rates_at(bg_model *m, double t, double h, double part, const double *w, int checked)
+static int stage_rates(bg_model *m, double t, double h, double part, const double *w, int checked)
 {
     inputs_along(m, w, part);
     return bg_evaluate(m, t + part * h, m->work.point, m->work.external[0], m->work.external[1],
@@ -62,7 +62,7 @@ static int find_column(bg_model *m, double t, double h, const double *s, const d
     memcpy(work->point, s, sizeof(double) * BG_SIZE);
     for (int tries = 0; tries < 2 && status != BG_OK; tries++, step = -step) {
         work->point[j] = s[j] + step;
-        status = rates_at(m, t, h, 0.0, w, 0);
+        status = stage_rates(m, t, h, 0.0, w, 0);
         for (int i = 0; i < ALL && status == BG_OK; i++)
             work->implicit[i * BG_SIZE + j] =
                 (work->stage[0][i] - m->shot.rate[i]) / (work->point[j] - s[j]);
@@ -71,7 +71,7 @@ static int find_column(bg_model *m, double t, double h, const double *s, const d
 }
 
 /* The matrix 1/(gamma h) - J in factors, and the slope in time, which goes to work->next. */
-static int find_slopes(bg_model *m, double t, double h, const double *s, const double *w)
+static int find_matrix(bg_model *m, double t, double h, const double *s, const double *w)
 {
     bg_work *const work = &m->work;
     const double later = t + BG_PART_IN_TIME * h;
@@ -81,10 +81,10 @@ static int find_slopes(bg_model *m, double t, double h, const double *s, const d
         status = find_column(m, t, h, s, w, j);
     if (status == BG_OK) {
         memcpy(work->point, s, sizeof(double) * BG_SIZE);
-        status = rates_at(m, t, h, (later - t) / h, w, 0);
+        status = stage_rates(m, t, h, (later - t) / h, w, 0);
     }
     for (int i = 0; i < BG_SIZE; i++) {
-        work->implicit[i * BG_SIZE + i] += 1 / (GAMMA * h);
+        work->implicit[i * BG_SIZE + i] += 1 / (ROS_GAMMA * h);
         work->next[i] = (m->shot.rate[i] - work->stage[0][i]) / (later - t);
     }
     if (status == BG_OK && !bg_finite(BG_SIZE * BG_SIZE, work->implicit))
@@ -102,12 +102,12 @@ static int find_stage(bg_model *m, double t, double h, const double *s, const do
     memcpy(work->point, s, sizeof(double) * BG_SIZE);
     for (int j = 0; j < k; j++)
         for (int i = 0; i < BG_SIZE; i++) {
-            work->point[i] += WEIGHTS[k][j] * work->stage[j][i];
-            sum[i] += COUPLES[k][j] / h * work->stage[j][i];
+            work->point[i] += ROS_WEIGHTS[k][j] * work->stage[j][i];
+            sum[i] += ROS_COUPLES[k][j] / h * work->stage[j][i];
         }
-    const int status = rates_at(m, t, h, ALONG[k], w, 1);
+    const int status = stage_rates(m, t, h, ROS_ALONG[k], w, 1);
     for (int i = 0; i < BG_SIZE; i++)
-        work->stage[k][i] = m->shot.rate[i] + sum[i] + IN_TIME[k] * h * work->next[i];
+        work->stage[k][i] = m->shot.rate[i] + sum[i] + ROS_IN_TIME[k] * h * work->next[i];
     bg_solve(BG_SIZE, work->implicit, work->implicit_pivots, 1, work->stage[k]);
     return status;
 }
@@ -134,20 +134,20 @@ int bg_rosenbrock(bg_model *m, double t, double h, double *s, const double *w)
     bg_work *const work = &m->work;
     bg_have_seen(m, s);
     memcpy(work->point, s, sizeof(double) * BG_SIZE);
-    int status = rates_at(m, t, h, 0.0, w, 1);
+    int status = stage_rates(m, t, h, 0.0, w, 1);
     if (status != BG_OK)
         return status;
     bg_note_given(m, 0.5);
     memcpy(work->stage[0], m->shot.rate, sizeof work->stage[0]);
     bg_weigh(m, h);
     bg_reach(m, h, s);
-    status = find_slopes(m, t, h, s, w);
-    for (int k = 0; k < STAGES && status == BG_OK; k++)
+    status = find_matrix(m, t, h, s, w);
+    for (int k = 0; k < ROS_STAGES && status == BG_OK; k++)
         status = find_stage(m, t, h, s, w, k);
     for (int i = 0; i < BG_SIZE; i++)
-        work->point[i] += work->stage[STAGES - 1][i];
+        work->point[i] += work->stage[ROS_STAGES - 1][i];
     if (status != BG_OK || !bg_finite(BG_SIZE, work->point))
         return status != BG_OK ? status : BG_NOT_FINITE;
     memcpy(s, work->point, sizeof(double) * BG_SIZE);
-    return is_inaccurate(m, s, work->stage[STAGES - 1]) ? BG_INACCURATE : BG_OK;
+    return is_inaccurate(m, s, work->stage[ROS_STAGES - 1]) ? BG_INACCURATE : BG_OK;
 }

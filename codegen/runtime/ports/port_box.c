@@ -8,12 +8,12 @@
 #include "port_box.h"
 
 enum {
-    PATIENCE = 3, /* turns of all that contradict which need not better anything */
-    TURNS = 4 * BG_PORTS + 8
+    BOX_PATIENCE = 3, /* turns of all that contradict which need not better anything */
+    BOX_TURNS = 4 * BG_PORTS + 8
 };
 
 /* Where a port goes from its way: itself if nothing contradicts that. */
-static int next_way(const bg_boxed *b, int i)
+static int box_way(const bg_boxed *b, int i)
 {
     const int way = b->way[i];
     if (way == 0 && b->given[i] > b->most[i] + b->extra[i] + b->slack[i])
@@ -29,12 +29,12 @@ int bg_box_broken(int ports, const bg_boxed *b)
 {
     int count = 0;
     for (int i = 0; i < ports; i++)
-        count += next_way(b, i) != b->way[i] || (b->way[i] == 0 && b->slip[i] != 0.0);
+        count += box_way(b, i) != b->way[i] || (b->way[i] == 0 && b->slip[i] != 0.0);
     return count;
 }
 
 /* What ports give and receive in their ways, from what they give and receive at first. */
-static void look(int ports, bg_boxed *b, const double *given, const double *slip,
+static void box_look(int ports, bg_boxed *b, const double *given, const double *slip,
                  const double *yields, double *system)
 {
     double right[BG_PORTS];
@@ -45,50 +45,49 @@ static void look(int ports, bg_boxed *b, const double *given, const double *slip
         if (b->way[i] == 0)
             held[count++] = i;
     }
-    for (int i = 0; i < ports; i++) {
-        b->slip[i] = slip[i];
-        for (int j = 0; j < ports; j++)
-            b->slip[i] -= yields[i * ports + j] * (b->given[j] - given[j]);
-    }
     for (int r = 0; r < count; r++) {
-        right[r] = b->slip[held[r]];
+        const double *const row = yields + held[r] * ports;
+        right[r] = slip[held[r]];
+        for (int j = 0; j < ports; j++)
+            right[r] -= row[j] * (b->given[j] - given[j]);
         for (int c = 0; c < count; c++)
-            system[r * count + c] = yields[held[r] * ports + held[c]];
+            system[r * count + c] = row[held[c]];
     }
     if (count > 0 && bg_factor(count, system, pivots)) {
         bg_solve(count, system, pivots, 1, right);
         for (int r = 0; r < count; r++)
             b->given[held[r]] += right[r];
-        for (int i = 0; i < ports; i++)
-            for (int r = 0; r < count; r++)
-                b->slip[i] -= yields[i * ports + held[r]] * right[r];
     }
     for (int i = 0; i < ports; i++) {
-        b->slip[i] = b->way[i] ? b->slip[i] : 0.0;
-        b->shared[i] = 0.0;
-        for (int j = 0; j < ports; j++)
-            b->shared[i] += BG_LOOSE * fabs(yields[i * ports + j] * (b->given[j] - given[j]));
+        double sum = 0.0, terms = 0.0;
+        for (int j = 0; j < ports; j++) {
+            const double term = yields[i * ports + j] * (b->given[j] - given[j]);
+            sum += term;
+            terms += fabs(term);
+        }
+        b->slip[i] = b->way[i] ? slip[i] - sum : 0.0;
+        b->shared[i] = BG_LOOSE * terms;
     }
 }
 
 int bg_box_solve(int ports, bg_boxed *b, const double *yields, double *system)
 {
     double given[BG_PORTS], slip[BG_PORTS];
-    int best[BG_PORTS] = {0}, fewest = ports + 1, patience = PATIENCE;
+    int best[BG_PORTS] = {0}, fewest = ports + 1, patience = BOX_PATIENCE;
     memcpy(given, b->given, sizeof given);
     memcpy(slip, b->slip, sizeof slip);
-    for (int turn = 0; turn < TURNS; turn++) {
+    for (int turn = 0; turn < BOX_TURNS; turn++) {
         int changed = 0, last = -1, way[BG_PORTS];
-        look(ports, b, given, slip, yields, system);
+        box_look(ports, b, given, slip, yields, system);
         for (int i = 0; i < ports; i++) {
-            way[i] = next_way(b, i);
+            way[i] = box_way(b, i);
             changed += way[i] != b->way[i];
             last = way[i] != b->way[i] ? i : last;
         }
         if (changed < fewest) {
             fewest = changed;
             memcpy(best, b->way, sizeof best);
-            patience = PATIENCE;
+            patience = BOX_PATIENCE;
         } else {
             patience--;
         }
@@ -100,6 +99,6 @@ int bg_box_solve(int ports, bg_boxed *b, const double *yields, double *system)
             b->way[last] = way[last];
     }
     memcpy(b->way, best, sizeof best);
-    look(ports, b, given, slip, yields, system);
+    box_look(ports, b, given, slip, yields, system);
     return BG_PIVOTS;
 }

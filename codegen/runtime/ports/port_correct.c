@@ -31,7 +31,7 @@ static void bound_friction(const bg_model *m, const double *values, int i, bg_bo
 }
 
 /* The problem at the end of a step; 1 if slips contradict the mode. */
-static int find_box(bg_model *m, bg_boxed *b)
+static int find_end(bg_model *m, bg_boxed *b)
 {
     double values[4 * PORTS] = {0};
     int broken = 0;
@@ -68,7 +68,7 @@ int bg_correct_step(bg_model *m, double t, double h, double *s, const double *w)
         return BG_OK; /* whoever begins the next step tells */
     if (BG_ROSENBROCK)
         bg_note_given(m, 0.5);
-    if (!find_box(m, b))
+    if (!find_end(m, b))
         return BG_OK;
     bg_respond(m, h, 0, &m->work.response);
     bg_yields(m, &m->work.response, m->work.yields, b->reversed);

@@ -5,7 +5,7 @@
 
 #include "model_internal.h"
 
-enum { C = BG_COUPLED, ROOM = BG_ROOM(BG_COUPLED) };
+enum { MOVED_LAWS = BG_COUPLED, LAW_ROOM = BG_ROOM(BG_COUPLED) };
 
 /* How coupled laws change per unit of one input. */
 static void slope_along(bg_model *m, const double *before, int column, double *slopes)
@@ -18,7 +18,7 @@ static void slope_along(bg_model *m, const double *before, int column, double *s
     for (int i = 0; i < ROWS; i++)
         now->y[i] += step * m->numbers.D[i * M + column];
     bg_coupled.values(now, m->work.law);
-    for (int l = 0; l < C; l++)
+    for (int l = 0; l < MOVED_LAWS; l++)
         slopes[l] = (m->work.law[l] - before[l]) / step;
     now->u[column] = u;
     memcpy(now->y, y, sizeof y);
@@ -28,31 +28,32 @@ static void slope_along(bg_model *m, const double *before, int column, double *s
  * have no common answer. */
 static int answers(bg_model *m, double *given)
 {
-    double before[ROOM], along[ROOM], system[ROOM * ROOM];
-    int pivots[ROOM];
+    double before[LAW_ROOM], along[LAW_ROOM], system[LAW_ROOM * LAW_ROOM];
+    int pivots[LAW_ROOM];
     bg_coupled.values(&m->now, m->work.law);
-    memcpy(before, m->work.law, sizeof(double) * C);
+    memcpy(before, m->work.law, sizeof(double) * MOVED_LAWS);
     for (int k = 0; k < K; k++) {
         slope_along(m, before, bg_friction_inputs[k], along);
-        for (int l = 0; l < C; l++)
+        for (int l = 0; l < MOVED_LAWS; l++)
             given[l * K + k] = along[l];
     }
-    for (int c = 0; c < C; c++) {
+    for (int c = 0; c < MOVED_LAWS; c++) {
         slope_along(m, before, bg_coupled.inputs[c], along);
-        for (int l = 0; l < C; l++)
-            system[l * C + c] = (l == c ? 1.0 : 0.0) - along[l];
+        for (int l = 0; l < MOVED_LAWS; l++)
+            system[l * MOVED_LAWS + c] = (l == c ? 1.0 : 0.0) - along[l];
     }
-    if (!bg_finite(C * C, system) || !bg_finite(C * K, given) || !bg_factor(C, system, pivots))
+    if (!bg_finite(MOVED_LAWS * MOVED_LAWS, system) || !bg_finite(MOVED_LAWS * K, given)
+        || !bg_factor(MOVED_LAWS, system, pivots))
         return 0;
-    bg_solve(C, system, pivots, K, given);
-    return bg_finite(C * K, given);
+    bg_solve(MOVED_LAWS, system, pivots, K, given);
+    return bg_finite(MOVED_LAWS * K, given);
 }
 
 /* columns += those of laws times what these give. */
 static void add_answers(int rows, const double *matrix, const double *given, double *columns)
 {
     for (int k = 0; k < K; k++)
-        for (int l = 0; l < C; l++)
+        for (int l = 0; l < MOVED_LAWS; l++)
             for (int i = 0; i < rows; i++)
                 columns[k * rows + i] += given[l * K + k] * matrix[i * M + bg_coupled.inputs[l]];
 }
@@ -77,14 +78,14 @@ static void gain_over(bg_model *m, double time, int brief, double *gains)
 
 void bg_respond(bg_model *m, double time, int brief, bg_response *of)
 {
-    double given[ROOM * PORTS] = {0};
+    double given[LAW_ROOM * PORTS] = {0};
     for (int k = 0; k < K; k++) {
         for (int i = 0; i < N; i++)
             of->gains[k * N + i] = m->numbers.Q[i * M + bg_friction_inputs[k]];
         for (int i = 0; i < ROWS; i++)
             of->readings[k * ROWS + i] = m->numbers.D[i * M + bg_friction_inputs[k]];
     }
-    if (C > 0 && answers(m, given)) {
+    if (MOVED_LAWS > 0 && answers(m, given)) {
         add_answers(N, m->numbers.Q, given, of->gains);
         add_answers(ROWS, m->numbers.D, given, of->readings);
     }

@@ -73,7 +73,7 @@ static void find_near(const step_search *c, const int *mode, bg_boxed *b)
 }
 
 /* The problem of a mode that has been looked at, in m->shot. `slack`: what makes up what holds. */
-static void find_box(step_search *c, const int *mode, const double *slack, bg_boxed *b)
+static void find_start(step_search *c, const int *mode, const double *slack, bg_boxed *b)
 {
     bg_model *const m = c->m;
     double values[4 * PORTS] = {0};
@@ -125,7 +125,7 @@ int bg_settle_ways(step_search *c, const bg_set *sent, int *stopped, int *change
     for (int i = 0; i < K; i++)
         if (bg_has(sent, i))
             mode[i] = !mode[i];
-    find_box(c, mode, slack, b);
+    find_start(c, mode, slack, b);
     *changed = !bg_is_empty(sent) || bg_box_broken(K, b) > 0;
     if (!*changed)
         return BG_OK;

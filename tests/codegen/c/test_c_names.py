@@ -154,7 +154,7 @@ def test_sizes_are_those_of_c() -> None:
     assert int(_constant("exact.h", "EX_DIGITS")) == sizes.DIGITS
     assert int(_constant("port_choosing.h", "BG_ENUMERATED")) == blocks.ENUMERATED
     assert int(_constant("port_choosing.h", "BG_BLOCK_TURNS")) == blocks.TURNS
-    assert int(_constant("port_box.c", "PATIENCE")) == boxes.PATIENCE
+    assert int(_constant("port_box.c", "BOX_PATIENCE")) == boxes.PATIENCE
     assert int(_constant("port_choose.c", "MOST_SLIPPING")) == friction.MOST_SLIPPING
     for name in ("ALL_WAYS", "FEW", "TURNS", "MOST_TURNS"):
         assert int(_constant("port_ways.c", name)) == getattr(switchings, name)
