@@ -125,9 +125,7 @@ class SwitchedSteps(PortSteps):
                 break
         return s
 
-    def struck(
-        self, at: Point, held: Mode, previous: Chosen, h: float
-    ) -> Strike | None:
+    def struck(self, at: Point, held: Mode, previous: Chosen, h: float) -> Strike | None:
         """What stops the slips of what is held, by its rows as they are; None for nothing."""
         now = self.any_of(at, (1,) * len(held))
         hold = self.friction.hold(held, now.numbers)

@@ -20,7 +20,9 @@ def is_implicit(integrator: str) -> bool:
     """Whether a fixed step is linearly implicit; `ParameterError` for a method that is none of these."""
     if integrator not in INTEGRATORS:
         known = " and ".join(repr(one) for one in INTEGRATORS)
-        raise ParameterError(f"there is no integrator {integrator!r} of fixed steps; there are {known}")
+        raise ParameterError(
+            f"there is no integrator {integrator!r} of fixed steps; there are {known}"
+        )
     return integrator == "rosenbrock"
 
 

@@ -100,11 +100,13 @@ static int find_stage(bg_model *m, double t, double h, const double *s, const do
     bg_work *const work = &m->work;
     double sum[BG_SIZE] = {0};
     memcpy(work->point, s, sizeof(double) * BG_SIZE);
-    for (int j = 0; j < k; j++)
+    for (int j = 0; j < k; j++) {
+        const double couple = ROS_COUPLES[k][j] / h;
         for (int i = 0; i < BG_SIZE; i++) {
             work->point[i] += ROS_WEIGHTS[k][j] * work->stage[j][i];
-            sum[i] += ROS_COUPLES[k][j] / h * work->stage[j][i];
+            sum[i] += couple * work->stage[j][i];
         }
+    }
     const int status = stage_rates(m, t, h, ROS_ALONG[k], w, 1);
     for (int i = 0; i < BG_SIZE; i++)
         work->stage[k][i] = m->shot.rate[i] + sum[i] + ROS_IN_TIME[k] * h * work->next[i];

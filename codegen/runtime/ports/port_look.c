@@ -13,7 +13,7 @@ int bg_look(bg_model *m, const bg_start *at, const int *mode)
 int bg_look_any(bg_model *m, const bg_start *at, const int *mode, int *tried)
 {
     int status = BG_NO_SOLUTION, first = BG_OK;
-    for (int k = 0; status != BG_OK && bg_try(K, k, mode, tried); k++) {
+    for (int k = 0; k < BG_TRIES && status != BG_OK && bg_try(K, k, mode, tried); k++) {
         status = bg_look(m, at, tried);
         first = k ? first : status;
     }

@@ -153,7 +153,7 @@ int bg_search_ways(step_search *c, const int *before)
 int bg_decide_step(bg_model *m, double t, double h, double *s, const double *w)
 {
     int before[BG_ROOM(K)];
-    step_search c = {.m = m, .s = s, .at = {t, h, s, w, m->work.rates[0], before, m->started}};
+    step_search c = {.m = m, .at = {t, h, s, w, m->work.rates[0], before, m->started}, .s = s};
     memcpy(before, m->mode, sizeof before);
     double begun[BG_SIZE];
     memcpy(c.begun, s, sizeof c.begun);
