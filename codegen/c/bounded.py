@@ -26,16 +26,20 @@ _FUNCTION = re.compile(
     re.M | re.S,
 )
 _ARRAY = re.compile(
-    r"^\s+(?:static |const |unsigned |long |struct )*(?!return\b|else\b)[A-Za-z_]\w*\s[^;=(){}?]*?\w\[([^\]]*)\]",
+    r"(?:^|[;{])\s*(?:static |const |unsigned |long |struct )*(?!return\b|else\b)[A-Za-z_]\w*\s"
+    r"[^;=(){}?]*?\w\[([^\]]*)\]",
     re.M,
 )
 _LOOP = re.compile(r"\b(for|while|do|goto)\b\s*(\()?")
-_CHANGED = r"(?<![\w.>])(?:\+\+|--)?\s*\b{name}\b\s*(?:\+\+|--|(?:[-+*/%&|^]|<<|>>)?=(?!=))|(?:\+\+|--)\s*{name}\b"
+_CHANGED = (
+    r"(?<![\w.>])(?:\+\+|--)?\s*\b{name}\b\s*(?:\+\+|--|(?:[-+*/%&|^]|<<|>>)?=(?!=))"
+    r"|(?:\+\+|--)\s*{name}\b"
+)
 
 
 @dataclass(frozen=True)
 class Function:
-    """A function of C: its file, name and body, comments and texts taken out; whether only that file sees it."""
+    """A function of C: its file, name and body without comments; whether only that file sees it."""
 
     file: str
     name: str
@@ -180,7 +184,7 @@ def _to_closing(text: str, begin: int, opens: str, closes: str) -> tuple[str, in
 
 
 def _statement(text: str, begin: int) -> str:
-    """The statement that begins there: a block, or up to its semicolon with what loops stand before it."""
+    """The statement that begins there: a block, or up to its semicolon with loops before it."""
     rest = text[begin:]
     skipped = len(rest) - len(rest.lstrip())
     if rest[skipped : skipped + 1] == "{":
@@ -195,7 +199,7 @@ def _statement(text: str, begin: int) -> str:
 def main(words: list[str]) -> int:
     """Tell what is found in a folder; 1 if anything is, 2 if there is none."""
     if len(words) != 1 or not Path(words[0]).is_dir():
-        print("usage: python -m codegen.c.bounded FOLDER", file=sys.stderr)
+        sys.stderr.write("usage: python -m codegen.c.bounded FOLDER\n")
         return 2
     files = {
         path.name: path.read_text(encoding="utf-8")

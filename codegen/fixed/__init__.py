@@ -1,1 +1,1 @@
-"""Fixed steps of models whose ports hold or let go: one complementarity problem where one begins, one at its end."""
+"""Fixed steps of models whose ports hold or let go: complementarity problems at start and end."""

@@ -4,6 +4,7 @@ One linear complementarity problem, ``y = slip - V (given - given_0)``: a port i
 what it gives is inside its bounds; at the upper one y >= 0, at the lower one y <= 0.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -89,10 +90,8 @@ class Boxed:
         held = np.flatnonzero(self.way == 0)
         if len(held):
             right = first.slip[held] - yields[held] @ (given - first.given)
-            try:
+            with suppress(np.linalg.LinAlgError):
                 given[held] += np.linalg.solve(yields[np.ix_(held, held)], right)
-            except np.linalg.LinAlgError:
-                pass
         moved = given - first.given
         self.given, self.shared = given, TUNING.loose * (np.abs(yields) @ np.abs(moved))
         self.slip = np.where(self.way, first.slip - yields @ moved, 0.0)

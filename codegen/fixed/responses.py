@@ -1,5 +1,6 @@
 """What a unit of what each port gives over a time does to states, to readings, and so to slips."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,10 +56,8 @@ def respond(
     gains = time * gains
     system = np.eye(len(gains)) - time * numbers.P
     if not brief and np.isfinite(system).all():
-        try:
+        with suppress(np.linalg.LinAlgError):
             gains = np.linalg.solve(system, gains)
-        except np.linalg.LinAlgError:
-            pass
     return Response(time, gains, readings)
 
 

@@ -42,11 +42,11 @@ IN_TIME = (0.25, -0.5, -0.023504, -0.0362, 0.0, 0.0)
 
 
 class Rosenbrock(FixedSteps):
-    """Steps of RODASP, of order 4, L-stable and stiffly accurate, with an embedded method of order 3.
+    """Steps of RODASP: order 4, L-stable, stiffly accurate, with an embedded method of order 3.
 
-    G. Steinebach, Order-reduction of ROW-methods for DAEs and method of lines applications, Preprint
-    1741, TH Darmstadt 1995. Each solves six linear systems with one matrix, whose slopes are
-    differences: as many evaluations as there are states, one for the slope in time, and six.
+    G. Steinebach, Order-reduction of ROW-methods for DAEs and method of lines applications,
+    Preprint 1741, TH Darmstadt 1995. Each solves six linear systems with one matrix, whose slopes
+    are differences: as many evaluations as there are states, one for the slope in time, and six.
     """
 
     implicit = True

@@ -14,9 +14,9 @@ from codegen.batch import plan
 from codegen.c.runtime import FOLDERS, runtime_file, runtime_names
 from codegen.engine import happened, located, sizes
 from codegen.engine.status import Status
+from codegen.fixed import boxes
 from codegen.modes import blocks
 from codegen.program.lower import lower
-from codegen.fixed import boxes
 from codegen.standalone import friction, switchings
 
 FILES = ("main.c", *(name for folder in FOLDERS for name in runtime_names(folder)))

@@ -10,8 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.c_model import compiled, written
-from oracles.many import bridge
 from references.build import bond_graph
 
 import bondgraph as bg
@@ -19,6 +17,8 @@ from codegen import Lag, Sampled, Signal, Sine, Step, simulator, to_c
 from codegen.c.export import stepped
 from codegen.program.lower import lower
 from differentials.scenarios import prepared
+from oracles.c_model import compiled, written
+from oracles.many import bridge
 
 DRIVER = Path(__file__).parent / "realtime.c"
 
