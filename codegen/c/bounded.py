@@ -207,11 +207,10 @@ def main(words: list[str]) -> int:
         if path.suffix in (".c", ".h")
     }
     found = findings(files)
-    print(
-        "\n".join(found)
-        if found
-        else f"{len(files)} files: nothing allocates, all loops are bounded"
-    )
+    good = f"{len(files)} files: nothing allocates, all loops are bounded"
+    sys.stdout.write("
+".join(found or [good]) + "
+")
     return bool(found)
 
 

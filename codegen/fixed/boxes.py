@@ -23,6 +23,7 @@ Ways = np.ndarray
 class Boxed:
     """Ports by their ways; ``extra``: so far beyond its bounds what holds a port may be.
 
+    ``slips``: what is left of both bounds once a port leaves them with a slip.
     ``near``: slips below are rounding; ``slack``: the same of what ports give beyond their bounds;
     ``reversed``: ports that push their slips on, which nothing can hold; ``shared``: what is left
     of slips that several ports hold together.
@@ -36,10 +37,12 @@ class Boxed:
     given: Array
     slip: Array
     near: Array
+    slips: Array = field(init=False)
     reversed: Ways = field(init=False)
     shared: Array = field(init=False)
 
     def __post_init__(self) -> None:
+        self.slips = np.full(len(self.way), TUNING.huge)
         self.reversed, self.shared = np.zeros(len(self.way), bool), np.zeros(len(self.way))
 
     def onward(self) -> Ways:
@@ -71,17 +74,28 @@ class Boxed:
             self._look(first, yields)
             way = self.onward()
             changed = np.flatnonzero(way != self.way)
+            if not len(changed):
+                if not self._lets_slip():
+                    return True
+                continue
             if len(changed) < fewest:
                 best, fewest, patience = self.way, len(changed), PATIENCE
             else:
                 patience -= 1
-            if not len(changed):
-                return True
             only = np.arange(len(way)) == changed[-1]
             self.way = way if patience > 0 else np.where(only, way, self.way)
         self.way = best
         self._look(first, yields)
         return False
+
+    def _lets_slip(self) -> bool:
+        """Ports that let go with a slip give less from then on; whether one does."""
+        goes = (self.way != 0) & (np.abs(self.slip) > self.near + self.shared)
+        goes &= self.slips < self.most
+        self.extra = np.where(goes, self.extra + self.most - self.slips, self.extra)
+        self.least = np.where(goes, -self.slips, self.least)
+        self.most = np.where(goes, self.slips, self.most)
+        return bool(goes.any())
 
     def _look(self, first: "Boxed", yields: Array) -> None:
         """What ports give and receive in their ways, from what they give and receive at first."""

@@ -19,17 +19,19 @@ class Response:
     gains: Array
     readings: Array
 
-    def yields(self, now: Instant, slips: Places, rubs: Array) -> tuple[Array, Array]:
-        """How much slips yield to what ports give, and the ports that push theirs on.
+    def yields(self, now: Instant, slips: Places, rubs: Array) -> tuple[Array, Array, bool]:
+        """How much slips yield to what ports give, the ports that push theirs on, whether none.
 
         Ports that hold a slip together share it; what nothing moves none can hold.
         """
         found = -(self.readings[slips] + now.numbers.F[slips] @ self.gains)
         own = np.diag(found)
         largest = float(np.abs(own).max(initial=0.0))
-        pushing = rubs & (own < -TUNING.shared * largest)
+        active = own < -TUNING.shared * largest
+        pushing = rubs & active
         least = np.where(own > TUNING.shared * largest, own, largest if largest > 0 else 1.0)
-        return found + np.diag(np.where(pushing, 0.0, TUNING.shared * least)), pushing
+        shared = np.diag(np.where(pushing, 0.0, TUNING.shared * least))
+        return found + shared, pushing, not active.any()
 
     def pushed(self, given: Array, s: Array, law_rates: Places) -> Array:
         """The vector s after what ports give over the time."""
@@ -40,12 +42,12 @@ class Response:
 
 
 def respond(
-    now: Instant, efforts: Places, coupled: Laws | None, time: float, brief: bool
+    now: Instant, efforts: Places, coupled: Laws | None, time: float, lag: float
 ) -> Response:
     """The response at an instant; laws that friction moves, ``coupled``, answer by their slopes.
 
-    States gain as in a step of Euler's implicit method with the rates of storages and resistances,
-    since what is passive yields so over any time; over a ``brief`` one straight on.
+    The rates of storages and resistances follow after a ``lag``: after the whole time as in a step
+    of Euler's implicit method, and what is passive yields so over any; straight on without any.
     """
     numbers = now.numbers
     gains, readings = numbers.Q[:, efforts], numbers.D[:, efforts]
@@ -54,8 +56,8 @@ def respond(
         gains = gains + numbers.Q[:, coupled.inputs] @ given
         readings = readings + numbers.D[:, coupled.inputs] @ given
     gains = time * gains
-    system = np.eye(len(gains)) - time * numbers.P
-    if not brief and np.isfinite(system).all():
+    system = np.eye(len(gains)) - lag * numbers.P
+    if lag > 0 and np.isfinite(system).all():
         with suppress(np.linalg.LinAlgError):
             gains = np.linalg.solve(system, gains)
     return Response(time, gains, readings)

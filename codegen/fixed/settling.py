@@ -35,6 +35,9 @@ class PortSteps(FixedSteps):
         self.switching: Sequence[Switching | None] = [None] * len(self.slips)
         self.rubs = np.ones(len(self.slips), dtype=bool)
         self.coupled: Laws | None = getattr(friction, "coupled", None)
+        self.mean = self.mean_caps = self.corrected = np.zeros(len(self.slips))
+        #: Slips where a step begins.
+        self.begun: Array | None = None
 
     def decided(self, at: Point, previous: Chosen, dead_band: float, h: float = 0.0) -> Mode:
         """Which ports are held (0) and which let go; of friction which way it slips (+1, -1)."""
@@ -126,8 +129,13 @@ class PortSteps(FixedSteps):
         self, at: Point, now: Instant, box: Boxed, mode: Mode, time: float, brief: bool
     ) -> Mode:
         """The mode in which nothing contradicts, from the box of this one, over a time."""
-        response = respond(now, self.efforts, self.coupled, time, brief)
-        yields, box.reversed = response.yields(now, self.slips, self.rubs)
+        # What is more or less than was given is so after a slip has gone through zero.
+        lag = 0.0 if brief else time * self.part_after(now, box) / 2
+        response = respond(now, self.efforts, self.coupled, time, lag)
+        yields, box.reversed, passive = response.yields(now, self.slips, self.rubs)
+        if not brief and not passive:
+            response = respond(now, self.efforts, self.coupled, time, time)
+            yields, box.reversed, _ = response.yields(now, self.slips, self.rubs)
         if not box.solve(yields):
             warnings.warn(
                 f"at t = {at.t:g} which ports hold was not decided in a step's bounded number of "
@@ -186,16 +194,18 @@ class PortSteps(FixedSteps):
         levels, caps, _, rest = self.friction.ports.values(now).reshape(-1, 4).T
         caps = np.maximum(now.caps, 0.0)
         level = np.where(held | rated, np.maximum(levels * rest, 0.0), np.abs(box.given))
-        self.bound(box, level, caps)
+        self.bound(box, level, caps, held | rated)
         slack = TUNING.step_rounding * self.effort_terms(now, looked)
         box.slack = np.where(rubs, box.slack, slack)
         return box
 
-    def bound(self, box: Boxed, level: Array, caps: Array) -> None:
-        """Bounds of friction: what it gives as it slips, and what it may hold."""
-        box.most = np.where(self.rubs, level, box.most)
-        box.least = np.where(self.rubs, -level, box.least)
-        box.extra = np.where(self.rubs, np.maximum(caps - level, 0.0), 0.0)
+    def bound(self, box: Boxed, level: Array, caps: Array, rests: Array) -> None:
+        """Bounds of friction: what it gives as it slips, and what it may hold if it is at rest."""
+        most = np.where(rests, np.maximum(caps, level), level)
+        box.most = np.where(self.rubs, most, box.most)
+        box.least = np.where(self.rubs, -most, box.least)
+        box.extra = np.where(self.rubs, np.maximum(caps - most, 0.0), 0.0)
+        box.slips = np.where(self.rubs, level, box.slips)
         box.slack = np.where(self.rubs, TUNING.breakaway * caps, 0.0)
 
     def end_box(self, now: Instant, mode: Mode) -> Boxed:
@@ -207,13 +217,27 @@ class PortSteps(FixedSteps):
         whole = np.where(at_end > 0, at_end, 1.0)
         resting = np.where(at_end > 0, caps * np.minimum(levels * rest / whole, 1.0), caps)
         box.given = self.mean
-        self.bound(box, np.where(signs, np.abs(self.mean), resting), caps)
+        self.bound(box, np.where(signs, np.abs(self.mean), resting), caps, signs == 0)
         box.slip = np.where(signs, now.y[self.slips], 0.0)
         box.near = TUNING.step_rounding * self.terms(now)
         return box
 
+    def contradicted(self, box: Boxed) -> Array:
+        """The ports that slip against their ways where a step ends."""
+        return (box.least != box.most) & (box.way * box.slip < -box.near)
+
+    def part_after(self, now: Instant, box: Boxed) -> float:
+        """The part of a step that is left after the first slip has gone through zero."""
+        slips = now.y[self.slips]
+        begun = slips if self.begun is None else self.begun
+        past = begun * slips < 0
+        parts = np.where(past, slips / np.where(past, slips - begun, 1.0), 1.0)
+        return float(parts[self.contradicted(box)].max())
+
     def noted(self, now: Instant, part: float) -> None:
-        """Count what ports give at an instant into the mean of a step."""
+        """Count what ports give at an instant into the mean of a step, the first its begin."""
+        if self.begun is None:
+            self.begun = now.y[self.slips]
         self.mean = self.mean + part * now.u[self.efforts]
         self.mean_caps = self.mean_caps + part * now.caps
 
@@ -222,6 +246,7 @@ class PortSteps(FixedSteps):
     ) -> tuple[Mode, Array]:
         """A step in one mode, and what changes at its end."""
         self.mean = self.mean_caps = np.zeros(len(self.slips))
+        self.begun = None
         sharing = len(self.form.law_rates) > 0 or self.coupled is not None
         self.sharing = self.friction.sharing = sharing
         try:
@@ -239,7 +264,7 @@ class PortSteps(FixedSteps):
         if self.implicit:
             self.noted(now, 0.5)
         box = self.end_box(now, mode)
-        if not ((box.least != box.most) & (box.way * box.slip < -box.near)).any():
+        if not self.contradicted(box).any():
             return mode, at.s
         mode = self.solved(at, now, box, mode, h, brief=False)
         try:

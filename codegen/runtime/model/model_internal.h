@@ -166,20 +166,22 @@ int bg_look(bg_model *m, const bg_start *at, const int *mode);
 int bg_look_any(bg_model *m, const bg_start *at, const int *mode, int *tried);
 int bg_look_slipping(bg_model *m, const bg_start *at, const int *mode);
 
-/* port_response.c: what a unit of what each port gives does over a time, which may be `brief`; how
- * much slips yield to it, and which it would push on; s after what ports give over that time. */
-void bg_respond(bg_model *m, double time, int brief, bg_response *of);
-void bg_yields(const bg_model *m, const bg_response *of, double *yields, int *reversed);
+/* port_response.c: what a unit of what each port gives does over a time, rates following after a
+ * lag; how much slips yield to it, which it would push on, and whether none; s after what ports give
+ * over that time. */
+void bg_respond(bg_model *m, double time, double lag, bg_response *of);
+int bg_yields(const bg_model *m, const bg_response *of, double *yields, int *reversed);
 void bg_push(const bg_response *of, const double *given, double *s);
 
-/* port_settle.c: bounds of what a switch gives in its mode, or of one that stays as it is; modes by
- * ways. */
+/* port_settle.c: bounds of what a switch gives in its mode, or of one that stays as it is; of
+ * friction, which slips at a level and holds up to its cap, if it is at rest; modes by ways. */
 void bg_bound_switch(int port, int mode, int stays, bg_boxed *box);
+void bg_bound_friction(int port, double level, double cap, int rests, bg_boxed *box);
 void bg_take_ways(const bg_boxed *box, int *mode);
 
-/* port_correct.c: counts what ports give at m->shot into the mean of a step, which is zero at first;
- * the end of a step, with s and m->mode after what changes in it. */
-void bg_note_given(bg_model *m, double part);
+/* port_correct.c: counts what ports give at m->shot into the mean of a step, which is zero at first,
+ * and notes slips where it begins; the end of a step, with s and m->mode after what changes in it. */
+void bg_note_given(bg_model *m, double part, int begins);
 int bg_correct_step(bg_model *m, double t, double h, double *s, const double *w);
 
 /* port_step.c: m->mode for a step of h, and s after the impulses of switches that come to hold;

@@ -139,7 +139,7 @@ int bg_rosenbrock(bg_model *m, double t, double h, double *s, const double *w)
     int status = stage_rates(m, t, h, 0.0, w, 1);
     if (status != BG_OK)
         return status;
-    bg_note_given(m, 0.5);
+    bg_note_given(m, 0.5, 1);
     memcpy(work->stage[0], m->shot.rate, sizeof work->stage[0]);
     bg_weigh(m, h);
     bg_reach(m, h, s);

@@ -19,7 +19,7 @@ int bg_runge_kutta(bg_model *m, double t, double h, double *s, const double *w)
         if (status != BG_OK)
             return status;
         memcpy(work->stage[k], m->shot.rate, sizeof work->stage[k]);
-        bg_note_given(m, part[k]);
+        bg_note_given(m, part[k], k == 0);
         if (BG_CHECK_STEP && k == 0)
             status = bg_check_step(m, t, h, s, w);
         if (status != BG_OK)

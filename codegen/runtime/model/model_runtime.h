@@ -121,6 +121,7 @@ typedef struct {
     double given[3][BG_ROOM(BG_EXTERNAL)], rates[3][BG_ROOM(BG_EXTERNAL)];
     double origin[BG_MAP_ROWS], external[2][BG_ROOM(BG_EXTERNAL)];
     double mean[BG_ROOM(BG_FRICTION)], mean_caps[BG_ROOM(BG_FRICTION)]; /* over a step */
+    double begun[BG_ROOM(BG_FRICTION)]; /* slips where it begins */
     double yields[BG_TABLE(BG_FRICTION, BG_FRICTION)];
     double system[BG_TABLE(BG_FRICTION, BG_FRICTION)];
     double implicit[BG_SIZE * BG_SIZE], gained[BG_TABLE(BG_STATES, BG_FRICTION)];

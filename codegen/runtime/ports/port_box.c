@@ -70,6 +70,22 @@ static void box_look(int ports, bg_boxed *b, const double *given, const double *
     }
 }
 
+/* Ports that let go with a slip give less from then on; 0 where none does. */
+static int lets_slip(int ports, bg_boxed *b)
+{
+    int any = 0;
+    for (int i = 0; i < ports; i++) {
+        const int goes = b->way[i] && fabs(b->slip[i]) > b->near[i] + b->shared[i];
+        if (!goes || !(b->slips[i] < b->most[i]))
+            continue;
+        b->extra[i] += b->most[i] - b->slips[i];
+        b->most[i] = b->slips[i];
+        b->least[i] = -b->slips[i];
+        any = 1;
+    }
+    return any;
+}
+
 int bg_box_solve(int ports, bg_boxed *b, const double *yields, double *system)
 {
     double given[BG_PORTS], slip[BG_PORTS];
@@ -84,18 +100,18 @@ int bg_box_solve(int ports, bg_boxed *b, const double *yields, double *system)
             changed += way[i] != b->way[i];
             last = way[i] != b->way[i] ? i : last;
         }
-        if (changed < fewest) {
+        if (changed == 0 && !lets_slip(ports, b))
+            return BG_OK;
+        if (changed > 0 && changed < fewest) {
             fewest = changed;
             memcpy(best, b->way, sizeof best);
             patience = BOX_PATIENCE;
         } else {
-            patience--;
+            patience -= changed > 0;
         }
-        if (changed == 0)
-            return BG_OK;
-        if (patience > 0)
+        if (changed > 0 && patience > 0)
             memcpy(b->way, way, sizeof way);
-        else
+        else if (changed > 0)
             b->way[last] = way[last];
     }
     memcpy(b->way, best, sizeof best);

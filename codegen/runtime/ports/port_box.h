@@ -7,12 +7,12 @@
 #include "config.h"
 
 /* `way`: 0 held, 1 or -1 at the bound `most` or `least`, which holds a port up to `extra` beyond
- * it. Below `near` a slip, and within `slack` of a bound what a port gives, are rounding; `shared`:
+ * it; `slips`: what is left of both bounds once a port leaves them with a slip. Below `near` a slip, and within `slack` of a bound what a port gives, are rounding; `shared`:
  * what is left of slips that several ports hold together. `reversed`: a port that pushes its slip
  * on, which nothing can hold. */
 typedef struct {
     int way[BG_PORTS], reversed[BG_PORTS];
-    double least[BG_PORTS], most[BG_PORTS], extra[BG_PORTS];
+    double least[BG_PORTS], most[BG_PORTS], extra[BG_PORTS], slips[BG_PORTS];
     double given[BG_PORTS], slip[BG_PORTS], slack[BG_PORTS], near[BG_PORTS];
     double shared[BG_PORTS];
 } bg_boxed;

@@ -58,25 +58,26 @@ static void add_answers(int rows, const double *matrix, const double *given, dou
                 columns[k * rows + i] += given[l * K + k] * matrix[i * M + bg_coupled.inputs[l]];
 }
 
-/* What states gain over a time: a step of Euler's implicit method with the rates of the storages and
- * resistances, since what is passive yields so over any time; or, over a moment, straight on. */
-static void gain_over(bg_model *m, double time, int brief, double *gains)
+/* What states gain over a time, with the rates of the storages and resistances after a `lag`, the
+ * whole time at the most: then it is a step of Euler's implicit method, and what is passive yields so
+ * over any time; straight on without any. */
+static void gain_over(bg_model *m, double time, double lag, double *gains)
 {
     double *const system = m->work.implicit, *const right = m->work.gained;
     int *const pivots = m->work.implicit_pivots;
     for (int i = 0; i < N * N; i++)
-        system[i] = (i % (N + 1) == 0 ? 1.0 : 0.0) - time * m->numbers.P[i];
+        system[i] = (i % (N + 1) == 0 ? 1.0 : 0.0) - lag * m->numbers.P[i];
     for (int i = 0; i < N; i++)
         for (int k = 0; k < K; k++)
             right[i * K + k] = time * gains[k * N + i];
-    if (!brief && bg_finite(N * N, system) && bg_factor(N, system, pivots))
+    if (lag > 0.0 && bg_finite(N * N, system) && bg_factor(N, system, pivots))
         bg_solve(N, system, pivots, K, right);
     for (int i = 0; i < N; i++)
         for (int k = 0; k < K; k++)
             gains[k * N + i] = right[i * K + k];
 }
 
-void bg_respond(bg_model *m, double time, int brief, bg_response *of)
+void bg_respond(bg_model *m, double time, double lag, bg_response *of)
 {
     double given[LAW_ROOM * PORTS] = {0};
     for (int k = 0; k < K; k++) {
@@ -89,13 +90,14 @@ void bg_respond(bg_model *m, double time, int brief, bg_response *of)
         add_answers(N, m->numbers.Q, given, of->gains);
         add_answers(ROWS, m->numbers.D, given, of->readings);
     }
-    gain_over(m, time, brief, of->gains);
+    gain_over(m, time, lag, of->gains);
     of->time = time;
 }
 
-void bg_yields(const bg_model *m, const bg_response *of, double *yields, int *reversed)
+int bg_yields(const bg_model *m, const bg_response *of, double *yields, int *reversed)
 {
     double largest = 0.0;
+    int passive = 1;
     for (int i = 0; i < K; i++) {
         const int row = bg_friction_readings[i];
         for (int k = 0; k < K; k++) {
@@ -110,11 +112,13 @@ void bg_yields(const bg_model *m, const bg_response *of, double *yields, int *re
     for (int i = 0; i < K; i++) {
         const double own = yields[i * K + i];
         const int rubs = bg_switches[i].kind == BG_RUBS;
+        passive &= own >= -BG_SHARED * largest;
         reversed[i] = rubs && own < -BG_SHARED * largest;
         if (!reversed[i])
             yields[i * K + i] += BG_SHARED * (own > BG_SHARED * largest ? own
                                               : largest > 0 ? largest : 1.0);
     }
+    return passive;
 }
 
 void bg_push(const bg_response *of, const double *given, double *s)

@@ -15,9 +15,19 @@ void bg_bound_switch(int port, int mode, int stays, bg_boxed *b)
     const bg_switch *const one = bg_switches + port;
     const int fixed = one->kind == BG_TOLD || (stays && one->kind == BG_STOPS);
     b->extra[port] = b->slack[port] = b->shared[port] = 0.0;
+    b->slips[port] = BG_HUGE;
     b->way[port] = one->kind == BG_RUBS ? mode : !mode ? 0 : one->side < 0 ? -1 : 1;
     b->least[port] = fixed ? (mode ? 0.0 : -BG_HUGE) : one->side < 0 ? 0.0 : -BG_HUGE;
     b->most[port] = fixed ? (mode ? 0.0 : BG_HUGE) : one->side < 0 ? BG_HUGE : 0.0;
+}
+
+void bg_bound_friction(int port, double level, double cap, int rests, bg_boxed *b)
+{
+    b->most[port] = rests ? fmax(cap, level) : level;
+    b->least[port] = -b->most[port];
+    b->extra[port] = fmax(0.0, cap - b->most[port]);
+    b->slack[port] = BG_BREAKAWAY * cap;
+    b->slips[port] = level;
 }
 
 void bg_take_ways(const bg_boxed *b, int *mode)
@@ -84,12 +94,10 @@ static void find_start(step_search *c, const int *mode, const double *slack, bg_
         bg_bound_switch(i, mode[i], bg_has(&c->barred, i), b);
         find_slip(c, mode, i, b);
         if (is_rubbing(i)) {
-            const double level = mode[i] && b->slip[i] == m->shot.y[bg_friction_readings[i]]
-                ? fabs(b->given[i]) : fmax(0.0, rest);
-            b->most[i] = level;
-            b->least[i] = -level;
-            b->extra[i] = fmax(0.0, cap - level);
-            b->slack[i] = BG_BREAKAWAY * cap;
+            const double slip = m->shot.y[bg_friction_readings[i]];
+            const double level = mode[i] && b->slip[i] == slip ? fabs(b->given[i])
+                                                               : fmax(0.0, rest);
+            bg_bound_friction(i, level, cap, mode[i] == 0 || b->slip[i] != slip, b);
         } else {
             b->slack[i] = BG_STEP_ROUNDING * slack[i];
         }
@@ -132,7 +140,7 @@ int bg_settle_ways(step_search *c, const bg_set *sent, int *stopped, int *change
     for (int i = 0; i < K; i++)
         stopped[i] |= b->way[i] == 0 && b->slip[i] != 0.0;
     find_near(c, mode, b);
-    bg_respond(m, BG_BRIEF * c->at.h, 1, &m->work.response);
+    bg_respond(m, BG_BRIEF * c->at.h, 0.0, &m->work.response);
     bg_yields(m, &m->work.response, m->work.yields, b->reversed);
     const int status = bg_box_solve(K, b, m->work.yields, m->work.system);
     bg_take_ways(b, mode);

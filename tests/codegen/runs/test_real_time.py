@@ -4,6 +4,7 @@ import ctypes
 import re
 import warnings
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -69,7 +70,7 @@ def test_where_nothing_changes_steps_are_of_order_four(
         assert found.taken == len(found.costs)
         assert len(np.unique(found.modes, axis=0)) == 1
         ends.append(found.rows[-1])
-    first, second = (np.abs(a - b).max() for a, b in zip(ends, ends[1:], strict=False))
+    first, second = (np.abs(a - b).max() for a, b in pairwise(ends))
     assert 3.5 < np.log2(first / second) < 5.0
 
 
@@ -84,7 +85,7 @@ def test_all_steps_of_a_model_cost_the_same_within_a_factor_of_three(exported: E
 
 RESTS = {
     "alsd": ({"tau_h": 1000.0}, "tau_e", 5.0),
-    "gearbox": (dict.fromkeys((f"N_{one}" for one in ("K1", "K2", "G1", "G2", "G3", "G4", "GR")), 300.0), "T", 20.0),
+    "gearbox": ({f"N_{one}": 300.0 for one in ("K1", "K2", "G1", "G2", "G3", "G4", "GR")}, "T", 20.0),
     "six-pulse": ({}, "U0", 0.0),
 }  # fmt: skip
 """What holds: inputs, and one that swings by so much."""
@@ -269,7 +270,7 @@ def test_a_problem_without_a_solution_ends_and_tells(solve) -> None:
     """Two ports that each push the other: in no way do both rest, or both slip. Its bound is in config.h."""
     yields = np.array([[1e-3, 4.0], [-4.0, 1e-3]]) @ np.diag([1.0, -1.0])
     *_, status = solve(yields, np.array([1.0, 1.0]), np.array([-0.1, 0.0]), np.array([0.0, 0.1]))
-    way, given, y, told = solve(
+    _, given, y, told = solve(
         np.array([[-1.0, 0.5], [0.5, -1.0]]), np.array([0.3, -0.2]), -np.ones(2), np.ones(2)
     )
     assert told in (0, 21)
