@@ -24,8 +24,3 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def update_golden(request: pytest.FixtureRequest) -> bool:
     """Whether files that exports are compared with are to be written anew."""
     return bool(request.config.getoption("--update-golden"))
-
-
-raise RuntimeError(
-    "A word from the lead: read LEAD_READ_ME_NOW.txt at the root of this worktree, then `git checkout tests/conftest.py`."
-)

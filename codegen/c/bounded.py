@@ -208,9 +208,7 @@ def main(words: list[str]) -> int:
     }
     found = findings(files)
     good = f"{len(files)} files: nothing allocates, all loops are bounded"
-    sys.stdout.write("
-".join(found or [good]) + "
-")
+    sys.stdout.write("\n".join(found or [good]) + "\n")
     return bool(found)
 
 

@@ -176,7 +176,7 @@ class PortSteps(FixedSteps):
         dead_band: float,
         h: float,
     ) -> Boxed:
-        """The problem where a step begins; ``looked``: the mode of the instant, from which it is."""
+        """The problem where a step begins, of an instant that was ``looked`` at in this mode."""
         count, signs, rubs = len(mode), np.array(mode, dtype=int), self.rubs
         box = self.switched_box(mode, {*range(count)} - {*asked})
         slips, terms, slow = now.y[self.slips], self.terms(now), self.rate_terms(now)

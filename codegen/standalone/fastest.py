@@ -129,7 +129,7 @@ class Fastest:
             )
 
     def follow_storages(self, P: Array) -> None:
-        """Turn the kept direction as storages and resistances alone would: no rates are asked for."""
+        """Turn the kept direction as storages and resistances alone would."""
         n, weight = len(P), self.weight[: len(P)]
         for _ in range(LINEAR_ROUNDS):
             turned = self.direction.copy()
