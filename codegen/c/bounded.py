@@ -27,7 +27,7 @@ _FUNCTION = re.compile(
 )
 _ARRAY = re.compile(
     r"(?:^|[;{])\s*(?:static |const |unsigned |long |struct )*(?!return\b|else\b)[A-Za-z_]\w*\s"
-    r"[^;=(){}?]*?\w\[([^\]]*)\]",
+    r"[\w\s*,\[\]]*?\w\[([^\]]*)\]",
     re.M,
 )
 _LOOP = re.compile(r"\b(for|while|do|goto)\b\s*(\()?")

@@ -1,11 +1,12 @@
 """What ports give in a step, each within bounds and each on its side.
 
-One linear complementarity problem, ``y = slip - V (given - given_0)``: a port is held, y = 0, while
-what it gives is inside its bounds; at the upper one y >= 0, at the lower one y <= 0.
+One linear complementarity problem, ``y = slip - V (given - given_0)``: a port is held, y = 0,
+while what it gives is inside its bounds; at the upper one y >= 0, at the lower one y <= 0.
 """
 
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from codegen.tuning import TUNING
 PATIENCE = 3
 """Turns of all that contradict which need not better anything."""
 
-Ways = np.ndarray
+Ways = np.ndarray[tuple[Any, ...], np.dtype[Any]]
 """For each port 0 held, 1 or -1 at its upper or lower bound."""
 
 
@@ -52,7 +53,8 @@ class Boxed:
         way = np.where(held & (self.given < self.least - over), -1, way)
         against = self.way * self.slip < -self.near - self.shared
         leaves = ~held & (self.least != self.most) & against
-        return np.where(leaves, np.where(self.reversed, -self.way, 0), way)
+        found: Ways = np.where(leaves, np.where(self.reversed, -self.way, 0), way)
+        return found
 
     def broken(self) -> bool:
         """Whether ports contradict their ways."""
@@ -60,7 +62,8 @@ class Boxed:
 
     def rests(self) -> Ways:
         """The ports whose slips are none."""
-        return (self.way == 0) | (np.abs(self.slip) <= self.near + self.shared)
+        resting: Ways = (self.way == 0) | (np.abs(self.slip) <= self.near + self.shared)
+        return resting
 
     def solve(self, yields: Array) -> bool:
         """Ways that contradict nothing; whether they were found in a bounded number of turns.

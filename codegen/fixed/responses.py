@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -9,6 +10,9 @@ from codegen.standalone.arrays import Array, Places
 from codegen.standalone.evaluation import Laws
 from codegen.standalone.instant import Instant
 from codegen.tuning import TUNING
+
+Flags = np.ndarray[tuple[Any, ...], np.dtype[np.bool_]]
+"""For each port whether something is so."""
 
 
 @dataclass(frozen=True)
@@ -19,7 +23,7 @@ class Response:
     gains: Array
     readings: Array
 
-    def yields(self, now: Instant, slips: Places, rubs: Array) -> tuple[Array, Array, bool]:
+    def yields(self, now: Instant, slips: Places, rubs: Flags) -> tuple[Array, Flags, bool]:
         """How much slips yield to what ports give, the ports that push theirs on, whether none.
 
         Ports that hold a slip together share it; what nothing moves none can hold.
@@ -31,7 +35,7 @@ class Response:
         pushing = rubs & active
         least = np.where(own > TUNING.shared * largest, own, largest if largest > 0 else 1.0)
         shared = np.diag(np.where(pushing, 0.0, TUNING.shared * least))
-        return found + shared, pushing, not active.any()
+        return np.asarray(found + shared), pushing, not active.any()
 
     def pushed(self, given: Array, s: Array, law_rates: Places) -> Array:
         """The vector s after what ports give over the time."""
@@ -59,7 +63,7 @@ def respond(
     system = np.eye(len(gains)) - lag * numbers.P
     if lag > 0 and np.isfinite(system).all():
         with suppress(np.linalg.LinAlgError):
-            gains = np.linalg.solve(system, gains)
+            gains = np.asarray(np.linalg.solve(system, gains), dtype=float)
     return Response(time, gains, readings)
 
 
@@ -82,7 +86,7 @@ def _answers(now: Instant, efforts: Places, coupled: Laws) -> Array:
     if not np.isfinite(own).all() or not np.isfinite(along).all():
         return none
     try:
-        found = np.linalg.solve(own, along)
+        found = np.asarray(np.linalg.solve(own, along), dtype=float)
     except np.linalg.LinAlgError:
         return none
     return found if np.isfinite(found).all() else none

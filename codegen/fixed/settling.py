@@ -13,7 +13,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from codegen.fixed.boxes import Boxed
-from codegen.fixed.responses import respond
+from codegen.fixed.responses import Flags, respond
 from codegen.standalone.arrays import Array, EvaluationError, Mode
 from codegen.standalone.evaluation import Laws, Point
 from codegen.standalone.friction import Friction, slip_rates, ways
@@ -82,7 +82,8 @@ class PortSteps(FixedSteps):
             if not sent and not box.broken():
                 break
             stopped |= (box.way == 0) & (box.slip != 0)
-            mode = self.solved(at, now, box, flipped(mode, sent), self.moment(h), brief=True)
+            first = flipped(mode, sent)
+            mode = self.solved(at, now, box, first, self.moment(h), brief=True, looked=mode)
             at = at._replace(s=self.struck_by(at, mode, previous, h))
         return mode, at.s
 
@@ -126,9 +127,19 @@ class PortSteps(FixedSteps):
         return TUNING.brief * (h or TUNING.unit_longest)
 
     def solved(
-        self, at: Point, now: Instant, box: Boxed, mode: Mode, time: float, brief: bool
+        self,
+        at: Point,
+        now: Instant,
+        box: Boxed,
+        mode: Mode,
+        time: float,
+        brief: bool,
+        looked: Chosen = None,
     ) -> Mode:
-        """The mode in which nothing contradicts, from the box of this one, over a time."""
+        """The mode in which nothing contradicts, from the box of this one, over a time.
+
+        ``looked``: the mode of the instant, where a step begins.
+        """
         # What is more or less than was given is so after a slip has gone through zero.
         lag = 0.0 if brief else time * self.part_after(now, box) / 2
         response = respond(now, self.efforts, self.coupled, time, lag)
@@ -145,10 +156,15 @@ class PortSteps(FixedSteps):
         if not brief:
             given = box.given - self.mean
             self.corrected = response.pushed(given, at.s, self.form.law_rates)
-        # At its limit and still at rest friction stays there.
-        rubbing = np.where(box.rests(), 0, box.way)
+        # At its limit and still at rest friction stays there ..
+        found = self.by_ways(box, box.rests(), mode)
+        # .. unless that is what was looked at, and contradicted: then it is beyond its limit.
+        return self.by_ways(box, box.way == 0, mode) if brief and found == looked else found
+
+    def by_ways(self, box: Boxed, rests: Flags, mode: Mode) -> Mode:
+        """The mode by ways; ``rests``: the friction ports that stick."""
         told = np.where(box.least != box.most, box.way != 0, mode)
-        return tuple(np.where(self.rubs, rubbing, told).tolist())
+        return tuple(np.where(self.rubs, np.where(rests, 0, box.way), told).tolist())
 
     def switched_box(self, mode: Mode, fixed: Collection[int]) -> Boxed:
         """Bounds of what switches give in their modes; ``fixed``: those that stay as they are."""
@@ -224,7 +240,7 @@ class PortSteps(FixedSteps):
 
     def contradicted(self, box: Boxed) -> Array:
         """The ports that slip against their ways where a step ends."""
-        return (box.least != box.most) & (box.way * box.slip < -box.near)
+        return np.asarray((box.least != box.most) & (box.way * box.slip < -box.near))
 
     def part_after(self, now: Instant, box: Boxed) -> float:
         """The part of a step that is left after the first slip has gone through zero."""

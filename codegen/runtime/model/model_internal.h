@@ -174,10 +174,11 @@ int bg_yields(const bg_model *m, const bg_response *of, double *yields, int *rev
 void bg_push(const bg_response *of, const double *given, double *s);
 
 /* port_settle.c: bounds of what a switch gives in its mode, or of one that stays as it is; of
- * friction, which slips at a level and holds up to its cap, if it is at rest; modes by ways. */
+ * friction, which slips at a level and holds up to its cap, if it is at rest; modes by ways, by which
+ * friction rests that is at its limit without a slip, unless that is `strict`. */
 void bg_bound_switch(int port, int mode, int stays, bg_boxed *box);
 void bg_bound_friction(int port, double level, double cap, int rests, bg_boxed *box);
-void bg_take_ways(const bg_boxed *box, int *mode);
+void bg_take_ways(const bg_boxed *box, int strict, int *mode);
 
 /* port_correct.c: counts what ports give at m->shot into the mean of a step, which is zero at first,
  * and notes slips where it begins; the end of a step, with s and m->mode after what changes in it. */

@@ -84,7 +84,7 @@ int bg_correct_step(bg_model *m, double t, double h, double *s, const double *w)
     for (int i = 0; i < K; i++)
         change[i] = b->given[i] - m->work.mean[i];
     bg_push(&m->work.response, change, s);
-    bg_take_ways(b, m->mode);
+    bg_take_ways(b, 0, m->mode);
     come_to_rest(m, t, s, w);
     return status;
 }

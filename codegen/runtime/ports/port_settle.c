@@ -30,11 +30,12 @@ void bg_bound_friction(int port, double level, double cap, int rests, bg_boxed *
     b->slips[port] = level;
 }
 
-void bg_take_ways(const bg_boxed *b, int *mode)
+void bg_take_ways(const bg_boxed *b, int strict, int *mode)
 {
     for (int i = 0; i < K; i++) {
         /* At its limit and still at rest it stays there. */
-        const int rests = b->way[i] == 0 || fabs(b->slip[i]) <= b->near[i] + b->shared[i];
+        const int still = !strict && fabs(b->slip[i]) <= b->near[i] + b->shared[i];
+        const int rests = b->way[i] == 0 || still;
         if (is_rubbing(i))
             mode[i] = rests ? 0 : b->way[i];
         else if (b->least[i] != b->most[i])
@@ -143,7 +144,13 @@ int bg_settle_ways(step_search *c, const bg_set *sent, int *stopped, int *change
     bg_respond(m, BG_BRIEF * c->at.h, 0.0, &m->work.response);
     bg_yields(m, &m->work.response, m->work.yields, b->reversed);
     const int status = bg_box_solve(K, b, m->work.yields, m->work.system);
-    bg_take_ways(b, mode);
+    bg_take_ways(b, 0, mode);
+    /* Where that is what was looked at, and contradicted, ports are beyond their limits. */
+    int same = 1;
+    for (int i = 0; i < K; i++)
+        same &= mode[i] == m->mode[i];
+    if (same)
+        bg_take_ways(b, 1, mode);
     memcpy(m->mode, mode, sizeof m->mode);
     return status;
 }

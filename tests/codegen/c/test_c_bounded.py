@@ -56,7 +56,7 @@ def _plain() -> dict[str, str]:
     return to_c(alsd().equations, alsd().numbers, alsd().laws)
 
 
-@pytest.mark.parametrize("place", ["bg_model_step", "bg_find", "efforts_against"])
+@pytest.mark.parametrize("place", ["bg_model_step", "bg_model_run", "efforts_against"])
 @pytest.mark.parametrize(("lines", "told"), PLANTED)
 def test_what_is_planted_is_found(lines: str, told: str, place: str) -> None:
     files = dict(_plain())
@@ -68,7 +68,7 @@ def test_what_is_planted_is_found(lines: str, told: str, place: str) -> None:
                 break
             begin = text.find(f"{place}(", begin + 1)
     found = findings(files)
-    if place == "bg_find" and "alloc" not in told:
+    if place == "bg_model_run" and "alloc" not in told:
         # No step comes there: located events alone do.
         assert found == [] or "calls itself" in told
         return

@@ -3,6 +3,7 @@
 import ctypes
 import re
 import warnings
+from collections.abc import Callable
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -29,23 +30,33 @@ from codegen.fixed.boxes import Boxed
 CASES = {"alsd": alsd, "gearbox": gearbox, "six-pulse": six_pulse}
 
 
-@pytest.fixture(scope="module", params=CASES)
-def exported(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Exported:
-    return _exported(str(request.param), tmp_path_factory)
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Exported]:
+    """A model as C, compiled once for all tests."""
+
+    @cache
+    def compiled_model(name: str, integrator: str = "rk4") -> Exported:
+        return Exported(CASES[name](), tmp_path_factory.mktemp("step"), integrator)
+
+    return compiled_model
 
 
-@cache
-def _exported(name: str, paths: pytest.TempPathFactory, integrator: str = "rk4") -> Exported:
-    return Exported(CASES[name](), paths.mktemp("step"), integrator)
+@pytest.fixture(params=CASES)
+def name(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture
+def exported(name: str, made: Callable[..., Exported]) -> Exported:
+    return made(name)
 
 
 STEPS = {"alsd": (1e-3, 1e-4), "gearbox": (2e-3, 1e-4), "six-pulse": (5e-4, 1e-4)}
 """Long and short steps [s]; the bridge's fastest rate is 2,500/s, so that 2 ms is beyond stability."""
 
 
-def test_across_changes_errors_fall_with_the_step_at_least(request, exported: Exported) -> None:
+def test_across_changes_errors_fall_with_the_step_at_least(name: str, exported: Exported) -> None:
     """Largest difference at any sample of any state from the run with located events, over its range."""
-    name = request.node.callspec.params["exported"]
     long, short = STEPS[name]
     rough, fine = exported.error(long), exported.error(short)
     assert np.log(rough / fine) / np.log(long / short) > 1.0
@@ -94,10 +105,10 @@ COUNT = 20_000
 
 
 @pytest.mark.parametrize("name", ["gearbox", "six-pulse"])
-def test_at_rest_nothing_chatters_or_creeps(name: str, tmp_path_factory) -> None:
+def test_at_rest_nothing_chatters_or_creeps(name: str, made: Callable[..., Exported]) -> None:
     """All clutches locked, the engine pushes to and fro; a bridge without voltage."""
     w, swings, by = RESTS[name]
-    changes, far = _exported(name, tmp_path_factory).rest(1e-3, COUNT, w, swings, by)
+    changes, far = made(name).rest(1e-3, COUNT, w, swings, by)
     assert (changes, far) == (0, pytest.approx(0.0, abs=1e-12))
 
 
@@ -169,9 +180,11 @@ def test_an_implicit_step_tells_of_an_error_beyond_one_percent_and_is_taken(tmp_
 
 
 @pytest.mark.parametrize("name", ["alsd", "six-pulse"])
-def test_exported_python_takes_the_same_implicit_steps(name: str, tmp_path_factory) -> None:
+def test_exported_python_takes_the_same_implicit_steps(
+    name: str, made: Callable[..., Exported]
+) -> None:
     case = CASES[name]()
-    model = _exported(name, tmp_path_factory, "rosenbrock")
+    model = made(name, "rosenbrock")
     text = to_python(case.equations, case.numbers, case.laws, integrator="rosenbrock")
     end = 0.56 if name == "alsd" else 0.16
     found = model.march(1e-3, end)
@@ -208,6 +221,7 @@ int harness_box(int ports, const double *yields, double *rows, int *way)
         box.most[i] = rows[ports + i];
         box.given[i] = rows[2 * ports + i];
         box.slip[i] = rows[3 * ports + i];
+        box.slips[i] = BG_HUGE;
     }
     const int status = bg_box_solve(ports, &box, yields, system);
     for (int i = 0; i < ports; i++) {
