@@ -36,7 +36,7 @@ Written by bondgraph-toolkit {version}; change the graph rather than this file. 
 {operations} operations in all assignments, matrices included. Names, numbers and formulas of the model
 stand first, then what is the same for every model, and `Model` and `simulate` last.
 
-    run = simulate(time, initial, inputs)    fixed steps, friction with Karnopp's dead band
+    run = simulate(time, initial, inputs)    fixed steps, friction sticks and slips
     model = Model(parameters)                model.rhs(t, x, u), model.outputs(t, x, u)
 
 {names}

@@ -167,21 +167,22 @@ int bg_look_any(bg_model *m, const bg_start *at, const int *mode, int *tried);
 int bg_look_slipping(bg_model *m, const bg_start *at, const int *mode);
 
 /* port_response.c: what a unit of what each port gives does over a time, rates following after a
- * lag; how much slips yield to it, which it would push on, and whether none; s after what ports give
- * over that time. */
+ * lag; how much slips yield to it, which it would push on, and whether none; s after what ports
+ * give over that time. */
 void bg_respond(bg_model *m, double time, double lag, bg_response *of);
 int bg_yields(const bg_model *m, const bg_response *of, double *yields, int *reversed);
 void bg_push(const bg_response *of, const double *given, double *s);
 
 /* port_settle.c: bounds of what a switch gives in its mode, or of one that stays as it is; of
- * friction, which slips at a level and holds up to its cap, if it is at rest; modes by ways, by which
- * friction rests that is at its limit without a slip, unless that is `strict`. */
+ * friction, which slips at a level and holds up to its cap, if it is at rest; modes by ways, by
+ * which friction rests that is at its limit without a slip, unless that is `strict`. */
 void bg_bound_switch(int port, int mode, int stays, bg_boxed *box);
 void bg_bound_friction(int port, double level, double cap, int rests, bg_boxed *box);
 void bg_take_ways(const bg_boxed *box, int strict, int *mode);
 
-/* port_correct.c: counts what ports give at m->shot into the mean of a step, which is zero at first,
- * and notes slips where it begins; the end of a step, with s and m->mode after what changes in it. */
+/* port_correct.c: counts what ports give at m->shot into the mean of a step, which is zero at
+ * first, and notes slips where it begins; the end of a step, with s and m->mode after what
+ * changes in it. */
 void bg_note_given(bg_model *m, double part, int begins);
 int bg_correct_step(bg_model *m, double t, double h, double *s, const double *w);
 

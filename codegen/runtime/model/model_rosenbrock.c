@@ -1,9 +1,9 @@
-/* A step in one mode by a linearly implicit method of order 4, for stiff laws: RODASP, L-stable and
- * stiffly accurate, with an embedded method of order 3 (G. Steinebach, Order-reduction of ROW-methods
- * for DAEs and method of lines applications, Preprint 1741, TH Darmstadt 1995; as in E. Hairer,
- * G. Wanner, Solving Ordinary Differential Equations II, section IV.7). Each step solves six linear
- * systems with one matrix, whose slopes are differences: as many evaluations as there are states,
- * one for the slope in time, and six. */
+/* A step in one mode by a linearly implicit method of order 4, for stiff laws: RODASP, L-stable
+ * and stiffly accurate, with an embedded method of order 3 (G. Steinebach, Order-reduction of
+ * ROW-methods for DAEs and method of lines applications, Preprint 1741, TH Darmstadt 1995; as in
+ * E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.7). Each step
+ * solves six linear systems with one matrix, whose slopes are differences: as many evaluations
+ * as there are states, one for the slope in time, and six. */
 #include <math.h>
 #include <string.h>
 

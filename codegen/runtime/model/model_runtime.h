@@ -201,19 +201,20 @@ int bg_model_affine_map(bg_model *m, const int *mode, double *matrix);
 int bg_model_rhs(bg_model *m, double t, const double *s, const double *w, const double *signs,
                  double *rate);
 
-/* One step of h from t, s in place; w: the external inputs at t, t + h/2 and t + h, one after the
- * other. Work is bounded; config.h counts it. `bg_model_settle` decides which ports hold, sets `mode`,
- * gives the impulses of switches that come to hold to s and takes the slips of sticking ports away;
- * `bg_model_advance` goes on in that mode by Runge's and Kutta's method of fourth order, or the
- * linearly implicit one that the model was generated for, and stops or turns round at the end of the
- * step what would have gone through zero in it, so that `mode` is that of the end.
+/* One step of h from t, s in place; w: the external inputs at t, t + h/2 and t + h, one after
+ * the other. Work is bounded; config.h counts it. `bg_model_settle` decides which ports hold,
+ * sets `mode`, gives the impulses of switches that come to hold to s and takes the slips of
+ * sticking ports away; `bg_model_advance` goes on in that mode by Runge's and Kutta's method of
+ * fourth order, or the linearly implicit one that the model was generated for, and stops or
+ * turns round at the end of the step what would have gone through zero in it, so that `mode` is
+ * that of the end.
  *
- * A step of Runge's and Kutta's beyond its stability gives BG_UNSTABLE before anything is changed, so
- * a shorter one may follow; `fastest.step` is the longest that would be stable. Two evaluations a
- * step find that out, two more where rates may jump, 32 more in a refusal; BG_CHECK_STEP 0 leaves
- * them out. BG_PIVOTS and BG_INACCURATE tell of a step that was taken (`bg_is_taken`): ports were not
- * decided in so many pivots, s is the best that was found; the error that an implicit step embeds is
- * beyond 1 % of a state's range. */
+ * * A step of Runge's and Kutta's beyond its stability gives BG_UNSTABLE before anything is
+ * changed, so a shorter one may follow; `fastest.step` is the longest that would be stable. Two
+ * evaluations a step find that out, two more where rates may jump, 32 more in a refusal;
+ * BG_CHECK_STEP 0 leaves them out. BG_PIVOTS and BG_INACCURATE tell of a step that was taken
+ * (`bg_is_taken`): ports were not decided in so many pivots, s is the best that was found; the
+ * error that an implicit step embeds is beyond 1 % of a state's range. */
 int bg_model_step(bg_model *m, double t, double h, double *s, const double *w);
 int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w);
 int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w);

@@ -1,5 +1,5 @@
-/* One step in bounded time: which ports hold is decided at its start, then it is one of a method's in
- * that mode, and what changes inside it is made up for at its end. */
+/* One step in bounded time: which ports hold is decided at its start, then it is one of a
+ * method's in that mode, and what changes inside it is made up for at its end. */
 #include <math.h>
 #include <string.h>
 

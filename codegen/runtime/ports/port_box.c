@@ -1,5 +1,5 @@
-/* Block principal pivoting with Murty's single changes where that does not help (J. J. Judice, F. M.
- * Pires, A block principal pivoting algorithm for large-scale strictly monotone linear
+/* Block principal pivoting with Murty's single changes where that does not help (J. J. Judice,
+ * F. M. Pires, A block principal pivoting algorithm for large-scale strictly monotone linear
  * complementarity problems, Computers Oper. Res. 21, 1994), in a bounded number of turns. */
 #include <math.h>
 #include <string.h>

@@ -29,8 +29,8 @@ static void bound_friction(const bg_model *m, const double *values, int i, bg_bo
     bg_bound_friction(i, level, cap, m->mode[i] == 0, b);
 }
 
-/* The problem at the end of a step; 1 if slips contradict the mode, and the part of the step that is
- * left after the first of them went through zero. */
+/* The problem at the end of a step; 1 if slips contradict the mode, and the part of the step
+ * that is left after the first of them went through zero. */
 static int find_end(bg_model *m, bg_boxed *b, double *after)
 {
     double values[4 * PORTS] = {0};
@@ -47,7 +47,8 @@ static int find_end(bg_model *m, bg_boxed *b, double *after)
             bound_friction(m, values, i, b);
         if (b->least[i] == b->most[i] || !(b->way[i] * slip < -b->near[i]))
             continue;
-        const double begun = m->work.begun[i], past = begun * slip < 0.0 ? slip / (slip - begun) : 1.0;
+        const double begun = m->work.begun[i];
+        const double past = begun * slip < 0.0 ? slip / (slip - begun) : 1.0;
         *after = fmax(*after, past);
         broken = 1;
     }

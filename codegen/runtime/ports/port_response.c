@@ -58,9 +58,9 @@ static void add_answers(int rows, const double *matrix, const double *given, dou
                 columns[k * rows + i] += given[l * K + k] * matrix[i * M + bg_coupled.inputs[l]];
 }
 
-/* What states gain over a time, with the rates of the storages and resistances after a `lag`, the
- * whole time at the most: then it is a step of Euler's implicit method, and what is passive yields so
- * over any time; straight on without any. */
+/* What states gain over a time, with the rates of the storages and resistances after a `lag`,
+ * the whole time at the most: then it is a step of Euler's implicit method, and what is passive
+ * yields so over any time; straight on without any. */
 static void gain_over(bg_model *m, double time, double lag, double *gains)
 {
     double *const system = m->work.implicit, *const right = m->work.gained;
