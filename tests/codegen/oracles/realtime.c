@@ -7,6 +7,8 @@
 #include "model_runtime.h"
 #include "port_box.h"
 
+enum { WIDTH = BG_ROOM(BG_EXTERNAL) };
+
 static unsigned long long blocks;
 
 #ifdef __GNUC__
@@ -42,14 +44,13 @@ int realtime_march(bg_model *m, double h, int count, double *s, const double *w,
 int realtime_rest(bg_model *m, double h, int count, double *s, const double *w, int input,
                   double swing, double *far)
 {
-    double now[3 * BG_ROOM(BG_EXTERNAL)], first[BG_SIZE];
-    int mode[BG_ROOM(BG_FRICTION)], changes = 0;
+    double now[3 * BG_ROOM(BG_EXTERNAL)], first[BG_SIZE] = {0};
+    int mode[BG_ROOM(BG_FRICTION)] = {0}, changes = 0;
     *far = 0.0;
     for (int k = 0; k < count; k++) {
         for (int i = 0; i < 3 * BG_EXTERNAL; i++)
-            now[i] = w[i % BG_EXTERNAL]
-                + (i % BG_EXTERNAL == input ? swing * sin(7.0 * h * (k + 0.5 * (i / BG_EXTERNAL)))
-                                            : 0.0);
+            now[i] = w[i % WIDTH]
+                + (i % WIDTH == input ? swing * sin(7.0 * h * (k + 0.5 * (i / WIDTH))) : 0.0);
         if (bg_model_step(m, k * h, h, s, now) != BG_OK)
             return -1 - k;
         for (int i = 0; i < BG_FRICTION && k > 0; i++)

@@ -117,6 +117,12 @@ def six_pulse() -> RealTime:
     return RealTime(bg.derive(case.graph), {}, None, {}, case.inputs, 0.65, 0.03)
 
 
+def conducting_bridge() -> RealTime:
+    """The same with a current in two of its phases, so that the next diode turns on at 0.04 s."""
+    case, start = six_pulse(), {"i": 1.0, "i1": 1.02, "i2": -1.02}
+    return RealTime(case.equations, {}, None, start, case.inputs, case.end, 0.03)
+
+
 @dataclass(frozen=True)
 class Marched:
     """Steps: states at the end of each, modes then, blocks run through, statuses; how many were taken."""
