@@ -74,6 +74,9 @@ class Tuning:
     residual_floor: float = _told(1e-3, "added to that magnitude")
     loop_difference: float = _told(1e-7, "relative difference for the slopes of laws")
     loop_floor: float = _told(1e-6, "added to what that is relative to")
+    root_turns: int = _told(
+        1000, "steps of a root's search: four times as many as halve to nothing"
+    )
     huge: float = _told(1e300, "stands for what is no number")
     least_interval: float = _told(
         1e-30, "of the first interval of a root's search, where it is at 0"
@@ -143,8 +146,16 @@ class Tuning:
     band: float = _told(1e-6, "dead band of a port, unless it is told otherwise")
     still: float = _told(1e-12, "dead band where only an instant is asked for")
     step_rounding: float = _told(1e-9, "of what makes a slip or its rate up: zero to a step")
+    brief: float = _told(1e-6, "of a step: in that time its start is decided, value before rate")
+    shared: float = _told(1e-9, "of how a slip yields: ports that hold it together share by that")
+    loose: float = _told(1e-8, "of what moves a slip: what is left of it where ports share is none")
+    rounds: int = _told(
+        6, "so often a step's start is decided again where one change causes others"
+    )
     step_drift: float = _told(1e-2, "of what moves a held slip in a step: the step's own error")
     difference: float = _told(1e-7, "of the states' magnitudes: a difference for the fastest rates")
+    part_in_time: float = _told(1e-5, "of a step: a difference for the slope of the rates in time")
+    range_part: float = _told(1e-2, "of a state's range: a larger error of a step is told")
     farther: float = _told(8.0, "a second one, so many times as large, must find a like slope")
     unexplained: float = _told(0.2, "part of a fit of the fastest rates that may be left over")
     sine: float = _told(1e-2, "closer to one another, two vectors count as one")

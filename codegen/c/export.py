@@ -1,5 +1,6 @@
 """`to_c`: a model as C99 that allocates nothing, ready for a real-time target."""
 
+import math
 from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
 from importlib.metadata import version
 from typing import Any
@@ -17,6 +18,7 @@ from codegen.model.commands import conditions_told
 from codegen.model.doubts import warn_of_doubts
 from codegen.model.resting import warn_of_rests
 from codegen.modes.closed import ClosedModel
+from codegen.modes.steps import is_implicit
 from codegen.ports.holds import check_sets
 from codegen.program.layout import layout_text
 from codegen.program.records import Block, Program, block
@@ -84,6 +86,7 @@ def to_c(
     inputs: Mapping[str, object] | None = None,
     prefix: str = "",
     initially_on: Iterable[Hashable] = (),
+    integrator: str = "rk4",
 ) -> dict[str, str]:
     """The equations, closed by laws, as files of C99: name to text.
 
@@ -94,16 +97,18 @@ def to_c(
     `BG_LONGEST_STEP` of config.h is found there, too. ``prefix``: what every
     external symbol begins with, such as "front_"; models with different ones link into one program.
     ``initially_on``: the switches that are on before a run, as far as their conditions let them; in the main
-    program states that are not in ``initial`` then follow what these hold. The same arguments give the same
-    text; `model.c` tells how it is used.
+    program states that are not in ``initial`` then follow what these hold. ``integrator``: the method of a
+    real-time step, "rk4", the classical one of order 4, or "rosenbrock", a linearly implicit one of order 4
+    for stiff laws, which is stable at any length. The same arguments give the same text; `model.c` tells how
+    it is used, and config.h what a step costs.
 
     Which sticking ports are redundant is decided exactly, at these parameters; others at which that
     changes are refused when the model is run.
 
     Raises what `simulator` raises; `ExpressionError` for functions C lacks; `ParameterError` for a prefix
-    that no name in C can begin with.
+    that no name in C can begin with, or an integrator that is none of these.
     """
-    given = (main, initial, inputs, prefix, initially_on)
+    given = (main, initial, inputs, prefix, initially_on, integrator)
     start, files = exported(equations, parameters, laws, name, *given)
     closed = start.closed
     warn_of_doubts(closed.program, equations, closed.parameters)
@@ -124,12 +129,15 @@ def exported(
     inputs: Mapping[str, object] | None = None,
     prefix: str = "",
     initially_on: Iterable[Hashable] = (),
+    integrator: str = "rk4",
 ) -> tuple[Start, dict[str, str]]:
     """As `to_c`, with where it begins; who asks for it tells what there is to be told of that."""
+    implicit = is_implicit(integrator)
     start = start_of(equations, parameters, laws, initial, inputs, initially_on)
     closed = start.closed
+    longest = math.inf if implicit else start.longest
     defaults = [float(closed.parameters[symbol.name]) for symbol in closed.program.parameters]
-    files = texts(closed, name, defaults, prefix, start.longest, start.on)
+    files = texts(closed, name, defaults, prefix, longest, start.on, implicit)
     if main:
         states = [*closed.program.states, *closed.program.law_states]
         named = [state.name in {str(one) for one in initial or ()} for state in states]
@@ -145,9 +153,10 @@ def texts(
     prefix: str = "",
     longest: float | None = None,
     on: Collection[Hashable] = (),
+    implicit: bool = False,
 ) -> dict[str, str]:
     """The files of a model without a main program; ``longest``: its longest stable step, if that is told;
-    ``on``: the switches that are on before a run.
+    ``on``: the switches that are on before a run; ``implicit``: whether fixed steps are linearly implicit.
 
     Its parameters are in ``defaults`` and ``longest`` alone, and in which sticking ports are redundant.
     """
@@ -170,7 +179,7 @@ def texts(
         *group_tables(program),
         *(straight_rates(program, fast) if fast else plain_rates()),
     ]
-    sizes = config(program, fast, name, macros, longest)
+    sizes = config(program, fast, name, macros, longest, implicit)
     told = {"config.h": sizes, "layout.h": layout_text(), "tuning.h": tuning_text()}
     return {**told, "model.c": "\n".join(lines) + "\n", **runtime}
 

@@ -5,6 +5,7 @@ from collections.abc import Collection, Hashable, Iterable, Sequence
 import sympy as sp
 
 from bondgraph.equations import StateEquations
+from codegen.c.counting import StepCost, step_cost
 from codegen.c.rhs import Straight
 from codegen.c.text import array, comment, doubles, integers, quoted, strings
 from codegen.modes.stability import modes_told
@@ -32,17 +33,40 @@ def config(
     name: str,
     macros: Sequence[str] = (),
     longest: float | None = None,
+    implicit: bool = False,
 ) -> str:
     """config.h: the sizes of everything, and macros that rename external symbols.
 
-    ``longest``: the longest stable step at the default point [s], None for no word on it.
+    ``longest``: the longest stable step at the default point [s], None for no word on it; ``implicit``:
+    whether fixed steps are linearly implicit.
     """
     lines = [*comment(f"Sizes of {name}; written by bondgraph-toolkit."), "#ifndef BG_CONFIG_H"]
-    lines += ["#define BG_CONFIG_H", ""]
+    lines += ["#define BG_CONFIG_H", "", *_cost(step_cost(program, implicit)), ""]
     lines += [f"#define BG_{key} {value}" for key, value in _sizes(program, fast).items()]
+    lines += [f"#define BG_ROSENBROCK {int(implicit)}"]
     lines += ["", *_steps(longest, len(program.friction))]
     lines += ["", *macros] if macros else []
     return "\n".join([*lines, "", "#endif", ""])
+
+
+def _cost(cost: StepCost) -> list[str]:
+    """What a real-time step takes, in operations."""
+    told = [
+        "What a real-time step takes, in operations of floating point; tables count as if full.",
+        f"One evaluation of the rates: {cost.evaluation}.",
+        f"A step in which no port changes, {cost.evaluations} evaluations: {cost.usual}.",
+    ]
+    if cost.changes:
+        told += [
+            f"Each change of ports, at most {cost.changes} in a step: {cost.change}, with {cost.pivots} ways "
+            "to hold and let go at the most.",
+        ]
+    lines = [line for text in told for line in comment(text)]
+    return [
+        *lines,
+        f"#define BG_STEP_OPERATIONS {cost.usual.total}",
+        f"#define BG_STEP_MOST_OPERATIONS {cost.most.total}",
+    ]
 
 
 def _steps(longest: float | None, ports: int) -> list[str]:

@@ -57,6 +57,7 @@ def write_fmu(
     name: str | None = None,
     platforms: str | Iterable[str] | None = None,
     initially_on: Iterable[Hashable] = (),
+    integrator: str = "rk4",
 ) -> Path:
     """The equations, closed by laws, as an FMU of FMI ``version`` "2.0" or "3.0"; its path.
 
@@ -70,7 +71,8 @@ def write_fmu(
     Each switch is an integer variable, 1 on and 0 off, whose description tells when it turns, as does that of
     an input that it goes by. Of sources inside that rest at zero while such a switch is on a `ModelWarning`
     tells. Co-simulation locates events and keeps the importer's tolerance; with the parameter
-    ``fixed_internal_step`` above zero [s] it takes fixed steps.
+    ``fixed_internal_step`` above zero [s] it takes fixed steps, by ``integrator``: "rk4", or "rosenbrock" for
+    stiff laws, as `to_c` takes it.
 
     The same arguments and compilers give the same bytes. Raises what `to_c` raises, `SignalError` for
     unusable arguments, `MissingExtraError` without the extra ``export``, `WriteError` where the file cannot
@@ -84,7 +86,7 @@ def write_fmu(
     model = _model(
         name or target.stem, equations, parameters, laws, initial or {}, inputs or {}, initially_on
     )
-    start, code = exported(equations, parameters, laws, name=model.name)
+    start, code = exported(equations, parameters, laws, name=model.name, integrator=integrator)
     warn_of_doubts(start.closed.program, equations, start.closed.parameters)
     own = [name for name in runtime_names("fmu") if not name.startswith(OTHERS[version])]
     sources = code | {name: runtime_file(name) for name in own}

@@ -5,12 +5,25 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bondgraph.errors import BondGraphError
+from bondgraph.errors import BondGraphError, ParameterError
 from codegen.inputs.signal import Signal
 from codegen.modes.closed import ClosedModel
 from codegen.modes.stability import longest_stable_step
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING
+
+INTEGRATORS = ("rk4", "rosenbrock")
+"""Methods of fixed steps: the classical one of order 4, and a linearly implicit one for stiff laws."""
+
+
+def is_implicit(integrator: str) -> bool:
+    """Whether a fixed step is linearly implicit; `ParameterError` for a method that is none of these."""
+    if integrator not in INTEGRATORS:
+        known = " and ".join(repr(one) for one in INTEGRATORS)
+        raise ParameterError(
+            f"there is no integrator {integrator!r} of fixed steps; there are {known}"
+        )
+    return integrator == "rosenbrock"
 
 
 def step_at_start(model: ClosedModel, states: Array, signals: Sequence[Signal]) -> float:

@@ -93,39 +93,45 @@ _SWITCHED = {
 }
 
 
-def needed(program: Program, slips: SlipRows | None) -> list[str]:
+def needed(program: Program, slips: SlipRows | None, implicit: bool) -> list[str]:
     """The modules that a program's model works with, beside those that these import.
 
     ``slips``: what ports receive; None where every set's slips bind the states, each by itself.
     """
     also = {
-        "deadband": bool(program.friction) and not program.guarded,
+        "settling": bool(program.friction) and not program.guarded,
         "switched": program.guarded and not (program.stopped or program.resets or program.hanging),
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
         "ranks": slips is not None,
+        "rosenbrock": implicit,
     }
-    names = ["formulas", "running", *(name for name, wanted in also.items() if wanted)]
+    folders = dict.fromkeys(also, "standalone") | {"settling": "fixed", "switched": "fixed"}
+    names = [f"codegen.{folders[name]}.{name}" for name, wanted in also.items() if wanted]
     events = {"stopping": program.stopped, "resetting": program.resets, "hanging": program.hanging}
-    also_there = [f"codegen.stops.{name}" for name, wanted in events.items() if wanted]
-    return [*(f"codegen.standalone.{name}" for name in names), *also_there]
+    names += [f"codegen.stops.{name}" for name, wanted in events.items() if wanted]
+    return ["codegen.standalone.formulas", "codegen.standalone.running", *names]
 
 
-def closing(program: Program, slips: SlipRows | None, told: bool) -> list[str]:
+def closing(
+    program: Program, slips: SlipRows | None, told: bool, implicit: bool = False
+) -> list[str]:
     """Functions that bind formulas and tables to the rest, the class `Model`, and `simulate`.
 
-    ``slips``: as `needed` takes them. ``told``: whether there is a table STARTS.
+    ``slips``: as `needed` takes them. ``told``: whether there is a table STARTS;
+    ``implicit``: whether steps are linearly implicit.
     """
     names = "STATES, INPUTS, SHOWN, SWITCHES" if program.guarded else "STATES, INPUTS, SHOWN"
     lines = [RULE, "# How this model is put together.", "", f"NAMES = Names({names})"]
     base, arguments = "FixedSteps", "form(self.parameters), NAMES"
     if program.friction:
-        base, arguments = "DeadBand", "NAMES, friction(self.parameters)"
+        base, arguments = "PortSteps", "NAMES, friction(self.parameters)"
         lines += [] if slips is None else slip_rows(slips)
     if program.guarded:
         base = _base(program)
         arguments = f"{arguments}, switches(self.parameters)"
         lines += _switching(program)
+    base = f"Rosenbrock, {base}" if implicit else base
     lines += ["", "", *_form(program)]
     lines += _friction(program, slips) if program.friction else []
     if program.guarded:

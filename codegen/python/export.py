@@ -1,5 +1,6 @@
 """`to_python`: a model as one readable Python module that needs numpy and nothing else."""
 
+import math
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from typing import Any
@@ -8,6 +9,7 @@ from bondgraph.equations import StateEquations
 from codegen.model.commands import conditions_told
 from codegen.model.doubts import warn_of_doubts
 from codegen.model.starts import told_starts
+from codegen.modes.steps import is_implicit
 from codegen.ports.holds import all_plain, check_sets
 from codegen.program.records import Program
 from codegen.program.units import units
@@ -34,7 +36,7 @@ Written by bondgraph-toolkit {version}; change the graph rather than this file. 
 {operations} operations in all assignments, matrices included. Names, numbers and formulas of the model
 stand first, then what is the same for every model, and `Model` and `simulate` last.
 
-    run = simulate(time, initial, inputs)    fixed steps, friction with Karnopp's dead band
+    run = simulate(time, initial, inputs)    fixed steps, friction sticks and slips
     model = Model(parameters)                model.rhs(t, x, u), model.outputs(t, x, u)
 
 {names}
@@ -51,26 +53,30 @@ def to_python(
     name: str = "model",
     initial: Mapping[str, float] | None = None,
     inputs: Mapping[str, object] | None = None,
+    integrator: str = "rk4",
 ) -> str:
     """The equations, closed by laws, as the text of a Python module that needs only numpy.
 
     ``parameters``: name to number, the module's defaults. ``laws``: as `simulator` takes them.
     ``name``: what the module calls itself. ``initial`` (states by name, others at 0) under ``inputs``
-    (signals or numbers, others are 0): where a run starts, at which the longest stable step is found. The
-    same arguments give the same text.
+    (signals or numbers, others are 0): where a run starts, at which the longest stable step is found.
+    ``integrator``: the method of a step, "rk4", the classical one of order 4, or "rosenbrock", a linearly
+    implicit one of order 4 for stiff laws. The same arguments give the same text.
 
     The module has ``PARAMETERS``, ``STATES``, ``INPUTS``, ``OUTPUTS``, ``LONGEST_STEP``, and, where the graph
     declares starts, these for the parameters given as ``STARTS``; ``Model`` with ``rhs`` and ``outputs``; and
-    ``simulate``, which takes fixed Runge-Kutta steps, lets friction ports stick inside a dead band and raises
-    the module's ``UnstableStep`` for steps beyond the method's stability.
+    ``simulate``, which takes fixed steps, lets friction ports stick inside a dead band and raises the
+    module's ``UnstableStep`` for steps beyond the method's stability; of "rosenbrock" it warns where a step's
+    error is beyond 1 % of a state's range.
 
     What holds sticking ports is decided for the parameters given; the module raises an `ArithmeticError` that
     names the ports with others at which other ones are redundant, and as `simulator` does.
 
     Raises what `simulator` raises; `ExpressionError` for functions Python lacks.
     """
+    implicit = is_implicit(integrator)
     start = start_of(equations, parameters, laws, initial, inputs, located=False)
-    closed = start.closed
+    closed, longest = start.closed, math.inf if implicit else start.longest
     program, exact = closed.program, closed.parameters
     warn_of_doubts(program, equations, exact)
     names = names_of(program)
@@ -78,7 +84,7 @@ def to_python(
     starts = told_starts(equations, exact)
     check_sets(program, closed.slips)
     slips = None if all_plain(program, closed.slips) else closed.slips
-    imports, fixed = written_out(needed(program, slips))
+    imports, fixed = written_out(needed(program, slips, implicit))
     lines = [
         *_head(program, equations, name, imports),
         *("", *table("PARAMETERS", used)),
@@ -86,11 +92,11 @@ def to_python(
         *(("", *table("STARTS", starts)) if starts else ()),
         *("", *places(program)),
         *(friction_tables(program, closed.slips) if program.friction else ()),
-        *step_settings(start.longest, len(program.friction)),
+        *step_settings(longest, len(program.friction)),
         *_functions(program, names),
     ]
     same = [RULE, "# What follows is the same for every model.", "", "", fixed]
-    tail = closing(program, slips, bool(starts))
+    tail = closing(program, slips, bool(starts), implicit)
     return "\n".join([*lines, "", "", *same, "", "", *tail]) + "\n"
 
 

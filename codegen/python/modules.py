@@ -25,6 +25,9 @@ def written_out(names: Iterable[str]) -> tuple[list[str], str]:
     return [*lines], text
 
 
+LONGEST_LINE = 100
+
+
 @lru_cache(maxsize=64)
 def _written_out(names: tuple[str, ...]) -> tuple[tuple[str, ...], str]:
     """Models differ in few of them; the project's files do not change while it runs."""
@@ -39,11 +42,19 @@ def _written_out(names: tuple[str, ...]) -> tuple[tuple[str, ...], str]:
     told = _numbers(found.values())
     text = "\n\n\n".join([*told, *(_body(name, tree) for name, tree in found.items())])
     lines = [
-        f"from {one} import {', '.join(sorted(used))}" if used else f"import {one}"
+        _importing(one, sorted(used))
         for one, used in sorted(imports.items(), key=lambda each: (bool(each[1]), each[0]))
     ]
     ours = [line for line in lines if "numpy" in line]
     return (*(line for line in lines if line not in ours), "", *ours), text
+
+
+def _importing(module: str, names: list[str]) -> str:
+    """An import, one name a line where it would be too long."""
+    line = f"from {module} import {', '.join(names)}" if names else f"import {module}"
+    if len(line) <= LONGEST_LINE:
+        return line
+    return "\n".join([f"from {module} import (", *(f"    {name}," for name in names), ")"])
 
 
 def _gather(name: str, found: dict[str, ast.Module]) -> None:
@@ -61,7 +72,7 @@ def _numbers(trees: Iterable[ast.Module]) -> list[str]:
     nodes = [node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.Attribute)]
     read = {node.attr for node in nodes if ast.unparse(node.value) == "TUNING"}
     rows = [
-        f"    {one.name} = {getattr(TUNING, one.name)!r}  # {one.metadata['what']}"
+        f"    {one.name} = {_number(getattr(TUNING, one.name))}  # {one.metadata['what']}"
         for one in fields(TUNING)
         if one.name in read
     ]
@@ -69,6 +80,11 @@ def _numbers(trees: Iterable[ast.Module]) -> list[str]:
     return (
         ["\n".join([*head, '    """The numbers that runs rest on."""', "", *rows])] if rows else []
     )
+
+
+def _number(value: float) -> str:
+    """A number as formatters write it."""
+    return repr(value).replace("e+", "e")
 
 
 def _source(name: str) -> str:

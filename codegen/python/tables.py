@@ -90,6 +90,6 @@ def step_settings(longest: float, ports: int) -> list[str]:
     return [
         "",
         f"# The longest step [s] that is stable at the start, in {modes_told(ports)}; the usual one.",
-        f"LONGEST_STEP = {told_step(longest)!r}",
+        f"LONGEST_STEP = {told_step(longest)!r}".replace("e+", "e"),
         f"STEP = {usual!r}",
     ]

@@ -112,6 +112,17 @@ static int failed(const bg_model *m, int status)
     return status != BG_OK;
 }
 
+/* Told of a step that was taken nevertheless, once of each kind; whether it was not taken. */
+static int refused(const bg_model *m, int status, int *told)
+{
+    if (!bg_is_taken(status))
+        return failed(m, status);
+    if (status != BG_OK && *told != status)
+        (void)failed(m, status);
+    *told = status != BG_OK ? status : *told;
+    return 0;
+}
+
 /* Inputs at t and just after. */
 static void inputs_at(const bg_signals *signals, double t, double *w, double *dw)
 {
@@ -126,11 +137,12 @@ static int run_stepped(bg_model *m, const command *asked, const bg_signals *sign
     static double w[3 * BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
     const long parts = (long)fmax(1.0, floor(asked->sample / asked->step + 0.5));
     const double h = asked->sample / (double)parts;
+    int told = BG_OK;
     for (long k = 0; (double)k * h <= asked->end * (1 + BG_TOGETHER); k++) {
         const double t = (double)(k / parts) * asked->sample + (double)(k % parts) * h;
         for (int i = 2; i >= 0; i--)
             inputs_at(signals, t + 0.5 * i * h, w + i * BG_EXTERNAL, dw);
-        if (failed(m, bg_model_settle(m, t, h, s, w)))
+        if (refused(m, bg_model_settle(m, t, h, s, w), &told))
             return 1;
         if (k % parts == 0) {
             if (failed(m, bg_model_evaluate(m, t, s, w, dw, m->mode, &shot)))
@@ -141,7 +153,7 @@ static int run_stepped(bg_model *m, const command *asked, const bg_signals *sign
         if (status == BG_UNSTABLE)
             fprintf(stderr, "%s: at t = %.9g step=%.6g; the longest stable one is %.4g\n",
                     bg_model_name, t, h, m->fastest.step);
-        if (failed(m, status))
+        if (refused(m, status, &told))
             return 1;
     }
     return 0;

@@ -25,8 +25,11 @@ REAL_LIMIT, IMAGINARY_LIMIT = 2.785293563405282, 2.0 * math.sqrt(2.0)
 NEAREST, FARTHEST = 2.6156, 2.9603
 """The least and the largest distance of the boundary in the left half plane."""
 
-FIRST_ROUNDS, REFUSED_ROUNDS = 4, 16
-"""Rounds of two evaluations before the first verdict, and before a refusal."""
+LINEAR_ROUNDS = 8
+"""Rounds by storages and resistances alone before the first verdict, which ask for no rates."""
+
+REFUSED_ROUNDS = 16
+"""Rounds of two evaluations before a refusal."""
 
 AVERAGED = 8
 """Rounds in the mean growth."""
@@ -109,7 +112,8 @@ class Fastest:
 
         if not len(self.direction):
             self.keep(np.zeros(len(s)), 0.0)
-            self.go_on(look, FIRST_ROUNDS)
+            self.follow_storages(now.numbers.P)
+            self.keep(self.direction, 0.0)
         found = look(TUNING.difference)
         if found is None:
             return
@@ -123,6 +127,17 @@ class Fastest:
                 f"at t = {now.t:g} a step of {h:g} s is beyond the stability of its method at the "
                 f"model's fastest rates; the longest stable step is {longest:.4g} s there"
             )
+
+    def follow_storages(self, P: Array) -> None:
+        """Turn the kept direction as storages and resistances alone would."""
+        n, weight = len(P), self.weight[: len(P)]
+        for _ in range(LINEAR_ROUNDS):
+            turned = self.direction.copy()
+            turned[:n] = weight * (P @ (self.direction[:n] / weight))
+            size = self.size(turned)
+            if not size > 0:
+                return
+            self.direction = turned / size
 
     def go_on(self, look: Look, rounds: int) -> Round | None:
         """Rounds that give no verdict; what the last has found, None without values beside s."""

@@ -53,6 +53,8 @@ class Friction:
 
     def __init__(self, ports: Ports, form: Form, *coupled: Laws) -> None:
         self.ports, self.form = ports, form
+        #: Whether it is asked how redundant ports share a load, which moves no state.
+        self.sharing = True
         self._holds: dict[tuple[int, ...], Hold] = {}
         self._ranks: dict[tuple[int, ...], HeldSet] = {}
         self._laws = (form.known, *form.laws, *coupled)
@@ -110,7 +112,7 @@ class Friction:
         inputs = self.ports.inputs
         now.u[inputs] = self.against(now, mode, checked)
         if held is not None:
-            now.u[held.inputs] = held.efforts(now)
+            now.u[held.inputs] = held.efforts(now, self.sharing)
         now.y += now.numbers.D[:, inputs] @ now.u[inputs]
 
     def against(self, now: Instant, mode: Mode, checked: bool) -> Array:

@@ -90,13 +90,13 @@ class Hold:
         inverse = self.inverse[:, : len(self.X)]
         return np.abs(self.X), np.abs(self.U), np.abs(self.V), np.abs(inverse)
 
-    def efforts(self, now: Instant) -> Array:
+    def efforts(self, now: Instant, sharing: bool = True) -> Array:
         """The holding efforts; u must be zero at the sticking ports. Redundant ports share."""
         known = self.rule(now)
         if not len(self.share):
             return np.asarray(self.inverse @ -known, dtype=float)
         efforts = self.inverse @ np.concatenate([-known, np.zeros(len(self.share))])
-        return fair_share(efforts, self.ways, now.caps[self.ports])
+        return fair_share(efforts, self.ways, now.caps[self.ports]) if sharing else efforts
 
     def rule(self, now: Instant) -> Array:
         """What has to vanish while the ports hold."""

@@ -95,6 +95,6 @@ def run(
                 given = sampled(signals, t + count * h, h)
                 at = Point(t + count * h, s, *given[0])
                 mode, s = model.settled(at, mode, dead_band, h)
-            s = model.step(t + count * h, h, s, given, mode)
+            mode, s = model.advance(t + count * h, h, s, given, mode)
     columns = (*names.states, *names.external, *names.shown, *names.switches)
     return {"t": time, **dict(zip(columns, np.array(rows).T, strict=True))}

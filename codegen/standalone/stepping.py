@@ -35,9 +35,14 @@ class Names:
 class FixedSteps:
     """A model in fixed steps without friction; x in the order of states, u in that of inputs."""
 
+    implicit = False
+    """Whether steps are linearly implicit."""
+
     def __init__(self, form: Form, names: Names, contact: Contact | None = None) -> None:
         self.form, self.names, self.contact, self.fastest = form, names, contact, Fastest()
         self.seen = np.zeros(form.states + len(form.law_rates))
+        #: Whether it is asked how redundant ports share a load, which moves no state.
+        self.sharing = True
         self._latest: tuple[tuple[object, ...], Instant] | None = None
 
     def rhs(
@@ -74,7 +79,7 @@ class FixedSteps:
         The latest is kept: what decides a mode is a step's start as well, and what a run shows.
         """
         values = (one.tobytes() for one in (at.s, at.w, at.dw, self.seen))
-        what = (at.t, mode, *values)
+        what = (at.t, mode, self.sharing, *values)
         if self._latest is None or self._latest[0] != what:
             with np.errstate(all="ignore"):
                 now = evaluated(self.form, self.contact, at._replace(seen=self.seen), mode)
@@ -99,6 +104,15 @@ class FixedSteps:
         """The mode of a step of h, and s without the slips of the ports that stick."""
         return self.decided(at, previous, dead_band, h), at.s
 
+    def advance(
+        self, t: float, h: float, s: Array, given: Sequence[Given], mode: Mode
+    ) -> tuple[Mode, Array]:
+        """A step in one mode, and the mode at its end, where no port changes."""
+        return mode, self.step(t, h, s, given, mode)
+
+    def noted(self, now: Instant, part: float) -> None:
+        """What ports give at an instant of a step: there are none."""
+
     def turned(self, now: Instant, mode: Mode) -> bool:
         """Whether a port slips against its mode, in the moment of a change."""
         return False
@@ -119,9 +133,16 @@ class FixedSteps:
                 return self.at(Point(t, beside, *start), mode).rate
 
             self.fastest.check(self.form, now, h, s, rates, self.turned(now, mode))
-        k_2 = self.at(Point(t + h / 2, s + h / 2 * k_1, *middle), mode).rate
-        k_3 = self.at(Point(t + h / 2, s + h / 2 * k_2, *middle), mode).rate
-        k_4 = self.at(Point(t + h, s + h * k_3, *end), mode).rate
+        self.noted(now, 1 / 6)
+        k_2 = self.stage(t + h / 2, s + h / 2 * k_1, middle, mode, 1 / 3)
+        k_3 = self.stage(t + h / 2, s + h / 2 * k_2, middle, mode, 1 / 3)
+        k_4 = self.stage(t + h, s + h * k_3, end, mode, 1 / 6)
         if checked:
             self.fastest.note(k_1, k_2, k_3)
         return s + h / 6 * (k_1 + 2 * k_2 + 2 * k_3 + k_4)
+
+    def stage(self, t: float, s: Array, given: Given, mode: Mode, part: float) -> Array:
+        """The rates at a stage of a step; ``part``: its weight in the mean of what ports give."""
+        now = self.at(Point(t, s, *given), mode)
+        self.noted(now, part)
+        return now.rate

@@ -11,12 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from codegen.fixed.boxes import Boxed
+from codegen.fixed.switched import SwitchedSteps, Switches
 from codegen.standalone.arrays import Array, Mode
 from codegen.standalone.evaluation import Point
 from codegen.standalone.friction import Friction, slip_rates
 from codegen.standalone.instant import Instant
+from codegen.standalone.levels import level_terms
 from codegen.standalone.stepping import Names
-from codegen.standalone.switched import SwitchedSteps, Switches
+from codegen.tuning import TUNING
 
 
 @dataclass(frozen=True)
@@ -35,30 +38,32 @@ class HangingSteps(SwitchedSteps):
         #: How fast what they hang on has to change to end the step at zero.
         self.aims = np.zeros(len(self.slips))
 
-    def brought(
-        self, now: Instant, mode: Sequence[int], near: Array, dead_band: float, h: float
-    ) -> tuple[list[int], Array]:
-        """Which ports may hold, and on which sides the others are, such jumps as they end."""
-        sides, near, told = list(mode), near.copy(), self.told(now)
-        rates = slip_rates(now, self.slips, self.moving)
+    def hang(self, box: Boxed, now: Instant, h: float) -> None:
+        """The rows of such jumps: how far they would end a step from their jumps, in a moment.
+
+        Without a step they are where they are, and rest where neither that nor its rate is seen.
+        """
+        told, rates = self.told(now), slip_rates(now, self.slips, self.moving)
+        near, slow = self.terms(now), self.rate_terms(now)
+        far = level_terms(now, (), self.switches.guards)
         self.aims = np.zeros(len(self.slips))
+        span = h or TUNING.unit_longest
+        part = self.moment(h) / span
         for i, guard in self.hung:
             gap, slip = float(told[guard]), float(now.y[self.slips[i]])
-            pull = self.pull(now, i)
-            free = float(rates[i]) - pull * float(now.u[self.efforts[i]])
-            ahead = gap + h * (slip + h * free)
-            # Without a step it is where it is, and rests where neither it nor its rate is seen.
-            near[i] = (
-                abs(ahead) <= max(-pull, 0.0) * h**2 if h > 0 else abs(gap) + abs(slip) <= dead_band
-            )
-            sides[i] = 1 if (ahead if pull < 0 else gap) > 0 else -1
+            rounding = TUNING.step_rounding * (far[guard] / span + near[i] + span * slow[i])
+            ahead = gap / span + slip + span * float(rates[i])
+            box.slip[i], box.near[i] = part * ahead, part * rounding
+            if box.way[i] == 0 and abs(ahead) <= rounding + TUNING.step_drift * span * slow[i]:
+                box.slip[i] = 0.0
             self.aims[i] = -gap / h if h > 0 else 0.0
-        return sides, near
 
-    def pull(self, now: Instant, port: int) -> float:
-        """How a port's effort moves its slip's rate."""
-        m = now.numbers
-        return float(m.F[self.slips[port]] @ m.Q[:, self.efforts[port]])
+    def hang_on(self, box: Boxed) -> None:
+        """Such jumps stay on their sides to the end of a step, whichever way their rates turn."""
+        for i, _ in self.hung:
+            if box.way[i]:
+                box.least[i] = box.most[i] = box.given[i]
+                box.slip[i] = box.way[i] * TUNING.huge
 
     def at_rest(self, at: Point, mode: Mode) -> Array:
         """The vector s in which what such jumps hang on comes to zero, or stays there."""
@@ -67,6 +72,8 @@ class HangingSteps(SwitchedSteps):
             return moved
         hold = self.friction.hold(mode, self.at(at, mode).numbers)
         moved[: self.form.states] -= hold.take_away @ (hold.mix @ self.aims[hold.ports])
+        # Where the step ends they are to be at rest.
+        self.aims = np.zeros(len(self.slips))
         return moved
 
     def turned(self, now: Instant, mode: Mode) -> bool:

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from codegen.fixed.switched import SwitchedSteps
 from codegen.standalone.arrays import Array, EvaluationError, Mode
 from codegen.standalone.evaluation import Point
 from codegen.standalone.stepping import Chosen
-from codegen.standalone.switched import SwitchedSteps
 from codegen.standalone.switchings import Reset
 from codegen.tuning import TUNING
 
@@ -74,6 +74,6 @@ class ResettingSteps(SwitchedSteps):
         """Refuse what moves a port that is held both ways."""
         ports = zip(mode, self.switching, strict=True)
         held = tuple(sign if one is not None and not one.side else 1 for sign, one in ports)
-        if 0 in held and self.struck(at, held, None, 0.0)[1] is not None:
+        if 0 in held and self.struck(at, held, None, 0.0) is not None:
             told = f"the reset of {', '.join(states)} contradicts what is held"
             raise EvaluationError(f"at t = {at.t:g} {told}")

@@ -9,6 +9,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
+from codegen.fixed.switched import SwitchedSteps
 from codegen.standalone.arrays import Array, EvaluationError, Mode
 from codegen.standalone.evaluation import Point
 from codegen.standalone.friction import slip_rates
@@ -16,7 +17,6 @@ from codegen.standalone.instant import Instant
 from codegen.standalone.levels import level_terms
 from codegen.standalone.stepping import Chosen
 from codegen.standalone.striking import Strike
-from codegen.standalone.switched import SwitchedSteps
 from codegen.standalone.switchings import Switching
 from codegen.stops.bouncing import Meeting, thrown
 from codegen.tuning import TUNING
@@ -55,12 +55,12 @@ class StoppedSteps(SwitchedSteps):
         met = self.met(at, first, h)
         apart = {i for i, _ in self.stops()} - {i for i, _ in met}
         at, depth = self.closed_up(at, first, met)
-        given, self.thrown_back = np.zeros(len(first)), set()
+        self.given, self.thrown_back = np.zeros(len(first)), set()
         for _ in range(TUNING.bounces):
             wanted = self.closing(at, first, met, depth, h)
             asked = [i for i in self.places if i not in apart and i not in wanted]
             mode, s = self.among(at, asked, first, previous, dead_band, h)
-            joined, given = not np.array_equal(s, at.s), given + self.given
+            joined = not np.array_equal(s, at.s)
             at, first = at._replace(s=s), tuple(np.where(self.rubs, first, mode).tolist())
             still = [(i, one) for i, one in met if i in wanted]
             wanted = self.closing(at, mode, still, depth, h)
@@ -68,7 +68,6 @@ class StoppedSteps(SwitchedSteps):
                 at, depth = at._replace(s=self.thrown(at, mode, wanted)), {}
                 self.thrown_back |= wanted.keys()
             elif not joined:
-                self.given = given
                 return mode, at.s
         raise EvaluationError(f"at t = {at.t:g} what meets stops still closes")
 

@@ -82,7 +82,13 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean kept)
 {
     (void)kept;
-    return fmu2_tell(c, fmu_step(CORE(c), time, step));
+    fmu2 *const f = c;
+    const fmi2Status status = fmu2_tell(c, fmu_step(CORE(c), time, step));
+    const char *const told = status == fmi2OK ? fmu_warning(&f->core) : NULL;
+    if (told && f->call.logger)
+        f->call.logger(f->call.componentEnvironment, f->name, fmi2Warning, "logStatusWarning", "%s",
+                       told);
+    return status;
 }
 
 static fmi2Status save2(fmu2 *f, const void *from, size_t size, fmi2FMUstate *state)

@@ -93,6 +93,10 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Bo
     (void)kept;
     *event = *end = *early = fmi3False;
     *last = CORE(c)->at.time;
+    fmu3 *const f = c;
+    const char *const told = failed ? NULL : fmu_warning(&f->core);
+    if (told && f->log)
+        f->log(f->environment, fmi3Warning, "logStatusWarning", told);
     return fmu3_tell(c, failed);
 }
 

@@ -50,6 +50,7 @@ typedef struct fmu_instance {
     double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)], point[BG_SIZE];
     double switches[BG_ROOM(FMU_SWITCHES)], steps[3 * BG_ROOM(BG_EXTERNAL)];
     double completed[BG_ROOM(FMU_STATES)]; /* what states gained at the start that were not set */
+    int warned;                            /* what fixed steps told of that were taken */
     char text[256];                        /* of a failure, or of these, that has numbers */
 } fmu_instance;
 
@@ -77,10 +78,12 @@ void fmu_restore(fmu_instance *f, const fmu_memory *from);
 
 /* fmu_calls.c: one mode after the other; values of several variables; a saved state. What is not
  * allowed in the instance's phase gives a text. `fmu_completed`: what is to be told of a start that
- * was completed, or NULL. `fmu_enter`: FMU_EVENT or FMU_CONTINUOUS. */
+ * was completed, or NULL; `fmu_warning`: of fixed steps in the last communication step, which were
+ * taken. `fmu_enter`: FMU_EVENT or FMU_CONTINUOUS. */
 fmu_error fmu_begin(fmu_instance *f, double start);
 fmu_error fmu_finish(fmu_instance *f);
 const char *fmu_completed(fmu_instance *f);
+const char *fmu_warning(const fmu_instance *f);
 fmu_error fmu_enter(fmu_instance *f, int phase);
 fmu_error fmu_update(fmu_instance *f, int *states_changed);
 fmu_error fmu_step(fmu_instance *f, double time, double step);

@@ -30,8 +30,9 @@ static fmu_error stride(fmu_instance *f, double t, double stop, double longest)
         for (int i = 0; i < 3; i++)
             fmu_externals(f, &f->at.span, t + (k + 0.5 * i) * h, f->steps + i * W, rates);
         status = bg_model_step(&f->model, t + k * h, h, f->at.s, f->steps);
-        if (status != BG_OK)
+        if (!bg_is_taken(status))
             return told(f, status, t + k * h, h);
+        f->warned = status != BG_OK ? status : f->warned;
     }
     return NULL;
 }
@@ -72,14 +73,20 @@ static int settle_end(fmu_instance *f, double t, double h)
     return bg_model_settle(&f->model, t, h, f->at.s, f->steps);
 }
 
+const char *fmu_warning(const fmu_instance *f)
+{
+    return f->warned == BG_OK ? NULL : bg_model_message(f->warned);
+}
+
 fmu_error fmu_fixed(fmu_instance *f, double t, double end)
 {
+    f->warned = BG_OK;
     memcpy(f->model.mode, f->at.mode, sizeof f->at.mode);
     fmu_error failed = walk_pieces(f, t, end);
     fmu_pass(f, end);
     if (!failed) {
         const int status = settle_end(f, end, f->at.step);
-        failed = status == BG_OK ? NULL : bg_model_message(status);
+        failed = bg_is_taken(status) ? NULL : bg_model_message(status);
     }
     memcpy(f->at.mode, f->model.mode, sizeof f->at.mode);
     f->at.stepped = f->model.started;

@@ -9,7 +9,7 @@
 #include "model_internal.h"
 
 enum {
-    FIRST_ROUNDS = 4, /* before the first verdict */
+    LINEAR_ROUNDS = 8, /* by storages and resistances alone, before the first verdict */
     AVERAGED = 8,     /* rounds in the mean growth */
     REFINED = 16      /* before a refusal tells the longest step */
 };
@@ -117,11 +117,32 @@ static int look_on(bg_model *m, double t, const double *s, const double *w, int 
     return 1;
 }
 
+/* The kept vector as the storages and resistances alone would turn it: that asks for no rates. */
+static void follow_storages(bg_model *m)
+{
+    const double *const P = m->numbers.P, *const weight = m->work.weight;
+    double *const along = m->fastest.direction, turned[BG_SIZE];
+    for (int round = 0; round < LINEAR_ROUNDS; round++) {
+        memcpy(turned, along, sizeof turned);
+        for (int i = 0; i < N; i++) {
+            turned[i] = 0.0;
+            for (int j = 0; j < N; j++)
+                turned[i] += weight[i] * P[i * N + j] * along[j] / weight[j];
+        }
+        if (!(normalised(m, turned) > 0))
+            return;
+        memcpy(along, turned, sizeof turned);
+    }
+}
+
 /* A direction that no structure of the model is blind to. */
 static void begin_fit(bg_model *m, fit *found)
 {
     memset(found, 0, sizeof *found);
     memset(m->work.next, 0, sizeof m->work.next);
+    keep_direction(m, found, m->work.next);
+    follow_storages(m);
+    memcpy(m->work.next, m->fastest.direction, sizeof m->work.next);
     keep_direction(m, found, m->work.next);
 }
 
@@ -155,10 +176,8 @@ int bg_check_step(bg_model *m, double t, double h, const double *s, const double
         return BG_OK;
     bg_weigh(m, h);
     bg_reach(m, h, s);
-    if (f->noise == 0) {
+    if (f->noise == 0)
         begin_fit(m, &found);
-        look_on(m, t, s, w, FIRST_ROUNDS, &found);
-    }
     seen = look_along(m, t, s, w, BG_DIFFERENCE, f->direction, m->work.next, &found) == BG_OK;
     if (seen && sided && longest(f, &found, h) < h)
         step = confirmed(m, t, h, s, w, &found);

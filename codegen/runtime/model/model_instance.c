@@ -153,6 +153,9 @@ const char *bg_model_message(int status)
         "two ports reset one state to two values at once; let one of them do it",
         "a reset contradicts what a switch holds; reset all that it binds alike, or as it lets go",
         "resets set off one another without end; let what is set be away from where it is set off",
+        "which ports hold was not decided in a step's bounded number of pivots; the best way was "
+        "taken",
+        "the error of a step is beyond 1 % of a state's range; the step was taken: shorten it",
     };
     const int count = (int)(sizeof messages / sizeof *messages);
     return status >= 0 && status < count ? messages[status] : "unknown status";

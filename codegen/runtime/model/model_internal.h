@@ -162,17 +162,36 @@ typedef struct {
     int started;
 } bg_start;
 
-/* port_stick.c: everything in a mode, in m->shot; in the first that can be of those that slip as
- * this one. Friction in m->mode for a step, switches as they are there; then in m->shot as well,
- * unless what others rule of slips that are held is not zero: BG_UNDECIDED. */
+/* port_look.c: everything in a mode, in m->shot; in the first that can be of those that slip as
+ * this one, which it becomes in `tried`. */
 int bg_look(bg_model *m, const bg_start *at, const int *mode);
+int bg_look_any(bg_model *m, const bg_start *at, const int *mode, int *tried);
 int bg_look_slipping(bg_model *m, const bg_start *at, const int *mode);
-int bg_stick(bg_model *m, const bg_start *at);
 
-/* port_hang.c: of jumps of second order at the latest look, before a step of h, which may hold, and
- * on which sides the others are; to what slips those that hold are brought. */
-void bg_bring(bg_model *m, double h, int *near);
-int bg_held(bg_model *m, const bg_start *at);
+/* port_response.c: what a unit of what each port gives does over a time, rates following after a
+ * lag; how much slips yield to it, which it would push on, and whether none; s after what ports
+ * give over that time. */
+void bg_respond(bg_model *m, double time, double lag, bg_response *of);
+int bg_yields(const bg_model *m, const bg_response *of, double *yields, int *reversed);
+void bg_push(const bg_response *of, const double *given, double *s);
+
+/* port_settle.c: bounds of what a switch gives in its mode, or of one that stays as it is; of
+ * friction, which slips at a level and holds up to its cap, if it is at rest; modes by ways, by
+ * which friction rests that is at its limit without a slip, unless that is `strict`. */
+void bg_bound_switch(int port, int mode, int stays, bg_boxed *box);
+void bg_bound_friction(int port, double level, double cap, int rests, bg_boxed *box);
+void bg_take_ways(const bg_boxed *box, int strict, int *mode);
+
+/* port_correct.c: counts what ports give at m->shot into the mean of a step, which is zero at
+ * first, and notes slips where it begins; the end of a step, with s and m->mode after what
+ * changes in it. */
+void bg_note_given(bg_model *m, double part, int begins);
+int bg_correct_step(bg_model *m, double t, double h, double *s, const double *w);
+
+/* port_hang.c: the rows of jumps of second order where a step of h begins, and to what slips those that
+ * hold are brought; of one where a step ends, to which it stays on its side. */
+void bg_hang(bg_model *m, double h, bg_boxed *box);
+void bg_hang_on(int port, bg_boxed *box);
 
 /* port_step.c: m->mode for a step of h, and s after the impulses of switches that come to hold;
  * rates of inputs are in m->work. */
@@ -232,6 +251,11 @@ void bg_told_terms(bg_model *m, double *terms);
 
 /* Takes a vector that a run has come to into account: where it comes down to zero, it rounds. */
 void bg_have_seen(bg_model *m, const double *s);
+
+/* A step in m->mode, s in place: model_runge.c of the classical method, BG_UNSTABLE before anything
+ * is changed; model_rosenbrock.c of a linearly implicit one, BG_INACCURATE after it is taken. */
+int bg_runge_kutta(bg_model *m, double t, double h, double *s, const double *w);
+int bg_rosenbrock(bg_model *m, double t, double h, double *s, const double *w);
 
 /* model_evaluate.c */
 void bg_give(bg_model *m, int count, const int *columns, const double *values);

@@ -29,7 +29,7 @@ int bg_root(double (*f)(void *self, double at), void *self, double a, double b, 
     if ((fa > 0 && fb > 0) || (fa < 0 && fb < 0))
         return 0;
     *found = fa == 0 ? a : b;
-    while (fa != 0 && fb != 0) {
+    for (int turn = 0; turn < BG_ROOT_TURNS && fa != 0 && fb != 0; turn++) {
         const double width = fabs(b - a), t = a + share * (b - a), ft = f(self, t);
         double c = a, fc = fa;
         if ((ft > 0) != (fa > 0)) {

@@ -8,6 +8,7 @@
 
 #include "config.h"
 #include "layout.h"
+#include "port_box.h"
 #include "port_set.h"
 #include "run_status.h"
 #include "tuning.h"
@@ -25,6 +26,7 @@
 enum {
     /* The integrated vector s: states less what driven dependent storages add, then law states. */
     BG_SIZE = BG_ROOM(BG_STATES + BG_LAW_STATES),
+    BG_STAGES = 6, /* of a step, at the most */
     BG_MAP_COLUMNS = BG_SIZE + 2 * BG_EXTERNAL + 1,
     /* What ranks are found over: what friction and the laws that it moves give; states; inputs. */
     BG_RANKED = BG_FRICTION + BG_COUPLED + BG_STATES + BG_INPUTS
@@ -104,18 +106,32 @@ typedef struct {
     int take_away_list[BG_LIST(BG_STATES, BG_FRICTION)];
 } bg_hold;
 
+/* What a unit of what each friction port gives over a time adds to states and to readings, by
+ * ports. */
+typedef struct {
+    double time, gains[BG_TABLE(BG_FRICTION, BG_STATES)];
+    double readings[BG_TABLE(BG_FRICTION, BG_READINGS)];
+} bg_response;
+
 /* Room to work in, so that nothing large lies on the stack. */
 typedef struct {
+    int unshared; /* how redundant ports share a load is not asked, as it moves no state */
     double entries[BG_ROOM(BG_ENTRIES)], moved[BG_TABLE(BG_STATES, BG_FRICTION)];
     double law[BG_ROOM(BG_LARGEST)], more[BG_ROOM(BG_INPUTS)];
     double u[BG_ROOM(BG_INPUTS)], y[BG_ROOM(BG_READINGS)];
     double aim[BG_ROOM(BG_FRICTION)]; /* slips that ports which hold are brought to; as a rule 0 */
-    double stage[4][BG_SIZE], point[BG_SIZE];
+    double stage[BG_STAGES][BG_SIZE], point[BG_SIZE];
     double weight[BG_SIZE], reach[BG_SIZE], image[BG_SIZE], next[BG_SIZE];
     double given[3][BG_ROOM(BG_EXTERNAL)], rates[3][BG_ROOM(BG_EXTERNAL)];
     double origin[BG_MAP_ROWS], external[2][BG_ROOM(BG_EXTERNAL)];
-    double turning[BG_ROOM(BG_FRICTION)]; /* what slips may change by in a step, twice */
-    double part[BG_ROOM(BG_FRICTION)];    /* slips of what counts as being at rest */
+    double mean[BG_ROOM(BG_FRICTION)], mean_caps[BG_ROOM(BG_FRICTION)]; /* over a step */
+    double begun[BG_ROOM(BG_FRICTION)]; /* slips where it begins */
+    double yields[BG_TABLE(BG_FRICTION, BG_FRICTION)];
+    double system[BG_TABLE(BG_FRICTION, BG_FRICTION)];
+    double implicit[BG_SIZE * BG_SIZE], gained[BG_TABLE(BG_STATES, BG_FRICTION)];
+    int implicit_pivots[BG_SIZE];
+    bg_response response;
+    bg_boxed box;
     double loop[BG_ROOM(BG_LOOP)][6], slopes[BG_TABLE(BG_LOOP, BG_LOOP)];
     int pivots[BG_ROOM(BG_LOOP)];
     unsigned long long residues[BG_TABLE(BG_FRICTION, BG_RANKED)];
@@ -137,7 +153,7 @@ typedef struct {
  * own. */
 typedef struct {
     double band[BG_ROOM(BG_FRICTION)];
-    int mode[BG_ROOM(BG_FRICTION)], started, where;
+    int mode[BG_ROOM(BG_FRICTION)], started, where, decided;
     bg_fastest fastest;
     bg_values now;
     double seen[BG_SIZE]; /* the largest magnitudes of s at starts of steps: what it rounds by */
@@ -189,17 +205,20 @@ int bg_model_affine_map(bg_model *m, const int *mode, double *matrix);
 int bg_model_rhs(bg_model *m, double t, const double *s, const double *w, const double *signs,
                  double *rate);
 
-/* One step of h from t, s in place; w: the external inputs at t, t + h/2 and t + h, one after the
- * other. Time is bounded: which ports stick is decided once, at the start, by Karnopp's dead band,
- * and which switches are held by what they receive and give, in at most two to their number ways
- * (`bg_model_settle`: sets `mode`, gives the impulses of switches that come to hold to s and takes
- * the slips of sticking ports away); then the step is one
- * of Runge's and Kutta's fourth order (`bg_model_advance`).
+/* One step of h from t, s in place; w: the external inputs at t, t + h/2 and t + h, one after
+ * the other. Work is bounded; config.h counts it. `bg_model_settle` decides which ports hold,
+ * sets `mode`, gives the impulses of switches that come to hold to s and takes the slips of
+ * sticking ports away; `bg_model_advance` goes on in that mode by Runge's and Kutta's method of
+ * fourth order, or the linearly implicit one that the model was generated for, and stops or
+ * turns round at the end of the step what would have gone through zero in it, so that `mode` is
+ * that of the end.
  *
- * A step beyond the method's stability gives BG_UNSTABLE before anything is changed, so a shorter
- * one may follow; `fastest.step` is the longest that would be stable. Two evaluations a step find
- * that out, eight more in the first step, two more where rates may jump, 32 more in a refusal;
- * BG_CHECK_STEP 0 leaves them out. */
+ * * A step of Runge's and Kutta's beyond its stability gives BG_UNSTABLE before anything is
+ * changed, so a shorter one may follow; `fastest.step` is the longest that would be stable. Two
+ * evaluations a step find that out, two more where rates may jump, 32 more in a refusal;
+ * BG_CHECK_STEP 0 leaves them out. BG_PIVOTS and BG_INACCURATE tell of a step that was taken
+ * (`bg_is_taken`): ports were not decided in so many pivots, s is the best that was found; the
+ * error that an implicit step embeds is beyond 1 % of a state's range. */
 int bg_model_step(bg_model *m, double t, double h, double *s, const double *w);
 int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w);
 int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w);

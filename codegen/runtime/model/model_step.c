@@ -1,5 +1,5 @@
-/* One step in bounded time. Which ports stick is decided at its start; then the step is one of
- * Runge's and Kutta's. */
+/* One step in bounded time: which ports hold is decided at its start, then it is one of a
+ * method's in that mode, and what changes inside it is made up for at its end. */
 #include <math.h>
 #include <string.h>
 
@@ -29,46 +29,32 @@ int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w)
     status = bg_decide_step(m, t, h, s, w);
     for (int i = 0; i < K; i++)
         sticking |= m->mode[i] == 0;
-    if (status != BG_OK || !sticking)
-        return status;
-    status = bg_evaluate(m, t, s, w, m->work.rates[0], m->mode, 1, &m->shot);
-    return status == BG_OK ? bg_remove_slips(m, m->mode, &m->shot, s) : status;
+    if (status == BG_OK && sticking)
+        status = bg_remove_slips(m, m->mode, &m->shot, s);
+    return status == BG_OK ? m->decided : status;
 }
 
 int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w)
 {
-    static const double along[4] = {0.0, 0.5, 0.5, 1.0};
-    static const int instant[4] = {0, 1, 1, 2};
-    bg_work *const work = &m->work;
     if (!(h > 0) || !isfinite(h))
         return BG_BAD_STEP;
     if (BG_RATED)
-        external_rates(h, w, work->rates);
-    for (int k = 0; k < 4; k++) {
-        const int at = instant[k];
-        int status;
-        for (int i = 0; i < BG_SIZE; i++)
-            work->point[i] = k > 0 ? s[i] + along[k] * h * work->stage[k - 1][i] : s[i];
-        status = bg_evaluate(m, t + along[k] * h, work->point, w + at * BG_EXTERNAL,
-                             work->rates[at], m->mode, 1, &m->shot);
-        if (status != BG_OK)
-            return status;
-        memcpy(work->stage[k], m->shot.rate, sizeof work->stage[k]);
-        if (BG_CHECK_STEP && k == 0)
-            status = bg_check_step(m, t, h, s, w);
-        if (status != BG_OK)
-            return status;
+        external_rates(h, w, m->work.rates);
+    memset(m->work.mean, 0, sizeof m->work.mean);
+    memset(m->work.mean_caps, 0, sizeof m->work.mean_caps);
+    m->work.unshared = OWN == 0 && !BG_JOINT;
+    int status = BG_ROSENBROCK ? bg_rosenbrock(m, t, h, s, w) : bg_runge_kutta(m, t, h, s, w);
+    if (bg_is_taken(status)) {
+        const int corrected = bg_correct_step(m, t + h, h, s, w + 2 * BG_EXTERNAL);
+        status = corrected == BG_OK ? status : corrected;
     }
-    if (BG_CHECK_STEP)
-        bg_note_stages(m);
-    for (int i = 0; i < BG_SIZE; i++)
-        s[i] += h / 6 * (work->stage[0][i] + 2 * work->stage[1][i] + 2 * work->stage[2][i]
-                         + work->stage[3][i]);
-    return bg_finite(BG_SIZE, s) ? BG_OK : BG_NOT_FINITE;
+    m->work.unshared = 0;
+    return status;
 }
 
 int bg_model_step(bg_model *m, double t, double h, double *s, const double *w)
 {
-    const int status = bg_model_settle(m, t, h, s, w);
-    return status == BG_OK ? bg_model_advance(m, t, h, s, w) : status;
+    const int decided = bg_model_settle(m, t, h, s, w);
+    const int status = bg_is_taken(decided) ? bg_model_advance(m, t, h, s, w) : decided;
+    return status == BG_OK ? decided : status;
 }

@@ -34,7 +34,7 @@ int bg_evaluated(const bg_sight *c, const bg_instant *at, int slipping, int *mod
     if (!slipping && (status == BG_OK || bg_ends_search(status)))
         return status;
     first = slipping ? BG_OK : status;
-    for (int k = 0; bg_try(c->ports, k, mode, tried); k++) {
+    for (int k = 0; k < BG_TRIES && bg_try(c->ports, k, mode, tried); k++) {
         status = c->look(c->self, at->t, at->s, tried);
         for (int i = 0; i < c->ports && status == BG_OK; i++)
             mode[i] = tried[i];

@@ -97,6 +97,7 @@ int bg_choose(const bg_sight *sight, const bg_instant *at, int *mode);
 /* What to try where a mode cannot be evaluated, by number: slipping as it does, the same backwards
  * where it sticks, the mode, of few ports the ways of slipping, all stuck; 0 where there are no
  * more. */
+enum { BG_TRIES = 4 + (1 << 10) };
 int bg_try(int ports, int number, const int *mode, int *tried);
 
 /* Looks at a mode that can be: that of `mode`, or if `slipping` one that slips as it does; else any

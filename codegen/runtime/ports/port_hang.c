@@ -6,34 +6,34 @@
 
 #include "model_internal.h"
 
-/* How a port's effort moves its slip's rate. */
-static double pull_of(const bg_model *m, int port)
+void bg_hang(bg_model *m, double h, bg_boxed *b)
 {
-    const double *const F = m->numbers.F + bg_friction_readings[port] * N;
-    double sum = 0.0;
-    for (int i = 0; i < N; i++)
-        sum += F[i] * m->numbers.Q[i * M + bg_friction_inputs[port]];
-    return sum;
-}
-
-void bg_bring(bg_model *m, double h, int *near)
-{
-    double told[BG_ROOM(BG_GUARDS)] = {0};
+    double told[BG_ROOM(BG_GUARDS)] = {0}, far[BG_ROOM(BG_GUARDS)] = {0};
     memset(m->work.aim, 0, sizeof m->work.aim);
     if (!BG_HUNG)
         return;
     bg_guards(&m->now, told);
+    bg_told_terms(m, far);
     for (int i = 0; i < K; i++) {
-        double terms;
+        double terms, moves;
         if (!bg_hangs(bg_switches + i))
             continue;
-        const double gap = told[bg_switches[i].guard], pull = pull_of(m, i);
+        const int guard = bg_switches[i].guard;
         const double slip = bg_slip(m, &m->shot, i, &terms);
-        const double free = bg_slip_rate(m, &m->shot, i, &terms)
-            - pull * m->shot.u[bg_friction_inputs[i]];
-        const double ahead = gap + h * (slip + h * free);
-        near[i] = fabs(ahead) <= fmax(-pull, 0.0) * h * h;
-        m->mode[i] = near[i] ? 0 : (pull < 0.0 ? ahead : gap) > 0.0 ? 1 : -1;
-        m->work.aim[i] = -gap / h;
+        const double rate = bg_slip_rate(m, &m->shot, i, &moves);
+        const double ahead = told[guard] / h + slip + h * rate;
+        const double least = BG_STEP_ROUNDING * (far[guard] / h + terms + h * moves);
+        const int rests = b->way[i] == 0 && fabs(ahead) <= least + BG_STEP_DRIFT * h * moves;
+        b->slip[i] = rests ? 0.0 : BG_BRIEF * ahead;
+        b->near[i] = BG_BRIEF * least;
+        m->work.aim[i] = -told[guard] / h;
     }
+}
+
+void bg_hang_on(int port, bg_boxed *b)
+{
+    if (!bg_hangs(bg_switches + port) || b->way[port] == 0)
+        return;
+    b->least[port] = b->most[port] = b->given[port];
+    b->slip[port] = b->way[port] * BG_HUGE;
 }

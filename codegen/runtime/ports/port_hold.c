@@ -277,7 +277,8 @@ int bg_holding_efforts(bg_model *m, const bg_hold *held, double *efforts)
     bg_multiply_listed(held->count, held->count, held->inverse, held->inverse_list, right, efforts);
     if (!bg_finite(held->count, efforts))
         return BG_NOT_FINITE;
-    return held->share_count == 0 ? BG_OK : bg_fair_share(held, caps, efforts);
+    return held->share_count == 0 || m->work.unshared ? BG_OK
+                                                      : bg_fair_share(held, caps, efforts);
 }
 
 void bg_effort_terms(const bg_hold *held, const double *x, const double *u, const double *du,

@@ -49,8 +49,8 @@ static int eliminate_rows(residue *rows, int count, const int *which, int begin,
         int at = begin;
         for (int b = 0; b < found; b++)
             cancel(row, rows + which[independent[b]] * WIDTH, leading[b]);
-        while (at < end && row[at] == 0)
-            at++;
+        for (; at < end && row[at] == 0; at++)
+            ;
         if (at == end) {
             others[left++] = k;
             continue;

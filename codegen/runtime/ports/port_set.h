@@ -55,8 +55,8 @@ static inline bg_set bg_only(int port)
 static inline int bg_first_of(const bg_set *set)
 {
     int port = 0;
-    while (!bg_has(set, port))
-        port++;
+    for (; port < BG_PORTS - 1 && !bg_has(set, port); port++)
+        ;
     return port;
 }
 

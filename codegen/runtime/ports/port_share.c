@@ -110,7 +110,8 @@ int bg_fair_share(const bg_hold *held, const double *caps, double *efforts)
         load.efforts[i] = efforts[i];
         load.caps[i] = fmax(caps[i], least);
     }
-    while (d.free > 0 && load.size > 0) {
+    /* Each turn settles a port. */
+    for (int turn = 0; turn <= BG_FRICTION && d.free > 0 && load.size > 0; turn++) {
         bg_reduce(&d, load.size, load.left);
         keep_moving(&d, &load);
         const bg_reference *const found = bg_settle(&load, &d, two);

@@ -1,10 +1,9 @@
-/* The mode of a step: switches by what they receive and give, by their conditions and impulses, in
- * a bounded number of ways; in each of these friction by its dead band. */
+/* The mode of a step: what ports give and receive decides, and conditions of switches; what comes
+ * to hold gives its impulse. */
 #include <math.h>
 #include <string.h>
 
 #include "port_step.h"
-#include "port_ways.h"
 
 /* Whether impulses are more than rounding and what a step leaves of slips that were held before. */
 static int is_struck(const step_search *c, const bg_hold *held, const double *slips)
@@ -24,7 +23,7 @@ static int is_struck(const step_search *c, const bg_hold *held, const double *sl
 
 int bg_strike_in_step(step_search *c, const int *mode, double *ways)
 {
-    double impulses[PORTS * PORTS], slips[PORTS], given[PORTS] = {0};
+    double impulses[PORTS * PORTS], slips[PORTS];
     bg_model *const m = c->m;
     bg_hold *held = NULL;
     int loose[BG_MOST_PORTS];
@@ -40,47 +39,16 @@ int bg_strike_in_step(step_search *c, const int *mode, double *ways)
         bg_held_slips(held, &m->shot, slips);
         if (!is_struck(c, held, slips))
             return BG_OK;
+        double given[PORTS] = {0};
         bg_stop(m, mode, held, impulses, slips, c->s, given, ways);
-        memcpy(c->tried, given, sizeof given);
+        for (int i = 0; i < K; i++)
+            c->given[i] += given[i];
     }
     return BG_OK;
 }
 
-/* Whether a one-sided switch changes over at once, by value or rate. */
-static int turns_over(const step_search *c, int port, double slack)
-{
-    const bg_model *const m = c->m;
-    const bg_switch *const one = bg_switches + port;
-    double near, slow;
-    const double slip = one->side * bg_slip(m, &m->shot, port, &near);
-    const double rate = one->side * bg_slip_rate(m, &m->shot, port, &slow);
-    if (m->mode[port] == 0)
-        return one->side * m->shot.u[bg_friction_inputs[port]] > BG_STEP_ROUNDING * slack;
-    if (slip < -BG_STEP_ROUNDING * near)
-        return 1;
-    return slip <= BG_STEP_ROUNDING * near && !bg_beside[port] && rate < -BG_STEP_ROUNDING * slow;
-}
-
-/* The magnitudes of what makes up what holds the ports. */
-static void find_slack(step_search *c, double *slack)
-{
-    bg_model *const m = c->m;
-    double terms[PORTS];
-    bg_hold *held = NULL;
-    int any = 0;
-    for (int i = 0; i < K; i++) {
-        slack[i] = bg_largest(M, m->shot.u);
-        any |= m->mode[i] == 0;
-    }
-    if (!any || bg_hold_of(m, m->mode, &held) != BG_OK || held->ranks.moved)
-        return;
-    bg_effort_terms(held, m->shot.x, m->shot.u, m->shot.du, terms);
-    for (int i = 0; i < held->count; i++)
-        slack[held->ports[i]] = terms[i];
-}
-
 /* Switches whose conditions change them over: above zero, or at zero and above it in the step. */
-static bg_set sent(step_search *c, const double *ways)
+static bg_set sent(step_search *c)
 {
     bg_model *const m = c->m;
     double told[BG_ROOM(BG_GUARDS)] = {0}, near[BG_ROOM(BG_GUARDS)] = {0};
@@ -89,7 +57,7 @@ static bg_set sent(step_search *c, const double *ways)
     bg_told_terms(m, near);
     for (int i = 0; i < K; i++) {
         const int at = bg_condition(bg_switches + i, m->mode[i]);
-        if (bg_switches[i].kind != BG_TOLD || ways[i] != 0.0)
+        if (bg_switches[i].kind != BG_TOLD)
             continue;
         if (told[at] > BG_STEP_ROUNDING * near[at])
             bg_add(&found, i);
@@ -102,9 +70,12 @@ static bg_set sent(step_search *c, const double *ways)
         m->work.point[i] = c->s[i] + c->at.h * m->shot.rate[i];
     const bg_start later = {.t = c->at.t + c->at.h, .s = m->work.point, .w = c->at.w,
                             .dw = c->at.dw};
-    if (bg_look(m, &later, m->mode) != BG_OK)
+    int status = bg_look(m, &later, m->mode);
+    if (status == BG_OK)
+        bg_guards(&m->now, told);
+    /* Back to the start, which the rest is about. */
+    if (bg_look(m, &c->at, m->mode) != BG_OK || status != BG_OK)
         return found;
-    bg_guards(&m->now, told);
     for (int i = 0; i < K; i++) {
         const int at = bg_condition(bg_switches + i, m->mode[i]);
         if (bg_has(&tied, i) && told[at] > BG_STEP_ROUNDING * near[at])
@@ -113,89 +84,83 @@ static bg_set sent(step_search *c, const double *ways)
     return found;
 }
 
-/* The switches that change over at once: by impulse, value or rate, whichever decides. */
-static bg_set contrary(step_search *c, const double *ways)
+/* Everything in the mode or, where that has no values, in the first that has, which it becomes. */
+static int look_any(step_search *c)
 {
-    double slack[PORTS];
-    bg_set found = {{0}};
-    find_slack(c, slack);
-    for (int i = 0; i < K; i++) {
-        const int kind = bg_switches[i].kind;
-        const int sided = (kind == BG_ONE_SIDED || kind == BG_STOPS) && ways[i] == 0.0;
-        if (bg_has(&c->barred, i))
-            continue;
-        if (ways[i] < 0.0 || (sided && turns_over(c, i, slack[i])))
-            bg_add(&found, i);
-    }
-    if (BG_GUARDS) {
-        const bg_set more = sent(c, ways); /* others, as these have no sides or impulses */
-        found = bg_turned(found, &more);
-    }
-    return found;
+    int tried[BG_MOST_PORTS] = {0};
+    const int first = bg_look(c->m, &c->at, c->m->mode);
+    if (first == BG_OK || bg_look_any(c->m, &c->at, c->m->mode, tried) != BG_OK)
+        return first;
+    memcpy(c->m->mode, tried, sizeof c->m->mode);
+    return BG_OK;
 }
 
-static int try_in_step(void *self, const bg_set *held, int *holds, bg_set *broken)
+/* The mode from which a search begins: as before, stops that are barred apart; where no step was
+ * before, friction slips. */
+static void begin_mode(step_search *c, const int *before)
 {
-    step_search *const c = self;
-    bg_model *const m = c->m;
-    double ways[PORTS] = {0};
-    int rubbing = 0, status = BG_OK;
-    memcpy(c->s, c->begun, sizeof c->begun);
-    memset(c->tried, 0, sizeof c->tried);
     for (int i = 0; i < K; i++) {
-        const int is_switch = bg_switches[i].kind != BG_RUBS;
-        m->mode[i] = is_switch ? !bg_has(held, i) : c->at.before[i];
-        if (bg_has(&c->barred, i))
-            m->mode[i] = !bg_switches[i].on;
-        rubbing |= !is_switch;
+        const int rubs = bg_switches[i].kind == BG_RUBS;
+        c->m->mode[i] = rubs && !c->at.started ? 1
+            : bg_has(&c->barred, i)            ? !bg_switches[i].on
+                                               : before[i];
     }
-    if (!bg_is_empty(held))
-        status = bg_strike_in_step(c, m->mode, ways);
-    if (status == BG_OK && rubbing)
-        status = bg_stick(m, &c->at);
-    if (status == BG_OK)
-        status = bg_held(m, &c->at);
-    if (status != BG_OK) {
-        c->why = c->why ? c->why : status;
-        return status == BG_NEEDS_SLOPE || status == BG_STRUCTURE ? status : BG_OK;
-    }
-    *broken = contrary(c, ways);
-    *holds = bg_is_empty(broken);
-    return BG_OK;
+}
+
+static int any_switch_held(const int *mode)
+{
+    int any = 0;
+    for (int i = 0; i < K; i++)
+        any |= bg_switches[i].kind != BG_RUBS && mode[i] == 0;
+    return any;
+}
+
+/* Whether switches change over again and again, or let go by what they have stopped. */
+static int goes_round(const bg_set *found, const int *stopped, int *turns)
+{
+    int round = 0;
+    for (int i = 0; i < K; i++)
+        round |= bg_has(found, i) && (++turns[i] > 2 || stopped[i]);
+    return round;
 }
 
 int bg_search_ways(step_search *c, const int *before)
 {
-    bg_set switches = {{0}}, guarded = {{0}}, first = {{0}};
-    int holds;
-    for (int i = 0; i < K; i++)
-        if (bg_switches[i].kind != BG_RUBS && !bg_has(&c->barred, i)) {
-            bg_add(&switches, i);
-            if (bg_switches[i].kind == BG_TOLD)
-                bg_add(&guarded, i);
-            if (before[i] == 0)
-                bg_add(&first, i);
-        }
-    const int status = bg_try_ways(K, &switches, &guarded, first, try_in_step, c, &holds);
-    for (int i = 0; i < K && holds; i++)
-        c->given[i] += c->tried[i];
-    if (status == BG_OK && holds)
-        return BG_OK;
+    bg_model *const m = c->m;
+    int turns[PORTS] = {0}, stopped[PORTS] = {0}, changed = 1;
+    int status = BG_OK, decided = BG_OK;
     memcpy(c->s, c->begun, sizeof c->begun);
-    return status ? status : c->why ? c->why : BG_UNDECIDED;
+    begin_mode(c, before);
+    for (int round = 0; round < BG_ROUNDS && status == BG_OK && changed; round++) {
+        double ways[PORTS] = {0};
+        bg_set told = {{0}};
+        status = look_any(c);
+        if (status == BG_OK && BG_GUARDS) {
+            told = sent(c);
+            status = goes_round(&told, stopped, turns) ? BG_UNDECIDED : BG_OK;
+        }
+        if (status == BG_OK)
+            decided = bg_settle_ways(c, &told, stopped, &changed);
+        if (status == BG_OK && changed && any_switch_held(m->mode))
+            status = bg_strike_in_step(c, m->mode, ways);
+    }
+    if (status == BG_OK && changed)
+        status = bg_look(m, &c->at, m->mode);
+    m->decided = status == BG_OK ? decided : BG_OK;
+    if (status != BG_OK)
+        memcpy(c->s, c->begun, sizeof c->begun);
+    return status;
 }
 
 static int search_once(step_search *c, const int *before)
 {
-    return BG_STOPPING  ? bg_search_struck(c)
-        : BG_SWITCHES ? bg_search_ways(c, before)
-                      : bg_stick(c->m, &c->at);
+    return BG_STOPPING ? bg_search_struck(c) : bg_search_ways(c, before);
 }
 
 int bg_decide_step(bg_model *m, double t, double h, double *s, const double *w)
 {
     int before[BG_ROOM(K)], old[BG_ROOM(K)], again = BG_RESETS && m->started;
-    step_search c = {.m = m, .s = s, .at = {t, h, s, w, m->work.rates[0], before, m->started}};
+    step_search c = {.m = m, .at = {t, h, s, w, m->work.rates[0], before, m->started}, .s = s};
     memcpy(before, m->mode, sizeof before);
     memcpy(old, m->mode, sizeof old);
     double begun[BG_SIZE];

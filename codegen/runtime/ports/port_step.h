@@ -5,20 +5,23 @@
 #include "model_internal.h"
 #include "port_choosing.h"
 
-/* A search: the start of the step, with s after the impulses of the way that is tried; s before
- * them; stops that stay apart; why there is no mode. Of those that are met `depth`: how far beyond
- * their bounds displacements were. `given`: what ports have given of impulses, but for what stops
- * have thrown back, which `back` tells; `tried`: the same of the way that is tried. */
+/* A search: the start of the step, with s after impulses; s before them; stops that stay apart. Of
+ * those that are met `depth`: how far beyond their bounds displacements were. `given`: what ports
+ * have given of impulses, but for what stops have thrown back, which `back` tells. */
 typedef struct {
     bg_model *m;
     bg_start at;
     double *s, begun[BG_SIZE], struck[BG_SIZE], depth[BG_ROOM(BG_FRICTION)];
-    double given[BG_ROOM(BG_FRICTION)], tried[BG_ROOM(BG_FRICTION)];
+    double given[BG_ROOM(BG_FRICTION)];
     bg_set barred, back;
-    int why;
 } step_search;
 
-/* port_step.c: a mode, where some ports are switches; a step that has none leaves all as it was. */
+/* port_settle.c: a mode in which nothing contradicts that in m->shot, but for switches that are
+ * sent; whether it is another; ports are `stopped` that come to hold as they move. BG_PIVOTS where
+ * that was not decided. */
+int bg_settle_ways(step_search *c, const bg_set *sent, int *stopped, int *changed);
+
+/* port_step.c: a mode in m->mode and m->shot; a step that has none leaves all as it was. */
 int bg_search_ways(step_search *c, const int *before);
 
 /* port_step.c: s after the impulses of what switches hold in a mode; how far these go with it. */

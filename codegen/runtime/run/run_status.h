@@ -27,6 +27,8 @@ enum bg_status {
     BG_SET_TWICE,    /* two ports reset one state to two values at once */
     BG_SET_HELD,     /* a reset contradicts what is held */
     BG_SET_ENDLESSLY, /* resets set off one another without end */
+    BG_PIVOTS,       /* a step's ports were not decided in so many pivots; the best was taken */
+    BG_INACCURATE,   /* a step's error is beyond 1 % of a state's range; it was taken */
     /* of exact steps alone */
     BG_MISSING,      /* a mode is not in the table */
     BG_NEGATIVE,     /* a friction level falls below zero */
@@ -37,5 +39,11 @@ enum bg_status {
     BG_CROWDED,      /* a run comes to more modes than it may */
     BG_REFUSED       /* of many runs: the model refuses these numbers */
 };
+
+/* Whether a step was taken: some statuses only tell of it. */
+static inline int bg_is_taken(int status)
+{
+    return status == BG_OK || status == BG_PIVOTS || status == BG_INACCURATE;
+}
 
 #endif

@@ -45,7 +45,7 @@ def test_steps_agree(name: str, tmp_path: Path) -> None:
         t = k * STEP
         given = module.sampled(signals, t, STEP)
         mode, s = python.settled(module.Point(t, s, *given[0]), mode, BAND, STEP)
-        s = python.step(t, STEP, s, given, mode)
+        mode, s = python.advance(t, STEP, s, given, mode)
         status, mine = pair.c.step(t, STEP, mine, [w for w, _ in given])
         assert status == 0, pair.c.message(status)
         assert pair.c.mode() == tuple(mode), t

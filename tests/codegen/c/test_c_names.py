@@ -14,9 +14,10 @@ from codegen.batch import plan
 from codegen.c.runtime import FOLDERS, runtime_file, runtime_names
 from codegen.engine import happened, located, sizes
 from codegen.engine.status import Status
+from codegen.fixed import boxes
 from codegen.modes import blocks
 from codegen.program.lower import lower
-from codegen.standalone import deadband, friction, switchings
+from codegen.standalone import friction, switchings
 
 FILES = ("main.c", *(name for folder in FOLDERS for name in runtime_names(folder)))
 
@@ -153,7 +154,7 @@ def test_sizes_are_those_of_c() -> None:
     assert int(_constant("exact.h", "EX_DIGITS")) == sizes.DIGITS
     assert int(_constant("port_choosing.h", "BG_ENUMERATED")) == blocks.ENUMERATED
     assert int(_constant("port_choosing.h", "BG_BLOCK_TURNS")) == blocks.TURNS
-    assert int(_constant("port_stick.c", "ENUMERATED")) == deadband.ENUMERATED
+    assert int(_constant("port_box.c", "BOX_PATIENCE")) == boxes.PATIENCE
     assert int(_constant("port_choose.c", "MOST_SLIPPING")) == friction.MOST_SLIPPING
     for name in ("ALL_WAYS", "FEW", "TURNS", "MOST_TURNS"):
         assert int(_constant("port_ways.c", name)) == getattr(switchings, name)

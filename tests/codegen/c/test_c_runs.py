@@ -98,7 +98,9 @@ def test_fixed_steps_of_figure_11_converge(alsd: Pair) -> None:
 def test_a_clutch_that_locks_has_no_slip_and_holds_within_its_breakaway(alsd: Pair) -> None:
     alsd.at(_alsd()[1])
     s = np.array([80.0, 82.0, 0.0, 0.0, 80.0, 82.0])
-    modes = []
+    status, s = alsd.c.step(0.0, 1e-6, s, [[50.0, 5000.0]] * 3)
+    assert status == 0
+    modes = [alsd.c.mode()]
     for k in range(2000):
         status, s = alsd.c.step(k * 1e-4, 1e-4, s, [[50.0, 5000.0]] * 3)
         assert status == 0

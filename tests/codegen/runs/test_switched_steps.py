@@ -68,7 +68,7 @@ def test_c_and_python_take_the_same_steps(exported: Exported) -> None:
     for k in range(case.count):
         given = module.sampled(signals, k * h, h)
         mode, s = python.settled(module.Point(k * h, s, *given[0]), mode, BAND, h)
-        s = python.step(k * h, h, s, given, mode)
+        mode, s = python.advance(k * h, h, s, given, mode)
         status, mine = c.step(k * h, h, mine, [w for w, _ in given])
         assert status == 0, c.message(status)
         assert c.mode() == tuple(mode), k * h

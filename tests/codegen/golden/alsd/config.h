@@ -2,6 +2,15 @@
 #ifndef BG_CONFIG_H
 #define BG_CONFIG_H
 
+/* What a real-time step takes, in operations of floating point; tables count as if full. */
+/* One evaluation of the rates: 201 multiplications, 199 additions, 2 divisions. */
+/* A step in which no port changes, 8 evaluations: 2297 multiplications, 2221 additions, 112
+ * divisions, 24 calls. */
+/* Each change of ports, at most 7 in a step: 811 multiplications, 807 additions, 61 divisions, with
+ * 12 ways to hold and let go at the most. */
+#define BG_STEP_OPERATIONS 4654
+#define BG_STEP_MOST_OPERATIONS 16407
+
 #define BG_STATES 6
 #define BG_LAW_STATES 0
 #define BG_INPUTS 4

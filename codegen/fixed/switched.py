@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from codegen.standalone.arrays import Array, EvaluationError, Mode
-from codegen.standalone.deadband import DeadBand
+from codegen.fixed.settling import PortSteps
+from codegen.standalone.arrays import Array, Mode
 from codegen.standalone.evaluation import Point
-from codegen.standalone.friction import Friction, slip_rates
+from codegen.standalone.friction import Friction
 from codegen.standalone.instant import Formula, Instant
 from codegen.standalone.levels import level_terms
 from codegen.standalone.stepping import Chosen, Names
-from codegen.standalone.striking import Strike, completing, effort_terms, shocks, struck
-from codegen.standalone.switchings import Broken, Switching, flipped, switchings
+from codegen.standalone.striking import Strike, completing, struck
+from codegen.standalone.switchings import Switching, flipped
 from codegen.tuning import TUNING
 
 
@@ -31,16 +31,13 @@ class Switches:
     count: int
 
 
-class SwitchedSteps(DeadBand):
+class SwitchedSteps(PortSteps):
     """A model in fixed steps with ideal switches, which change over at starts of steps."""
 
     def __init__(self, names: Names, friction: Friction, switches: Switches) -> None:
         super().__init__(names, friction)
         self.switches, self.switching = switches, switches.switching
         self.places = [i for i, one in enumerate(self.switching) if one is not None]
-        self.guarded = frozenset(
-            i for i in self.places if (one := self.switching[i]) is not None and not one.side
-        )
         self.rubs = np.array([one is None for one in self.switching])
         self.first = self.mode_of(())
         #: Of the latest choice: what ports gave of impulses, but for what these stops threw back.
@@ -108,84 +105,31 @@ class SwitchedSteps(DeadBand):
         at = one.condition(mode[port])
         return bool(told[at] > (0.0 if near is None else near[at]))
 
-    def decided(self, at: Point, previous: Chosen, dead_band: float, h: float = 0.0) -> Mode:
-        """Which ports are held (0) and which let go; of friction which way it slips."""
-        return self.chosen(at, previous, dead_band, h)[0]
-
-    def settled(
-        self, at: Point, previous: Chosen, dead_band: float, h: float
-    ) -> tuple[Mode, Array]:
-        """The mode, and s after impulses, without the slips of the ports that hold."""
-        self.seen = np.maximum(self.seen, np.abs(at.s))
-        mode, s = self.chosen(at, previous, dead_band, h)
-        return mode, self.at_rest(at._replace(s=s), mode)
-
     def chosen(self, at: Point, previous: Chosen, dead_band: float, h: float) -> tuple[Mode, Array]:
-        """The first consistent mode from the one so far on, and s after its impulses."""
+        """The mode from the one so far on, and s after its impulses."""
         first = self.first if previous is None else previous
+        self.given = np.zeros(len(first))
         return self.among(at, self.places, first, previous, dead_band, h)
 
-    def among(
-        self, at: Point, asked: list[int], first: Mode, previous: Chosen, dead_band: float, h: float
-    ) -> tuple[Mode, Array]:
-        """The same where these switches may change over, and no others."""
-        tries = switchings(first, asked, self.guarded)
-        mode, refused = next(tries), None
-        while True:
-            broken: Broken = frozenset()
-            try:
-                found, s, broken = self.tried(at, mode, asked, previous, dead_band, h)
-                if not broken:
-                    return found, s
-            except EvaluationError as error:
-                refused = refused or error
-            try:
-                mode = tries.send(broken)
-            except StopIteration:
-                names = ", ".join(self.switches.names[i] for i in self.places)
-                why = f": {refused}" if refused else ""
-                raise EvaluationError(
-                    f"at t = {at.t:g} no mode of {names} is consistent{why}"
-                ) from refused
+    def called(self) -> str:
+        """The names of the switches."""
+        return ", ".join(self.switches.names[i] for i in self.places)
 
-    def tried(
-        self, at: Point, switched: Mode, asked: list[int], previous: Chosen, dead_band: float,
-        h: float,
-    ) -> tuple[Mode, Array, Broken]:  # fmt: skip
-        """The mode with the switches so, s after its impulses, and the switches that contradict."""
-        s, signs = self.strike(at, switched, previous, h)
-        after, mode = at._replace(s=s), switched
-        if self.rubs.any():
-            mode = self.rubbing(after, switched, previous, dead_band, h)
-        now = self.consistent(after, mode, dead_band)
-        signs = [sign if i in asked else 1 for i, sign in enumerate(signs)]
-        return mode, s, self.contrary(after, now, mode, signs, h)
-
-    def strike(
-        self, at: Point, switched: Mode, previous: Chosen, h: float
-    ) -> tuple[Array, Sequence[int]]:
-        """s after the impulses of the switches that are held, and how these go with the mode."""
-        held = tuple(np.where(self.rubs, 1, switched).tolist())
-        whole, s, begun = None, at.s, None
+    def struck_by(self, at: Point, mode: Mode, previous: Chosen, h: float) -> Array:
+        """The vector s after the impulses of the switches that are held."""
+        held, s = tuple(np.where(self.rubs, 1, mode).tolist()), at.s
         # Where rows turn as states jump, each strike leaves what is bent of its way.
-        self.given = np.zeros(len(held))
         for _ in range(TUNING.impacts if 0 in held else 0):
-            now, found = self.struck(at._replace(s=s), held, previous, h)
+            found = self.struck(at._replace(s=s), held, previous, h)
             if found is None:
                 break
-            whole, begun = (found, now) if whole is None else (whole.followed(found), begun)
+            self.given = self.given + found.given[self.efforts]
             s = s + found.gained(len(s), self.form.law_rates)
             if not self.form.varying:
                 break
-        if whole is None or begun is None:
-            return at.s, [0] * len(held)
-        places = self.efforts, self.slips
-        self.given = whole.given[self.efforts]
-        return s, shocks(whole, begun, switched, self.switching, places, self.told)
+        return s
 
-    def struck(
-        self, at: Point, held: Mode, previous: Chosen, h: float
-    ) -> tuple[Instant, Strike | None]:
+    def struck(self, at: Point, held: Mode, previous: Chosen, h: float) -> Strike | None:
         """What stops the slips of what is held, by its rows as they are; None for nothing."""
         now = self.any_of(at, (1,) * len(held))
         hold = self.friction.hold(held, now.numbers)
@@ -196,50 +140,18 @@ class SwitchedSteps(DeadBand):
             near += np.where(np.equal(previous, 0), drift, 0.0)
         slips = hold.slips(now.x, now.u)
         still = (np.abs(slips) <= np.abs(hold.mix) @ near[hold.ports]).all()
-        return now, None if still else struck(hold, now.numbers, slips)
+        return None if still else struck(hold, now.numbers, slips)
 
-    def contrary(
-        self, at: Point, now: Instant, mode: Mode, signs: Sequence[int], h: float
-    ) -> Broken:
-        """The switches that change over at once: by impulse, value or rate, whichever decides."""
-        found = {i for i in self.places if signs[i] < 0}
-        undecided = [i for i in self.places if not signs[i]]
-        slips, rates = now.y[self.slips], slip_rates(now, self.slips, self.moving)
-        near, slow = self.terms(now), self.rate_terms(now)
-        efforts, slack = now.u[self.efforts], self.effort_terms(now, mode)
-        for i in undecided:
-            one = self.switching[i]
-            side = one.side if one is not None else 0
-            if not side:
-                continue
-            if mode[i] == 0:
-                if side * efforts[i] > TUNING.step_rounding * slack[i]:
-                    found.add(i)
-            elif side * slips[i] < -TUNING.step_rounding * near[i]:
-                found.add(i)
-            elif side * slips[i] <= TUNING.step_rounding * near[i] and not self.beside[i]:
-                found |= {i} if side * rates[i] < -TUNING.step_rounding * slow[i] else set()
-        return frozenset(found | self.sent(at, now, mode, undecided, h))
-
-    def sent(self, at: Point, now: Instant, mode: Mode, ports: Sequence[int], h: float) -> set[int]:
+    def sent(self, at: Point, now: Instant, mode: Mode, h: float) -> set[int]:
         """The switches whose conditions change them over: above zero, or at zero and rising."""
         if not self.switches.count:
             return set()
         told = self.told(now)
         near = TUNING.step_rounding * level_terms(now, (), self.switches.guards)
-        found = {i for i in ports if self.leaves(i, mode, told, near)}
-        tied = [i for i in ports if i not in found and self.leaves(i, mode, told, -near)]
+        found = {i for i in self.places if self.leaves(i, mode, told, near)}
+        tied = [i for i in self.places if i not in found and self.leaves(i, mode, told, -near)]
         if tied and h > 0:
             later = self.at(at._replace(t=at.t + h, s=at.s + h * now.rate), mode)
             told = self.told(later)
             found |= {i for i in tied if self.leaves(i, mode, told, near)}
         return found
-
-    def effort_terms(self, now: Instant, mode: Mode) -> Array:
-        """The magnitudes of the terms that make up what holds the ports."""
-        sizes = np.full(len(mode), float(np.abs(now.u).max(initial=0.0)))
-        if 0 in mode:
-            held = self.friction.hold(mode, now.numbers)
-            if held.inverse.size:
-                sizes[held.ports] = effort_terms(held, now.x, now.u, now.du)
-        return sizes
