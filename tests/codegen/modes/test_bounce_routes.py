@@ -28,8 +28,9 @@ TIMES = np.linspace(0.0, END, SAMPLES)
 SLACK = 40
 """Speeds, of the largest, per second that a step is late."""
 
-TIGHT, BY_IMPORTER = 1e-7, 1e-5
-"""How far located runs may be off, of the largest: by themselves, and where an importer locates."""
+TIGHT, BY_IMPORTER = 1e-7, 1e-4
+"""How far located runs may be off, of the largest: by themselves, and where an importer locates to some
+1e-6; motions that are compared enlarge an error thirty times, at the most."""
 
 COARSER = 8
 """Python takes steps so many times as long."""
@@ -38,11 +39,18 @@ EARLY = 3
 """Fixed steps, late by up to one at each event, are compared up to so many of them."""
 
 
-def _off(line: Line, course: Course, run: Mapping[str, np.ndarray], upto: int) -> float:
-    """How far speeds and displacements are off the judge's at most, of the largest."""
+def _off(
+    line: Line, course: Course, run: Mapping[str, np.ndarray], upto: int, aside: float = 0.0
+) -> float:
+    """How far speeds and displacements are off the judge's at most, of the largest.
+
+    ``aside`` [s]: as near as that to an event a sample may be of either side of it.
+    """
     found, n = np.array(course.states), len(line.masses)
     good = clear(line, TIMES, course)
     good[upto:] = False
+    for t, *_ in course.events:
+        good &= np.abs(TIMES - t) >= aside
     off = [np.abs(run[f"v{i}"] - found[:, n + i])[good].max(initial=0.0) for i in range(n)]
     for name, (one, *_) in elements(line).items():
         a, b = one.place
@@ -95,7 +103,9 @@ def test_random_stops_everywhere(seed: int, tmp_path: Path) -> None:
         "Python": module.simulate(TIMES, start, waves, step=COARSER * END / STEPS),
     }
     for name, run in stepped.items():
-        assert _off(line, course, run, soon) < (1 if name == "C" else COARSER) * late, name
+        coarse = 1 if name == "C" else COARSER
+        aside = 2 * coarse * END / STEPS
+        assert _off(line, course, run, soon, aside) < coarse * late, name
         assert _gaps(line, run) > -1e-9, name
 
     measures = {name: codegen.samples(name) for name in start}

@@ -8,6 +8,6 @@ int harness_share(int free, int count, const double *share, const double *caps, 
     static bg_hold held;
     held.share_count = free;
     held.count = count;
-    memcpy(held.share, share, sizeof(double) * (size_t)(free * count));
+    memcpy(held.ways, share, sizeof(double) * (size_t)(free * count));
     return bg_fair_share(&held, caps, efforts);
 }

@@ -223,3 +223,12 @@ def test_the_sides_of_a_model_are_one_for_all_its_runs() -> None:
     rates = [model.at(0.0, s, [], ()).rate.tolist() for model in (closed, above, below)]
     assert rates[0] == rates[2] != rates[1]
     assert closed.on_sides((1,)) is above
+
+
+def test_a_law_without_a_value_beyond_its_corner_is_crossed_all_the_same() -> None:
+    """q" = -4 sign(q) sqrt|q|: v^2/2 + 8/3 |q|^(3/2) stays 1/2."""
+    law = 4 * sp.sign(q) * sp.sqrt(sp.Abs(q))
+    found = simulator(oscillator(law), {}).run(np.linspace(0, 3, 7), {"v": 1.0}, corners=True)
+    energy = found["v"] ** 2 / 2 + 8 / 3 * np.abs(found["q_s"]) ** 1.5
+    assert energy == pytest.approx(np.full(7, 0.5), abs=1e-8)
+    assert len(found.events) == 2

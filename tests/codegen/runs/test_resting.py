@@ -203,3 +203,17 @@ def test_fixed_steps_of_exports_come_to_rest_and_converge(tmp_path) -> None:
 
 def test_a_mass_that_only_rubs_has_no_such_jump() -> None:
     assert orders(mass("sign(v_r)")) == [1]
+
+
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_what_hangs_on_an_input_is_refused_by_name_where_crossings_gather(backend: str) -> None:
+    """The same swings about w = 0; before they gather, it runs."""
+    run = simulator(oscillating("2*sign(x - w) + sign(v_r)"), {}, backend=backend)
+    turns = TWIST.first
+    with pytest.raises(
+        bg.SimulationError, match=r"at t = 4\.46\d* a jump in the law at 'r' is crossed"
+    ):
+        run.run([0.0, 6.0], {"x": 1.0}, {"w": 0.0})
+    assert run.run([0.0, turns], {"x": 1.0}, {"w": 0.0})["x"][-1] == pytest.approx(
+        -1 / 3, abs=CLOSE
+    )
