@@ -31,7 +31,7 @@ static void bound_friction(const bg_model *m, const double *values, int i, bg_bo
 
 /* The problem at the end of a step; 1 if slips contradict the mode, and the part of the step
  * that is left after the first of them went through zero. */
-static int find_end(bg_model *m, bg_boxed *b, double *after)
+static int find_last(bg_model *m, bg_boxed *b, double *after)
 {
     double values[4 * PORTS] = {0};
     int broken = 0;
@@ -74,7 +74,7 @@ int bg_correct_step(bg_model *m, double t, double h, double *s, const double *w)
         return BG_OK; /* whoever begins the next step tells */
     if (BG_ROSENBROCK)
         bg_note_given(m, 0.5, 0);
-    if (!find_end(m, b, &after))
+    if (!find_last(m, b, &after))
         return BG_OK;
     /* What is more or less than was given is so after the slip has gone through zero. */
     bg_respond(m, h, 0.5 * after * h, &m->work.response);
