@@ -67,29 +67,3 @@ def read_condition(node: ast.AST, build: Build, where: str) -> Any:
         f"{where}: {shortened(ast.unparse(node))} is no condition; that is a comparison by "
         "< <= > >= == != of expressions, several joined by and, or, not, or True"
     )
-
-
-def check_covered(expr: sp.Expr, where: str) -> None:
-    """Refuse a piecewise expression of one name that has no value where none of its conditions holds.
-
-    Of several names that is not decided; a run that comes there is refused.
-    """
-    for choice in expr.atoms(sp.Piecewise):
-        if _is_uncovered([condition for _, condition in choice.args]):
-            raise ExpressionError(
-                f"{where}: {shortened(str(choice))} says no value where none of its conditions holds; "
-                "end it with (value, True)"
-            )
-
-
-def _is_uncovered(conditions: Sequence[Any]) -> bool:
-    """Whether there is a number at which none of these holds, as far as that is decided."""
-    if sp.Or(*conditions) is sp.true:
-        return False
-    left = sp.And(*(sp.Not(condition) for condition in conditions))
-    if len(left.free_symbols) > 1:
-        return False
-    try:
-        return left.as_set() is not sp.S.EmptySet
-    except (NotImplementedError, ValueError, TypeError):
-        return False
