@@ -67,13 +67,3 @@ def read_condition(node: ast.AST, build: Build, where: str) -> Any:
         f"{where}: {shortened(ast.unparse(node))} is no condition; that is a comparison by "
         "< <= > >= == != of expressions, several joined by and, or, not, or True"
     )
-
-
-def check_covered(expr: sp.Expr, where: str) -> None:
-    """Refuse a piecewise expression that has no value where none of its conditions holds."""
-    for choice in expr.atoms(sp.Piecewise):
-        if sp.Or(*(condition for _, condition in choice.args)) is not sp.true:
-            raise ExpressionError(
-                f"{where}: {shortened(str(choice))} says no value where none of its conditions holds; "
-                "end it with (value, True)"
-            )

@@ -6,7 +6,6 @@ from numbers import Real
 import sympy as sp
 
 from bondgraph.algebra.atoms import MAX_DIGITS, MAX_EXPONENT, decimal, number, symbol
-from bondgraph.algebra.conditions import check_covered
 from bondgraph.algebra.functions import ALLOWED, PARTS
 from bondgraph.algebra.reading import read
 from bondgraph.algebra.residues import residues
@@ -47,7 +46,6 @@ def expression(value: object, where: str) -> sp.Expr:
     try:
         _check_value(result, value, where)
         _check_parts(result, where)
-        check_covered(result, where)
     except (OverflowError, RecursionError) as error:
         raise ExpressionError(
             f"{where}: {shortened(str(value))} is out of bounds: {error}"

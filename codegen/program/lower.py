@@ -51,11 +51,7 @@ def lower(
     if missing:
         told = ", ".join(name + nearest(name, given) for name in missing)
         raise ParameterError(f"missing parameter(s) {told}; give each a number in parameters")
-    conditions = (
-        c for p in equations.ports if (s := p.element.switch)
-        for c in (s.on, s.off, s.restitution, *(one.value for one in s.resets))
-    )  # fmt: skip
-    watched = frozenset[sp.Symbol]().union(*(condition.free_symbols for condition in conditions))
+    watched = _watched(equations)
     closing = close_ports(equations, {} if laws is None else laws, given, watched)
     closing, tangents = with_tangents(closing)
     closing, moving = with_moving_slips(closing, tangents.moved)
@@ -110,6 +106,15 @@ def lower(
     )
     check_gains(program)
     return program
+
+
+def _watched(equations: StateEquations) -> frozenset[sp.Symbol]:
+    """The names in conditions, restitutions and resets of switches."""
+    told = (
+        value for p in equations.ports if (s := p.element.switch)
+        for value in (s.on, s.off, s.restitution, *(one.value for one in s.resets))
+    )  # fmt: skip
+    return frozenset[sp.Symbol]().union(*(value.free_symbols for value in told))
 
 
 def _check_varying(closing: Closing) -> None:

@@ -49,7 +49,8 @@ fmu_error fmu_decide(fmu_instance *f)
 {
     const bg_sight sight = bg_view_sight(&f->located.view);
     bg_log log = {.capacity = INT_MAX};
-    bg_instant at = {f->at.time, FMU_SHORTEST, INFINITY, f->at.s, {0}, f->at.decided ? &log : NULL};
+    bg_instant at = {.t = f->at.time, .time = FMU_SHORTEST, .following = INFINITY, .s = f->at.s,
+                     .log = f->at.decided ? &log : NULL};
     int slipping[BG_MOST_PORTS] = {0};
     if (K == 0)
         return NULL;

@@ -11,7 +11,7 @@ from codegen.program.lower import lower
 
 AWKWARD = [
     ("c0", "c1", "c2"), ("c1", "c0", "x0"), ("x0", "x1", "c0"), ("exp", "array", "select"),
-    ("lambda_", "numpy", "np"), ("sqrt", "abs", "float"), ("_Dummy_1", "pi", "E"), ("I", "S", "N"),
+    ("lambda_", "numpy", "np"), ("sqrt", "abs", "float"), ("_Dummy_1", "beta", "E"), ("I", "S", "N"),
     ("Abs", "sign", "Max"), ("print", "len", "d_x"), ("now", "self", "run"), ("Q", "O", "zoo"),
     ("oo", "nan", "beta"), ("gamma", "zeta", "Piecewise"), ("größe", "ω", "x_"),
 ]  # fmt: skip

@@ -40,7 +40,7 @@ def test_sums_add_up() -> None:
     "text",
     [
         "", "stp(0.1)", "step", "step(0.1)", "step(1, 2, 3, 4)", "step(1, time=2)", "step(a=1, b=2)",
-        "step(*[1, 2])", "step(**{})", "lag(1, 0.1, 2)", "lag(0.1)", "step(step(0, 1), 2)", "pi",
+        "step(*[1, 2])", "step(**{})", "lag(1, 0.1, 2)", "lag(0.1)", "step(step(0, 1), 2)", "tau",
         "1/0", "exp(1e9)", "10**400", "nan", "inf", "1j", "True", "'1'", "step(0, 1)*2", "pwm(0, 0.5)",
         "square(1, 0, 1, sine(1, 1))", "pwm(1e3)",
         "__import__('os').system('false')", "(lambda: 1)()", "step.__class__(1)", "[1]", "1; 2",
