@@ -67,9 +67,7 @@ class PortSteps(FixedSteps):
         h: float,
     ) -> tuple[Mode, Array]:
         """The same where these switches may change over, and no others."""
-        mode = first
-        if previous is None:
-            mode = tuple(np.where(self.rubs, 1, first).tolist())
+        mode = self.slipping(at, first) if previous is None else first
         turns, stopped = np.zeros(len(mode), dtype=int), np.zeros(len(mode), dtype=bool)
         for _ in range(TUNING.rounds):
             mode, now = self.looked(at, mode)
@@ -86,6 +84,20 @@ class PortSteps(FixedSteps):
             mode = self.solved(at, now, box, first, self.moment(h), brief=True, looked=mode)
             at = at._replace(s=self.struck_by(at, mode, previous, h))
         return mode, at.s
+
+    def slipping(self, at: Point, mode: Mode) -> Mode:
+        """The mode where no step was before: friction turns as it slips, and holds what rests."""
+        loose = np.where(self.rubs, 1, mode)
+        if not self.rubs.any():
+            return mode
+        try:
+            now = self.any_of(at, (1,) * len(mode))
+        except EvaluationError:
+            return tuple(loose.tolist())
+        slips = now.y[self.slips]
+        resting = np.abs(slips) <= TUNING.step_rounding * self.terms(now)
+        turning = np.where(resting, 0, np.sign(slips))
+        return tuple(np.where(self.rubs, turning, loose).astype(int).tolist())
 
     def called(self) -> str:
         """The names of what changes over."""

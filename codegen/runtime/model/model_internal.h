@@ -188,8 +188,8 @@ void bg_take_ways(const bg_boxed *box, int strict, int *mode);
 void bg_note_given(bg_model *m, double part, int begins);
 int bg_correct_step(bg_model *m, double t, double h, double *s, const double *w);
 
-/* port_hang.c: the rows of jumps of second order where a step of h begins, and to what slips those that
- * hold are brought; of one where a step ends, to which it stays on its side. */
+/* port_hang.c: the rows of jumps of second order where a step of h begins, and to what slips those
+ * that hold are brought; of one where a step ends, to which it stays on its side. */
 void bg_hang(bg_model *m, double h, bg_boxed *box);
 void bg_hang_on(int port, bg_boxed *box);
 

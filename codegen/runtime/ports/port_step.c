@@ -96,14 +96,26 @@ static int look_any(step_search *c)
 }
 
 /* The mode from which a search begins: as before, stops that are barred apart; where no step was
- * before, friction slips. */
+ * before, friction turns as it slips, and what is at rest holds. */
 static void begin_mode(step_search *c, const int *before)
 {
+    bg_model *const m = c->m;
+    int loose[BG_MOST_PORTS], looks = 0;
     for (int i = 0; i < K; i++) {
         const int rubs = bg_switches[i].kind == BG_RUBS;
-        c->m->mode[i] = rubs && !c->at.started ? 1
-            : bg_has(&c->barred, i)            ? !bg_switches[i].on
-                                               : before[i];
+        m->mode[i] = rubs && !c->at.started ? 1
+            : bg_has(&c->barred, i)         ? !bg_switches[i].on
+                                            : before[i];
+        looks |= rubs && !c->at.started;
+        loose[i] = 1;
+    }
+    if (!looks || bg_look_slipping(m, &c->at, loose) != BG_OK)
+        return;
+    for (int i = 0; i < K; i++) {
+        double terms;
+        const double slip = bg_slip(m, &m->shot, i, &terms);
+        if (bg_switches[i].kind == BG_RUBS)
+            m->mode[i] = fabs(slip) <= BG_STEP_ROUNDING * terms ? 0 : slip > 0 ? 1 : -1;
     }
 }
 
@@ -167,7 +179,7 @@ int bg_decide_step(bg_model *m, double t, double h, double *s, const double *w)
     memcpy(c.begun, s, sizeof c.begun);
     memcpy(begun, s, sizeof begun);
     int status = search_once(&c, before);
-    for (int k = 0; status == BG_OK && again; k++) {
+    for (int k = 0; k <= BG_RENEWALS && status == BG_OK && again; k++) {
         status = k < BG_RENEWALS ? bg_set_in_step(&c, before, &again) : BG_SET_ENDLESSLY;
         if (status == BG_OK && again)
             status = search_once(&c, before);

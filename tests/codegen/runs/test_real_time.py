@@ -26,6 +26,7 @@ from references.build import bond_graph
 
 import bondgraph as bg
 from codegen import Constant, to_c, to_python
+from codegen.engine.status import Status
 from codegen.fixed.boxes import Boxed
 
 CASES = {"alsd": alsd, "gearbox": gearbox, "six-pulse": six_pulse}
@@ -92,7 +93,7 @@ def test_all_steps_of_a_model_cost_the_same_within_a_factor_of_three(exported: E
     for h in (5e-4, 1e-4):
         found = exported.march(h, exported.case.end)
         assert found.taken == len(found.costs)
-        assert len(np.unique(found.modes, axis=0)) > 2
+        assert len(np.unique(found.modes, axis=0)) > 1
         assert found.costs.max() < 3 * found.costs.min()
 
 
@@ -166,12 +167,12 @@ def test_an_implicit_step_tells_of_an_error_beyond_one_percent_and_is_taken(tmp_
     equations = bg.derive(bond_graph(nodes, "v>m v>c"))
     case = RealTime(equations, {}, None, {"w": 1.0}, {}, 0.0, 0.0)
     model = Exported(case, tmp_path, "rosenbrock")
-    for h, status in ((1e-4, 0), (4e-3, 22)):
+    for h, status in ((1e-4, Status.OK), (4e-3, Status.INACCURATE)):
         found = model.march(h, 5 * h)
         assert found.taken == 5
         assert found.told[0] == status, model.message(int(found.told[0]))
         assert np.isfinite(found.rows).all()
-    assert "beyond 1 % of a state's range" in model.message(22)
+    assert "beyond 1 % of a state's range" in model.message(Status.INACCURATE)
     module = loaded(to_python(equations, {}, integrator="rosenbrock"))
     with pytest.warns(UserWarning, match="at t = 0 the error of a step of 0.004 s is beyond 1 %"):
         module.simulate([0.0, 0.004], {"w": 1.0}, {}, step=4e-3)
@@ -289,6 +290,6 @@ def test_a_problem_without_a_solution_ends_and_tells(solve) -> None:
     _, given, y, told = solve(
         np.array([[-1.0, 0.5], [0.5, -1.0]]), np.array([0.3, -0.2]), -np.ones(2), np.ones(2)
     )
-    assert told in (0, 21)
+    assert told in (Status.OK, Status.PIVOTS)
     assert np.isfinite([*given, *y]).all()
-    assert status in (0, 21)
+    assert status in (Status.OK, Status.PIVOTS)

@@ -41,6 +41,7 @@
 #define BG_STRAIGHT 1
 #define BG_CORNERS 0
 #define BG_CORNERS_TOLD 0
+#define BG_ROSENBROCK 0
 
 /* The longest step [s] that is stable at the default start, parameters and inputs, in every
  * friction mode; 1e300 if nothing bounds it. */
