@@ -130,7 +130,7 @@ int bg_corners_step(bg_located *c, double *time)
 {
     const bg_triggers of = {c, away_at, BG_CORNERS};
     const double begin = c->solver.t_old, stop = c->solver.t;
-    double middle[BG_WATCHED], end[BG_WATCHED];
+    double middle[BG_WATCHED] = {0}, end[BG_WATCHED] = {0};
     int status = away_at(c, begin + 0.5 * (stop - begin), middle);
     if (status == BG_OK)
         status = away_at(c, stop, end);

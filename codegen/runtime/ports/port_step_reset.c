@@ -55,7 +55,7 @@ static int become_in_step(step_search *c, double *values)
 int bg_set_in_step(step_search *c, int *before, int *any)
 {
     const bg_set hit = hits_in_step(c, before);
-    double values[BG_MOST_RESETS];
+    double values[BG_MOST_RESETS] = {0};
     int fired[BG_MOST_RESETS];
     *any = bg_find_fired(bg_resets, BG_RESETS, bg_switches, before, c->m->mode, &hit, fired);
     if (!*any)

@@ -104,7 +104,7 @@ def test_random_stops_everywhere(seed: int, tmp_path: Path) -> None:
     }
     for name, run in stepped.items():
         coarse = 1 if name == "C" else COARSER
-        aside = 2 * coarse * END / STEPS
+        aside = (EARLY + 1) * coarse * END / STEPS
         assert _off(line, course, run, soon, aside) < coarse * late, name
         assert _gaps(line, run) > -1e-9, name
 

@@ -7,7 +7,7 @@
 #include "model_runtime.h"
 #include "port_box.h"
 
-enum { WIDTH = BG_ROOM(BG_EXTERNAL) };
+enum { GIVEN = BG_ROOM(BG_EXTERNAL) };
 
 static unsigned long long blocks;
 
@@ -49,8 +49,8 @@ int realtime_rest(bg_model *m, double h, int count, double *s, const double *w, 
     *far = 0.0;
     for (int k = 0; k < count; k++) {
         for (int i = 0; i < 3 * BG_EXTERNAL; i++)
-            now[i] = w[i % WIDTH]
-                + (i % WIDTH == input ? swing * sin(7.0 * h * (k + 0.5 * (i / WIDTH))) : 0.0);
+            now[i] = w[i % GIVEN]
+                + (i % GIVEN == input ? swing * sin(7.0 * h * (k + 0.5 * (i / GIVEN))) : 0.0);
         if (bg_model_step(m, k * h, h, s, now) != BG_OK)
             return -1 - k;
         for (int i = 0; i < BG_FRICTION && k > 0; i++)
