@@ -30,11 +30,9 @@ static int free_directions(const bg_model *m, const bg_hold *held, double *free)
                     row[at < columns ? held->ports[at] : K + s->moved_laws[at - columns]];
             }
         }
-        if (s->direct > 0) {
-            if (!bg_factor(s->direct, system, pivots))
-                continue;
-            bg_solve(s->direct, system, pivots, 1, right);
-        }
+        if (s->direct > 0 && !bg_factor(s->direct, system, pivots))
+            continue;
+        bg_solve(s->direct, system, pivots, 1, right);
         double *const way = free + count * columns;
         memset(way, 0, sizeof(double) * (size_t)columns);
         way[c] = 1.0;
