@@ -196,14 +196,14 @@ class Exported:
         )
 
     def rest(self, h: float, count: int, w: Mapping[str, float], swings: str, by: float):
-        """How often modes change in so many steps at rest, and how far states go from their place."""
+        """How often modes change in so many steps at rest, how far states go from their place, the last."""
         values, far = np.array([float(w.get(name, 0.0)) for name in self.external]), np.zeros(1)
         model, s = self.begun(values)
         changes = self.library.realtime_rest(
             model, ctypes.c_double(h), count, _pointer(s), _pointer(values),
             self.external.index(swings), ctypes.c_double(by), _pointer(far),
         )  # fmt: skip
-        return changes, float(far[0])
+        return changes, float(far[0]), dict(zip(self.states, s.tolist(), strict=True))
 
     def message(self, status: int) -> str:
         return str(self.library.bg_model_message(status).decode())

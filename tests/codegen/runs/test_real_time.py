@@ -98,7 +98,7 @@ def test_all_steps_of_a_model_cost_the_same_within_a_factor_of_three(exported: E
 
 
 RESTS = {
-    "alsd": ({"tau_h": 1000.0}, "tau_e", 5.0),
+    "alsd": ({"tau_h": 3000.0}, "tau_e", 5.0),
     "gearbox": ({f"N_{one}": 300.0 for one in ("K1", "K2", "G1", "G2", "G3", "G4", "GR")}, "T", 20.0),
     "six-pulse": ({}, "U0", 0.0),
 }  # fmt: skip
@@ -111,8 +111,17 @@ COUNT = 20_000
 def test_at_rest_nothing_chatters_or_creeps(name: str, made: Callable[..., Exported]) -> None:
     """All clutches locked, the engine pushes to and fro; a bridge without voltage."""
     w, swings, by = RESTS[name]
-    changes, far = made(name).rest(1e-3, COUNT, w, swings, by)
+    changes, far, _ = made(name).rest(1e-3, COUNT, w, swings, by)
     assert (changes, far) == (0, pytest.approx(0.0, abs=1e-12))
+
+
+@pytest.mark.parametrize("h", [1e-4, 2e-3])
+def test_a_locked_differential_stays_locked(h: float, made: Callable[..., Exported]) -> None:
+    """Whose wheels go on together, while its shafts wind up and down: it sticks at once, for good."""
+    w, swings, by = RESTS["alsd"]
+    changes, _, last = made("alsd").rest(h, COUNT, w, swings, by)
+    assert changes == 0
+    assert last["omega_1"] == pytest.approx(last["omega_2"], rel=1e-14)
 
 
 def _block(level: object = "N") -> bg.StateEquations:
@@ -130,7 +139,7 @@ def test_a_stuck_block_stands_still_over_a_million_steps(tmp_path: Path) -> None
     """It comes to rest from 1 m/s first."""
     w = {"F": Constant(0.0), "N": Constant(10.0)}
     model = Exported(RealTime(_block(), {}, None, {"w": 0.01}, w, 1.0, 0.0), tmp_path)
-    changes, far = model.rest(1e-3, 1_000_000, {"N": 10.0}, "F", 9.9)
+    changes, far, _ = model.rest(1e-3, 1_000_000, {"N": 10.0}, "F", 9.9)
     assert changes == 1
     assert far == pytest.approx(0.01, abs=0.005)
 
