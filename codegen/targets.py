@@ -19,7 +19,8 @@ from codegen.numbers.arrays import Array
 class Export:
     """One run to be written: equations, numbers, laws, start, inputs, samples [s], and what it is called.
 
-    ``initially_on``: the switches that are on at first.
+    ``initially_on``: the switches that are on at first; ``integrator``: the method of fixed steps, as of
+    `codegen.to_c`.
     """
 
     name: str
@@ -30,6 +31,7 @@ class Export:
     inputs: Mapping[str, Signal]
     times: Array
     initially_on: tuple[Hashable, ...] = ()
+    integrator: str = "rk4"
 
 
 class Target(Protocol):

@@ -30,13 +30,15 @@ def write(
     ready: Prepared,
     out: Path,
     platforms: str | Iterable[str] | None = None,
+    integrator: str = "rk4",
 ) -> list[Path]:
     """Write what a run needs into a folder; the files written.
 
     ``target``: one of `codegen.exports.TARGETS`. "python", a module and a script that runs it, called like
     the model unless Python knows something else by that name; "c", a folder of C99 whose parameters and main
     program are the run's; "fmu2" or "fmu3", a unit with its inputs inside, for ``platforms`` as of
-    `codegen.write_fmu`.
+    `codegen.write_fmu`. ``integrator``: the method of fixed steps, "rk4" or "rosenbrock", as of
+    `codegen.to_c`.
 
     Raises `BondGraphError` for names and numbers that don't fit, and for what the target needs.
     """
@@ -49,5 +51,6 @@ def write(
         ready.inputs,
         ready.times,
         ready.initially_on,
+        integrator,
     )
     return asked(target).write(run, out, platforms)

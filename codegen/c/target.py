@@ -24,6 +24,7 @@ class C:
         files = to_c(
             export.equations, export.parameters, export.laws, name=export.name, main=True,
             initial=export.initial, inputs=export.inputs, initially_on=export.initially_on,
+            integrator=export.integrator,
         )  # fmt: skip
         texts = {folder / export.name / file: text for file, text in files.items()}
         write_all(texts)

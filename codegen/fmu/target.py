@@ -35,6 +35,6 @@ class Fmu:
         write_fmu(
             path, export.equations, export.parameters, export.laws, version=self.version,
             name=export.name, platforms=platforms, initial=export.initial, inputs=export.inputs,
-            initially_on=export.initially_on,
+            initially_on=export.initially_on, integrator=export.integrator,
         )  # fmt: skip
         return [path]

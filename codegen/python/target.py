@@ -28,7 +28,10 @@ class Python:
         """See `Target`."""
         equations = turned(export.equations, export.laws)
         model = (equations, export.parameters, export.laws)
-        module = to_python(*model, export.name, initial=export.initial, inputs=export.inputs)
+        module = to_python(
+            *model, export.name, initial=export.initial, inputs=export.inputs,
+            integrator=export.integrator,
+        )  # fmt: skip
         program = lower(equations, export.laws, export.parameters, timed=True)
         own = module_name(export.name)
         run = script(own, export, [symbol.name for symbol in program.asked])

@@ -8,6 +8,7 @@ import click
 import differentials.commands.options as options
 from codegen.exports import TARGETS
 from codegen.fmu.binaries import PLATFORMS
+from codegen.modes.steps import INTEGRATORS
 from differentials.commands.names import OneOf, check_names
 from differentials.commands.options import Asked
 from differentials.commands.preparing import prepare
@@ -37,10 +38,24 @@ from differentials.exporting import write
     metavar="LIST",
     help=f"Of a unit: all, or some of {','.join(PLATFORMS)}; this machine's by default.",
 )
+@click.option(
+    "--integrator",
+    type=OneOf(INTEGRATORS, "integrator"),
+    metavar="METHOD",
+    default=INTEGRATORS[0],
+    show_default=True,
+    help=f"Of fixed steps: {' or '.join(INTEGRATORS)}, the last implicit, for stiff laws.",
+)
 @options.folder
 @options.as_json
 def export(
-    subject: Subject, target: str, asked: Asked, platforms: str | None, out: Path, as_json: bool
+    subject: Subject,
+    target: str,
+    asked: Asked,
+    platforms: str | None,
+    integrator: str,
+    out: Path,
+    as_json: bool,
 ) -> None:
     """Write MODEL with its numbers, its start and its inputs as Python, C or an FMU."""
     if platforms is not None and not TARGETS[target].compiled:
@@ -51,7 +66,7 @@ def export(
     )
     if isinstance(chosen, list):
         check_names(chosen, list(PLATFORMS), "platform")
-    paths = write(subject.name, target, prepare(subject, asked), out, chosen)
+    paths = write(subject.name, target, prepare(subject, asked), out, chosen, integrator)
     if as_json:
         print_json({"model": subject.name, "target": target, "files": paths})
         return

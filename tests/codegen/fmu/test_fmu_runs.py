@@ -8,6 +8,7 @@ import pytest
 from oracles.called import Unit
 from oracles.many import chain
 from oracles.units import Case, belt, divider, duffing, figure_11, ran
+from references.build import bond_graph
 
 import bondgraph as bg
 from codegen import Result, simulator
@@ -118,3 +119,24 @@ def test_a_chain_of_nine_blocks_with_friction_runs_as_a_unit(tmp_path: Path) -> 
         for name in many.shown[:4]:
             most = np.abs(expected[name]).max()
             assert np.abs(found[name] - expected[name]).max() <= reached * most, (kind, name)
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_implicit_steps_of_a_unit_go_where_explicit_ones_may_not(
+    version: str, tmp_path: Path
+) -> None:
+    """A mass on a spring in thick oil, whose rates are 1 and 5000 per second, in steps of 2 ms."""
+    nodes = [bg.Se("push", "F"), bg.One("n"), bg.I("m", 1.0, flow="v"), bg.R("oil", law="5001*f_oil"),
+             bg.C("spring", 1 / 5000.0, effort="P")]  # fmt: skip
+    case = Case(
+        bg.derive(bond_graph(nodes, "push>n>m n>spring n>oil")), {}, None, {}, {"F": 1000.0}, 1.0
+    )
+    fast, slow, step = -5000.0, -1.0, {"start_values": {"fixed_internal_step": 2e-3}}
+    t = np.linspace(0.0, 1.0, 101)
+    force = 1000.0 * (1 - (fast * np.exp(slow * t) - slow * np.exp(fast * t)) / (fast - slow))
+    path = case.written(tmp_path / "oil.fmu", version, integrator="rosenbrock")
+    found, _ = ran(path, "CoSimulation", case, ["P"], 101, **step)
+    assert found["P"] == pytest.approx(force, abs=1e-3)
+    path = case.written(tmp_path / "explicit.fmu", version)
+    with pytest.raises(Exception, match="DoStep failed"):
+        ran(path, "CoSimulation", case, ["P"], 101, **step)

@@ -137,3 +137,20 @@ def test_the_next_line_of_c_compiles_under_any_name(name: str, call: Call, tmp_p
     following = done.stdout.rpartition("Next: ")[2].strip()
     subprocess.run(following.replace("-O2", "-O0"), shell=True, cwd=tmp_path, check=True)
     assert next(tmp_path.glob("run_*")).is_file()
+
+
+@pytest.mark.parametrize(
+    ("target", "file"), [("python", "oscillator.py"), ("c", "oscillator/config.h")]
+)
+def test_steps_are_implicit_where_they_are_asked_for(
+    target: str, file: str, call: Call, tmp_path: Path
+) -> None:
+    texts = []
+    for more in ((), ("--integrator", "rosenbrock")):
+        assert call(*OSCILLATOR, "--to", target, *more).exit_code == 0
+        texts.append((tmp_path / "out" / file).read_text(encoding="utf-8").lower())
+    assert texts[0] != texts[1]
+    assert "rosenbrock" in texts[1]
+    done = call(*OSCILLATOR, "--to", target, "--integrator", "rosenbrok")
+    assert done.exit_code == 2
+    assert "did you mean 'rosenbrock'?" in done.stderr

@@ -1,5 +1,6 @@
 """All kinds, in the order of the table."""
 
+from oracles.routes.cornered import CORNERED
 from oracles.routes.friction import FRICTION
 from oracles.routes.jumping import JUMPING
 from oracles.routes.lawful import LAWFUL
@@ -9,6 +10,6 @@ from oracles.routes.sloped import SLOPED
 from oracles.routes.stops import STOPS
 from oracles.routes.switches import SWITCHES
 
-EVERY = (*FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *PLAIN, *LAWFUL)
+EVERY = (*FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL)
 
 KINDS = {make.__name__: make for make in EVERY}
