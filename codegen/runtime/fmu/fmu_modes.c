@@ -5,6 +5,31 @@
 
 #include "fmu_common.h"
 
+/* How long ago a slip was zero, or will be: by its rate in the mode that was. */
+static double time_from_zero(const fmu_instance *f, int port)
+{
+    const bg_snapshot *const shot = &f->located.view.shot;
+    double terms;
+    const double rate = bg_slip_rate(&f->model, shot, port, &terms);
+    const double slip = shot->y[bg_friction_readings[port]];
+    return slip == 0.0 ? 0.0 : rate == 0.0 ? INFINITY : fabs(slip / rate);
+}
+
+/* Slips that go through zero almost as near to an instant as the importer has found that of another
+ * are at zero, too: jumps that cross ever faster, each found late, would circle and never slide. */
+static void note_near(const fmu_instance *f, int *touched)
+{
+    double late = 0.0;
+    for (int i = 0; i < K; i++)
+        if (touched[i] == BG_PASSED)
+            late = fmax(late, time_from_zero(f, i));
+    for (int i = 0; i < K && late > 0.0; i++) {
+        const int slips = bg_switches[i].kind == BG_RUBS && f->at.mode[i] != 0;
+        if (slips && touched[i] == BG_UNTOUCHED && time_from_zero(f, i) <= BG_CIRCLES * late)
+            touched[i] = BG_PASSED;
+    }
+}
+
 /* What the instant is to each port: by the indicators of the mode that was. An importer may find an
  * event of a slip no better than to its own steps. */
 static void note_touched(fmu_instance *f, int *touched)
@@ -16,6 +41,7 @@ static void note_touched(fmu_instance *f, int *touched)
     for (int i = 0; i < K; i++)
         if (indicators[2 * i] <= 0 || indicators[2 * i + 1] <= 0)
             touched[i] = f->at.mode[i] ? BG_PASSED : BG_TOUCHED;
+    note_near(f, touched);
 }
 
 /* What later decisions and the indicators measure by. */
