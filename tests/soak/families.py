@@ -256,7 +256,7 @@ FAMILIES = (
     Family(
         "ideal-diodes", "codegen/switched/test_switched_networks.py::test_ideal_diodes", 12, 1_000
     ),
-    Family("stops", "codegen/modes/test_bounce_random.py::test_random_stops", 15, 1_000),
+    Family("stops", "codegen/modes/test_bounce_random.py::test_random_stops", 8, 1_000),
     Family("stops-everywhere", "codegen/modes/test_bounce_routes.py", 1, 50),
     Family("converters", "codegen/modes/test_choices.py", 4, 300),
     Family(

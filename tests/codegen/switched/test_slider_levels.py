@@ -95,9 +95,9 @@ def test_a_square_is_followed_to_the_last_digits(backend: str, method: str) -> N
 def test_exported_python_follows_it_in_fixed_steps() -> None:
     equations, numbers, inputs = pulled("1 + p**2"), {"k": K}, {"q": -1.0, "v": 1.0}
     known = np.where(6 - np.sqrt(34) > T, 10 * T, 1 + (1 - T) ** 2)
-    run = loaded(to_python(equations, numbers)).simulate(T, {"p": 1.0}, inputs, step=1e-3)
-    assert run["F_k"] == pytest.approx(known, abs=2e-2)
-    assert run["F_k"][T > 0.3] == pytest.approx(known[T > 0.3], abs=1e-4)
+    run = loaded(to_python(equations, numbers)).simulate(T, {"p": 1.0}, inputs, step=4e-3)
+    assert run["F_k"] == pytest.approx(known, abs=8e-2)
+    assert run["F_k"][T > 0.3] == pytest.approx(known[T > 0.3], abs=4e-4)
 
 
 def emptied(level: str = "p") -> bg.StateEquations:
