@@ -192,8 +192,9 @@ def packed_signals(ffi: Any, table: SignalTable) -> tuple[Any, tuple[Any, ...]]:
     waves, parts = ffi.new("bg_wave[]", [*table.waves]), ffi.new("bg_part[]", [*table.parts])
     record.wave, record.parts, more = waves, parts, None
     if table.duties is not None:
-        record.duties, more = packed_signals(ffi, table.duties)
-        more = record.duties, more
+        # The field is no owner of what it points to.
+        more = packed_signals(ffi, table.duties)
+        record.duties = more[0]
     return record, (terms, breaks, fastest, begins, coefficients, waves, parts, more)
 
 

@@ -9,6 +9,7 @@ import test_batch_located as many_located
 import test_batch_ports as many
 import test_c_backend as exact
 import test_located as located
+import test_pulsed as pulsed
 from codegen.batch.engine import batch_engine
 from codegen.engine.located import LocatedLibrary
 from codegen.engine.runs import CRuns
@@ -34,6 +35,7 @@ with sanitized(LocatedLibrary.__init__, batch_engine):
     for name in ("mixed", "braked_crank"):
         located.test_two_methods_agree_on_models_of_every_kind(name)
     located.test_room_for_events_grows()
+    pulsed.test_integrators_pass_every_instant("DOP853")
 """
 
 

@@ -58,7 +58,8 @@ def _ran(script: str, telling: str) -> subprocess.CompletedProcess[str]:
         # Where memory was taken is not told for each of Python's own pieces, which takes half the time.
         "ASAN_OPTIONS": "detect_leaks=0:malloc_context_size=0:quarantine_size_mb=16",
     }  # fmt: skip
-    paths = [str(TESTS.parent), *map(str, [TESTS, TESTS / "batch", TESTS / "engine"])]
+    folders = (TESTS / one for one in ("batch", "engine", "runs"))
+    paths = [str(one) for one in (TESTS.parent, TESTS, *folders)]
     # Compilers that this process starts need none of it, and take twice as long with it.
     begin = f"import os, sys\nsys.path[:0] = {paths!r}\ndel os.environ['LD_PRELOAD']"
     text = f"{begin}\n{script}\nprint('clean')\n"
