@@ -35,9 +35,7 @@ class Tuning:
     hysteresis: float = _told(
         10.0, "roundings that a unit's indicators are beyond what still holds"
     )
-    circles: float = _told(
-        16.0, "times that an importer is late by: slips as near to zero circle it, no nearer"
-    )
+    circles: float = _told(16.0, "times an importer is late by: slips so near to zero circle it")
     breakaway: float = _told(1e-12, "part by which a limit may fall short: its own rounding")
     nothing_held: float = _told(1e-12, "entries of a holding equation that are none")
     consistent: float = _told(1e-9, "part of a combination's terms that may be left of it")
