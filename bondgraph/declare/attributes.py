@@ -6,7 +6,7 @@ from typing import Any
 import sympy as sp
 
 from bondgraph.algebra.atoms import number, symbol
-from bondgraph.algebra.expressions import expression
+from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.algebra.residues import is_zero
 from bondgraph.declare import fields
 from bondgraph.declare.elements import Switch
@@ -58,6 +58,22 @@ def priority_of(attributes: Mapping[str, Any], where: str) -> float:
         return float(number(attributes.get("priority", 0), f"{where}, priority"))
     except ExpressionError as error:
         raise StructureError(f"{error}; priority must be a number") from None
+
+
+def bare_name(value: object, where: str) -> sp.Symbol | None:
+    """The name that a source's value is, an input; None for an expression.
+
+    Text that is more than a name, such as ``1*v``, is an expression though it comes to one: it repeats a
+    signal of the model, as an ideal follower does.
+
+    >>> bare_name("v", "node 's'"), bare_name("1*v", "node 's'")
+    (v, None)
+    """
+    found = expression(value, where)
+    named = isinstance(found, sp.Symbol) and found != TIME
+    if isinstance(value, str):
+        named = named and value.strip().isidentifier()
+    return found if named else None
 
 
 def variable(

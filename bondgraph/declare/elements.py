@@ -128,6 +128,8 @@ class Element:
 def Se(name: Hashable, value: object, **more: object) -> Node:
     """An effort source. A bare name as value is an input of that name, anything else is known.
 
+    ``"1*v"`` repeats a signal v of the model: an ideal follower.
+
     >>> Se("engine", "tau_e")
     ('engine', {'kind': 'Se', 'value': 'tau_e'})
     """

@@ -7,7 +7,8 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph.algebra.atoms import normal
-from bondgraph.algebra.expressions import TIME, expression
+from bondgraph.algebra.expressions import expression
+from bondgraph.declare.attributes import bare_name
 from bondgraph.declare.kinds import EXPRESSIONS, Kind
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw
 from bondgraph.declare.stops import stop_parts
@@ -76,8 +77,8 @@ def _kind(name: Hashable, attributes: Mapping[str, Any]) -> Kind:
 
 def _bare(name: Hashable, value: object) -> str | None:
     """The input that a source's value names, if it is one name."""
-    found = expression(value, f"node {name!r}")
-    return found.name if isinstance(found, sp.Symbol) and found != TIME else None
+    found = bare_name(value, f"node {name!r}")
+    return None if found is None else found.name
 
 
 def name_text(name: Any) -> str | None:
@@ -142,7 +143,10 @@ def _mapped(value: Any, change: Callable[[sp.Expr], sp.Expr], where: str) -> Any
     after = change(before)
     if after == before:
         return value
-    return after.name if isinstance(value, str) and isinstance(after, sp.Symbol) else after
+    if not isinstance(value, str) or not isinstance(after, sp.Symbol):
+        return after
+    # Of a source more than a name is no input, and stays more.
+    return after.name if value.strip().isidentifier() else f"1*{after.name}"
 
 
 def _mapped_friction(law: DryFriction, change: Callable[[sp.Expr], sp.Expr]) -> DryFriction:

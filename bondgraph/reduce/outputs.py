@@ -84,7 +84,7 @@ def _add(
     if not _equal(reduction.reading(known), reduction.reading(row)):
         raise StructureError(
             f"two different quantities are called {symbol}; names may be equal only where the "
-            "quantities are, so rename one"
+            f"quantities are, so rename one; a source that repeats it has the value '1*{symbol}'"
         )
 
 

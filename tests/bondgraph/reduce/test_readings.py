@@ -127,3 +127,21 @@ def test_any_signal_of_the_graph_can_be_made_a_reading(name: str) -> None:
     reading = equations.with_readings([symbol]).readings[symbol]
     assert (dict(reading.F), dict(reading.D), dict(reading.H)) == ({0: 1}, {}, {})
     assert equations.with_readings([sp.Symbol("unknown")]) == equations
+
+
+def _followed() -> Graph:
+    """A capacitor behind a resistor, and its voltage again before another two (an ideal follower)."""
+    nodes = [bg.Se("V", "u"), bg.One("a"), bg.R("R1", 2), bg.C("C1", 0.5, effort="v1"),
+             bg.Se("op", "1*v1"), bg.One("b"), bg.R("R2", 3), bg.C("C2", "1/5", effort="v2")]  # fmt: skip
+    return bond_graph(nodes, "V>a>R1 a>C1 op>b>R2 b>C2")
+
+
+def test_a_source_may_repeat_a_signal() -> None:
+    s = sp.Symbol("s")
+    for graph in (_followed(), bg.from_json(bg.to_json(_followed()))):
+        model = bg.linearize(bg.derive(graph), outputs=["v2"])
+        assert sp.simplify(model.transfer_function()[0] - 1 / ((s + 1) * (3 * s / 5 + 1))) == 0
+    parts = bg.derive(bg.prefixed(_followed(), "x"))
+    assert parts.laws["xop"].free_symbols == {sp.Symbol("xv1")}
+    with pytest.raises(bg.StructureError, match=r"a source that repeats it has the value '1\*v'"):
+        bg.derive(bond_graph([bg.Se("s", "v"), bg.One("j"), bg.I("m", "m", flow="v")], "s>j>m"))
