@@ -90,9 +90,11 @@ class _Builder:
             if name in program.external:
                 self._given[at] = name
         self._laws(program.known)
-        for group in program.groups:
+        for group in program.groups[: program.early]:
             self._laws(group)
         self._friction()
+        for group in program.groups[program.early :]:
+            self._laws(group)
         results = self._rates()
         results += [self._row(row, "F", "D") for row in program.law_rates]
         inverses = sorted(self._inverses, key=lambda place: (place[1], place[0]))

@@ -106,6 +106,7 @@ def _sizes(program: Program, fast: Sequence[Straight]) -> dict[str, int]:
         "PARAMETERS": len(program.parameters),
         "ENTRIES": len(program.coefficients.results),
         "GROUPS": len(program.groups),
+        "EARLY": program.early,
         "LARGEST": largest,
         "LOOP": max([ports + coupled if program.joint else 0, *loops]),
         "FRICTION": ports,

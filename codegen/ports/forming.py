@@ -29,6 +29,7 @@ def formed(program: Program, binding: Binding, matrices: Callable[[Instant], Num
         beyond=np.array(program.beyond, dtype=int),
         matrices=matrices,
         laws=[_laws(group, binding) for group in program.groups],
+        early=program.early,
         law_rates=np.array(program.law_rates, dtype=int),
         varying=program.varying,
     )

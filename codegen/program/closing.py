@@ -12,6 +12,7 @@ from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError
 from bondgraph.reduce.readings import depends_on_signals
+from codegen.program.acting import acting
 from codegen.program.jumps import Jump, Smooth, jumps_of
 from codegen.program.sliding import Slider, sliders_of
 
@@ -21,10 +22,10 @@ class Closing:
     """The laws by the input they give, sorted by what they depend on.
 
     ``known``: of time, parameters and external inputs. ``order``: groups of the others in the order of
-    their evaluation, with whether each is a loop. ``friction``: inputs given by dry friction, and by ideal
-    switches, which let go give nothing.
-    ``coupled``: laws that depend on friction, solved together with it. ``law_states``: each law's own
-    state and the reading that is its rate.
+    their evaluation, with whether each is a loop; the first ``early`` come before friction, the rest only
+    read what it gives. ``friction``: inputs given by dry friction, and by ideal switches, which let go
+    give nothing. ``coupled``: laws that depend on friction and act back on it, solved together with it.
+    ``law_states``: each law's own state and the reading that is its rate.
     """
 
     #: The equations, with every signal that a law reads among their readings.
@@ -36,6 +37,7 @@ class Closing:
     external: tuple[sp.Symbol, ...]
     known: tuple[sp.Symbol, ...]
     order: tuple[tuple[tuple[sp.Symbol, ...], bool], ...]
+    early: int
     friction: tuple[sp.Symbol, ...]
     coupled: tuple[sp.Symbol, ...]
     #: Whether friction efforts act back at once on friction, by way of slips, levels or other laws.
@@ -87,8 +89,8 @@ def close_ports(
         if isinstance(closed, ExpressionLaw) and closed.state is not None
     }
     states = {**states, **equations.integrals}
-    sorted_laws = _sort(equations, laws, set(states), parameters, switching)
-    known, order, friction, coupled, joint = sorted_laws
+    sorted_laws = _sort(equations, laws, set(states), parameters, switching, received)
+    known, order, early, friction, coupled, joint = sorted_laws
     return Closing(
         equations,
         laws,
@@ -98,6 +100,7 @@ def close_ports(
         _external(equations, laws, watched, set(states), parameters),
         known,
         order,
+        early,
         friction,
         coupled,
         joint,
@@ -186,6 +189,7 @@ def _external(
 Sorted = tuple[
     tuple[sp.Symbol, ...],
     tuple[tuple[tuple[sp.Symbol, ...], bool], ...],
+    int,
     tuple[sp.Symbol, ...],
     tuple[sp.Symbol, ...],
     bool,
@@ -198,6 +202,7 @@ def _sort(
     law_states: set[sp.Symbol],
     parameters: set[str],
     switching: set[sp.Symbol],
+    received: Mapping[sp.Symbol, sp.Symbol],
 ) -> Sorted:
     held = {name for name, law in laws.items() if law == ExpressionLaw(name)}
     held = {name for name in held if name.name in parameters}
@@ -212,11 +217,15 @@ def _sort(
             if source in needs:
                 needs.add_edge(source, name)
     after: set[sp.Symbol] = set().union(*(nx.descendants(needs, name) for name in friction))
-    coupled = tuple(name for name in laws if name in after and name not in friction)
-    rest = needs.subgraph(set(needs) - set(friction) - set(coupled))
+    moving = after & acting(equations, [received[name] for name in friction])
+    moving |= set().union(*(nx.ancestors(needs, name) for name in {*friction, *moving}))
+    coupled = tuple(name for name in laws if name in after & moving and name not in friction)
+    late = after - set(friction) - set(coupled)
+    early = _groups(needs.subgraph(set(needs) - after - set(friction)), list(laws))
+    order = (*early, *_groups(needs.subgraph(late), list(laws)))
     solved = {*friction, *coupled}
     joint = bool(coupled) or any(a in solved and b in friction for a, b in needs.edges)
-    return known, _groups(rest, list(laws)), friction, coupled, joint
+    return known, order, len(early), friction, coupled, joint
 
 
 def _reads(

@@ -89,6 +89,7 @@ def lower(
         known_uses=tuple(uses(closing, name) for name in closing.known),
         known_rates=block(known_rates(closing, external_rates), taken),
         groups=tuple(group(closing, names, loop, taken) for names, loop in closing.order),
+        early=closing.early,
         friction=rubbing,
         friction_values=block(values, taken),
         coupled=group(closing, closing.coupled, True, taken),

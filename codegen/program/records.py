@@ -144,7 +144,8 @@ class Program:
     ``coefficients``: parameters to the nonzero entries of the matrices in ``layout``: A, J, B, E over
     states and inputs, and F, D, H, K with a row for each reading, ``F x + D u + H x' + K u'``.
     ``known``: laws of time, parameters and external inputs; ``known_rates`` their rates. ``groups``:
-    the other laws in an order in which each can be evaluated. ``friction_values``: level, breakaway
+    the other laws in an order in which each can be evaluated, the first ``early`` of them before friction,
+    which the rest only read. ``friction_values``: level, breakaway
     level, curve and curve at rest of each friction port in turn. ``coupled``: laws to be
     solved with the friction.
     """
@@ -170,6 +171,7 @@ class Program:
     known_uses: tuple[tuple[int, ...], ...]
     known_rates: Block
     groups: tuple[Group, ...]
+    early: int
     friction: tuple[FrictionPort, ...]
     friction_values: Block
     coupled: Group

@@ -133,7 +133,9 @@ def hung_on(closing: Closing) -> list[sp.Expr]:
 
 def _checked_level(closing: Closing, slider: Slider) -> sp.Expr:
     """A slider's level, which must not be negative; zero where it is known only with what friction gives."""
-    equations, late = closing.equations, {*closing.friction, *closing.coupled}
+    equations = closing.equations
+    late = {*closing.friction, *closing.coupled}
+    late |= {name for names, _ in closing.order[closing.early :] for name in names}
     columns = {equations.inputs.index(name) for name in late}
     read = slider.whole.free_symbols
     told = {*read, slider.level} & late

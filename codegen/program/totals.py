@@ -14,7 +14,8 @@ class Totals:
 
     def __init__(self, closing: Closing) -> None:
         self._closing, self._equations = closing, closing.equations
-        self._late = {*closing.friction, *closing.coupled}
+        after = (name for names, _ in closing.order[closing.early :] for name in names)
+        self._late = {*closing.friction, *closing.coupled, *after}
         self._loop = {name: names for names, loop in closing.order if loop for name in names}
         #: The names of laws that read states.
         self.laws = frozenset(name for names, _ in closing.order for name in names)

@@ -19,6 +19,7 @@ _FORM = '''def form(parameters):
         beyond=BEYOND,
         matrices=matrices(coefficients, parameters, varying={varying}),
         laws={laws},
+        early={early},
         law_rates=LAW_RATES,
         varying={varying},
     )'''
@@ -189,7 +190,9 @@ def _form(program: Program) -> list[str]:
     for name, group in zip(law_names(program), program.groups, strict=True):
         laws += _group("Loop(" if group.loop else "Laws(", name, group, "),", 12)
     listed = "\n".join(["(", *laws, "        )"]) if laws else "()"
-    return _FORM.format(rates=rates, varying=program.varying, laws=listed).splitlines()
+    return _FORM.format(
+        rates=rates, varying=program.varying, laws=listed, early=program.early
+    ).splitlines()
 
 
 def _group(opening: str, name: str, group: Group, closing: str, indent: int) -> list[str]:

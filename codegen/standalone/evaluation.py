@@ -60,8 +60,8 @@ class Form:
     external inputs. ``known``: laws of time and external inputs; ``known_rates``: how fast these
     change, None where nothing asks for it. ``beyond``: the places of what laws have beyond their
     tangents, whose rates are with what moves slips. ``laws``: the others, in an order in which each
-    can be evaluated. ``law_rates``: the places in y of the rates of laws' states. ``varying``:
-    whether the matrices change.
+    can be evaluated, the first ``early`` of them before friction. ``law_rates``: the places in y of
+    the rates of laws' states. ``varying``: whether the matrices change.
     """
 
     states: int
@@ -73,6 +73,7 @@ class Form:
     beyond: Places
     matrices: Callable[[Instant], Numbers]
     laws: Sequence[Laws]
+    early: int
     law_rates: Places
     varying: bool
 
@@ -106,9 +107,11 @@ def evaluated(
     if not form.varying:
         now.x = now.x + numbers.R @ now.u  # x = xi + A^-1 E u
     now.y = numbers.F @ now.x + numbers.D @ now.u + numbers.G @ now.du
-    for laws in form.laws:
+    for laws in form.laws[: form.early]:
         laws.close(now)
     correction = contact(now, mode, checked) if contact is not None else None
+    for laws in form.laws[form.early :]:
+        laws.close(now)
     rate = numbers.P @ now.x + numbers.Q @ now.u
     if form.varying:
         rate += numbers.R @ now.du

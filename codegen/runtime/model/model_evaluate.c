@@ -209,6 +209,18 @@ static int begin(bg_model *m, double t, const double *s, const double *w, const 
     return status;
 }
 
+/* The groups of laws from one up to another. */
+static int evaluate_groups(bg_model *m, int from, int to)
+{
+    int status = BG_OK;
+    for (int g = from; g < to && status == BG_OK; g++) {
+        status = evaluate_group(m, &bg_groups[g]);
+        if (status != BG_OK)
+            m->where = g;
+    }
+    return status;
+}
+
 /* The rate of s, and all else as a snapshot. */
 static int finish(bg_model *m, const bg_hold *held, bg_snapshot *shot)
 {
@@ -239,17 +251,17 @@ static int evaluate(bg_model *m, double t, const double *s, const double *w, con
     bg_hold *held = NULL;
     int status = begin(m, t, s, w, dw), sticking = 0;
     m->where = -1;
-    for (int g = 0; g < BG_GROUPS && status == BG_OK; g++) {
-        status = evaluate_group(m, &bg_groups[g]);
-        if (status != BG_OK)
-            m->where = g;
-    }
+    if (status == BG_OK)
+        status = evaluate_groups(m, 0, BG_EARLY);
     for (int i = 0; i < K; i++)
         sticking |= mode[i] == 0;
     if (status == BG_OK && sticking)
         status = bg_hold_of(m, mode, &held);
     if (status == BG_OK && K > 0)
         status = rub(m, mode, held, checked);
+    /* Laws that only read what friction gives. */
+    if (status == BG_OK)
+        status = evaluate_groups(m, BG_EARLY, BG_GROUPS);
     return status == BG_OK ? finish(m, held, shot) : status;
 }
 

@@ -260,7 +260,34 @@ def behind_moving_ratio() -> Kind:
     )  # fmt: skip
 
 
+def warmed() -> Kind:
+    """A brake that warms up by what it takes, and cools: theta' = (N (u - slow t) - h theta)/c, to rest."""
+    u, slow, stops = 3.0, 2.0, 1.5
+    k, a, b = 4.0 / 2.0, 5.0 * u / 2.0, 5.0 * slow / 2.0
+    nodes = [bg.Se("drive", "M"), bg.One("n"), bg.I("m", 1.0, flow="w"),
+             bg.R("brake", effort="tau", flow="s", law=bg.DryFriction("N")),
+             bg.Se("heat", "tau*s - h*theta"), bg.One("warm"),
+             bg.I("body", "c", flow="theta")]  # fmt: skip
+
+    def warm(s: Array) -> Array:
+        return (a + b / k) / k * -np.expm1(-k * s) - b / k * s
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        last = float(warm(np.array(stops)))
+        return {
+            "w": np.maximum(u - slow * t, 0),
+            "theta": stepwise(t, (0.0, warm), (stops, lambda s: last * np.exp(-k * s))),
+        }
+
+    return Kind(
+        "warmed by what it takes, by a law that only reads that",
+        bond_graph(nodes, "drive>n>m n>brake heat>warm>body"), {"h": 4.0, "c": 2.0},
+        {"M": "3", "N": "5"}, known, 3.0, {"w": u}, at=1.0, mode={"brake": "slip"},
+        rest={"inputs": {"M": 3.0, "N": 5.0}},
+    )  # fmt: skip
+
+
 FRICTION = (
     coulomb, level_of_input, breakaway, stribeck, asymmetric, level_of_state, curve_of_state,
-    ruled_by_load, bollard, on_a_spring, put_later, in_series, together, chain, behind_moving_ratio,
+    ruled_by_load, bollard, on_a_spring, put_later, in_series, together, chain, behind_moving_ratio, warmed,
 )  # fmt: skip
