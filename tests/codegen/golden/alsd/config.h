@@ -21,6 +21,7 @@
 #define BG_PARAMETERS 11
 #define BG_ENTRIES 46
 #define BG_GROUPS 2
+#define BG_EARLY 2
 #define BG_LARGEST 1
 #define BG_LOOP 0
 #define BG_FRICTION 1
