@@ -6,7 +6,6 @@ from typing import Any
 import sympy as sp
 
 from bondgraph.algebra.atoms import symbol
-from bondgraph.algebra.expressions import expression
 from bondgraph.declare import fields
 from bondgraph.declare.attributes import (
     bare_name,
@@ -134,13 +133,13 @@ def _source(name: Hashable, kind: Kind, attributes: Mapping[str, Any], unit: str
     if attributes.get("value") is None:
         raise StructureError(f"{where} has no value; give the input's name or an expression")
     gives, receives = kind.gives, OTHER[kind.gives]
-    value, bare = expression(attributes["value"], where), bare_name(attributes["value"], where)
+    bare = bare_name(attributes["value"], where)
     given = variable({}, gives, name) if bare is None else sp.Symbol(bare.name)
     if bare not in (None, given):
-        raise StructureError(f"{where}: the input {value} must be a symbol without assumptions")
+        raise StructureError(f"{where}: the input {bare} must be a symbol without assumptions")
     received = variable(attributes, receives, name)
     effort, flow = (given, received) if gives == "effort" else (received, given)
-    known = law(value, where) if bare is None else None
+    known = law(attributes["value"], where) if bare is None else None
     return Element(name, kind, None, effort, flow, law=known, gives=gives, unit=unit)
 
 
