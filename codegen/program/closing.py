@@ -217,7 +217,9 @@ def _sort(
             if source in needs:
                 needs.add_edge(source, name)
     after: set[sp.Symbol] = set().union(*(nx.descendants(needs, name) for name in friction))
-    moving = after & acting(equations, [received[name] for name in friction])
+    moving = after & _acting(
+        equations, laws, needs, [received[name] for name in friction], received
+    )
     moving |= set().union(*(nx.ancestors(needs, name) for name in {*friction, *moving}))
     coupled = tuple(name for name in laws if name in after & moving and name not in friction)
     late = after - set(friction) - set(coupled)
@@ -226,6 +228,25 @@ def _sort(
     solved = {*friction, *coupled}
     joint = bool(coupled) or any(a in solved and b in friction for a, b in needs.edges)
     return known, order, len(early), friction, coupled, joint
+
+
+def _acting(
+    equations: StateEquations,
+    laws: Mapping[sp.Symbol, Law],
+    needs: "nx.DiGraph[sp.Symbol]",
+    slips: Sequence[sp.Symbol],
+    received: Mapping[sp.Symbol, sp.Symbol],
+) -> set[sp.Symbol]:
+    """The inputs that act on slips, by way of the states of laws, too, whose rates are what these receive."""
+    owners = {name for name, law in laws.items() if isinstance(law, ExpressionLaw) and law.state}
+    asked = list(slips)
+    while True:
+        found = acting(equations, asked)
+        found |= set().union(*(nx.ancestors(needs, name) for name in found if name in needs))
+        more = [received[name] for name in laws if name in owners & found]
+        if not (more := [name for name in more if name not in asked]):
+            return found
+        asked += more
 
 
 def _reads(

@@ -164,3 +164,41 @@ def test_friction_that_reads_its_own_slip_beside_a_resistance_is_solved_for() ->
         program = lower(_beside(friction))
         assert program.joint
         assert not program.affine
+
+
+def _late(closing: Closing) -> list[str]:
+    return [name.name for names, _ in closing.order[closing.early :] for name in names]
+
+
+def _brake(heat: str, *more: tuple, bonds: str = "") -> Closing:
+    """A brake on a mass, and a heat flow into a body of its own."""
+    nodes = [bg.One("a"), bg.I("J", 1, flow="w"), bg.Se("heat", heat), bg.One("th"),
+             bg.I("body", 1, flow="T"),
+             bg.R("c", effort="tau", flow="s", law=bg.DryFriction("N")), *more]  # fmt: skip
+    return _close(bg.derive(bond_graph(nodes, f"a>J a>c heat>th>body {bonds}")), parameters=["N"])
+
+
+def test_laws_that_only_read_what_friction_gives_come_after_it() -> None:
+    closing = _brake("tau*s")
+    assert (_late(closing), closing.coupled) == (["e_heat"], ())
+
+
+def test_laws_that_read_late_laws_are_late_and_in_order() -> None:
+    closing = _brake("2*f_gas", bg.Sf("gas", "tau*s"), bg.C("tank", 1), bonds="gas>tank")
+    assert (_late(closing), closing.coupled) == (["f_gas", "e_heat"], ())
+
+
+@pytest.mark.parametrize(
+    ("push", "bonds"), [(bg.Se("push", "tau/3"), "push>a"), (bg.R("push", law="tau/3"), "a>push")]
+)
+def test_laws_that_push_on_what_friction_holds_are_solved_with_it(push, bonds) -> None:
+    closing = _brake("tau*s", push, bonds=bonds)
+    assert (_late(closing), [one.name for one in closing.coupled]) == (["e_heat"], ["e_push"])
+
+
+def test_laws_that_push_on_a_nonlinear_inertia_that_friction_holds_are_solved_with_it() -> None:
+    """They act on its momentum, which is a law's own state, and that on the slip's rate."""
+    nodes = [bg.One("a"), bg.I("J", law="p_J + p_J**3"), bg.Se("push", "tau/3"),
+             bg.R("c", effort="tau", flow="s", law=bg.DryFriction("N"))]  # fmt: skip
+    closing = _close(bg.derive(bond_graph(nodes, "a>J a>c push>a")), parameters=["N"])
+    assert (_late(closing), [one.name for one in closing.coupled]) == ([], ["e_push"])
