@@ -21,6 +21,7 @@ from bondgraph.declare.validate import graph_of
 from bondgraph.equations import StateEquations
 from bondgraph.reduce.inertia import check_regular, inertia
 from bondgraph.reduce.junction import junction_structure
+from bondgraph.reduce.opened import opened
 from bondgraph.reduce.outputs import named_signals, shown_signals
 from bondgraph.reduce.ports import reduce_ports
 from bondgraph.reduce.rates import resolved
@@ -31,11 +32,15 @@ from bondgraph.reduce.structure import JunctionStructure, PortRow
 from bondgraph.reduce.switches import check_switches, switch_ports
 
 
-def derive(graph: Any, outputs: Iterable[Hashable] | None = None) -> StateEquations:
+def derive(
+    graph: Any, outputs: Iterable[Hashable] | None = None, inputs: Iterable[str] = ()
+) -> StateEquations:
     """The equations of a declared graph, with causality assigned and dependent storages resolved.
 
     ``outputs``: nodes whose signal the rows of F, D and G show: of a one-port the variable it
-    receives, of a junction its common variable; left out, all open ports.
+    receives, of a junction its common variable; left out, all open ports. ``inputs``: names in values
+    that change in time as given from outside: the opening of a valve, a mass that is filled. An inertia or
+    a compliance whose value reads an input has its momentum or displacement as its state, ``p_m`` of ``m``.
 
     Raises the `BondGraphError` of the stage that refuses.
 
@@ -53,7 +58,7 @@ def derive(graph: Any, outputs: Iterable[Hashable] | None = None) -> StateEquati
     [1],
     [0]]))
     """
-    return state_equations(junction_structure(assign_causality(graph)), outputs)
+    return state_equations(opened(junction_structure(assign_causality(graph)), inputs), outputs)
 
 
 def state_equations(
@@ -72,17 +77,21 @@ def state_equations(
     return _equations(structure, lambda reduction, _: shown_signals(reduction.structure, outputs))
 
 
-def derive_again(equations: StateEquations, elements: Mapping[Hashable, Element]) -> StateEquations:
+def derive_again(
+    equations: StateEquations, elements: Mapping[Hashable, Element], inputs: Iterable[str] = ()
+) -> StateEquations:
     """The equations of the same graph with other elements at some of its nodes, showing the same signals.
 
-    Each node keeps its ports and the names of its variables; causality is assigned anew.
+    ``inputs``: more names in values that are inputs. Each node keeps its ports and the names of its
+    variables; causality is assigned anew.
 
     Raises what `derive` raises.
     """
     kept = equations.reduction.structure
     graph = graph_of({**kept.elements, **elements}, zip(kept.ends, kept.bonds, strict=True))
+    names = [*(name.name for name in kept.opened), *inputs]
     return _equations(
-        junction_structure(assign_causality(graph)),
+        opened(junction_structure(assign_causality(graph)), names),
         lambda _, signals: [(symbol, signals[symbol]) for symbol in equations.outputs],
     )
 

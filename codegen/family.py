@@ -12,7 +12,6 @@ import sympy as sp
 
 from bondgraph.algebra.atoms import normal
 from bondgraph.analyse.closures import merged_laws
-from bondgraph.analyse.turned import turned
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, SignalError
 from codegen.corners.located import with_corners
@@ -24,6 +23,7 @@ from codegen.program.lower import lower
 from codegen.program.records import Program
 from codegen.simulate import BACKENDS, bound, with_engine
 from codegen.simulator import Simulator
+from codegen.supplied import supplied
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +59,8 @@ class Family:
         if self.backend not in BACKENDS:
             raise SignalError(f"unknown backend {self.backend!r}; there is {', '.join(BACKENDS)}")
         exact_parameters(self.parameters)
-        object.__setattr__(self, "equations", turned(self.equations, self.laws))
         named = {str(normal(name)): value for name, value in self.parameters.items()}
+        object.__setattr__(self, "equations", supplied(self.equations, self.laws, named))
         object.__setattr__(self, "parameters", MappingProxyType(named))
         if isinstance(self.laws, Mapping):
             object.__setattr__(self, "laws", MappingProxyType(dict(self.laws)))

@@ -5,7 +5,6 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from bondgraph.analyse.turned import turned
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, SignalError
 from codegen.corners.located import with_corners
@@ -17,6 +16,7 @@ from codegen.program.lower import lower
 from codegen.program.records import Program
 from codegen.runs.arguments import check_names
 from codegen.simulator import Simulator
+from codegen.supplied import supplied
 
 BACKENDS = ("numpy", "c")
 """What runs models."""
@@ -69,7 +69,7 @@ def bare_simulator(
     """A simulator in numpy, without a word on what is doubtful; ``timed``: as `lower` takes it."""
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
-    equations = turned(equations, laws)
+    equations = supplied(equations, laws, parameters)
     return bound(
         with_corners(lower(equations, laws, parameters, timed)), equations, parameters, laws
     )

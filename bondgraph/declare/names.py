@@ -1,5 +1,6 @@
 """Rules that hold between elements: names that must differ, and parts that must belong together."""
 
+import re
 from collections.abc import Hashable, Iterable, Sequence
 from typing import Any
 
@@ -62,6 +63,15 @@ def named_by(element: Element) -> tuple[sp.Symbol, ...]:
     if isinstance(element.law, ExpressionLaw) and element.law.state is not None:
         named.append(element.law.state)
     return tuple(named)
+
+
+def energy_name(element: Element, taken: set[str]) -> sp.Symbol:
+    """A name for a storage's momentum or displacement, as laws name theirs; it is taken from then on."""
+    text = re.sub(r"\W", "_", f"{element.kind.letter}_{element.name}")
+    while text in taken:
+        text += "_"
+    taken.add(text)
+    return sp.Symbol(text)
 
 
 def _check_own_names(elements: Sequence[Element]) -> None:

@@ -23,7 +23,11 @@ def dependent_step(reduction: Reduction, held: Momenta) -> Step:
             else _fixed(reduction, held, port)
         )
     for port in reduction.states:
-        if port in held.symbols:
+        if port in reduction.energies:
+            one = reduction.structure.ports[port]
+            terms = reading_terms(reduction, reduction.columns[port])
+            lines.append(equation(one.given, terms, node=one.element.name))
+        elif port in held.symbols:
             one = reduction.structure.ports[port]
             terms = reading_terms(reduction, stored_rate(reduction, port))
             lines.append(equation(rate(held.symbols[port]), terms, node=one.element.name))
@@ -92,15 +96,17 @@ def balances_step(
     """Each state's storage law with everything put in, and the outputs."""
     lines: list[Equation] = []
     for port in reduction.states:
-        one, row = reduction.structure.ports[port], reduction.structure.rows[port]
+        one, row = reduction.structure.ports[port], reduction.driving(port)
         if port in held.symbols:
             stored = reading_terms(reduction, stored_rate(reduction, port))
         else:
             ((value, variable),) = held.stored[port]
             stored = [(value, rate(variable))]
         put = reading_terms(reduction, reduction.reading(row))
+        # A momentum of several storages changes by what the rest gives, not by what one of them receives.
+        received = [one.received] if row == reduction.structure.rows[port] else []
         lines.append(
-            equation(stored, one.received, row_terms(reduction, row), put, node=one.element.name)
+            equation(stored, *received, row_terms(reduction, row), put, node=one.element.name)
         )
     for symbol, row in shown:
         seen, put = row_terms(reduction, row), reading_terms(reduction, reduction.reading(row))

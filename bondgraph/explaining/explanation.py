@@ -21,6 +21,7 @@ from bondgraph.explaining.strokes_told import causality_step
 from bondgraph.explaining.text import text_of
 from bondgraph.explaining.typesetting import latex_of, markdown_of
 from bondgraph.reduce.junction import junction_structure
+from bondgraph.reduce.opened import opened
 from bondgraph.show.display import rows_of_terms
 
 
@@ -54,12 +55,14 @@ class Explanation:
         return markdown_of(self.steps, self.result, MOST_LINES)
 
 
-def explain(graph: Any, outputs: Iterable[Hashable] | None = None) -> Explanation:
+def explain(
+    graph: Any, outputs: Iterable[Hashable] | None = None, inputs: Iterable[str] = ()
+) -> Explanation:
     """The derivation of a declared or causal graph, as the engine decided it.
 
     Who imposes what; storages, laws and junctions as equations, switches in both of their ways; what
     every port receives, loops and resistances solved; dependent storages differentiated and put in; A,
-    and the result. ``outputs`` as for `derive`, whose errors it raises.
+    and the result. ``outputs`` and ``inputs`` as for `derive`, whose errors it raises.
 
     >>> import bondgraph as bg, networkx as nx
     >>> g = nx.DiGraph()
@@ -70,7 +73,7 @@ def explain(graph: Any, outputs: Iterable[Hashable] | None = None) -> Explanatio
     (L*i', -R*i + u)
     """
     causal = graph if isinstance(graph, CausalGraph) else assign_causality(graph)
-    result = state_equations(junction_structure(causal), outputs)
+    result = state_equations(opened(junction_structure(causal), inputs), outputs)
     return Explanation(tuple(numbered(_steps(causal, result))), result)
 
 

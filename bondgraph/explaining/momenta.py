@@ -1,6 +1,5 @@
 """Momenta and displacements; those that are more than a constant times a variable get names."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -9,6 +8,7 @@ import sympy as sp
 from bondgraph.algebra.exact import Row
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.declare.names import energy_name
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.storages import field_row
 from bondgraph.show.sums import Sum
@@ -44,12 +44,10 @@ def momenta(reduction: Reduction, taken: set[sp.Symbol]) -> Momenta:
         if isinstance(law, ExpressionLaw) and law.state is not None:
             symbols[at] = law.state
             continue
-        letter = port.element.kind.letter
-        text = re.sub(r"\W", "_", f"{letter}_{port.element.name}")
-        while text in names:
-            text += "_"
-        names.add(text)
-        symbols[at] = sp.Symbol(text)
+        if at in reduction.energies:
+            symbols[at], stored[at] = reduction.energies[at].symbol, reduction.energies[at].holds
+            continue
+        symbols[at] = energy_name(port.element, names)
     return Momenta(stored, symbols)
 
 

@@ -29,7 +29,8 @@ def storages_step(reduction: Reduction, momenta: Momenta) -> Step:
         if at in momenta.symbols:
             symbol = momenta.symbols[at]
             lines.append(equation(symbol, stored, node=name))
-            lines.append(equation(rate(symbol), effect, node=name))
+            if reduction.driving(at) == reduction.structure.rows[at]:
+                lines.append(equation(rate(symbol), effect, node=name))
         else:
             ((value, variable),) = stored
             lines.append(equation([(value, rate(variable))], effect, node=name))

@@ -25,7 +25,7 @@ def inertia(reduction: Reduction) -> tuple[list[Row], list[Reading]]:
     A: list[Row] = []
     balances: list[Reading] = []
     for port in reduction.states:
-        balance = ReadingSum(reduction.reading(reduction.structure.rows[port]))
+        balance = ReadingSum(reduction.reading(reduction.driving(port)))
         balance.add(stored_rate(reduction, port), -sp.Integer(1))
         A.append({j: -entry for j, entry in balance.H.items()})
         balances.append(balance.whole())

@@ -75,7 +75,7 @@ def moving_names(structure: JunctionStructure) -> set[sp.Symbol]:
             used |= element.value.free_symbols
         for _, entry in element.row:
             used |= entry.free_symbols
-    named = {TIME, *structure.states_of_laws}
+    named = {TIME, *structure.states_of_laws, *structure.opened}
     for port in structure.ports:
         named |= {port.given, port.received}
     for element in structure.elements.values():

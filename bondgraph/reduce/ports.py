@@ -8,6 +8,7 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.errors import DependentSourceError
+from bondgraph.reduce.energies import in_energies
 from bondgraph.reduce.motion import Motion, moving_names, settled
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.resistances import resistances
@@ -30,7 +31,7 @@ def reduce_ports(structure: JunctionStructure) -> Reduction:
         i for i, port in enumerate(ports) if port.element.kind.resists and not imposes(port)
     )
     imposed = tuple(i for i, port in enumerate(ports) if imposes(port) and not detects(port))
-    inputs = tuple(dict.fromkeys(ports[i].given for i in imposed))
+    inputs = tuple(dict.fromkeys([*(ports[i].given for i in imposed), *structure.opened]))
     one = sp.Integer(1)
     columns = {port: Reading({at: one}, {}, {}, {}) for at, port in enumerate(states)}
     columns |= {i: Reading({}, {inputs.index(ports[i].given): one}, {}, {}) for i in imposed}
@@ -55,18 +56,31 @@ def _in_motion(found: Reduction, moving: set[sp.Symbol]) -> Reduction:
         return _expression(found, rows[name], name)
 
     structure = settled(structure, moving, base, express)
-    found = replace(found, structure=structure)
+    used = moving | _within(structure)
+    found = _over_energies(in_energies(replace(found, structure=structure), used & base), used)
+    structure = found.structure
     found = found.knowing(resistances(found))
     one = sp.Integer(1)
     rates = {name: Reading({}, {}, {at: one}, {}) for at, name in enumerate(found.names)}
     rates |= {name: Reading({}, {}, {}, {at: one}) for at, name in enumerate(found.inputs)}
-    used = moving | _within(structure)
     for at, port in enumerate(structure.ports):
         own = port.own_state
         if own is not None and own in used:
             _independent(found, structure.rows[at], own)
             rates[own] = found.reading(structure.rows[at])
     return replace(found, motion=Motion(found.names, found.inputs, MappingProxyType(rates)))
+
+
+def _over_energies(found: Reduction, used: set[sp.Symbol]) -> Reduction:
+    """The same with values over momenta and displacements where these are states instead."""
+    ports = found.structure.ports
+    given = {ports[at].given: at for at in found.energies if ports[at].given in used}
+
+    def express(name: sp.Symbol) -> sp.Expr:
+        return _expression(found, {given[name]: sp.Integer(1)}, name)
+
+    base = {*found.names, *found.inputs, *found.structure.states_of_laws, TIME}
+    return replace(found, structure=settled(found.structure, given, base, express))
 
 
 def _within(structure: JunctionStructure) -> set[sp.Symbol]:

@@ -1,7 +1,7 @@
 """`Reduction`: the ports of a junction structure, sorted into states, inputs and what follows from them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 
@@ -14,11 +14,19 @@ from bondgraph.reduce.structure import JunctionStructure, Port
 
 
 @dataclass(frozen=True)
+class Energy:
+    """A momentum or displacement that is a state: ``symbol``, and the sum of variables that it ``holds``."""
+
+    symbol: sp.Symbol
+    holds: tuple[tuple[sp.Expr, sp.Symbol], ...]
+
+
+@dataclass(frozen=True)
 class Reduction:
     """The ports of a junction structure, sorted into states, inputs and what follows from them.
 
     ``states``, ``dependent``, ``resistive``, ``imposed``: port numbers. ``inputs``: the symbols that
-    imposed ports give, each once.
+    imposed ports give and that values alone read, each once.
     """
 
     structure: JunctionStructure
@@ -31,6 +39,8 @@ class Reduction:
     motion: Motion | None
     #: What each port gives, by its number.
     columns: Mapping[int, Reading]
+    #: The momenta and displacements that are states instead of what their storages give, by port.
+    energies: Mapping[int, Energy] = field(default_factory=lambda: MappingProxyType({}))
 
     @cached_property
     def columns_of_states(self) -> Mapping[int, int]:
@@ -44,7 +54,21 @@ class Reduction:
     @cached_property
     def names(self) -> tuple[sp.Symbol, ...]:
         """The symbols of the states."""
-        return tuple(self.structure.ports[port].given for port in self.states)
+        ports = self.structure.ports
+        energies = self.energies
+        return tuple(
+            energies[port].symbol if port in energies else ports[port].given for port in self.states
+        )
+
+    def driving(self, port: int) -> Mapping[int, sp.Expr]:
+        """What rules the rate of a state: a row over what ports give.
+
+        What dependent storages give is in a momentum itself.
+        """
+        row = self.structure.rows[port]
+        if port not in self.energies:
+            return row
+        return {at: entry for at, entry in row.items() if at not in self.dependent}
 
     def reading(self, row: Mapping[int, sp.Expr]) -> Reading:
         """A row over what the ports give, rewritten over states, inputs and their rates."""

@@ -12,8 +12,11 @@ def stored_rate(reduction: Reduction, port: int) -> Reading:
     """The rate of a linear storage's momentum or displacement, ``(sum_j M_ij v_j)'``.
 
     v_j is the state of a port with integral causality; of a dependent one it is what states and inputs
-    make it. The sum has more than one term in fields alone.
+    make it. Where the momentum itself is the state, it is that. The sum has more than one term in fields
+    alone.
     """
+    if port in reduction.energies:
+        return Reading({}, {}, {reduction.columns_of_states[port]: sp.Integer(1)}, {})
     result = ReadingSum()
     element = reduction.structure.ports[port].element
     if element.inverse is not None and reduction.motion is not None:

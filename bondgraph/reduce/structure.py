@@ -71,6 +71,8 @@ class JunctionStructure:
     #: The nodes at the ends of each bond, as the checked graph has them: with the elements the graph itself,
     #: which is derived once more where a law put later needs another causality.
     ends: tuple[Bond, ...] = ()
+    #: Names in values that are inputs, though no port gives them.
+    opened: tuple[sp.Symbol, ...] = ()
 
     @cached_property
     def places(self) -> Mapping[Hashable, int]:

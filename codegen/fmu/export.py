@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from bondgraph.algebra.atoms import normal
-from bondgraph.analyse.turned import turned
 from bondgraph.declare.switching import checked_modes
 from bondgraph.equations import StateEquations
 from bondgraph.errors import BondGraphError, SignalError
@@ -38,6 +37,7 @@ from codegen.runs.legs import Leg
 from codegen.runs.track import Settings
 from codegen.simulate import bare_simulator
 from codegen.simulator import Simulator
+from codegen.supplied import supplied
 from codegen.tuning import TUNING
 
 OTHERS: Mapping[str, str] = {"2.0": "fmu3", "3.0": "fmu2"}
@@ -82,7 +82,7 @@ def write_fmu(
         raise SignalError(f"FMI version {version!r}: there is {', '.join(OTHERS)}")
     target = Path(path)
     chosen = chosen_platforms(platforms)
-    official, equations = headers(version), turned(equations, laws)
+    official, equations = headers(version), supplied(equations, laws, parameters)
     model = _model(
         name or target.stem, equations, parameters, laws, initial or {}, inputs or {}, initially_on
     )

@@ -6,10 +6,9 @@ from typing import Any
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.analyse.turned import turned
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.equations import StateEquations
-from bondgraph.errors import ParameterError, StructureError, nearest
+from bondgraph.errors import StructureError
 from codegen.program.affine import is_affine
 from codegen.program.closing import Closing, close_ports
 from codegen.program.gains import check_gains
@@ -28,6 +27,7 @@ from codegen.program.sections import (
 )
 from codegen.program.tangents import with_tangents
 from codegen.program.timed import Sources
+from codegen.supplied import supplied
 
 
 def lower(
@@ -39,18 +39,16 @@ def lower(
     """Sort names into parameters and inputs, order the laws, and share common subexpressions.
 
     ``laws``: node (or the input it gives) to the law that closes its port, over those declared.
-    ``parameters``: the names that will be given numbers; any other name in a law is an input.
+    ``parameters``: the names that will be given numbers; any other name in a law is an input, and so is
+    one in a value beside a parameter.
     ``timed``: what holds the time and parameters alone becomes an input of its own, one of
     ``Program.sources``.
 
     Raises `ParameterError` if the matrices use a name that is no parameter, `DependentSourceError`
     if a law would have to be differentiated.
     """
-    given, equations = set(parameters), turned(equations, laws)
-    missing = [name.name for name in equations.parameters if name.name not in given]
-    if missing:
-        told = ", ".join(name + nearest(name, given) for name in missing)
-        raise ParameterError(f"missing parameter(s) {told}; give each a number in parameters")
+    given = set(parameters)
+    equations = supplied(equations, laws, given)
     watched = _watched(equations)
     closing = close_ports(equations, {} if laws is None else laws, given, watched)
     closing, tangents = with_tangents(closing)

@@ -4,13 +4,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from bondgraph.analyse.turned import turned
 from bondgraph.writing import write_all
 from codegen.model.resting import warn_of_rests
 from codegen.program.identifiers import module_name
 from codegen.program.lower import lower
 from codegen.python.export import to_python
 from codegen.python.script import script
+from codegen.supplied import supplied
 from codegen.targets import Export
 
 
@@ -26,7 +26,7 @@ class Python:
         self, export: Export, folder: Path, platforms: str | Iterable[str] | None = None
     ) -> list[Path]:
         """See `Target`."""
-        equations = turned(export.equations, export.laws)
+        equations = supplied(export.equations, export.laws, export.parameters)
         model = (equations, export.parameters, export.laws)
         module = to_python(
             *model, export.name, initial=export.initial, inputs=export.inputs,

@@ -4,7 +4,6 @@ from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from bondgraph.analyse.turned import turned
 from bondgraph.declare.switching import checked_modes
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
@@ -16,6 +15,7 @@ from codegen.modes.steps import step_at_start
 from codegen.numbers.arrays import Array
 from codegen.program.lower import lower
 from codegen.runs.arguments import initial_values, signals_for
+from codegen.supplied import supplied
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def start_of(
     """
     if not isinstance(parameters, Mapping):
         raise ParameterError(f"parameters must map names to numbers, not be {parameters!r}")
-    equations = turned(equations, laws)
+    equations = supplied(equations, laws, parameters)
     program = lower(equations, laws, parameters)
     program = with_corners(program) if located else program
     closed = ClosedModel(program, equations, parameters)
