@@ -21,6 +21,7 @@ from bondgraph.analyse.slopes import Point, operating_point, with_given
 from bondgraph.analyse.turned import turned
 from bondgraph.analyse.unknowns import Unknowns, unknowns_in
 from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, slides
+from bondgraph.derive import derive_again
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, SingularStorageError
 from bondgraph.reduce.rates import resolved
@@ -43,7 +44,7 @@ def linearize(
     ``at``: signal to value at the operating point, as far as slopes depend on it. Where A or what is held
     depends on what moves, and states accelerate at the point, how they do counts: their rates are those that
     the equations have there, with ``rates`` of open inputs, zero where left out. ``laws``: as for a
-    simulator, over those declared. ``inputs``: names in laws that become inputs; what else no signal
+    simulator, over those declared. ``inputs``: names in laws and values that become inputs; what no signal
     has is a parameter. A law that reads no signal and no such input leaves its port an input. ``outputs``:
     names of signals, else the equations' outputs. ``mode``: node to its mode: "on" or "off" for every
     switch and controlled junction, of a stop also "apart" or "touch"; "stick" or "slip" for dry friction,
@@ -63,7 +64,7 @@ def linearize(
     Matrix([[-6*c]])
     """
     stuck = tuple(stuck) if isinstance(stuck, Iterable) and not isinstance(stuck, str) else stuck
-    equations = turned(equations, _with_held(equations, laws, stuck, mode))
+    equations = turned(_opened(equations, inputs), _with_held(equations, laws, stuck, mode))
     merged = merged_laws(equations, {} if laws is None else laws)
     told = told_modes(equations, merged, stuck, mode)
     closed = {name: law for name, law in merged.items() if name not in told.names}
@@ -77,12 +78,13 @@ def linearize(
     told_of |= {
         name for one in equations.switches for name in one.on.free_symbols | one.off.free_symbols
     }
-    known = {*equations.signals, *equations.integrals, *equations.parameters, *told_of, TIME}
+    named = {*equations.signals, *equations.states, *equations.inputs, *equations.integrals}
+    known = {*named, *equations.parameters, *told_of, TIME}
     by_input = {
         p.given: closed[p.element.name] for p in equations.ports if p.element.name in closed
     }
     own = {law.state for law in closed.values() if isinstance(law, ExpressionLaw) and law.state}
-    moving = {*equations.signals, *equations.integrals, *own, *outer, TIME}
+    moving = {*named, *own, *outer, TIME}
     point = with_given(operating_point(at, known), by_input | told.zeros, moving)
     unknowns, free = Unknowns(), told.free
     system = ClosedRows(equations, closed, outer, point, unknowns, free, told.held)
@@ -101,6 +103,15 @@ def linearize(
     columns = {equations.inputs.index(port.given) for port in told.held}
     left = [j for j in system.left if j not in columns]
     return _model(model, left, system.columns, tuple(shown))
+
+
+def _opened(equations: StateEquations, inputs: Iterable[str]) -> StateEquations:
+    """The equations whose values read those of these names that they know as parameters."""
+    parameters = {name.name for name in equations.parameters}
+    names = (
+        [] if isinstance(inputs, str) else [str(name) for name in inputs if str(name) in parameters]
+    )
+    return derive_again(equations, {}, names) if names else equations
 
 
 def _with_held(
@@ -178,9 +189,7 @@ def _outer(
         if name in equations.inputs and name not in given:
             continue
         if name in {*equations.signals, *states, *equations.parameters, TIME}:
-            raise SignalError(
-                f"{name} can't be an input: it is a signal, a parameter of the matrices or the time"
-            )
+            raise SignalError(f"{name} can't be an input: it is a signal or the time")
         if name not in read:
             raise SignalError(f"no law reads an input {name}")
     return tuple(sorted(asked - set(equations.inputs), key=str))

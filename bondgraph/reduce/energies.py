@@ -71,7 +71,7 @@ def _reads_inputs(found: Reduction, group: tuple[int, ...]) -> bool:
 def _held(
     found: Reduction, states: tuple[int, ...], dependent: tuple[int, ...], moving: set[sp.Symbol]
 ) -> list[tuple[Row, Row]] | None:
-    """Each state's momentum, a row over the group's states less one over inputs; None if it is no such sum."""
+    """Each state's momentum, a row over the group's states less one over inputs; None if it is no sum."""
     structure = found.structure
     elements = [structure.ports[at].element for at in (*states, *dependent)]
     for one in elements:

@@ -34,6 +34,7 @@ def _options(command: Command) -> Command:
                      help=f"Wheel speed of a differential's tires, {SPEED:g} rad/s by default."),
         click.option("--stuck", multiple=True, metavar="PORT",
                      help="A friction port that sticks. May be repeated."),
+        options.reads,
         options.on,
         options.assigned("--mode", "mode", MODE, "on or off of a switch, stick or slip of friction."),
         options.as_json,
@@ -46,7 +47,7 @@ def _options(command: Command) -> Command:
 def _linear(
     subject: Subject, parameters: Mapping[str, float], laws: Mapping[str, Any],
     at: Mapping[str, float], rates: Mapping[str, float], speed: float | None, stuck: tuple[str, ...],
-    on: tuple[str, ...], mode: Mapping[str, str],
+    reads: tuple[str, ...], on: tuple[str, ...], mode: Mapping[str, str],
 ) -> StateSpace:  # fmt: skip
     if subject.differential is None:
         if speed is not None:
@@ -56,7 +57,7 @@ def _linear(
         equations = bg.derive(subject.graph())
         ports = [port.element.name for port in equations.ports]
         held, told = nodes_called(stuck, ports, "port"), _told(subject, ports, on, mode)
-        there = bg.linearize(equations, at, laws, stuck=held, mode=told, rates=rates)
+        there = bg.linearize(equations, at, laws, reads, held, mode=told, rates=rates)
         return there.numeric(parameters)
     full = model(subject.name, laws)
     subject.graph(on=on)
@@ -65,7 +66,7 @@ def _linear(
     values = numbers(full, parameters, SPEED if speed is None else speed)
     nodes = nodes_called(mode, full.differential.clutches, "clutch")
     told = dict(zip(nodes, mode.values(), strict=True))
-    there = bg.linearize(full.equations, at, full.laws, stuck=held, mode=told, rates=rates)
+    there = bg.linearize(full.equations, at, full.laws, reads, held, mode=told, rates=rates)
     return there.numeric(values)
 
 

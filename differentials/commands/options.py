@@ -70,6 +70,10 @@ off = click.option(
     metavar="SWITCH",
     help="A switch that is off, as all are that --on does not name. May be repeated.",
 )
+reads = click.option(
+    "--reads", multiple=True, metavar="NAME",
+    help="A name in values that is an input: the opening of a valve. May be repeated.",
+)  # fmt: skip
 scenario = click.option(
     "--scenario", type=OneOf(tuple(scenarios), "scenario"), metavar="NAME",
     help="A scenario that `bondgraph list` shows; by default the differential's own.",

@@ -39,7 +39,7 @@ def prepare(subject: Subject, asked: Asked, free: Collection[str] = ()) -> Prepa
         return _from_catalog(subject, asked)
     _refuse_catalog_options(subject, asked)
     first = nodes_called(asked.on, subject.switches(), "switch")
-    equations = bg.derive(subject.graph())
+    equations = _equations(subject, asked)
     missing = [name.name for name in equations.parameters if name.name not in asked.parameters]
     _refuse_missing(subject, [name for name in missing if name not in free])
     laws = _laws(asked, [port.element.name for port in equations.ports])
@@ -56,6 +56,14 @@ def run(subject: Subject, asked: Asked, backend: str, method: str) -> Result:
     return simulator.run(
         ready.times, ready.initial, ready.inputs, method, initially_on=ready.initially_on
     )
+
+
+def _equations(subject: Subject, asked: Asked) -> bg.StateEquations:
+    """Those of a file's graph; a name in values that --input gives, and --set does not, is an input."""
+    equations = bg.derive(subject.graph())
+    free = {name.name for name in equations.parameters} - {*asked.parameters}
+    names = [name for name in asked.inputs if name in free]
+    return bg.derive(subject.graph(), inputs=names) if names else equations
 
 
 def _laws(asked: Asked, nodes: Iterable[Any]) -> dict[Hashable, object]:

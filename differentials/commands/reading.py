@@ -58,17 +58,18 @@ def _case(name: str) -> dict[str, object]:
 )
 @options.subject
 @options.variants
+@options.reads
 @options.as_json
 def show(
     subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...], off: tuple[str, ...],
-    as_json: bool,
+    reads: tuple[str, ...], as_json: bool,
 ) -> None:  # fmt: skip
     """Equations, causality, parameters and modes of MODEL.
 
     MODEL is a name that `bondgraph list` shows, or a graph in a .json or .graphml file.
     """
     declared = subject.graph(halfshafts, unlumped, on, off)
-    derived = bg.derive(declared, outputs=list(subject.ports))
+    derived = bg.derive(declared, outputs=list(subject.ports), inputs=reads)
     if as_json:
         print_json(_shown(subject, declared, derived))
         return
@@ -108,6 +109,7 @@ def _open_text(subject: Subject, derived: bg.StateEquations) -> str:
     needed = ", ".join(map(str, derived.parameters)) or "none"
     given = [f"{port.given} from {port.element.name}" for port in derived.ports
              if port.element.name not in derived.laws and port.element.switch is None]  # fmt: skip
+    given += [f"{name} in values" for name in derived.reduction.structure.opened]
     return "\n".join(
         [
             headed("To run it"),
@@ -141,17 +143,18 @@ def _ratios_text(derived: bg.StateEquations, values: dict[str, float]) -> str:
     metavar="NAME",
     help="A node whose effort or flow y shows, by default the clutches. May be repeated.",
 )
+@options.reads
 @click.option("--latex", "as_latex", is_flag=True, help="The equations as LaTeX.")
 @options.as_json
 def derive(
     subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...], off: tuple[str, ...],
-    outputs: tuple[str, ...], as_latex: bool, as_json: bool,
+    outputs: tuple[str, ...], reads: tuple[str, ...], as_latex: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """The state equations of MODEL: A x' = J x + B u + E u', y = F x + D u + G u'."""
     if as_latex and as_json:
         raise click.UsageError("--latex and --json exclude each other; keep one")
     declared = subject.graph(halfshafts, unlumped, on, off)
-    derived = bg.derive(declared, outputs=list(outputs or subject.ports))
+    derived = bg.derive(declared, outputs=list(outputs or subject.ports), inputs=reads)
     if as_json:
         print_json(equations_data(derived))
     else:
@@ -168,11 +171,12 @@ def derive(
 )
 @options.subject
 @options.variants
+@options.reads
 @click.option("--latex", "as_latex", is_flag=True, help="The derivation as LaTeX.")
 def explain(
     subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...], off: tuple[str, ...],
-    as_latex: bool,
+    reads: tuple[str, ...], as_latex: bool,
 ) -> None:  # fmt: skip
     """How the equations of MODEL come about, step by step."""
-    explained = bg.explain(subject.graph(halfshafts, unlumped, on, off))
+    explained = bg.explain(subject.graph(halfshafts, unlumped, on, off), inputs=reads)
     click.echo(explained.latex() if as_latex else explained.text())

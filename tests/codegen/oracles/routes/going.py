@@ -37,7 +37,7 @@ Route = Callable[[Bench], None]
 def explain(bench: Bench) -> None:
     """Every state, every switch and every law is told; of many states, how many there are."""
     kind = bench.kind
-    text = str(bg.explain(kind.graph))
+    text = str(bg.explain(kind.graph, inputs=kind.read))
     states = [*map(str, kind.equations.states)]
     told = [*states, *kind.switches, *map(str, kind.equations.laws)]
     untold = [name for name in told if name not in text]
@@ -222,7 +222,7 @@ def linearize(bench: Bench) -> None:
     told = {
         str(name) for one in kind.equations.switches for name in (one.port.given, one.port.received)
     }
-    names = {*map(str, kind.equations.signals), *run.states, *outside} - told
+    names = {*map(str, kind.equations.signals), *run.states, *outside, *kind.read} - told
     read = {*map(str, set().union(*(law.free_symbols for law in kind.equations.laws.values())))}
     point = {name: float(run[name][4]) for name in names} | {"t": kind.at}
     # On which side of a corner a law is, may depend on its numbers.
@@ -233,6 +233,7 @@ def linearize(bench: Bench) -> None:
         laws=kind.laws,
         mode=kind.mode,
         inputs=[name for name in outside if name in read],
+        rates={name: _value(run, f"d_{name}", name, CLOSE * kind.end) for name in kind.read},
     )
     numbers = {sp.Symbol(name): value for name, value in kind.numbers.items()}
     sizes = len(model.states), len(model.inputs)

@@ -23,7 +23,8 @@ class Kind:
     ``later``: laws of open ports, put in after the graph is derived, as the command line takes them.
     ``known``: what the run is by hand. ``rest``: inputs and a start for a steady state; None where there
     is none at all. ``mode``: what ports do at ``at`` [s], in the words of events. ``ends``: nodes that
-    have impulses, so that fixed steps and samples beside them are of either side.
+    have impulses, so that fixed steps and samples beside them are of either side. ``read``: the inputs
+    that values read.
     """
 
     name: str
@@ -38,10 +39,11 @@ class Kind:
     at: float = 0.0
     mode: Mapping[str, str] = field(default_factory=dict)
     rest: Mapping[str, Mapping[str, float]] | None = None
+    read: tuple[str, ...] = ()
 
     @cached_property
     def equations(self) -> bg.StateEquations:
-        return bg.derive(self.graph)
+        return bg.derive(self.graph, inputs=self.read)
 
     @property
     def signals(self) -> dict[str, Signal]:

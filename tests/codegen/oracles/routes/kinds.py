@@ -8,8 +8,20 @@ from oracles.routes.plain import PLAIN
 from oracles.routes.resetting import RESETTING
 from oracles.routes.sloped import SLOPED
 from oracles.routes.stops import STOPS
+from oracles.routes.supplied import SUPPLIED
 from oracles.routes.switches import SWITCHES
 
-EVERY = (*FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL)
+EVERY = (
+    *FRICTION,
+    *JUMPING,
+    *SLOPED,
+    *SWITCHES,
+    *STOPS,
+    *RESETTING,
+    *CORNERED,
+    *PLAIN,
+    *LAWFUL,
+    *SUPPLIED,
+)
 
 KINDS = {make.__name__: make for make in EVERY}
