@@ -24,7 +24,7 @@ def inertia_step(equations: StateEquations) -> Step:
     d = len(reduction.dependent)
     own = [dict(stored_rate(reduction, port).H) for port in reduction.states]
     A, M_x = Factor("A", "A", equations.A), Factor("M_x", "M_{x}", matrix_of(own, n))
-    if not d:
+    if not any(_from_dependent(reduction)):
         return Step("inertia", "The matrix A", (), (), (Formula(A, ((M_x,),)),))
     S_xd = Factor("S_xd", "S_{xd}", matrix_of(_from_dependent(reduction), d))
     given = [dict(reduction.columns[port].H) for port in reduction.dependent]
@@ -45,7 +45,7 @@ def inertia_step(equations: StateEquations) -> Step:
 
 def _from_dependent(reduction: Reduction) -> list[Row]:
     place = {port: at for at, port in enumerate(reduction.dependent)}
-    rows = (reduction.structure.rows[port] for port in reduction.states)
+    rows = map(reduction.driving, reduction.states)
     return [{place[i]: entry for i, entry in row.items() if i in place} for row in rows]
 
 

@@ -34,6 +34,9 @@ def momenta(reduction: Reduction, taken: set[sp.Symbol]) -> Momenta:
     names = {name.name for name in taken}
     for at in sorted((*reduction.states, *reduction.dependent)):
         port = reduction.structure.ports[at]
+        if at in reduction.energies:
+            symbols[at], stored[at] = reduction.energies[at].symbol, reduction.energies[at].holds
+            continue
         stored[at] = _stored(reduction, at)
         if len(stored[at]) == 1 and port.element.inverse is None:
             ruled: Row = dict(reduction.structure.rows[at]) if at in reduction.dependent else {}
@@ -43,9 +46,6 @@ def momenta(reduction: Reduction, taken: set[sp.Symbol]) -> Momenta:
         law = port.element.law
         if isinstance(law, ExpressionLaw) and law.state is not None:
             symbols[at] = law.state
-            continue
-        if at in reduction.energies:
-            symbols[at], stored[at] = reduction.energies[at].symbol, reduction.energies[at].holds
             continue
         symbols[at] = energy_name(port.element, names)
     return Momenta(stored, symbols)

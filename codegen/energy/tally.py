@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from codegen.energy.quadrature import NODES, exact_integrals, gauss_sum, rows_over
+from codegen.energy.quadrature import NODES, WEIGHTS, exact_integrals, gauss_sum, rows_over
 from codegen.inputs.generators import generator
-from codegen.inputs.pieces import Piece
+from codegen.inputs.pieces import Piece, constant_piece
 from codegen.model.snapshot import Impact, Mode, Run, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
@@ -88,18 +88,23 @@ class Tally:
     ) -> None:
         """Inputs that step at t: the impulses by which sources set dependent storages in motion.
 
-        An impulse works on the mean of what it acts on before and after, as a short ramp would.
+        An impulse works as a short ramp would: where values stay, on the mean of before and after.
         """
         slipping = tuple(sign or 1 for sign in mode)
         a, b = (self.model.at(t, s, pieces, slipping) for pieces in (before, after))
-        impulses = np.zeros(_length(b))
-        readings = len(b.x) + len(b.z) + 2 * len(b.u)
-        impulses[readings : readings + len(b.y)] = b.numbers.G @ (b.u - a.u)
-        if not impulses.any():
-            return
-        one, other = self._pair(0.5 * (vector_of(a) + vector_of(b)))
-        pushed, turned = self._pair(impulses)
-        self.total = self.total + one * turned * self._double + pushed * other
+        readings, moved = len(b.x) + len(b.z) + 2 * len(b.u), b.u - a.u
+        ends = [(first(t), last(t)) for first, last in zip(before, after, strict=True)]
+        varying = self.model.program.varying
+        for node, weight in zip(NODES, WEIGHTS, strict=True) if varying else ((0.5, 1.0),):
+            there = [constant_piece(t, first + node * (last - first)) for first, last in ends]
+            c = self.model.at(t, s, there, slipping)
+            impulses = np.zeros(_length(c))
+            impulses[readings : readings + len(c.y)] = weight * (c.numbers.G @ moved)
+            if not impulses.any():
+                continue
+            one, other = self._pair(vector_of(c))
+            pushed, turned = self._pair(impulses)
+            self.total = self.total + one * turned * self._double + pushed * other
 
     def impact(
         self, t: float, pieces: Sequence[Piece], mode: Mode, before: Array, struck: Impact
