@@ -1,6 +1,7 @@
 """Nodes as checked elements: which kind of element the attributes of a node declare."""
 
 from collections.abc import Hashable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import sympy as sp
@@ -27,7 +28,7 @@ from bondgraph.declare.elements import OTHER, Element
 from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw, law
 from bondgraph.declare.stops import stop_elements
-from bondgraph.errors import StructureError
+from bondgraph.errors import StructureError, nearest
 
 
 def elements_of(name: Hashable, attributes: Mapping[str, Any]) -> dict[Hashable, Element]:
@@ -48,6 +49,8 @@ def elements_of(name: Hashable, attributes: Mapping[str, Any]) -> dict[Hashable,
     check_keys(kind, attributes, where)
     ports = fields.port_names(attributes["ports"], where)
     build = _energy_field if attributes.get("energy") is not None else _matrix_field
+    if kind.resists and isinstance(attributes.get("law"), Mapping):
+        build = _law_field
     return {element.name: element for element in build(name, kind, ports, attributes)}
 
 
@@ -95,6 +98,42 @@ def _energy_field(
         )
         for port, state, slope in zip(ports, states, slopes, strict=True)
     ]  # fmt: skip
+
+
+def _law_field(
+    name: Hashable, kind: Kind, ports: tuple[str, ...], attributes: Mapping[str, Any]
+) -> list[Element]:
+    """A resistance of several ports, each with a law that may read the others' variables."""
+    where = f"node {name!r}"
+    for key in ("energy", "value"):
+        if attributes.get(key) is not None:
+            raise StructureError(f"{where}: it has both a law and a {key}; give one of them")
+    laws, gives = attributes["law"], attributes.get("gives") or {}
+    if not isinstance(gives, Mapping):
+        raise StructureError(
+            f"{where}: with ports, gives maps ports to effort or flow, not {gives!r}"
+        )
+    for key, told in (("law", laws), ("gives", gives)):
+        for port in told:
+            if port not in ports:
+                raise StructureError(
+                    f"{where}, {key}: there is no port {port!r}{nearest(str(port), ports)}; there are "
+                    f"{', '.join(ports)}"
+                )
+    if missing := [port for port in ports if laws.get(port) is None]:
+        raise StructureError(f"{where}: no law at port {missing[0]!r}; each port needs one")
+    made = []
+    for port in ports:
+        effort, flow = port_variables(name, port, attributes)
+        own = {
+            "effort": effort,
+            "flow": flow,
+            "law": laws[port],
+            "gives": gives.get(port, "effort"),
+        }
+        one = _passive(fields.part(name, port), kind, own, unit_of(attributes, where))
+        made.append(replace(one, owner=name))
+    return made
 
 
 def _element(name: Hashable, attributes: Mapping[str, Any]) -> Element:

@@ -167,12 +167,18 @@ def C(
 
 def R(
     name: Hashable, value: object = None, effort: object = None, flow: object = None,
-    law: object = None, gives: str = "effort", **more: object,
+    law: object = None, gives: object = "effort", **more: object,
 ) -> Node:  # fmt: skip
     """A resistance ``e = value * f``; a law; or, with neither, an open port.
 
     An open port gives an input (its effort, or its flow with ``gives="flow"``) and receives an
-    output. With ``ports=`` (see `I`) the value is a matrix, efforts over flows.
+    output. With ``ports=`` (see `I`) the value is a matrix, efforts over flows, or ``law`` has one for each
+    port, which may read the variables ``e_<name>_<port>`` and ``f_<name>_<port>`` of all, and ``gives`` what
+    each gives: a damper whose heat goes into a thermal port is
+
+    >>> R("b", ports=["rod", "heat"], gives={"heat": "flow"},
+    ...   law={"rod": "d*f_b_rod", "heat": "-d*f_b_rod**2/e_b_heat"})[0]
+    'b'
     """
     return _node(
         name, Kind.R, value=value, effort=effort, flow=flow, law=law, gives=gives, **more

@@ -96,7 +96,7 @@ def names_read(graph: Part) -> set[str]:
 
     for name, attributes in graph.nodes(data=True):
         for key in _READ:
-            _mapped(attributes.get(key), note, f"node {name!r}, {key}")
+            _mapped_at(attributes, key, note, f"node {name!r}, {key}")
     return found - {_OWN_SLIP.name}
 
 
@@ -110,13 +110,23 @@ def renamed(name: Hashable, attributes: Mapping[str, Any], names: Names) -> dict
     result = dict(attributes)
     for key in _READ:
         if key in result:
-            result[key] = _mapped(result[key], rewrite, f"node {name!r}, {key}")
+            result[key] = _mapped_at(result, key, rewrite, f"node {name!r}, {key}")
     for key in ("effort", "flow", "integrate"):
         if isinstance(result.get(key), Mapping):
             result[key] = {port: names.get(str(one), one) for port, one in result[key].items()}
         elif result.get(key) is not None:
             result[key] = names[str(name_text(result[key]))]
     return result
+
+
+def _mapped_at(
+    attributes: Mapping[str, Any], key: str, change: Callable[[sp.Expr], sp.Expr], where: str
+) -> Any:
+    """An attribute with every expression in it changed; of laws by ports, the ports stay."""
+    value = attributes.get(key)
+    if key == "law" and isinstance(value, Mapping):
+        return {port: _mapped(one, change, f"{where} at {port}") for port, one in value.items()}
+    return _mapped(value, change, where)
 
 
 def _mapped(value: Any, change: Callable[[sp.Expr], sp.Expr], where: str) -> Any:

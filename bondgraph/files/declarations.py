@@ -72,6 +72,9 @@ def _plain(key: str, value: Any, kind: object, where: str) -> Any:
     """One attribute as a text, a number or, where that is not enough, a list or an object of such."""
     if key == "priority":
         return _priority(value, where)
+    if key == "law" and isinstance(value, Mapping):
+        told = {_name(port, where): _law(one, kind, where) for port, one in value.items()}
+        return dict(sorted(told.items()))
     if key == "law":
         return _law(value, kind, where)
     if key in EXPRESSIONS:
@@ -83,7 +86,7 @@ def _plain(key: str, value: Any, kind: object, where: str) -> Any:
         return {_name(state, where): _become(state, told, where) for state, told in value.items()}
     if key == "ports":
         return [_name(port, where) for port in value]
-    if key in ("effort", "flow") and isinstance(value, Mapping):
+    if key in ("effort", "flow", "gives") and isinstance(value, Mapping):
         names = {_name(port, where): _name(given, where) for port, given in value.items()}
         return dict(sorted(names.items()))
     if key in NAMES:

@@ -17,7 +17,7 @@ _INTEGER = re.compile(r"-?[0-9]{1,500}")
 _NO_XML = re.compile("[^\t\n\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Characters that XML cannot hold, and the carriage return, which it turns into another."""
 
-_NESTED = frozenset({"value", "law", "ports", "effort", "flow", "reset"})
+_NESTED = frozenset({"value", "law", "ports", "effort", "flow", "gives", "reset"})
 
 
 def to_graphml(graph: Any) -> str:

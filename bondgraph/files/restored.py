@@ -21,6 +21,7 @@ TYPES: Mapping[str, tuple[type, ...]] = {
     "priority": (int, float),
     "effort": (str, dict),
     "flow": (str, dict),
+    "gives": (str, dict),
     "ports": (list,),
     "reset": (dict,),
 }
@@ -87,8 +88,21 @@ def _attributes(attributes: Mapping[str, Any], where: str) -> dict[str, Any]:
             _check_reset(value, place)
         elif isinstance(value, dict) and key != "law":
             _check_list([*value, *value.values()], place, rows=False)
-        result[key] = _law(value, place) if key == "law" and isinstance(value, dict) else value
+        result[key] = value
+        if key == "law" and isinstance(value, dict):
+            result[key] = _laws(value, place) if "ports" in attributes else _law(value, place)
     return result
+
+
+def _laws(parts: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """The laws of a resistance with several ports."""
+    for port, value in parts.items():
+        check_type(port, (str,), where)
+        check_type(value, (*SCALARS, dict), f"{where} at {port[:60]}")
+    return {
+        port: _law(value, f"{where} at {port[:60]}") if isinstance(value, dict) else value
+        for port, value in parts.items()
+    }
 
 
 def _check_list(values: Iterable[Any], where: str, rows: bool) -> None:

@@ -78,6 +78,27 @@ def feedback() -> Kind:
                 rest={"inputs": {"r": 1.0}})  # fmt: skip
 
 
+def heated() -> Kind:
+    """A damper of two ports: what it takes from a mass m makes entropy in a body of c (T - T_0)."""
+    damper = bg.R("b", ports=["rod", "heat"], gives={"heat": "flow"},
+                  law={"rod": "d*f_b_rod", "heat": "-d*f_b_rod**2/e_b_heat"})  # fmt: skip
+    nodes = [bg.Se("push", "P"), bg.One("rod"), bg.I("m", "m", flow="v"), damper, bg.Zero("warm"),
+             bg.C("body", law="T_0*exp(q_body/c)", effort="T")]  # fmt: skip
+    graph = bond_graph(nodes, "push>rod>m warm>body")
+    graph.add_edge("rod", "b", port="rod")
+    graph.add_edge("warm", "b", port="heat")
+    d, c = 3.0, 0.5
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        # 2 v' = 6 - 3 v from 10 on; d int v^2 dt with v = 2 + 8 exp(-1.5 t).
+        v = 2 + 8 * np.exp(-1.5 * t)
+        heat = d * (4 * t - 32 / 1.5 * np.expm1(-1.5 * t) - 64 / 3 * np.expm1(-3 * t))
+        return {"v": v, "q_body": c * np.log1p(heat / (c * 300))}
+
+    return Kind("damper whose heat is taken up", graph, {"m": 2.0, "d": d, "T_0": 300.0, "c": c},
+                {"P": "6"}, known, 1.0, {"v": 10.0}, at=0.4, rest={"inputs": {"P": 0.0}})  # fmt: skip
+
+
 def _kinked(name: str, law: str, left: float) -> Kind:
     """A mass from -1 on by a push of 4, over b = 1 one way and ``left`` the other."""
     p, goes = 4.0, np.log1p(left / 4.0) / left
@@ -170,5 +191,6 @@ def large() -> Kind:
 
 
 LAWFUL = (
-    driven_dependent, inverted_storage, energy_field, feedback, piecewise, table, play, soft_stop, large,
+    driven_dependent, inverted_storage, energy_field, heated, feedback, piecewise, table, play, soft_stop,
+    large,
 )  # fmt: skip
