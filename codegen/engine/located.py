@@ -124,9 +124,10 @@ class LocatedRuns:
         events = self._called(asked, rows, table, keeping)
         if isinstance(events, Stopped):
             return events
-        if not np.isfinite(rows).all():
+        program = self.model.program
+        if not np.isfinite(rows[:, : len(program.states) + len(program.law_states)]).all():
             return Stopped("a number of the run is not finite")
-        *parts, modes = np.split(rows, np.cumsum(recorded(self.model.program)), axis=1)
+        *parts, modes = np.split(rows, np.cumsum(recorded(program)), axis=1)
         told = tuple(tuple(mode) for mode in modes.astype(int).tolist())
         return Recorded(events, Snapshots(*parts), "c", told)
 

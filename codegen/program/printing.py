@@ -99,7 +99,10 @@ def _double(expr: sp.Expr) -> str:
 
 
 class _Python(PythonCodePrinter):  # type: ignore[misc]
-    """Python over floats and ``math``."""
+    """Python over floats, ``math`` and ``log_of``, which is infinite at zero."""
+
+    def _print_log(self, expr: sp.Expr) -> str:
+        return f"log_of({self._print(expr.args[0])})"
 
     def _print_Symbol(self, expr: sp.Symbol) -> str:
         return str(expr.name)

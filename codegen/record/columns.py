@@ -19,7 +19,7 @@ def named_columns(
 ) -> tuple[Mapping[str, Array], Observer]:
     """The samples of what a run records, by name, and what works out all other signals; read-only arrays.
 
-    Raises `SimulationError`, with the time, where one is not finite.
+    Raises `SimulationError`, with the time, where one is not finite, though all that laws give is.
     """
     program = model.program
     groups = (
@@ -38,7 +38,16 @@ def named_columns(
             ):
                 continue
             columns.setdefault(name.name, read_only(table[:, at].copy()))
-    _check_finite(times, columns)
+    # What laws give may be infinite where the rates are not, as the potential of what is used up.
+    states = {name.name for name in (*program.states, *program.law_states)}
+    bounded = np.isfinite(found.u).all(axis=1)
+    _check_finite(
+        times,
+        {
+            name: column if name in states else np.where(bounded, column, 0.0)
+            for name, column in columns.items()
+        },
+    )
     dx = found.rate[:, : len(program.states)]
     if not program.varying:
         dx = dx + found.du @ model.constant.R.T

@@ -1,6 +1,7 @@
 """One smooth stretch of a run in one friction mode, up to a breakpoint or the first event."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from bondgraph.errors import SimulationError
 from codegen.corners.sides import CornerWatch
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
+from codegen.model.wanting import wanting
 from codegen.modes.closed import ClosedModel
 from codegen.modes.pace import longest_step
 from codegen.modes.rounding import Peaks
@@ -17,7 +19,7 @@ from codegen.numbers.arrays import Array
 from codegen.runs.cornered import CorneredLeg
 from codegen.runs.events import Watch
 from codegen.runs.methods import METHODS, integrator
-from codegen.runs.progress import Progress, difference, no_progress
+from codegen.runs.progress import Progress, Rates, difference, no_progress
 from codegen.runs.track import Dense, Ended, Settings, Track
 from codegen.tuning import TUNING
 
@@ -78,8 +80,9 @@ class Leg:
         name = self._integrator(fastest, float(times[-1]) - self._origin)
         explicit = name == "DOP853"
         first = {} if self._first_step is None else {"first_step": min(self._first_step, stop - t)}
+        trials = Trials(self._rates, self._lost)
         solver = integrator(name)(
-            self._rate, t, s, stop, rtol=self._settings.rtol, atol=self._settings.atol,
+            trials, t, s, stop, rtol=self._settings.rtol, atol=self._settings.atol,
             max_step=self._bound(explicit, fastest, t), **first,
         )  # fmt: skip
         watch = Watch(self._model, self._pieces, self._mode, t, s, self._peaks)
@@ -87,7 +90,7 @@ class Leg:
         while solver.status == "running":
             message = _stepped(solver)
             if solver.status == "failed":
-                raise _failed(solver, message)
+                raise trials.refused or _failed(solver, message)
             dense = solver.dense_output()
             self.step = solver.t - solver.t_old
             found = self._next(watch, solver.t_old, solver.t, dense)
@@ -145,8 +148,13 @@ class Leg:
     def _rate(self, t: float, s: Array) -> Array:
         rate = self._rates(t, s)
         if not np.isfinite(rate).all():
-            raise SimulationError(f"at t = {t:.9g} the rates are not finite; state {s.tolist()}")
+            raise self._lost(t, s)
         return rate
+
+    def _lost(self, t: float, s: Array) -> SimulationError:
+        """Why there are no rates."""
+        why = wanting(self._model.program, t, self._model.at(t, s, self._pieces, self._mode))
+        return SimulationError(f"at t = {t:.9g} {why}; state {s.tolist()}")
 
 
 def leg_of(
@@ -161,6 +169,36 @@ def leg_of(
     if not model.program.sides:
         return made(model, None, None)
     return CorneredLeg(model, pieces, mode, settings, origin, made)
+
+
+class Trials:
+    """Rates as an integrator tries them: a point without any gives no numbers, and the step is shortened."""
+
+    def __init__(self, rates: Rates, lost: Callable[[float, Array], SimulationError]) -> None:
+        self._rates, self._lost = rates, lost
+        self._at: tuple[float, Array] | None = None
+        self._refused: SimulationError | None = None
+
+    def __call__(self, t: float, s: Array) -> Array:
+        """The rates at t and s; no numbers where there are none."""
+        if not np.isfinite(s).all():
+            # A stage after the one that has none.
+            return np.full(len(s), np.nan)
+        self._refused, self._at = None, None
+        try:
+            rate = self._rates(t, s)
+        except SimulationError as error:
+            self._refused = error
+            return np.full(len(s), np.nan)
+        if math.isfinite(rate.sum()) or np.isfinite(rate).all():
+            return rate
+        self._at = (t, s.copy())
+        return np.full(len(s), np.nan)
+
+    @property
+    def refused(self) -> SimulationError | None:
+        """Why the latest point that was tried has no rates; None where it has some."""
+        return self._refused if self._at is None else self._lost(*self._at)
 
 
 def _failed(solver: Any, message: str | None) -> SimulationError:

@@ -13,7 +13,7 @@ import numpy as np
 
 from codegen.standalone.arrays import Array, Mode, Places
 from codegen.standalone.instant import Formula, Instant
-from codegen.standalone.matrices import Numbers
+from codegen.standalone.matrices import Numbers, times
 
 
 class Point(NamedTuple):
@@ -112,7 +112,7 @@ def evaluated(
     correction = contact(now, mode, checked) if contact is not None else None
     for laws in form.laws[form.early :]:
         laws.close(now)
-    rate = numbers.P @ now.x + numbers.Q @ now.u
+    rate = numbers.P @ now.x + times(numbers.Q, now.u)
     if form.varying:
         rate += numbers.R @ now.du
     if correction is not None:

@@ -1,5 +1,6 @@
 """Generated functions as formulas of an instant."""
 
+import math
 from collections.abc import Callable, Mapping
 from itertools import pairwise
 from types import SimpleNamespace
@@ -15,6 +16,15 @@ Block = Callable[[Mapping[str, float], Any], Any]
 """A generated function of parameters and of what it reads, by the letters of an instant."""
 
 PARTS = ("x", "z", "y", "u", "w", "dw")
+
+
+def log_of(value: float) -> float:
+    """The natural logarithm, infinite at zero as that of arrays is.
+
+    >>> log_of(1.0), log_of(0.0)
+    (0.0, -inf)
+    """
+    return math.log(value) if value else -math.inf
 
 
 class Plain:

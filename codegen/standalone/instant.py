@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from codegen.standalone.arrays import Array, Places
-from codegen.standalone.matrices import Numbers
+from codegen.standalone.matrices import Numbers, times
 
 NO_NUMBERS = Numbers(*[np.zeros((0, 0))] * 7)
 """The matrices of an instant of which they are not known yet."""
@@ -40,7 +40,7 @@ class Instant:
     def give(self, inputs: Places, amounts: Array) -> None:
         """Add to inputs, and to the readings that show them at once."""
         self.u[inputs] += amounts
-        self.y += self.numbers.D[:, inputs] @ amounts
+        self.y += times(self.numbers.D[:, inputs], amounts)
 
 
 class Formula(ABC):

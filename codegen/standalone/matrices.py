@@ -1,5 +1,6 @@
 """The equations' matrices in numbers, solved for the rates."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,6 +46,20 @@ def scales(A: Array) -> Array:
     found: Array = 1 / np.sqrt(np.abs(np.diag(A)))
     found[~np.isfinite(found)] = 1.0
     return found
+
+
+def times(matrix: Array, values: Array) -> Array:
+    """A matrix times values, of which zero entries take nothing though they be infinite.
+
+    Infinite efforts have finite effects where laws bound these, as the affinity of what is used up.
+
+    >>> times(np.array([[0.0, 2.0]]), np.array([np.inf, 1.0]))
+    array([2.])
+    """
+    found: Array = matrix @ values
+    if found.dtype != float or math.isfinite(found.sum()):
+        return found
+    return np.asarray(np.where(matrix != 0, matrix * values, 0.0).sum(axis=1), dtype=float)
 
 
 def scaled_solve(A: Array, right: Array) -> Array:

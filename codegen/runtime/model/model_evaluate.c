@@ -4,11 +4,28 @@
 
 #include "model_internal.h"
 
+/* Adds a x to y, nothing where an entry is zero: infinite efforts have finite effects where laws bound
+ * these, as the affinity of what is used up. */
+static void multiply_unbounded(int rows, int columns, const double *a, const double *x, double *y)
+{
+    for (int i = 0; i < rows; i++)
+        for (int j = 0; j < columns; j++)
+            if (a[i * columns + j] != 0.0)
+                y[i] += a[i * columns + j] * x[j];
+}
+
 /* Adds to inputs, and to the readings that show them at once. */
 void bg_give(bg_model *m, int count, const int *columns, const double *values)
 {
     for (int k = 0; k < count; k++)
         m->now.u[columns[k]] += values[k];
+    if (!bg_finite(count, values)) {
+        double more[BG_ROOM(M)] = {0};
+        for (int k = 0; k < count; k++)
+            more[columns[k]] += values[k];
+        multiply_unbounded(ROWS, M, m->numbers.D, more, m->now.y);
+        return;
+    }
     /* by the list only where it is shorter than the columns */
     if (BG_LISTED(ROWS, M) && m->numbers.D_list[0] && count * ROWS > m->numbers.D_list[ROWS]) {
         memset(m->work.more, 0, sizeof m->work.more);
@@ -227,7 +244,11 @@ static int finish(bg_model *m, const bg_hold *held, bg_snapshot *shot)
     const bg_values *const now = &m->now;
     memset(shot->rate, 0, sizeof shot->rate);
     bg_multiply_listed(N, N, m->numbers.P, m->numbers.P_list, now->x, shot->rate);
-    bg_multiply_listed(N, M, m->numbers.Q, m->numbers.Q_list, now->u, shot->rate);
+    const int bounded = bg_finite(M, now->u);
+    if (bounded)
+        bg_multiply_listed(N, M, m->numbers.Q, m->numbers.Q_list, now->u, shot->rate);
+    else
+        multiply_unbounded(N, M, m->numbers.Q, now->u, shot->rate);
     if (BG_VARYING)
         bg_multiply_add(N, M, m->numbers.R, m->du, shot->rate);
     for (int i = 0; i < OWN; i++)
@@ -240,7 +261,10 @@ static int finish(bg_model *m, const bg_hold *held, bg_snapshot *shot)
     memcpy(shot->du, m->du, sizeof shot->du);
     memcpy(shot->y, now->y, sizeof shot->y);
     memcpy(shot->caps, m->caps, sizeof shot->caps);
-    if (!bg_finite(BG_SIZE, shot->rate) || !bg_finite(M, shot->u) || !bg_finite(ROWS, shot->y))
+    /* What holds and what rubs is told by finite numbers alone. */
+    if (K > 0 && !(bounded && bg_finite(ROWS, shot->y)))
+        return BG_NOT_FINITE;
+    if (!bg_finite(BG_SIZE, shot->rate))
         return BG_NOT_FINITE;
     return BG_OK;
 }

@@ -78,6 +78,25 @@ def feedback() -> Kind:
                 rest={"inputs": {"r": 1.0}})  # fmt: skip
 
 
+def reaction() -> Kind:
+    """A + B <-> C from no A, whose potential is log(0): x' = 1 - 2 x - x^2 of what there is of A."""
+    nodes: list[tuple] = [bg.One("j")]
+    for one in "ABC":
+        nodes += [bg.Zero(f"z{one}", effort=f"mu_{one}"), bg.C(one, law=f"log(q_{one})")]
+    nodes += [bg.R("r", law="k*(exp(mu_A + mu_B) - exp(mu_C))", gives="flow")]
+    graph = bond_graph(nodes, "zA>A zB>B zC>C zA>j zB>j j>r j>zC")
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        low, high = -1 - np.sqrt(2), np.sqrt(2) - 1
+        part = high / low * np.exp(-2 * np.sqrt(2) * t)
+        x = (high - low * part) / (1 - part)
+        return {"q_A": x, "q_B": 1 + x, "q_C": 1 - x}
+
+    return Kind("reaction that begins without one species", graph, {"k": 1.0}, {}, known, 1.0,
+                {"q_A": 0.0, "q_B": 1.0, "q_C": 1.0}, at=0.3,
+                rest={"inputs": {}, "initial": {"q_A": 0.5, "q_B": 1.0, "q_C": 1.0}})  # fmt: skip
+
+
 def heated() -> Kind:
     """A damper of two ports: what it takes from a mass m makes entropy in a body of c (T - T_0)."""
     damper = bg.R("b", ports=["rod", "heat"], gives={"heat": "flow"},
@@ -191,6 +210,6 @@ def large() -> Kind:
 
 
 LAWFUL = (
-    driven_dependent, inverted_storage, energy_field, heated, feedback, piecewise, table, play, soft_stop,
-    large,
+    driven_dependent, inverted_storage, energy_field, heated, reaction, feedback, piecewise, table, play,
+    soft_stop, large,
 )  # fmt: skip
