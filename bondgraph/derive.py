@@ -28,6 +28,7 @@ from bondgraph.reduce.rates import resolved
 from bondgraph.reduce.readings import check_laws
 from bondgraph.reduce.resets import check_resets
 from bondgraph.reduce.sorting import Reduction
+from bondgraph.reduce.starts import check_starts
 from bondgraph.reduce.structure import JunctionStructure, PortRow
 from bondgraph.reduce.switches import check_switches, switch_ports
 
@@ -118,6 +119,7 @@ def _equations(
     E = [row.K for row in balances]
     laws = {port.element.name: port.element.law for port in imposed if port.element.law is not None}
     check_laws(laws, signals, imposed, E, readings)
+    check_starts(reduction)
     switches = switch_ports(reduction, signals)
     check_switches(switches, reduction.inputs, E, readings)
     check_resets(switches, reduction)

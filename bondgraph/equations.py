@@ -81,10 +81,14 @@ class StateEquations:
     @property
     def starts(self) -> dict[sp.Symbol, sp.Expr]:
         """The values with which runs begin, of states that have one declared."""
-        elements = (port.element for port in self.reduction.structure.ports)
-        return {
-            e.integral: e.start for e in elements if e.integral is not None and e.start is not None
-        }
+        reduction = self.reduction
+        own = dict(zip(reduction.states, reduction.names, strict=True))
+        told = {}
+        for at, port in enumerate(reduction.structure.ports):
+            state = own.get(at, port.own_state)
+            if port.element.start is not None and state is not None:
+                told[state] = port.element.start
+        return told
 
     @property
     def varying(self) -> tuple[sp.Symbol, ...]:

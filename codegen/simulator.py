@@ -1,6 +1,6 @@
 """`Simulator`: a model with numbers, ready to run."""
 
-from collections.abc import Callable, Hashable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,6 +17,7 @@ from codegen.engine.runs import CRuns
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
+from codegen.instants.equilibrium import equilibrium
 from codegen.model.sources import source_signals
 from codegen.model.starts import told_starts
 from codegen.modes.closed import ClosedModel
@@ -37,6 +38,9 @@ from codegen.runs.arguments import (
 from codegen.runs.completion import beginning, tell_completed
 from codegen.runs.impulses import refuse_impulses
 from codegen.tuning import TUNING
+
+EQUILIBRIUM = "equilibrium"
+"""In place of initial values: where all states rest."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +95,7 @@ class Simulator:
     def run(
         self,
         time: ArrayLike,
-        initial: Mapping[str, float] | None = None,
+        initial: Mapping[str, float] | str | None = None,
         inputs: Mapping[str, object] | None = None,
         method: str = "auto",
         rtol: float = TUNING.rtol,
@@ -102,7 +106,8 @@ class Simulator:
     ) -> Result:
         """Integrate over the given times [s] and sample every signal at them.
 
-        ``initial``: states by name, the rest start at 0. ``inputs``: a signal or a number for each
+        ``initial``: states by name, the rest start as the graph says, or at 0; "equilibrium": where all rest
+        under the inputs as they begin. ``inputs``: a signal or a number for each
         of ``inputs``. ``method``: "exact" (matrix exponentials, for models that are affine in each friction
         mode), "DOP853", "Radau" (stiff models), "auto" of these, or "CVODE" (SUNDIALS; the extra
         ``sundae``): backward differences, Adams's formulas where a mode is affine and not stiff.
@@ -130,7 +135,7 @@ class Simulator:
         self,
         tell: Callable[[Stopped], None],
         time: ArrayLike,
-        initial: Mapping[str, float] | None = None,
+        initial: Mapping[str, float] | str | None = None,
         inputs: Mapping[str, object] | None = None,
         method: str = "auto",
         rtol: float = TUNING.rtol,
@@ -151,9 +156,11 @@ class Simulator:
         refuse_impulses(self.closed, signals, times)
         at_start = np.array([signal(times[0]) for signal in signals])
         on = checked_modes(self.switches, initially_on)
+        begin = float(times[0])
+        if initial == EQUILIBRIUM:
+            initial = self._resting(signals, begin)
         initial = self.starting({} if initial is None else initial)
         states = initial_values(initial, self.states)
-        begin = float(times[0])
         start = self.vector(begin, states, at_start)
         with np.errstate(all="ignore"):
             pieces = [signal.piece(begin) for signal in signals]
@@ -202,7 +209,15 @@ class Simulator:
         given = np.array([piece(0.0) for piece in pieces])
         return pieces, self.vector(0.0, initial_values(self.starting(initial), self.states), given)
 
-    def starting(self, initial: Mapping[str, float]) -> Mapping[str, float]:
+    def _resting(self, signals: Sequence[Signal], t: float) -> dict[str, float]:
+        """The states of an equilibrium under the inputs of one instant, found from the declared starts."""
+        pieces = [constant_piece(t, signal(t)) for signal in signals]
+        given = np.array([piece(t) for piece in pieces])
+        start = self.vector(t, initial_values(self.starting({}), self.states), given)
+        found = equilibrium(self.closed, pieces, start)
+        return dict(zip(self.states, [*found.x.tolist(), *found.z.tolist()], strict=True))
+
+    def starting(self, initial: Any) -> Any:
         """These initial values, with declared ones where nothing else is told."""
         if not self.closed.equations.starts or not isinstance(initial, Mapping):
             return initial

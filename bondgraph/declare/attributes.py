@@ -52,6 +52,18 @@ def unit_of(attributes: Mapping[str, Any], where: str) -> str | None:
     return unit
 
 
+def start_of(attributes: Mapping[str, Any], where: str) -> sp.Expr | None:
+    """The value with which a state begins, if one is told: numbers and parameters alone."""
+    if attributes.get("start") is None:
+        return None
+    found = expression(attributes["start"], f"{where}, start")
+    if TIME in found.free_symbols:
+        raise StructureError(
+            f"{where}: its start {found} reads the time; a run begins at one value"
+        )
+    return found
+
+
 def priority_of(attributes: Mapping[str, Any], where: str) -> float:
     """How early a storage is tried in integral causality."""
     try:

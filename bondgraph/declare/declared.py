@@ -19,6 +19,7 @@ from bondgraph.declare.attributes import (
     law_of,
     port_variables,
     priority_of,
+    start_of,
     switch_of,
     unit_of,
     value_of,
@@ -48,6 +49,10 @@ def elements_of(name: Hashable, attributes: Mapping[str, Any]) -> dict[Hashable,
     kind = kind_of(attributes, where)
     check_keys(kind, attributes, where)
     ports = fields.port_names(attributes["ports"], where)
+    if attributes.get("start") is not None:
+        raise StructureError(
+            f"{where}: with ports, give its states a start in the run, by their names"
+        )
     build = _energy_field if attributes.get("energy") is not None else _matrix_field
     if kind.resists and isinstance(attributes.get("law"), Mapping):
         build = _law_field
@@ -191,7 +196,14 @@ def _detector(
         text = integral.name if isinstance(integral, sp.Symbol) else integral
         integral = symbol(text, f"node {name!r}, integrate")
     effort, flow = (variable(attributes, key, name) for key in ("effort", "flow"))
-    return Element(name, kind, None, effort, flow, gives=kind.gives, unit=unit, integral=integral)
+    start = start_of(attributes, f"node {name!r}")
+    if start is not None and integral is None:
+        raise StructureError(
+            f"node {name!r}: it has a start, but integrates nothing; name integrate"
+        )
+    return Element(
+        name, kind, None, effort, flow, gives=kind.gives, unit=unit, integral=integral, start=start
+    )
 
 
 def _passive(
@@ -222,6 +234,7 @@ def _passive(
         unit=unit,
         energy=energy_of(name, kind, attributes)[0] if given == ["energy"] else None,
         inverse=inverse,
+        start=start_of(attributes, where),
     )
 
 

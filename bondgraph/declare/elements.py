@@ -56,8 +56,8 @@ class Element:
     it has per unit of each port's variable, by the ports' names; ``owner``: the field's node.
     ``energy``: of a storage with an energy function, that function. ``inverse``: of one with a law, its
     state as a function of what the law gives, so that it may have derivative causality. ``switch``: of an
-    ideal switch, when it turns on and off. ``whole``: of a stop's part, that stop. ``start``: of what makes
-    a state, the value with which runs begin.
+    ideal switch, when it turns on and off. ``whole``: of a stop's part, that stop. ``start``: of what keeps
+    or makes a state, the value with which runs begin.
     """
 
     name: Hashable
@@ -147,9 +147,10 @@ def I(  # noqa: E743
 ) -> Node:  # fmt: skip
     """An inertia ``e = (value * f)'``, or the law ``f = law(p_<name>)`` of its momentum.
 
-    The higher ``priority`` is tried first for integral causality. ``energy=``: a function of ``p_<name>``
-    whose slope is the law. ``ports=``: names of several ports, each bond's given as ``port=`` on the edge;
-    ``value`` is then their symmetric matrix, or ``energy`` a function of all ``p_<name>_<port>``.
+    The higher ``priority`` is tried first for integral causality. ``start=``: what its state is where a run
+    begins, unless that tells another: the flow, with a law the momentum. ``energy=``: a function of
+    ``p_<name>`` whose slope is the law. ``ports=``: names of several ports, each bond's given as ``port=`` on
+    the edge; ``value`` is then their symmetric matrix, or ``energy`` a function of all ``p_<name>_<port>``.
     """
     return _node(name, Kind.I, value=value, flow=flow, law=law, priority=priority, **more)
 
@@ -160,7 +161,7 @@ def C(
 ) -> Node:  # fmt: skip
     """A compliance ``f = (value * e)'``, value = 1/stiffness, or the law ``e = law(q_<name>)``.
 
-    ``energy=`` and ``ports=`` as for `I`, with ``q_<name>`` and ``q_<name>_<port>``.
+    ``energy=``, ``start=`` and ``ports=`` as for `I`, with ``q_<name>`` and ``q_<name>_<port>``.
     """
     return _node(name, Kind.C, value=value, effort=effort, law=law, priority=priority, **more)
 
@@ -214,12 +215,15 @@ def One(name: Hashable, flow: object = None, **more: object) -> Node:
 
 
 def De(name: Hashable, effort: object = None, integrate: object = None, **more: object) -> Node:
-    """A detector of an effort: it draws no flow. ``integrate`` names the effort's integral, a state."""
+    """A detector of an effort: it draws no flow. ``integrate`` names the effort's integral, a state,
+    which begins at ``start=``, or at 0.
+    """
     return _node(name, Kind.DE, effort=effort, integrate=integrate, **more)
 
 
 def Df(name: Hashable, flow: object = None, integrate: object = None, **more: object) -> Node:
-    """A detector of a flow: it takes no effort. ``integrate`` names the flow's integral, a state.
+    """A detector of a flow: it takes no effort. ``integrate`` names the flow's integral, a state,
+    which begins at ``start=``, or at 0.
 
     So an angle becomes a state that moduli can use:
 

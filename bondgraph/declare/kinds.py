@@ -15,7 +15,7 @@ EXPRESSIONS = ("value", "energy", "inverse", "on", "off", *_BOUNDED)
 
 _SWITCHED = frozenset({"on", "off", "reset"})
 _NAMED = frozenset({"value", "effort", "flow", "law", "unit", "ports"})
-_STORED = _NAMED | {"inverse", "energy", "priority"}
+_STORED = _NAMED | {"inverse", "energy", "priority", "start"}
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,18 @@ class Kind(StrEnum):
         Nature("junction", frozenset({"effort", *_SWITCHED}), common="effort", digit="0"),
     )
     ONE = "One", Nature("junction", frozenset({"flow", *_SWITCHED}), common="flow", digit="1")
-    DE = "De", Nature("detector", frozenset({"effort", "integrate", "unit"}), gives="flow", place=4)
-    DF = "Df", Nature("detector", frozenset({"flow", "integrate", "unit"}), gives="effort", place=3)
+    DE = (
+        "De",
+        Nature(
+            "detector", frozenset({"effort", "integrate", "start", "unit"}), gives="flow", place=4
+        ),
+    )
+    DF = (
+        "Df",
+        Nature(
+            "detector", frozenset({"flow", "integrate", "start", "unit"}), gives="effort", place=3
+        ),
+    )
     STOP = "Stop", Nature("switch", frozenset({"flow", "reset", *_BOUNDED}), place=8)
     SW = "Sw", Nature("switch", frozenset({"effort", "flow", *_SWITCHED}), place=2)
 

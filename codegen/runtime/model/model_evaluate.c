@@ -4,8 +4,8 @@
 
 #include "model_internal.h"
 
-/* Adds a x to y, nothing where an entry is zero: infinite efforts have finite effects where laws bound
- * these, as the affinity of what is used up. */
+/* Adds a x to y, nothing where an entry is zero: infinite efforts have finite effects where laws
+ * bound these, as the affinity of what is used up. */
 static void multiply_unbounded(int rows, int columns, const double *a, const double *x, double *y)
 {
     for (int i = 0; i < rows; i++)
