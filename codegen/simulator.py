@@ -157,14 +157,15 @@ class Simulator:
         at_start = np.array([signal(times[0]) for signal in signals])
         on = checked_modes(self.switches, initially_on)
         begin = float(times[0])
+        wanted: Any = {} if initial is None else initial
         if initial == EQUILIBRIUM:
-            initial = self._resting(signals, begin)
-        initial = self.starting({} if initial is None else initial)
-        states = initial_values(initial, self.states)
+            wanted = self._resting(signals, begin)
+        told = self.starting(wanted)
+        states = initial_values(told, self.states)
         start = self.vector(begin, states, at_start)
         with np.errstate(all="ignore"):
             pieces = [signal.piece(begin) for signal in signals]
-            begun = beginning(self.closed, begin, start, pieces, on, {str(n) for n in initial})
+            begun = beginning(self.closed, begin, start, pieces, on, {str(n) for n in told})
             asked = Request(times, states + begun.moved, begun, signals, settings, events, corners)
             found = None
             if self.located is not None:
