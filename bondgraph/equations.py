@@ -8,7 +8,7 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.elements import Element
-from bondgraph.declare.laws import Law
+from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.errors import StructureError
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction
@@ -86,8 +86,11 @@ class StateEquations:
         told = {}
         for at, port in enumerate(reduction.structure.ports):
             state = own.get(at, port.own_state)
-            if port.element.start is not None and state is not None:
-                told[state] = port.element.start
+            start, law = port.element.start, port.element.law
+            if start is not None and port.element.by_inverse and isinstance(law, ExpressionLaw):
+                start = start if law.state is None else law.expression.xreplace({law.state: start})
+            if start is not None and state is not None:
+                told[state] = start
         return told
 
     @property

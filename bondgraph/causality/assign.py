@@ -13,6 +13,8 @@ from bondgraph.causality.signals import causal_equations, causal_groups, loop_ro
 from bondgraph.causality.stories import contradiction_story
 from bondgraph.causality.strokes import StrokeSearch
 from bondgraph.causality.vanishing import elements_in, generic, told
+from bondgraph.declare.elements import Element
+from bondgraph.declare.inverting import with_inverse
 from bondgraph.declare.validate import validate, with_elements
 from bondgraph.errors import AlgebraicLoopError, BondGraphError, CausalityError
 
@@ -27,15 +29,43 @@ def assign_causality(graph: Any) -> CausalGraph:
     switches and linear resistances; what is left. Accepts a declared or a validated graph.
 
     Raises `CausalityError` when sources and fixed ports contradict each other, `AlgebraicLoopError`
-    when the structure is singular under every causality. Both are genuine: a graph is refused only
-    if the determinant of its bond equations vanishes identically. A switch has one causality for all of
-    its modes: it gives zero in one, and in the other whatever keeps at zero what it receives.
+    when the structure is singular under every causality. Where nonlinear storages contradict each other,
+    those whose laws can be turned round may have derivative causality. Both are genuine: a graph is
+    refused only if the determinant of its bond equations vanishes identically. A switch has one causality
+    for all of its modes: it gives zero in one, and in the other whatever keeps at zero what it receives.
     """
     checked = validate(graph)
     try:
         return _assigned(checked)
     except AlgebraicLoopError as error:
         raise AlgebraicLoopError(f"{error}{_vanishing(checked)}") from None
+    except CausalityError:
+        turned = _with_inverses(checked)
+        if not turned:
+            raise
+        found = _freed(with_elements(checked, turned))
+        if found is None:
+            raise
+        return found
+
+
+def _with_inverses(checked: "nx.DiGraph[Hashable]") -> dict[Hashable, Element]:
+    """The storages whose laws have inverses that nobody declared."""
+    found: dict[Hashable, Element] = {}
+    for name, element in elements_in(checked).items():
+        fixed = element.kind.stores and element.gives is not None and element.energy is None
+        turned = with_inverse(element) if fixed else None
+        if turned is not None:
+            found[name] = turned
+    return found
+
+
+def _freed(graph: "nx.DiGraph[Hashable]") -> CausalGraph | None:
+    """The graph whose laws go either way, if that resolves what contradicted."""
+    try:
+        return _assigned(graph)
+    except (AlgebraicLoopError, CausalityError):
+        return None
 
 
 def _assigned(checked: "nx.DiGraph[Hashable]") -> CausalGraph:

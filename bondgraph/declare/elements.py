@@ -57,7 +57,8 @@ class Element:
     ``energy``: of a storage with an energy function, that function. ``inverse``: of one with a law, its
     state as a function of what the law gives, so that it may have derivative causality. ``switch``: of an
     ideal switch, when it turns on and off. ``whole``: of a stop's part, that stop. ``start``: of what keeps
-    or makes a state, the value with which runs begin.
+    or makes a state, the value with which runs begin. ``by_inverse``: whether the law counts by its inverse
+    alone, what it gives being the state.
     """
 
     name: Hashable
@@ -77,6 +78,7 @@ class Element:
     switch: Switch | None = None
     whole: Hashable | None = None
     start: sp.Expr | None = None
+    by_inverse: bool = False
 
     @property
     def absorbs(self) -> bool:

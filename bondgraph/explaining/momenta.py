@@ -58,7 +58,7 @@ def _moving(reduction: Reduction) -> set[sp.Symbol]:
 
 def _stored(reduction: Reduction, at: int) -> Sum:
     port = reduction.structure.ports[at]
-    if port.element.inverse is not None and not port.integral:
+    if port.element.inverse is not None and (not port.integral or port.element.by_inverse):
         return ((sp.Integer(1), port.element.inverse),)
     return tuple((value, _variable(reduction, other)) for other, value in field_row(reduction, at))
 

@@ -41,7 +41,7 @@ def reduce_ports(structure: JunctionStructure) -> Reduction:
     )
     found = found.knowing(resistances(found))
     moving = moving_names(structure)
-    if moving or any(ports[i].element.inverse is not None for i in dependent):
+    if moving or any(ports[i].element.inverse is not None for i in (*states, *dependent)):
         found = _in_motion(found, moving)
     return found.knowing({port: stored_rate(found, port) for port in dependent})
 

@@ -93,5 +93,5 @@ def _is_fixed(port: Port) -> bool:
 
 def imposes(port: Port) -> bool:
     """Whether what the port gives is an input: of fixed causality, a switch's, or a law's if integral."""
-    law = port.element.law is not None and port.integral
+    law = port.element.law is not None and port.integral and not port.element.by_inverse
     return _is_fixed(port) or port.element.lets_go or law

@@ -40,7 +40,12 @@ def stored_rate(reduction: Reduction, port: int) -> Reading:
 
 def _add_inverse_rate(reduction: Reduction, port: int, result: ReadingSum) -> None:
     """The rate of a nonlinear storage's state as a function of what it receives."""
-    one, ruled = reduction.structure.ports[port], _ruled(reduction, port)
+    one = reduction.structure.ports[port]
+    if one.element.by_inverse:
+        if one.element.inverse is not None and reduction.motion is not None:
+            reduction.motion.add_total_rate(result, one.element.inverse, one.element.name)
+        return
+    ruled = _ruled(reduction, port)
     terms = [entry * reduction.names[j] for j, entry in ruled.F.items()]
     terms += [entry * reduction.inputs[j] for j, entry in ruled.D.items()]
     inverse, motion = one.element.inverse, reduction.motion

@@ -46,6 +46,8 @@ class Port:
     def own_state(self) -> sp.Symbol | None:
         """The state that a law at this port owns, or that a detector makes."""
         law = self.element.law
+        if self.element.by_inverse:
+            return None
         if isinstance(law, ExpressionLaw) and law.state is not None and self.integral:
             return law.state
         return self.element.integral

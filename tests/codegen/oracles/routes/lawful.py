@@ -78,6 +78,19 @@ def feedback() -> Kind:
                 rest={"inputs": {"r": 1.0}})  # fmt: skip
 
 
+def accumulators() -> Kind:
+    """Two gas bladders on one pipe, the second twice the first: it takes two thirds of what is pumped."""
+    nodes = [bg.Sf("pump", "Q"), bg.Zero("n"), bg.C("a", law="p_0*(V/(V - q_a))**1.4", effort="p"),
+             bg.C("b", law="p_0*(2*V/(2*V - q_b))**1.4", effort="p_b")]  # fmt: skip
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        return {"p": 2 * (1 - 0.4 * t) ** -1.4}
+
+    return Kind("two nonlinear storages on one node", bond_graph(nodes, "pump>n>a n>b"),
+                {"p_0": 2.0, "V": 1.0}, {"Q": "1.2"}, known, 1.0, {"p": 2.0}, at=0.3,
+                rest={"inputs": {"Q": 0.0}, "initial": {"p": 2.0}})  # fmt: skip
+
+
 def reaction() -> Kind:
     """A + B <-> C from no A, whose potential is log(0): x' = 1 - 2 x - x^2 of what there is of A."""
     nodes: list[tuple] = [bg.One("j")]
@@ -210,6 +223,6 @@ def large() -> Kind:
 
 
 LAWFUL = (
-    driven_dependent, inverted_storage, energy_field, heated, reaction, feedback, piecewise, table, play,
-    soft_stop, large,
+    driven_dependent, inverted_storage, energy_field, heated, accumulators, reaction, feedback, piecewise,
+    table, play, soft_stop, large,
 )  # fmt: skip

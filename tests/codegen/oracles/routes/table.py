@@ -22,7 +22,7 @@ REFUSALS = (
          "behind_moving_ratio", "nonlinear_resistance", "nonlinear_storage", "crank", "inverted_storage",
          "energy_field", "piecewise", "table", "play", "soft_stop", "bent_level", "ruled_flow",
          "reset_bent", "one_way_damper", "warmed", "valve", "filled", "filled_behind", "braked_while_filled",
-         "shifted", "gyrated", "heated", "reaction"),
+         "shifted", "gyrated", "heated", "reaction", "accumulators"),
         ("C, exact",), True,
         "Matrix exponentials need rates that are affine in each mode, and here a law or a ratio bends them. "
         "`method=\"auto\"`, which users take, locates events with step control instead.",
