@@ -44,6 +44,8 @@ from codegen.standalone.holding import Hold
 from codegen.standalone.instant import Instant
 from codegen.standalone.levels import without_rounding
 from codegen.standalone.matrices import Numbers
+from codegen.straight.inputs import plainly
+from codegen.straight.modes import StraightModes
 
 NONE: Array = np.zeros(0)
 
@@ -132,6 +134,7 @@ class ClosedModel:
     def _evaluate_by(self, binding: Binding, plain: Friction | None = None) -> None:
         self._form = formed(self.program, binding, self.numbers)
         self._friction = rubbing(self.program, binding, self._form, self.slips, plain)
+        self.straight = StraightModes(self.program, self._form, self._friction, self._constant)
 
     def place_name(self, place: int) -> str:
         """What a place in the integrated vector is called."""
@@ -318,7 +321,7 @@ class ClosedModel:
         """The rate of s in a mode as a function of t and s; quicker than `at`, which gives all else too."""
         affine = self.affine_map(mode, len(pieces))
         if affine is None:
-            return lambda t, s: self.at(t, s, pieces, mode).rate
+            return self._straight_rates(pieces, mode)
         rows = np.ascontiguousarray(affine.rows(RATE))
         one = (1.0,)
 
@@ -326,6 +329,44 @@ class ClosedModel:
             return np.asarray(rows @ np.concatenate((s, *self.given(t, pieces), one)))
 
         return rate
+
+    def _straight_rates(
+        self, pieces: Sequence[Piece], mode: Mode
+    ) -> Callable[[float, Array], Array]:
+        """By the mode's straight-line function; where that has no value the evaluation tells why."""
+        fast = self.straight.of(mode)
+        if fast is None:
+            return lambda t, s: self.at(t, s, pieces, mode).rate
+        rates, given = fast.rate, plainly(pieces, self._rated)
+
+        def rate(t: float, s: Array) -> Array:
+            try:
+                found = rates(t, s.tolist(), *given(t))
+            except (ArithmeticError, TypeError, ValueError):
+                found = None
+            return self.at(t, s, pieces, mode).rate if found is None else np.array(found)
+
+        return rate
+
+    def shots(self, pieces: Sequence[Piece], mode: Mode) -> Callable[[float, Array], Snapshot]:
+        """As `at`, of one mode as a function of t and s; quicker where there are many instants."""
+        fast = None if self.program.affine else self.straight.of(mode)
+        if fast is None:
+            return lambda t, s: self.at(t, s, pieces, mode)
+        cuts, given = fast.ends[:-1], plainly(pieces, self._rated)
+
+        def shot(t: float, s: Array) -> Snapshot:
+            w = given(t)
+            try:
+                found = fast.whole(t, s.tolist(), *w)
+            except (ArithmeticError, TypeError, ValueError):
+                found = None
+            if found is None:
+                return self.at(t, s, pieces, mode)
+            x, z, u, du, y, rate, caps = np.split(np.array(found), cuts)
+            return Snapshot(x, z, u, du, y, rate, caps, np.array(w[0]), self.constant)
+
+        return shot
 
     def evaluate(
         self, t: float, s: Array, w: Array, dw: Array, mode: Mode, checked: bool = True

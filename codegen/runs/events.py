@@ -35,6 +35,7 @@ class Watch:
         peaks: Peaks | None = None,
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
+        self._shot = model.shots(pieces, mode)
         affine = model.affine_map(mode, len(pieces)) if mode else None
         if model.program.guards.results:
             affine = None
@@ -71,7 +72,7 @@ class Watch:
         return list(self._of_ports(efforts, slips, caps, np.zeros((len(times), 0))))
 
     def _snapshot(self, t: float, s: Array) -> Snapshot:
-        return self._model.at(t, s, self._pieces, self._mode)
+        return self._shot(t, s)
 
     def _triggers(self, t: float, now: Snapshot) -> Array:
         efforts, slips = now.u[self._model.friction_inputs], now.y[self._model.friction_readings]

@@ -1,5 +1,6 @@
 """One smooth stretch of a run in one friction mode, up to a breakpoint or the first event."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -139,12 +140,14 @@ class Leg:
         return min(bound, TUNING.followed / driven) if driven > 0 else bound
 
     def _sample(self, times: Array, track: Track, until: float, dense: Dense) -> None:
-        while track.recorded < len(times) and times[track.recorded] < until:
-            track.record(dense(float(times[track.recorded])), self._mode)
+        first = track.recorded
+        last = first + int(np.searchsorted(times[first:], until, side="left"))
+        if last > first:
+            track.take(dense(times[first:last]).T, self._mode)
 
     def _rate(self, t: float, s: Array) -> Array:
         rate = self._rates(t, s)
-        if not np.isfinite(rate).all():
+        if not math.isfinite(rate.sum()) and not np.isfinite(rate).all():
             raise SimulationError(f"at t = {t:.9g} the rates are not finite; state {s.tolist()}")
         return rate
 
