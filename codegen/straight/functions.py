@@ -8,10 +8,9 @@ import numpy as np
 
 from codegen.model.numpy_backend import compiled
 from codegen.program.records import Block
-from codegen.straight.recording import Recording
-from codegen.straight.sums import Line, Sum, Value, names_in, needed
-from codegen.straight.words import text_of, writable, written
 from codegen.standalone.arrays import Array
+from codegen.straight.sums import Line, Recording, Sum, Value, names_in, needed
+from codegen.straight.words import text_of, writable, written
 from codegen.tuning import TUNING
 
 Straight = Callable[[float, list[float], Sequence[float], Sequence[float]], list[float] | None]

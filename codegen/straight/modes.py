@@ -16,7 +16,8 @@ from codegen.standalone.evaluation import Form
 from codegen.standalone.friction import Friction
 from codegen.standalone.matrices import Numbers
 from codegen.straight.functions import Straight, is_writable, over, straight
-from codegen.straight.recording import PARTS, Recording, recorded
+from codegen.straight.recording import PARTS, recorded
+from codegen.straight.sums import Recording
 
 
 @dataclass(frozen=True)

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from codegen.model.instant import BoundBlock
-from codegen.straight.sums import Line, Lines, Sum, Value
 from codegen.standalone.arrays import Array, Mode, Places
 from codegen.standalone.evaluation import Correction, Form, Laws, Point, evaluated
 from codegen.standalone.friction import Friction
 from codegen.standalone.instant import Formula, Instant
 from codegen.standalone.loops import Loop
 from codegen.standalone.matrices import Numbers
+from codegen.straight.sums import Lines, Recording, Sum, Value
 
 PARTS = ("x", "z", "u", "du", "y", "rate", "caps")
 """What is recorded of an instant."""
@@ -43,18 +43,6 @@ class Solving:
         self.loop.close(now)
         found: list[float] = now.u[self.loop.inputs].tolist()
         return found
-
-
-@dataclass(frozen=True)
-class Recording:
-    """The lines of an evaluation, from t, s, w and w'; ``parts``: its results by name, rows of sums.
-
-    ``loops``: what lines with a number call.
-    """
-
-    lines: tuple[Line, ...]
-    parts: dict[str, tuple[Value, ...]]
-    loops: tuple[Solving, ...]
 
 
 class _Noted(Formula):
@@ -119,7 +107,10 @@ def recorded(
     lines, loops = Lines(), list[Solving]()
     size = max(form.states + len(form.law_rates), 1)
     noted = _noted(form, lines, loops, numbers)
-    s, w, dw = (_row(lines.given(letter, n)) for letter, n in zip("swd", (size, inputs, inputs), strict=True))
+    s, w, dw = (
+        _row(lines.given(letter, n))
+        for letter, n in zip("swd", (size, inputs, inputs), strict=True)
+    )
     point = Point(lines.one("t"), s, w, dw)  # type: ignore[arg-type]
     friction = None if contact is None else _friction(contact, lines, noted)
     now = evaluated(noted, friction, point, mode, checked=False)

@@ -1,6 +1,6 @@
 """Sums of named numbers, and the lines in which names are given: what an evaluation is recorded as."""
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Union
 
@@ -126,6 +126,18 @@ class Sum:
         return Sum(self.lines, terms, factor * self.constant)
 
     __rmul__ = __mul__
+
+
+@dataclass(frozen=True)
+class Recording:
+    """The lines of an evaluation, from t, s, w and w'; ``parts``: its results by name, rows of sums.
+
+    ``loops``: what lines with a number call.
+    """
+
+    lines: tuple[Line, ...]
+    parts: dict[str, tuple[Value, ...]]
+    loops: tuple[Callable[..., list[float]], ...]
 
 
 def names_in(values: Iterable[Value]) -> set[str]:
