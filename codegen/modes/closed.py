@@ -44,8 +44,7 @@ from codegen.standalone.holding import Hold
 from codegen.standalone.instant import Instant
 from codegen.standalone.levels import without_rounding
 from codegen.standalone.matrices import Numbers
-from codegen.straight.inputs import plainly
-from codegen.straight.modes import StraightModes
+from codegen.straight.modes import Plain, StraightModes
 
 NONE: Array = np.zeros(0)
 
@@ -134,7 +133,12 @@ class ClosedModel:
     def _evaluate_by(self, binding: Binding, plain: Friction | None = None) -> None:
         self._form = formed(self.program, binding, self.numbers)
         self._friction = rubbing(self.program, binding, self._form, self.slips, plain)
-        self.straight = StraightModes(self.program, self._form, self._friction, self._constant)
+        looks = {"guards": self._guards}
+        if self.corners is not None:
+            looks["corners"] = self.corners
+        self.straight = StraightModes(
+            self.program, self._form, self._friction, self._constant, looks
+        )
 
     def place_name(self, place: int) -> str:
         """What a place in the integrated vector is called."""
@@ -321,7 +325,14 @@ class ClosedModel:
         """The rate of s in a mode as a function of t and s; quicker than `at`, which gives all else too."""
         affine = self.affine_map(mode, len(pieces))
         if affine is None:
-            return self._straight_rates(pieces, mode)
+            plain = self.plainly(pieces, mode, "rate")
+
+            def found(t: float, s: Array) -> Array:
+                values = None if plain is None else plain(t, s)
+                # Where that has no value the evaluation tells why.
+                return self.at(t, s, pieces, mode).rate if values is None else np.array(values)
+
+            return found
         rows = np.ascontiguousarray(affine.rows(RATE))
         one = (1.0,)
 
@@ -330,43 +341,10 @@ class ClosedModel:
 
         return rate
 
-    def _straight_rates(
-        self, pieces: Sequence[Piece], mode: Mode
-    ) -> Callable[[float, Array], Array]:
-        """By the mode's straight-line function; where that has no value the evaluation tells why."""
-        fast = self.straight.of(mode)
-        if fast is None:
-            return lambda t, s: self.at(t, s, pieces, mode).rate
-        rates, given = fast.rate, plainly(pieces, self._rated)
-
-        def rate(t: float, s: Array) -> Array:
-            try:
-                found = rates(t, s.tolist(), *given(t))
-            except (ArithmeticError, TypeError, ValueError):
-                found = None
-            return self.at(t, s, pieces, mode).rate if found is None else np.array(found)
-
-        return rate
-
-    def shots(self, pieces: Sequence[Piece], mode: Mode) -> Callable[[float, Array], Snapshot]:
-        """As `at`, of one mode as a function of t and s; quicker where there are many instants."""
+    def plainly(self, pieces: Sequence[Piece], mode: Mode, *parts: str) -> Plain | None:
+        """Parts of an instant in a mode as numbers; None of affine modes, and where none are written."""
         fast = None if self.program.affine else self.straight.of(mode)
-        if fast is None:
-            return lambda t, s: self.at(t, s, pieces, mode)
-        cuts, given = fast.ends[:-1], plainly(pieces, self._rated)
-
-        def shot(t: float, s: Array) -> Snapshot:
-            w = given(t)
-            try:
-                found = fast.whole(t, s.tolist(), *w)
-            except (ArithmeticError, TypeError, ValueError):
-                found = None
-            if found is None:
-                return self.at(t, s, pieces, mode)
-            x, z, u, du, y, rate, caps = np.split(np.array(found), cuts)
-            return Snapshot(x, z, u, du, y, rate, caps, np.array(w[0]), self.constant)
-
-        return shot
+        return None if fast is None else fast.under(pieces, self._rated, *parts)
 
     def evaluate(
         self, t: float, s: Array, w: Array, dw: Array, mode: Mode, checked: bool = True

@@ -1,11 +1,11 @@
 """The straight-line functions of a model's modes, each made when it is first asked for."""
 
-from dataclasses import dataclass
-from functools import cached_property
-
-import numpy as np
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from bondgraph.errors import SimulationError
+from codegen.inputs.pieces import Piece
+from codegen.model.instant import BoundBlock
 from codegen.model.snapshot import Mode
 from codegen.numbers.arrays import Array
 from codegen.numbers.latest import Latest, room_for
@@ -16,45 +16,58 @@ from codegen.standalone.evaluation import Form
 from codegen.standalone.friction import Friction
 from codegen.standalone.matrices import Numbers
 from codegen.straight.functions import Straight, is_writable, over, straight
-from codegen.straight.recording import PARTS, recorded
+from codegen.straight.inputs import plainly
+from codegen.straight.recording import recorded
 from codegen.straight.sums import Recording
+
+Plain = Callable[[float, Array], list[float] | None]
+"""From t and s to numbers; None where the evaluation has to tell more."""
 
 
 @dataclass(frozen=True)
 class StraightMode:
-    """What is evaluated in one mode, as functions; `Straight` says of what."""
+    """What is evaluated in one mode; functions of parts that were asked for are kept."""
 
     recording: Recording
+    _made: dict[tuple[str, ...], Straight] = field(default_factory=dict)
 
-    @cached_property
-    def rate(self) -> Straight:
-        """The rate of s."""
-        return straight(self.recording, ("rate",))
+    def of(self, *parts: str) -> Straight:
+        """These parts, one after the other."""
+        if parts not in self._made:
+            self._made[parts] = straight(self.recording, parts)
+        return self._made[parts]
 
-    @cached_property
-    def whole(self) -> Straight:
-        """All `PARTS` of an instant."""
-        return straight(self.recording, PARTS)
+    def under(self, pieces: Sequence[Piece], rated: bool, *parts: str) -> Plain:
+        """The same with what the inputs do; ``rated``: whether their rates count."""
+        given, made = plainly(pieces, rated), list[Straight]()
 
-    @cached_property
-    def ends(self) -> list[int]:
-        """Where each part ends among these."""
-        ends: list[int] = np.cumsum([len(self.recording.parts[part]) for part in PARTS]).tolist()
-        return ends
+        def plain(t: float, s: Array) -> list[float] | None:
+            if not made:
+                made.append(self.of(*parts))
+            try:
+                return made[0](float(t), s.tolist(), *given(t))
+            except (ArithmeticError, TypeError, ValueError):
+                return None
 
-    def over(self, times: Array, vectors: Array, w: Array, dw: Array) -> dict[str, Array] | None:
+        return plain
+
+    def over(self, times: Array, vectors: Array, w: Array, dw: Array) -> Mapping[str, Array] | None:
         """The parts at many instants, in rows, of given columns; None where one has to be looked at."""
         return over(self.recording, times, vectors, w, dw)
 
 
 class StraightModes:
-    """The latest modes of a model; ``numbers``: its matrices, None of one whose matrices change."""
+    """The latest modes of a model; ``numbers``: its matrices, None of one whose matrices change.
+
+    ``looks``: what else is asked of an instant, by name.
+    """
 
     def __init__(
-        self, program: Program, form: Form, friction: Friction, numbers: Numbers | None
-    ) -> None:
+        self, program: Program, form: Form, friction: Friction, numbers: Numbers | None,
+        looks: Mapping[str, BoundBlock],
+    ) -> None:  # fmt: skip
         self._form, self._friction, self._numbers = form, friction, numbers
-        self._rubs, self._inputs = bool(program.friction), len(program.external)
+        self._rubs, self._inputs, self._looks = bool(program.friction), len(program.external), looks
         #: Whether modes are written at all: matrices stay, and friction is not solved for with laws.
         self._some = numbers is not None and not program.joint
         self._modes = Latest[Mode, StraightMode | None](room_for(100 * sum(widths(program))))
@@ -75,5 +88,5 @@ class StraightModes:
             if len(hold.share):
                 return None
         contact = self._friction if self._rubs else None
-        made = recorded(self._form, contact, mode, self._numbers, self._inputs)
+        made = recorded(self._form, contact, mode, self._numbers, self._inputs, self._looks)
         return StraightMode(made) if is_writable(made) else None

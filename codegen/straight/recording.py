@@ -1,10 +1,11 @@
 """A recording of the evaluation of a mode: the same steps, on names instead of numbers.
 
-`evaluated` and what it calls run once on arrays of `Sum`; what they come to is noted line by line, laws as
-they stand, matrices as the numbers that they are in the mode, nothing that is zero. So there is one evaluation.
+`evaluated` and what it calls run once on arrays of `Sum`; what they come to is noted line by line: laws as
+they stand, matrices as the numbers that they are in the mode, nothing that is zero. So there is one
+evaluation, and its fast form is a copy that a machine made.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
@@ -18,10 +19,7 @@ from codegen.standalone.friction import Friction
 from codegen.standalone.instant import Formula, Instant
 from codegen.standalone.loops import Loop
 from codegen.standalone.matrices import Numbers
-from codegen.straight.sums import Lines, Recording, Sum, Value
-
-PARTS = ("x", "z", "u", "du", "y", "rate", "caps")
-"""What is recorded of an instant."""
+from codegen.straight.sums import PARTS, Line, Lines, Recording, Sum, Value
 
 
 @dataclass(frozen=True)
@@ -101,9 +99,13 @@ class _Closing(Laws):
 
 
 def recorded(
-    form: Form, contact: Friction | None, mode: Mode, numbers: Numbers, inputs: int
-) -> Recording:
-    """What an evaluation in a mode comes to, with constant matrices, of so many external inputs."""
+    form: Form, contact: Friction | None, mode: Mode, numbers: Numbers, inputs: int,
+    looks: Mapping[str, BoundBlock],
+) -> Recording:  # fmt: skip
+    """What an evaluation in a mode comes to, with constant matrices, of so many external inputs.
+
+    ``looks``: formulas of the instant, by the names of parts.
+    """
     lines, loops = Lines(), list[Solving]()
     size = max(form.states + len(form.law_rates), 1)
     noted = _noted(form, lines, loops, numbers)
@@ -115,7 +117,16 @@ def recorded(
     friction = None if contact is None else _friction(contact, lines, noted)
     now = evaluated(noted, friction, point, mode, checked=False)
     parts = {name: tuple(map(_plain, getattr(now, name))) for name in PARTS}
-    return Recording(tuple(lines.listed), parts, tuple(loops))
+    if contact is not None:
+        ports = contact.ports
+        parts["efforts"] = tuple(map(_plain, now.u[ports.inputs]))
+        parts["slips"] = tuple(map(_plain, now.y[ports.readings]))
+    own, more = tuple(lines.listed), dict[str, tuple[Line, ...]]()
+    for name, block in looks.items():
+        aside = lines.copied()
+        parts[name] = tuple(map(_plain, _Noted(block, aside)(now)))
+        more[name] = tuple(aside.listed[len(own) :])
+    return Recording(own, parts, tuple(loops), more)
 
 
 def _noted(form: Form, lines: Lines, loops: list[Solving], numbers: Numbers) -> Form:

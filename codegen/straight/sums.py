@@ -6,6 +6,9 @@ from typing import Any, Union
 
 from codegen.program.records import Block
 
+PARTS = ("x", "z", "u", "du", "y", "rate", "caps")
+"""What is recorded of an instant."""
+
 Number = int | float
 
 Value = Union["Sum", Number]
@@ -16,8 +19,8 @@ Value = Union["Sum", Number]
 class Line:
     """One assignment: ``names`` of its results, ``read``: the sums that it reads.
 
-    ``code``: a block that is evaluated; a number: which loop of laws is solved; "+": the one sum that is read,
-    "*": the product of two; "!": the four values of friction at a port, which are checked.
+    ``code``: a block that is evaluated; a number: which loop of laws is solved; "+": the one sum
+    that is read, "*": the product of two; "!": the four values of friction at a port, checked.
     """
 
     names: tuple[str, ...]
@@ -36,6 +39,10 @@ class Lines:
 
     listed: list[Line] = field(default_factory=list)
     _known: dict[Hashable, "Sum"] = field(default_factory=dict)
+
+    def copied(self) -> "Lines":
+        """The same, to go on with apart."""
+        return Lines([*self.listed], dict(self._known))
 
     def given(self, letter: str, count: int) -> list["Sum"]:
         """What is given from outside, ``letter`` with a number."""
@@ -132,12 +139,14 @@ class Sum:
 class Recording:
     """The lines of an evaluation, from t, s, w and w'; ``parts``: its results by name, rows of sums.
 
-    ``loops``: what lines with a number call.
+    ``loops``: what lines with a number call. ``looks``: for parts that are looked at, one
+    at a time, lines of their own.
     """
 
     lines: tuple[Line, ...]
     parts: dict[str, tuple[Value, ...]]
     loops: tuple[Callable[..., list[float]], ...]
+    looks: dict[str, tuple[Line, ...]]
 
 
 def names_in(values: Iterable[Value]) -> set[str]:
