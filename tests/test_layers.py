@@ -18,8 +18,8 @@ ORDER = {
     "bondgraph": "errors writing algebra declare causality reduce show equations derive analyse explaining "
     "drawing files",
     "codegen": "tuning standalone fixed stops numbers inputs targets program model ports straight modes "
-    "corners instants energy runs pictures record plots analysis c engine simulator simulate trim packing family "
-    "batch sweeps python switched sparse fmu exports",
+    "corners instants energy runs pictures record plots analysis c engine simulator simulate trim packing "
+    "family batch sweeps python switched sparse fmu exports",
     "differentials": "laws parts pieces passive active topologies parameters model identification speeds "
     "scenarios exporting figures report commands",
 }

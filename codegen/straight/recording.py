@@ -55,7 +55,8 @@ class _Noted(Formula):
         code = self._block.code
         read = [_plain(value) for value in pool[self._block.read(pool)]]
         read = [self._lines.named(value) for value in read]
-        return _row(self._lines.new(code, read, len(code.results)))
+        found: Array = _row(self._lines.new(code, read, len(code.results)))
+        return found
 
 
 class _Checked(_Noted):
@@ -87,9 +88,10 @@ class _Closing(Laws):
         moving = range(len(pool) - len(self.formula.constants))
         read = {*self.formula.read(pool), *(first + self.readings).tolist()}
         places = np.array(sorted(read & {*moving}), dtype=int)
-        like = replace(now, **{part: np.zeros(len(getattr(now, part)))
-                               for part in ("x", "z", "u", "du", "y", "w", "dw", "caps")})  # fmt: skip
-        like.t = 0.0
+        x, z, u, y, w, dw = (
+            np.zeros(len(part)) for part in (now.x, now.z, now.u, now.y, now.w, now.dw)
+        )
+        like = Instant(0.0, x, z, u, u, y, w, dw, y[:0], now.numbers)
         self._kept.append(Solving(self._loop, places, like))
         read_values = [self._lines.named(_plain(value)) for value in pool[places]]
         now.give(
@@ -159,7 +161,7 @@ def _friction(contact: Friction, lines: Lines, form: Form) -> Any:
             return None
 
         def corrected(rate: Array, du: Array) -> Array:
-            rate[:] = [lines.named(_plain(value)) for value in rate]
+            rate[:] = _row([lines.named(_plain(value)) for value in rate])
             return correction(rate, du)
 
         return corrected

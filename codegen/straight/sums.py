@@ -118,10 +118,10 @@ class Sum:
         return Sum(self.lines, {name: -f for name, f in self.terms.items()}, -self.constant)
 
     def __sub__(self, other: Any) -> Value:
-        return self + -other
+        return self.__add__(-other)
 
     def __rsub__(self, other: Any) -> Value:
-        return -self + other
+        return (-self).__add__(other)
 
     def __mul__(self, other: Any) -> Value:
         if isinstance(other, Sum):
