@@ -6,7 +6,7 @@ drives a dependent storage steps; z are the states that laws own.
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from functools import cached_property
+from functools import cached_property, partial
 from types import MappingProxyType
 
 import numpy as np
@@ -45,6 +45,7 @@ from codegen.standalone.instant import Instant
 from codegen.standalone.levels import without_rounding
 from codegen.standalone.matrices import Numbers
 from codegen.straight.modes import Plain, StraightModes
+from codegen.straight.recording import Changing
 
 NONE: Array = np.zeros(0)
 
@@ -136,9 +137,10 @@ class ClosedModel:
         looks = {"guards": self._guards}
         if self.corners is not None:
             looks["corners"] = self.corners
-        self.straight = StraightModes(
-            self.program, self._form, self._friction, self._constant, looks
-        )
+        matrices: Numbers | Changing | None = self._constant
+        if matrices is None:
+            matrices = Changing(self._coefficients, partial(assembled, self.program))
+        self.straight = StraightModes(self.program, self._form, self._friction, matrices, looks)
 
     def place_name(self, place: int) -> str:
         """What a place in the integrated vector is called."""

@@ -98,6 +98,8 @@ def _taken(line: Line, known: dict[str, Any], recording: Recording) -> bool:
         level, cap, curve, rest = map(np.asarray, read)
         short = cap < level * rest * (1 - TUNING.breakaway)
         return not bool(((level < 0) | (curve < 0) | short).any())
+    elif line.code == "/":
+        found = [read[0] / read[1]]
     else:
         found = read if line.code == "+" else [read[0] * read[1]]
     known.update(zip(line.names, found, strict=True))

@@ -17,7 +17,7 @@ from codegen.standalone.friction import Friction
 from codegen.standalone.matrices import Numbers
 from codegen.straight.functions import Straight, is_writable, over, straight
 from codegen.straight.inputs import plainly
-from codegen.straight.recording import recorded
+from codegen.straight.recording import Changing, recorded
 from codegen.straight.sums import Recording
 
 Plain = Callable[[float, Array], list[float] | None]
@@ -57,36 +57,40 @@ class StraightMode:
 
 
 class StraightModes:
-    """The latest modes of a model; ``numbers``: its matrices, None of one whose matrices change.
+    """The latest modes of a model; ``matrices``: as they are, or as they change.
 
     ``looks``: what else is asked of an instant, by name.
     """
 
     def __init__(
-        self, program: Program, form: Form, friction: Friction, numbers: Numbers | None,
+        self, program: Program, form: Form, friction: Friction, matrices: Numbers | Changing,
         looks: Mapping[str, BoundBlock],
     ) -> None:  # fmt: skip
-        self._form, self._friction, self._numbers = form, friction, numbers
+        self._form, self._friction, self._matrices = form, friction, matrices
         self._rubs, self._inputs, self._looks = bool(program.friction), len(program.external), looks
-        #: Whether modes are written at all: matrices stay, and friction is not solved for with laws.
-        self._some = numbers is not None and not program.joint
+        looped = any(group.loop for group in program.groups)
+        #: Whether modes are written at all: not where friction is solved for with laws, nor where laws are
+        #: solved for by matrices that change.
+        self._some = not program.joint and not (looped and program.varying)
         self._modes = Latest[Mode, StraightMode | None](room_for(100 * sum(widths(program))))
 
     def of(self, mode: Mode) -> StraightMode | None:
-        """A mode; None where ports share a load or cannot hold, or a law is not written over floats."""
+        """A mode; None where ports share a load or cannot hold, or hold by matrices that change, or where a
+        law is not written over floats."""
         return self._modes.of(mode, lambda: self._made(mode)) if self._some else None
 
     def _made(self, mode: Mode) -> StraightMode | None:
-        assert self._numbers is not None
         if 0 in mode:
+            if isinstance(self._matrices, Changing):
+                return None
             try:
                 with refusals():
-                    hold = self._friction.hold(mode, self._numbers)
+                    hold = self._friction.hold(mode, self._matrices)
             except SimulationError:
                 # An evaluation tells which.
                 return None
             if len(hold.share):
                 return None
         contact = self._friction if self._rubs else None
-        made = recorded(self._form, contact, mode, self._numbers, self._inputs, self._looks)
+        made = recorded(self._form, contact, mode, self._matrices, self._inputs, self._looks)
         return StraightMode(made) if is_writable(made) else None

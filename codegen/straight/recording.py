@@ -5,10 +5,10 @@ they stand, matrices as the numbers that they are in the mode, nothing that is z
 evaluation, and its fast form is a copy that a machine made.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,15 @@ from codegen.standalone.friction import Friction
 from codegen.standalone.instant import Formula, Instant
 from codegen.standalone.loops import Loop
 from codegen.standalone.matrices import Numbers
+from codegen.straight.matrices import Calls, solving
 from codegen.straight.sums import PARTS, Line, Lines, Recording, Sum, Value
+
+
+class Changing(NamedTuple):
+    """Matrices that change: their entries, and what makes matrices of these, given what solves."""
+
+    coefficients: BoundBlock
+    assembled: Callable[[Array, Callable[[Array, Array], Array]], Numbers]
 
 
 @dataclass(frozen=True)
@@ -78,7 +86,7 @@ class _Checked(_Noted):
 class _Closing(Laws):
     """A loop of laws that is noted as a call."""
 
-    def __init__(self, loop: Loop, lines: Lines, kept: list[Solving]) -> None:
+    def __init__(self, loop: Loop, lines: Lines, kept: Calls) -> None:
         super().__init__(loop.formula, loop.inputs, loop.readings, loop.names)
         self._loop, self._lines, self._kept = loop, lines, kept
 
@@ -101,16 +109,16 @@ class _Closing(Laws):
 
 
 def recorded(
-    form: Form, contact: Friction | None, mode: Mode, numbers: Numbers, inputs: int,
+    form: Form, contact: Friction | None, mode: Mode, matrices: Numbers | Changing, inputs: int,
     looks: Mapping[str, BoundBlock],
 ) -> Recording:  # fmt: skip
-    """What an evaluation in a mode comes to, with constant matrices, of so many external inputs.
+    """What an evaluation in a mode comes to, of so many external inputs.
 
     ``looks``: formulas of the instant, by the names of parts.
     """
-    lines, loops = Lines(), list[Solving]()
+    lines, loops = Lines(), Calls()
     size = max(form.states + len(form.law_rates), 1)
-    noted = _noted(form, lines, loops, numbers)
+    noted = _noted(form, lines, loops, matrices)
     s, w, dw = (
         _row(lines.given(letter, n))
         for letter, n in zip("swd", (size, inputs, inputs), strict=True)
@@ -131,7 +139,13 @@ def recorded(
     return Recording(own, parts, tuple(loops), more)
 
 
-def _noted(form: Form, lines: Lines, loops: list[Solving], numbers: Numbers) -> Form:
+def _noted(form: Form, lines: Lines, loops: Calls, matrices: Numbers | Changing) -> Form:
+    def numbers(now: Instant) -> Numbers:
+        if isinstance(matrices, Numbers):
+            return matrices
+        values = _Noted(matrices.coefficients, lines)(now)
+        return matrices.assembled(values, solving(lines, loops))
+
     def laws(one: Laws) -> Laws:
         if isinstance(one, Loop):
             return _Closing(one, lines, loops)
@@ -139,7 +153,7 @@ def _noted(form: Form, lines: Lines, loops: list[Solving], numbers: Numbers) -> 
 
     rates = None if form.known_rates is None else _of(form.known_rates, lines)
     return replace(
-        form, known=laws(form.known), known_rates=rates, matrices=lambda now: numbers,
+        form, known=laws(form.known), known_rates=rates, matrices=numbers,
         laws=[laws(one) for one in form.laws],
     )  # fmt: skip
 

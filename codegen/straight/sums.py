@@ -19,8 +19,9 @@ Value = Union["Sum", Number]
 class Line:
     """One assignment: ``names`` of its results, ``read``: the sums that it reads.
 
-    ``code``: a block that is evaluated; a number: which loop of laws is solved; "+": the one sum
-    that is read, "*": the product of two; "!": the four values of friction at a port, checked.
+    ``code``: a block that is evaluated; a number: what is called, such as a loop of laws to be solved;
+    "+": the one sum that is read, "*": the product of two, "/": the first over the second; "!": the four
+    values of friction at a port, which are checked.
     """
 
     names: tuple[str, ...]
@@ -69,8 +70,12 @@ class Lines:
         """The product of two."""
         return self._once("*", *sorted((one, other), key=lambda part: [*part.terms]))
 
-    def _once(self, code: str, *read: "Sum") -> "Sum":
-        key = (code, *(part.key for part in read))
+    def quotient(self, one: Value, other: "Sum") -> "Sum":
+        """One over another."""
+        return self._once("/", one, other)
+
+    def _once(self, code: str, *read: Value) -> "Sum":
+        key = (code, *(part.key if isinstance(part, Sum) else part for part in read))
         if key not in self._known:
             self._known[key] = self.new(code, read)[0]
         return self._known[key]
@@ -133,6 +138,12 @@ class Sum:
         return Sum(self.lines, terms, factor * self.constant)
 
     __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Value:
+        return self.lines.quotient(self, other) if isinstance(other, Sum) else self * (1 / other)
+
+    def __rtruediv__(self, other: Any) -> Value:
+        return self.lines.quotient(float(other), self) if other else 0.0
 
 
 @dataclass(frozen=True)

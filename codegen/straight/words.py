@@ -54,8 +54,8 @@ def written(line: Line) -> list[str]:
         return _block(line, line.code, read)
     if line.code == "!":
         return _checked(read)
-    if line.code == "*":
-        return [f"{line.names[0]} = ({read[0]})*({read[1]})"]
+    if line.code in ("*", "/"):
+        return [f"{line.names[0]} = ({read[0]}){line.code}({read[1]})"]
     if line.code == "+":
         return [f"{line.names[0]} = {read[0]}"]
     return [f"{', '.join(line.names)}, = loops[{line.code}]({', '.join(read)})"]
