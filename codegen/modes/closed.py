@@ -348,6 +348,22 @@ class ClosedModel:
         fast = None if self.program.affine else self.straight.of(mode)
         return None if fast is None else fast.under(pieces, self._rated, *parts)
 
+    def slopes(
+        self, pieces: Sequence[Piece], mode: Mode
+    ) -> Callable[[float, Array], Array | None] | None:
+        """The slopes of the rates in s in a mode as a function of t and s, which gives None where there is
+        no value; None of affine modes, and where laws are solved for."""
+        fast = None if self.program.affine else self.straight.of(mode)
+        if fast is None or fast.slopes is None:
+            return None
+        plain = fast.slopes.under(pieces, self._rated, "slopes")
+
+        def found(t: float, s: Array) -> Array | None:
+            values = plain(t, s)
+            return None if values is None else np.array(values).reshape(len(s), len(s))
+
+        return found
+
     def evaluate(
         self, t: float, s: Array, w: Array, dw: Array, mode: Mode, checked: bool = True
     ) -> Snapshot:

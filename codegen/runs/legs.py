@@ -1,7 +1,7 @@
 """One smooth stretch of a run in one friction mode, up to a breakpoint or the first event."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -58,11 +58,14 @@ class Leg:
         return max(inner, *(piece.fastest for piece in self._pieces), 0.0)
 
     def _fastest(self, t: float, s: Array) -> float:
+        return float(np.abs(np.linalg.eigvals(self._differences(t, s))).max(initial=0.0))
+
+    def _differences(self, t: float, s: Array) -> Array:
         base = self._rate(t, s)
         jacobian = np.empty((len(s), len(s)))
         for j in range(len(s)):
             jacobian[:, j] = difference(self._rates, t, s, j, base, longest_step(t - self._origin))
-        return float(np.abs(np.linalg.eigvals(jacobian)).max(initial=0.0))
+        return jacobian
 
     def run(self, t: float, s: Array, stop: float, times: Array, track: Track) -> Ended:
         """Integrate to ``stop`` or the first event; the ports whose event it was come third.
@@ -81,7 +84,7 @@ class Leg:
         first = {} if self._first_step is None else {"first_step": min(self._first_step, stop - t)}
         solver = integrator(name)(
             self._rate, t, s, stop, rtol=self._settings.rtol, atol=self._settings.atol,
-            max_step=self._bound(explicit, fastest, t), **first,
+            max_step=self._bound(explicit, fastest, t), **first, **self._jacobian(name),
         )  # fmt: skip
         watch = Watch(self._model, self._pieces, self._mode, t, s, self._peaks)
         steps, progress = 0, self._progress(t)
@@ -105,6 +108,18 @@ class Leg:
                 fastest = self.fastest(solver.t, solver.y)
             solver.max_step = self._bound(explicit, fastest, solver.t)
         return stop, solver.y, frozenset()
+
+    def _jacobian(self, name: str) -> dict[str, Callable[[float, Array], Array]]:
+        """What an implicit method is told of slopes: by formulas where there are some, else nothing."""
+        slopes = self._model.slopes(self._pieces, self._mode) if name == "Radau" else None
+        if slopes is None:
+            return {}
+
+        def jac(t: float, s: Array) -> Array:
+            found = slopes(t, s)
+            return self._differences(t, s) if found is None else found
+
+        return {"jac": jac}
 
     def _next(
         self, watch: Watch, t_old: float, t_new: float, dense: Dense

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
@@ -18,6 +19,7 @@ from codegen.standalone.matrices import Numbers
 from codegen.straight.functions import Straight, is_writable, over, straight
 from codegen.straight.inputs import plainly
 from codegen.straight.recording import Changing, recorded
+from codegen.straight.slopes import with_slopes
 from codegen.straight.sums import Recording
 
 Plain = Callable[[float, Array], list[float] | None]
@@ -36,6 +38,12 @@ class StraightMode:
         if parts not in self._made:
             self._made[parts] = straight(self.recording, parts)
         return self._made[parts]
+
+    @cached_property
+    def slopes(self) -> "StraightMode | None":
+        """The mode's "slopes" in place of its parts; None where they have no formula."""
+        made = with_slopes(self.recording)
+        return StraightMode(made) if made is not None and is_writable(made) else None
 
     def under(self, pieces: Sequence[Piece], rated: bool, *parts: str) -> Plain:
         """The same with what the inputs do; ``rated``: whether their rates count."""
