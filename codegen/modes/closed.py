@@ -356,11 +356,16 @@ class ClosedModel:
         fast = None if self.program.affine else self.straight.of(mode)
         if fast is None or fast.slopes is None:
             return None
-        plain = fast.slopes.under(pieces, self._rated, "slopes")
+        mode_slopes, (rows, columns) = fast.slopes
+        plain = mode_slopes.under(pieces, self._rated, "slopes")
 
         def found(t: float, s: Array) -> Array | None:
             values = plain(t, s)
-            return None if values is None else np.array(values).reshape(len(s), len(s))
+            if values is None:
+                return None
+            matrix = np.zeros((len(s), len(s)))
+            matrix[rows, columns] = values
+            return matrix
 
         return found
 

@@ -19,7 +19,7 @@ from codegen.standalone.matrices import Numbers
 from codegen.straight.functions import Straight, is_writable, over, straight
 from codegen.straight.inputs import plainly
 from codegen.straight.recording import Changing, recorded
-from codegen.straight.slopes import with_slopes
+from codegen.straight.slopes import Places, with_slopes
 from codegen.straight.sums import Recording
 
 Plain = Callable[[float, Array], list[float] | None]
@@ -40,10 +40,10 @@ class StraightMode:
         return self._made[parts]
 
     @cached_property
-    def slopes(self) -> "StraightMode | None":
-        """The mode's "slopes" in place of its parts; None where they have no formula."""
+    def slopes(self) -> tuple["StraightMode", Places] | None:
+        """The mode's "slopes" in place of its parts, and where they stand; None where they have no formula."""
         made = with_slopes(self.recording)
-        return StraightMode(made) if made is not None and is_writable(made) else None
+        return (StraightMode(made[0]), made[1]) if made and is_writable(made[0]) else None
 
     def under(self, pieces: Sequence[Piece], rated: bool, *parts: str) -> Plain:
         """The same with what the inputs do; ``rated``: whether their rates count."""

@@ -11,8 +11,12 @@ Slopes = dict[int, Value]
 """By the place of a component: how much more there is for each more of it."""
 
 
-def with_slopes(recording: Recording) -> Recording | None:
-    """The recording with a part "slopes", rows of the rates' slopes one after the other.
+Places = tuple[tuple[int, ...], tuple[int, ...]]
+"""Rows and columns of entries of a matrix."""
+
+
+def with_slopes(recording: Recording) -> tuple[Recording, Places] | None:
+    """A recording with a part "slopes", those of the rates that are not zero, and where these stand.
 
     Corners and jumps count for nothing beside them. None where lines call what has no formula.
     """
@@ -26,8 +30,10 @@ def with_slopes(recording: Recording) -> Recording | None:
         for name, found in zip(line.names, _of_line(line, lines, known), strict=True):
             known[name] = found
     rows = [_of_sum(value, known) for value in recording.parts["rate"]]
-    slopes = tuple(row.get(at, 0.0) for row in rows for at in range(size))
-    return Recording(tuple(lines.listed), {"slopes": slopes}, (), {})
+    found = [(i, j, value) for i, row in enumerate(rows) for j, value in row.items() if value]
+    slopes = tuple(value for *_, value in found)
+    places = tuple(i for i, *_ in found), tuple(j for _, j, _ in found)
+    return Recording(tuple(lines.listed), {"slopes": slopes}, (), {}), places
 
 
 def _of_line(line: Line, lines: Lines, known: dict[str, Slopes]) -> list[Slopes]:
@@ -74,32 +80,42 @@ def _added(one: Slopes, other: Slopes) -> Slopes:
     return {at: one.get(at, 0.0) + other.get(at, 0.0) for at in dict.fromkeys([*one, *other])}
 
 
-@lru_cache(maxsize=256)
 def partial_slopes(
     code: Block, moving: tuple[int, ...]
 ) -> tuple[Block, tuple[tuple[int, int], ...]]:
     """The slopes of a block's results in some of its arguments that are not zero, and of which in which.
 
-    The block reads the same arguments.
+    The block has as many arguments, in the same order.
     """
-    real = [sp.Dummy(name.name, real=True) for name in code.arguments]
-    known: dict[sp.Basic, sp.Basic] = dict(zip(code.arguments, real, strict=True))
+    named: dict[sp.Basic, sp.Basic] = {
+        name: sp.Symbol(f"_{at}", real=True) for at, name in enumerate(code.arguments)
+    }
     for name, value in code.assignments:
-        known[name] = value.xreplace(known)
-    back = dict(zip(real, code.arguments, strict=True))
+        named[name] = value.xreplace(named)
+    results = tuple(result.xreplace(named) for result in code.results)
+    return _partial(results, len(code.arguments), moving)
+
+
+@lru_cache(maxsize=256)
+def _partial(
+    results: tuple[sp.Expr, ...], count: int, moving: tuple[int, ...]
+) -> tuple[Block, tuple[tuple[int, int], ...]]:
+    """The same of results in ``_0``, ``_1`` ..: laws that are alike are differentiated once."""
+    names = tuple(sp.Symbol(f"_{at}", real=True) for at in range(count))
     found, places = list[sp.Expr](), list[tuple[int, int]]()
-    for row, result in enumerate(code.results):
-        value = result.xreplace(known)
+    for row, result in enumerate(results):
         for at in moving:
-            slope = _plain(sp.diff(value, real[at]))
+            slope = _plain(sp.diff(result, names[at]))
             if slope != 0:
-                found.append(slope.xreplace(back))
+                found.append(slope)
                 places.append((row, at))
-    made = block(found, code.arguments)
-    return Block(code.arguments, made.assignments, made.results), tuple(places)
+    made = block(found, names)
+    return Block(names, made.assignments, made.results), tuple(places)
 
 
 def _plain(slope: sp.Expr) -> sp.Expr:
     """Steps by signs, and nothing of what is only at a jump."""
+    if not slope.has(sp.DiracDelta, sp.Heaviside):
+        return slope
     slope = slope.replace(sp.DiracDelta, lambda *_: sp.S.Zero)
     return slope.replace(sp.Heaviside, lambda x, *_: (1 + sp.sign(x)) / 2)
