@@ -41,7 +41,7 @@ class StraightMode:
 
     @cached_property
     def slopes(self) -> tuple["StraightMode", Places] | None:
-        """The mode's "slopes" in place of its parts, and where they stand; None where they have no formula."""
+        """The mode's "slopes" for its parts, and where they stand; None where laws are solved for."""
         made = with_slopes(self.recording)
         return (StraightMode(made[0]), made[1]) if made and is_writable(made[0]) else None
 

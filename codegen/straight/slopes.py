@@ -30,10 +30,10 @@ def with_slopes(recording: Recording) -> tuple[Recording, Places] | None:
         for name, found in zip(line.names, _of_line(line, lines, known), strict=True):
             known[name] = found
     rows = [_of_sum(value, known) for value in recording.parts["rate"]]
-    found = [(i, j, value) for i, row in enumerate(rows) for j, value in row.items() if value]
-    slopes = tuple(value for *_, value in found)
-    places = tuple(i for i, *_ in found), tuple(j for _, j, _ in found)
-    return Recording(tuple(lines.listed), {"slopes": slopes}, (), {}), places
+    places = [(i, j) for i, row in enumerate(rows) for j, value in row.items() if value]
+    slopes = tuple(rows[i][j] for i, j in places)
+    where = tuple(i for i, _ in places), tuple(j for _, j in places)
+    return Recording(tuple(lines.listed), {"slopes": slopes}, (), {}), where
 
 
 def _of_line(line: Line, lines: Lines, known: dict[str, Slopes]) -> list[Slopes]:
