@@ -10,11 +10,23 @@ Given = Callable[[float], tuple[list[float], list[float]]]
 
 def plainly(pieces: Sequence[Piece], rated: bool) -> Given:
     """The inputs that pieces give, and their rates where they are asked for, else zeros."""
-    still = [0.0] * len(pieces)
-    slopes = [piece.derivative for piece in pieces] if rated else []
-    if all(piece.level is not None for piece in pieces):
-        known = [piece(0.0) for piece in pieces], still
-        return lambda t: known
+    values = _values(pieces)
     if not rated:
-        return lambda t: ([piece(t) for piece in pieces], still)
-    return lambda t: ([piece(t) for piece in pieces], [slope(t) for slope in slopes])
+        still = [0.0] * len(pieces)
+        return lambda t: (values(t), still)
+    slopes = _values([piece.derivative for piece in pieces])
+    return lambda t: (values(t), slopes(t))
+
+
+def _values(pieces: Sequence[Piece]) -> Callable[[float], list[float]]:
+    """What pieces give at a time; of those that are constant it is known."""
+    moving = [(at, piece) for at, piece in enumerate(pieces) if piece.level is None]
+    known = [piece.level or 0.0 for piece in pieces]
+
+    def values(t: float) -> list[float]:
+        found = known.copy()
+        for at, piece in moving:
+            found[at] = piece(t)
+        return found
+
+    return values
