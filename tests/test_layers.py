@@ -17,9 +17,9 @@ ROOT = Path(__file__).parents[1]
 ORDER = {
     "bondgraph": "errors writing algebra declare causality reduce show equations derive analyse explaining "
     "drawing files",
-    "codegen": "tuning standalone fixed stops numbers inputs targets supplied program model ports modes "
-    "corners instants energy runs pictures record plots analysis c engine simulator simulate trim packing "
-    "family batch sweeps python switched sparse fmu exports",
+    "codegen": "tuning standalone fixed stops numbers inputs targets supplied program model ports straight "
+    "modes corners instants energy runs pictures record plots analysis c engine simulator simulate trim "
+    "packing family batch sweeps python switched sparse fmu exports",
     "differentials": "laws parts pieces passive active topologies parameters model identification speeds "
     "scenarios exporting figures report commands",
 }

@@ -20,6 +20,14 @@ class Branch(sp.Function):  # type: ignore[misc]
 
     nargs = 3
 
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """How much more it is for each more of an argument; a side does not move."""
+        return (
+            sp.S.Zero
+            if argindex == 1
+            else Branch(self.args[0], int(argindex == 2), int(argindex == 3))
+        )
+
     def _pythoncode(self, printer: Any) -> str:
         side, above, below = map(printer._print, self.args)
         return f"(({above}) if ({side}) > 0 else ({below}))"

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.numbers.falling import Falling
 from codegen.standalone.instant import Instant
+from codegen.straight.modes import Plain
 from codegen.tuning import TUNING
 
 Dense = Callable[[float | Array], Array]
@@ -50,7 +52,12 @@ class Sight:
 
     def values(self, t: float, s: Array) -> Array:
         """What corners hang on, and for each whether it counts, in two rows."""
-        return self._rows(self.instant(t, s))
+        values = None if self._plain is None else self._plain(t, s)
+        return self._rows(self.instant(t, s)) if values is None else np.array(values).reshape(2, -1)
+
+    @cached_property
+    def _plain(self) -> Plain | None:
+        return self.model.plainly(self.pieces, self.mode, "corners")
 
     def limits(self, t: float, s: Array) -> Array:
         """Below these what corners hang on counts as zero."""
@@ -123,7 +130,9 @@ class CornerWatch:
             return None
         return self._falling.first(
             t_old, t_new,
-            lambda times: [self._triggers(t, dense(t)) for t in times],
+            lambda times: [
+                self._triggers(t, s) for t, s in zip(times, dense(np.array(times)).T, strict=True)
+            ],
             lambda i, t: float(self._triggers(t, dense(t))[i]),
         )  # fmt: skip
 

@@ -36,7 +36,8 @@ class BoundBlock(Formula):
         if unknown:
             raise ParameterError(f"{', '.join(unknown)} need a number in parameters")
         super().__init__(binding.constants)
-        self._run, self._read = compiled(code), [binding.places[name] for name in code.arguments]
+        self.code, self._run = code, compiled(code)
+        self._read = [binding.places[name] for name in code.arguments]
 
     def of_pool(self, pool: Array, like: Instant) -> Array:
         """The results, of a pool."""

@@ -1,6 +1,6 @@
 """A program with numbers for its parameters: dense arrays, checked exactly before floats are trusted."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import sympy as sp
@@ -40,16 +40,18 @@ def check_values(equations: StateEquations, parameters: Mapping[str, sp.Rational
     _check_regular(equations, parameters)
 
 
-def assembled(program: Program, values: Array) -> Numbers:
+def assembled(
+    program: Program, values: Array, solve: Callable[[Array, Array], Array] | None = None
+) -> Numbers:
     """The matrices from the nonzero entries that `Program.coefficients` gives, solved for the rates."""
     matrices: dict[str, Array] = {}
     start = 0
     for name, pattern in program.layout.items():
-        matrix = np.zeros(pattern.shape)
+        matrix = np.zeros_like(values, shape=pattern.shape)
         end = start + len(pattern.rows)
         matrix[list(pattern.rows), list(pattern.columns)] = values[start:end]
         matrices[name], start = matrix, end
-    return solved(**matrices)
+    return solved(**matrices, solve=solve)
 
 
 def _values(

@@ -6,7 +6,7 @@ drives a dependent storage steps; z are the states that laws own.
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from functools import cached_property
+from functools import cached_property, partial
 from types import MappingProxyType
 
 import numpy as np
@@ -44,6 +44,8 @@ from codegen.standalone.holding import Hold
 from codegen.standalone.instant import Instant
 from codegen.standalone.levels import without_rounding
 from codegen.standalone.matrices import Numbers
+from codegen.straight.modes import Plain, StraightModes
+from codegen.straight.recording import Changing
 
 NONE: Array = np.zeros(0)
 
@@ -132,6 +134,13 @@ class ClosedModel:
     def _evaluate_by(self, binding: Binding, plain: Friction | None = None) -> None:
         self._form = formed(self.program, binding, self.numbers)
         self._friction = rubbing(self.program, binding, self._form, self.slips, plain)
+        looks = {"guards": self._guards}
+        if self.corners is not None:
+            looks["corners"] = self.corners
+        matrices: Numbers | Changing | None = self._constant
+        if matrices is None:
+            matrices = Changing(self._coefficients, partial(assembled, self.program))
+        self.straight = StraightModes(self.program, self._form, self._friction, matrices, looks)
 
     def place_name(self, place: int) -> str:
         """What a place in the integrated vector is called."""
@@ -318,7 +327,14 @@ class ClosedModel:
         """The rate of s in a mode as a function of t and s; quicker than `at`, which gives all else too."""
         affine = self.affine_map(mode, len(pieces))
         if affine is None:
-            return lambda t, s: self.at(t, s, pieces, mode).rate
+            plain = self.plainly(pieces, mode, "rate")
+
+            def found(t: float, s: Array) -> Array:
+                values = None if plain is None else plain(t, s)
+                # Where that has no value the evaluation tells why.
+                return self.at(t, s, pieces, mode).rate if values is None else np.array(values)
+
+            return found
         rows = np.ascontiguousarray(affine.rows(RATE))
         one = (1.0,)
 
@@ -326,6 +342,32 @@ class ClosedModel:
             return np.asarray(rows @ np.concatenate((s, *self.given(t, pieces), one)))
 
         return rate
+
+    def plainly(self, pieces: Sequence[Piece], mode: Mode, *parts: str) -> Plain | None:
+        """Parts of an instant in a mode as numbers; None of affine modes, and where none are written."""
+        fast = None if self.program.affine else self.straight.of(mode)
+        return None if fast is None else fast.under(pieces, self._rated, *parts)
+
+    def slopes(
+        self, pieces: Sequence[Piece], mode: Mode
+    ) -> Callable[[float, Array], Array | None] | None:
+        """The slopes of the rates in s in a mode as a function of t and s, which gives None where there is
+        no value; None of affine modes, and where laws are solved for."""
+        fast = None if self.program.affine else self.straight.of(mode)
+        if fast is None or fast.slopes is None:
+            return None
+        mode_slopes, (rows, columns) = fast.slopes
+        plain = mode_slopes.under(pieces, self._rated, "slopes")
+
+        def found(t: float, s: Array) -> Array | None:
+            values = plain(t, s)
+            if values is None:
+                return None
+            matrix = np.zeros((len(s), len(s)))
+            matrix[rows, columns] = values
+            return matrix
+
+        return found
 
     def evaluate(
         self, t: float, s: Array, w: Array, dw: Array, mode: Mode, checked: bool = True

@@ -73,6 +73,11 @@ class _OnSides(Friction):
         self._plain = plain
         return self
 
+    @property
+    def judge(self) -> Friction:
+        """See `Friction.judge`."""
+        return self._plain
+
     def against(self, now: Instant, mode: Mode, checked: bool) -> Array:
         """See `Friction.against`."""
         if checked:

@@ -115,13 +115,38 @@ class _Python(PythonCodePrinter):  # type: ignore[misc]
         return f"(({inside} > 0) - ({inside} < 0))"
 
 
-PRINTERS: Mapping[str, type] = {"c": _C, "checked_c": _CheckedC, "python": _Python}
+class _Floats(_Python):
+    """Python over floats that never becomes complex; what is no number stays so, or is an error."""
+
+    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
+        base, exponent = expr.args
+        if exponent.is_Integer and 2 <= exponent <= 4 and base.is_Symbol:
+            return "(" + "*".join([self._print(base)] * int(exponent)) + ")"
+        if exponent.is_Integer or exponent in (sp.S.Half, -sp.S.Half):
+            return str(super()._print_Pow(expr, rational=rational))
+        return f"math.pow({self._print(base)}, {self._print(exponent)})"
+
+    def _print_sign(self, expr: sp.Expr) -> str:
+        inside = self._print(expr.args[0])
+        return f"({super()._print_sign(expr)} + 0.0*({inside}))"
+
+    def _print_Min(self, expr: sp.Min) -> str:
+        return f"least({', '.join(map(self._print, expr.args))})"
+
+    def _print_Max(self, expr: sp.Max) -> str:
+        return f"most({', '.join(map(self._print, expr.args))})"
+
+
+PRINTERS: Mapping[str, type] = {
+    "c": _C, "checked_c": _CheckedC, "python": _Python, "floats": _Floats,
+}  # fmt: skip
 
 
 def printed(expr: sp.Expr, language: str, names: Mapping[str, str]) -> str:
     """An expression as text, its symbols under the names given.
 
-    ``language``: "c", "python", or "checked_c", where ``bg_min``, ``bg_max`` and ``bg_sign`` are called.
+    ``language``: "c", "python", or "checked_c", where ``bg_min``, ``bg_max`` and ``bg_sign`` are called; or
+    "floats", Python that calls ``least`` and ``most``, in which nothing that is no number is lost.
 
     >>> x = sp.Symbol("double")
     >>> printed(sp.sin(x)/3 + x**2, "c", {"double": "double_"})

@@ -35,6 +35,9 @@ class Watch:
         peaks: Peaks | None = None,
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
+        self._plain = (
+            model.plainly(pieces, mode, "efforts", "slips", "caps", "guards") if mode else None
+        )
         affine = model.affine_map(mode, len(pieces)) if mode else None
         if model.program.guards.results:
             affine = None
@@ -55,23 +58,42 @@ class Watch:
         """The first time in a step at which the mode ends, and the ports or guards that end it."""
         return self._falling.first(
             t_old, t_new, lambda times: self._series(times, dense),
-            lambda i, t: float(self._triggers(t, self._snapshot(t, dense(t)))[i]),
+            lambda i, t: float(self._at(t, dense(t))[i]),
         )  # fmt: skip
 
     def _series(self, times: Sequence[float], dense: Dense) -> list[Array]:
         """The triggers at several times; in one product where everything is affine."""
         if self._affine is None:
-            return [self._triggers(t, self._snapshot(t, dense(t))) for t in times]
+            return self._one_by_one(times, dense)
         given = np.array([np.concatenate(self._model.given(t, self._pieces)) for t in times])
         vectors = np.hstack([dense(np.array(times)).T, given, np.ones((len(times), 1))])
         efforts, slips, caps = (vectors @ rows.T for rows in self._affine)
         if caps.min() < 0:
             # One by one, so that a friction level below zero is refused with its time.
-            return [self._triggers(t, self._snapshot(t, dense(t))) for t in times]
+            return self._one_by_one(times, dense)
         return list(self._of_ports(efforts, slips, caps, np.zeros((len(times), 0))))
 
-    def _snapshot(self, t: float, s: Array) -> Snapshot:
-        return self._model.at(t, s, self._pieces, self._mode)
+    def _one_by_one(self, times: Sequence[float], dense: Dense) -> list[Array]:
+        vectors = dense(np.array(times)).T
+        if self._plain is not None:
+            found = [self._plain(t, s) for t, s in zip(times, vectors, strict=True)]
+            sound = [values for values in found if values is not None]
+            if len(sound) == len(found):
+                return list(self._of_values(np.array(sound)))
+        return [self._at(t, s) for t, s in zip(times, vectors, strict=True)]
+
+    def _at(self, t: float, s: Array) -> Array:
+        values = None if self._plain is None else self._plain(t, s)
+        if values is not None:
+            found: Array = self._of_values(np.array([values]))[0]
+            return found
+        return self._triggers(t, self._model.at(t, s, self._pieces, self._mode))
+
+    def _of_values(self, rows: Array) -> Array:
+        n = len(self._mode)
+        return self._of_ports(
+            rows[:, :n], rows[:, n : 2 * n], rows[:, 2 * n : 3 * n], rows[:, 3 * n :]
+        )
 
     def _triggers(self, t: float, now: Snapshot) -> Array:
         efforts, slips = now.u[self._model.friction_inputs], now.y[self._model.friction_readings]

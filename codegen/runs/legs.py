@@ -59,11 +59,14 @@ class Leg:
         return max(inner, *(piece.fastest for piece in self._pieces), 0.0)
 
     def _fastest(self, t: float, s: Array) -> float:
+        return float(np.abs(np.linalg.eigvals(self._differences(t, s))).max(initial=0.0))
+
+    def _differences(self, t: float, s: Array) -> Array:
         base = self._rate(t, s)
         jacobian = np.empty((len(s), len(s)))
         for j in range(len(s)):
             jacobian[:, j] = difference(self._rates, t, s, j, base, longest_step(t - self._origin))
-        return float(np.abs(np.linalg.eigvals(jacobian)).max(initial=0.0))
+        return jacobian
 
     def run(self, t: float, s: Array, stop: float, times: Array, track: Track) -> Ended:
         """Integrate to ``stop`` or the first event; the ports whose event it was come third.
@@ -83,7 +86,7 @@ class Leg:
         trials = Trials(self._rates, self._lost)
         solver = integrator(name)(
             trials, t, s, stop, rtol=self._settings.rtol, atol=self._settings.atol,
-            max_step=self._bound(explicit, fastest, t), **first,
+            max_step=self._bound(explicit, fastest, t), **first, **self._jacobian(name),
         )  # fmt: skip
         watch = Watch(self._model, self._pieces, self._mode, t, s, self._peaks)
         steps, progress = 0, self._progress(t)
@@ -107,6 +110,18 @@ class Leg:
                 fastest = self.fastest(solver.t, solver.y)
             solver.max_step = self._bound(explicit, fastest, solver.t)
         return stop, solver.y, frozenset()
+
+    def _jacobian(self, name: str) -> dict[str, Callable[[float, Array], Array]]:
+        """What an implicit method is told of slopes: by formulas where there are some, else nothing."""
+        slopes = self._model.slopes(self._pieces, self._mode) if name == "Radau" else None
+        if slopes is None:
+            return {}
+
+        def jac(t: float, s: Array) -> Array:
+            found = slopes(t, s)
+            return self._differences(t, s) if found is None else found
+
+        return {"jac": jac}
 
     def _next(
         self, watch: Watch, t_old: float, t_new: float, dense: Dense
@@ -142,12 +157,14 @@ class Leg:
         return min(bound, TUNING.followed / driven) if driven > 0 else bound
 
     def _sample(self, times: Array, track: Track, until: float, dense: Dense) -> None:
-        while track.recorded < len(times) and times[track.recorded] < until:
-            track.record(dense(float(times[track.recorded])), self._mode)
+        first = track.recorded
+        last = first + int(np.searchsorted(times[first:], until, side="left"))
+        if last > first:
+            track.take(dense(times[first:last]).T, self._mode)
 
     def _rate(self, t: float, s: Array) -> Array:
         rate = self._rates(t, s)
-        if not np.isfinite(rate).all():
+        if not math.isfinite(rate.sum()) and not np.isfinite(rate).all():
             raise self._lost(t, s)
         return rate
 

@@ -128,6 +128,12 @@ class Track:
         self.modes.append(mode)
         self.recorded += 1
 
+    def take(self, vectors: Array, mode: Mode) -> None:
+        """The next samples, in rows, all in one mode."""
+        self.vectors[self.recorded : self.recorded + len(vectors)] = vectors
+        self.modes += [mode] * len(vectors)
+        self.recorded += len(vectors)
+
     def unrecord(self) -> None:
         """Forget the last sample."""
         self.recorded -= 1

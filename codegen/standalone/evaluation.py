@@ -82,7 +82,7 @@ def begun(form: Form, at: Point) -> Instant:
     """An instant with what does not depend on states, and the matrices."""
     n, known, count = form.states, form.known.inputs, len(form.given)
     m, x, z = len(form.inputs), at.s[:n], at.s[n : n + len(form.law_rates)]
-    u, du, y = np.zeros(m), np.zeros(m), np.zeros(len(form.readings))
+    u, du, y = (np.zeros_like(at.s, shape=size) for size in (m, m, len(form.readings)))
     now = Instant(at.t, x, z, u, du, y, at.w, at.dw, np.zeros(0))
     now.seen = at.seen
     u[form.given] = at.w[:count]
@@ -117,7 +117,7 @@ def evaluated(
         rate += numbers.R @ now.du
     if correction is not None:
         rate += correction(rate, now.du)
-    now.rate = np.zeros(len(at.s))
+    now.rate = np.zeros_like(at.s)
     now.rate[: form.states] = rate
     now.rate[form.states : form.states + len(form.law_rates)] = now.y[form.law_rates]
     return now

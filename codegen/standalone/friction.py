@@ -60,6 +60,11 @@ class Friction:
         self._laws = (form.known, *form.laws, *coupled)
         self._rated = {*form.given, *form.known.inputs, *ports.inputs, *form.beyond}
 
+    @property
+    def judge(self) -> "Friction":
+        """By whose laws levels are checked."""
+        return self
+
     def __call__(self, now: Instant, mode: Mode, checked: bool) -> Correction:
         """Complete an instant as the mode says; what rounding must be added to the rates of x."""
         held = self.hold(mode, now.numbers) if 0 in mode else None

@@ -93,14 +93,17 @@ class Hold:
     def efforts(self, now: Instant, sharing: bool = True) -> Array:
         """The holding efforts; u must be zero at the sticking ports. Redundant ports share."""
         known = self.rule(now)
+        efforts: Array
         if not len(self.share):
-            return np.asarray(self.inverse @ -known, dtype=float)
+            efforts = self.inverse @ -known
+            return efforts
         efforts = self.inverse @ np.concatenate([-known, np.zeros(len(self.share))])
         return fair_share(efforts, self.ways, now.caps[self.ports]) if sharing else efforts
 
     def rule(self, now: Instant) -> Array:
         """What has to vanish while the ports hold."""
-        return np.asarray(self.X @ now.x + self.U @ now.u + self.V @ now.du, dtype=float)
+        left: Array = self.X @ now.x + self.U @ now.u + self.V @ now.du
+        return left
 
     def slips(self, x: Array, u: Array) -> Array:
         """The slips that constrain the states."""
@@ -108,7 +111,8 @@ class Hold:
 
     def correction(self, rate: Array, du: Array) -> Array:
         """What must be added to the rates of x, or by rounding slips that stick would drift."""
-        return np.asarray(self.take_away @ (self.slip_x @ rate + self.fixed @ du), dtype=float)
+        added: Array = self.take_away @ (self.slip_x @ rate + self.fixed @ du)
+        return added
 
 
 def hold(

@@ -1,6 +1,7 @@
 """The equations' matrices in numbers, solved for the rates."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,14 +30,16 @@ class Numbers:
 
 
 def solved(
-    A: Array, J: Array, B: Array, E: Array, F: Array, D: Array, H: Array, K: Array
-) -> Numbers:
+    A: Array, J: Array, B: Array, E: Array, F: Array, D: Array, H: Array, K: Array,
+    solve: Callable[[Array, Array], Array] | None = None,
+) -> Numbers:  # fmt: skip
     """``A x' = J x + B u + E u'``, ``y = F x + D u + H x' + K u'``, solved for the rates.
 
-    Raises `numpy.linalg.LinAlgError` where A has no inverse.
+    ``solve``: what gives ``A^-1`` times another matrix, `scaled_solve` unless told. Raises
+    `numpy.linalg.LinAlgError` where A has no inverse.
     """
     n, m = J.shape[1], B.shape[1]
-    found = scaled_solve(A, np.hstack([J, B, E]))
+    found = (solve or scaled_solve)(A, np.hstack([J, B, E]))
     P, Q, R = found[:, :n], found[:, n : n + m], found[:, n + m :]
     return Numbers(P, Q, R, A, F=F + H @ P, D=D + H @ Q, G=K + H @ R)
 

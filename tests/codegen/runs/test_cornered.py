@@ -9,7 +9,6 @@ from soak.families import seeds
 
 import bondgraph as bg
 import codegen
-import codegen.modes.closed as evaluating
 from codegen import Sine, Step, simulator
 from codegen.modes.closed import ClosedModel
 
@@ -44,14 +43,19 @@ def two_slopes(times: np.ndarray) -> np.ndarray:
 
 @pytest.fixture
 def evaluations(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """How often a model was evaluated."""
-    count, plain = [0], evaluating.evaluated
+    """How often the rates of a model were asked for."""
+    count, plain = [0], ClosedModel.rates
 
-    def counted(*given: object, **more: object) -> object:
-        count[0] += 1
-        return plain(*given, **more)  # type: ignore[arg-type]
+    def counting(model: ClosedModel, *given: object) -> object:
+        rates = plain(model, *given)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(evaluating, "evaluated", counted)
+        def counted(t: float, s: np.ndarray) -> np.ndarray:
+            count[0] += 1
+            return rates(t, s)
+
+        return counted
+
+    monkeypatch.setattr(ClosedModel, "rates", counting)
     return count
 
 
