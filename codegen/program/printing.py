@@ -118,6 +118,9 @@ class _Python(PythonCodePrinter):  # type: ignore[misc]
 class _Floats(_Python):
     """Python over floats that never becomes complex; what is no number stays so, or is an error."""
 
+    def _print_log(self, expr: sp.Expr) -> str:
+        return f"math.log({self._print(expr.args[0])})"
+
     def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
         base, exponent = expr.args
         if exponent.is_Integer and 2 <= exponent <= 4 and base.is_Symbol:
