@@ -16,6 +16,7 @@ from bondgraph.reduce.structure import Port, PortRow
 from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.show.display import equations_text
 from bondgraph.show.latex import notebook_latex
+from bondgraph.tables.record import Sampled
 
 LARGEST_REPR = 100
 """Equations with more states, inputs or outputs are represented by their sizes."""
@@ -85,6 +86,11 @@ class StateEquations:
         return {
             e.integral: e.start for e in elements if e.integral is not None and e.start is not None
         }
+
+    @property
+    def tables(self) -> tuple[Sampled, ...]:
+        """The tables that the graph was given, which texts of laws may call."""
+        return self.reduction.structure.tables
 
     @property
     def varying(self) -> tuple[sp.Symbol, ...]:

@@ -1,15 +1,17 @@
 """Text, numbers and sympy expressions become exact sympy expressions; nothing is ever evaluated as Python."""
 
 import math
+from collections.abc import Iterable
 from numbers import Real
 
 import sympy as sp
 
 from bondgraph.algebra.atoms import MAX_DIGITS, MAX_EXPONENT, decimal, number, symbol
 from bondgraph.algebra.functions import ALLOWED, PARTS
-from bondgraph.algebra.reading import read
+from bondgraph.algebra.reading import callable_in_text, read
 from bondgraph.algebra.residues import residues
 from bondgraph.errors import ExpressionError, shortened
+from bondgraph.tables.record import Sampled
 
 TIME = sp.Symbol("t")
 """The time, in laws and known sources."""
@@ -19,12 +21,13 @@ MAX_TERMS = 10_000
 _NOT_REAL = (sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I)
 
 
-def expression(value: object, where: str) -> sp.Expr:
+def expression(value: object, where: str, tables: Iterable[Sampled] = ()) -> sp.Expr:
     """The exact expression that a number, a text or a sympy expression stands for.
 
     Text may hold numbers, names, ``pi``, ``+ - * / **``, parentheses, the functions in `FUNCTIONS`, and
     ``Piecewise((value, condition), ..., (value, True))`` with comparisons, ``and``, ``or``, ``not``; other
-    names become plain symbols. A float counts as the rational of its shortest decimal form.
+    names become plain symbols. It may call ``tables``, too: `LookupTable` objects. A float counts as the
+    rational of its shortest decimal form.
 
     Raises `ExpressionError`, naming ``where``, for anything else: text that calls or imports,
     numbers that are not finite and real, names that cannot be symbols.
@@ -33,7 +36,7 @@ def expression(value: object, where: str) -> sp.Expr:
     (h1/(h1 - 1), 1/10)
     """
     if isinstance(value, str):
-        result = read(value, where)
+        result = read(value, where, callable_in_text(tables, where))
     elif isinstance(value, sp.Expr):
         floats = value.atoms(sp.Float)
         result = (

@@ -10,6 +10,7 @@ import sympy as sp
 from bondgraph.algebra.exact import FixedRow, matrix_of
 from bondgraph.declare.elements import Bond, Element
 from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.tables.record import Sampled
 
 PortRow = FixedRow
 """A signal over what the ports give."""
@@ -71,6 +72,8 @@ class JunctionStructure:
     #: The nodes at the ends of each bond, as the checked graph has them: with the elements the graph itself,
     #: which is derived once more where a law put later needs another causality.
     ends: tuple[Bond, ...] = ()
+    #: Those that the graph was given; texts of laws that are put later may call them.
+    tables: tuple[Sampled, ...] = ()
 
     @cached_property
     def places(self) -> Mapping[Hashable, int]:
