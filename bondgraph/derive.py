@@ -80,7 +80,9 @@ def derive_again(equations: StateEquations, elements: Mapping[Hashable, Element]
     Raises what `derive` raises.
     """
     kept = equations.reduction.structure
-    graph = graph_of({**kept.elements, **elements}, zip(kept.ends, kept.bonds, strict=True), kept.tables)
+    graph = graph_of(
+        {**kept.elements, **elements}, zip(kept.ends, kept.bonds, strict=True), kept.tables
+    )
     return _equations(
         junction_structure(assign_causality(graph)),
         lambda _, signals: [(symbol, signals[symbol]) for symbol in equations.outputs],

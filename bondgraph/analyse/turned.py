@@ -6,8 +6,8 @@ from dataclasses import replace
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.algebra.lookups import Look
 from bondgraph.algebra.factored import factored
+from bondgraph.algebra.lookups import Look
 from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import DryFriction
 from bondgraph.derive import derive_again

@@ -33,7 +33,8 @@ def assemble(*parts: Part) -> Part:
     ['hub', 'J', 'tire']
     """
     tables = tables_of(nx.DiGraph(tables=[one for part in parts for one in tables_of(part)]))
-    whole: nx.DiGraph[Hashable] = nx.DiGraph(**({TABLES: list(tables)} if tables else {}))
+    whole: nx.DiGraph[Hashable] = nx.DiGraph()
+    whole.graph.update({TABLES: list(tables)} if tables else {})
     for part in parts:
         for name, attributes in part.nodes(data=True):
             known = whole.nodes[name] if name in whole else {}
@@ -86,8 +87,8 @@ def prefixed(
     read = names_read(graph)
     names = signals | _parameter_names(read - signals.keys(), prefix, parameters)
     _check_names(names, read, prefix)
-    shared = graph.graph.get(TABLES)
-    result: nx.DiGraph[Hashable] = nx.DiGraph(**({} if shared is None else {TABLES: shared}))
+    result: nx.DiGraph[Hashable] = nx.DiGraph()
+    result.graph.update({TABLES: graph.graph[TABLES]} if TABLES in graph.graph else {})
     for inner, attributes in graph.nodes(data=True):
         result.add_node(nodes[inner], **renamed(inner, attributes, names))
     for tail, head, attributes in graph.edges(data=True):

@@ -55,9 +55,7 @@ def with_calls(
             return {name: read(entry, key) for name, entry in value.items()}
         return value
 
-    return {
-        key: read(value, key) if key in READ else value for key, value in attributes.items()
-    }
+    return {key: read(value, key) if key in READ else value for key, value in attributes.items()}
 
 
 def with_tables(graph: Any) -> "nx.DiGraph[Any]":

@@ -39,7 +39,8 @@ def validate(graph: Any) -> "nx.DiGraph[Hashable]":
         return graph
     if len(graph) == 0:
         raise StructureError("the graph has no nodes; add elements and bonds first")
-    result = _Validated(**{TABLES: tables_of(graph)})
+    result = _Validated()
+    result.graph[TABLES] = tables_of(graph)
     fields, controls = _add_elements(result, graph)
     for tail, head, attributes in graph.edges(data=True):
         _check_bond(graph, tail, head, attributes)
@@ -73,7 +74,8 @@ def graph_of(
     tables: tuple[Sampled, ...] = (),
 ) -> "nx.DiGraph[Hashable]":
     """The validated graph of these elements and bonds, each by its ends and as it was declared."""
-    result = _Validated(**{TABLES: tables})
+    result = _Validated()
+    result.graph[TABLES] = tables
     for name, element in elements.items():
         result.add_node(name, element=element)
     for ends, declared in bonds:

@@ -57,7 +57,8 @@ def _bicubic(method: str, axes: list[Any], z: Any) -> tuple[list[Any], Any]:
     import numpy as np
     from scipy.interpolate import RectBivariateSpline
 
-    knots_x, knots_y, flat = RectBivariateSpline(*axes, z, kx=3, ky=3, s=0).tck
+    made: Any = RectBivariateSpline
+    knots_x, knots_y, flat = made(*axes, z, kx=3, ky=3, s=0).tck
     rows = flat.reshape(len(knots_x) - 4, len(knots_y) - 4)
     breaks_x, along_x = _powers(knots_x, rows)
     breaks_y, both = _powers(knots_y, np.moveaxis(along_x, 2, 0))

@@ -32,7 +32,5 @@ def lookup_tables(tables: Sequence[Sampled]) -> list[str]:
         lines += doubles(f"{name}_factors", factors, local=True)
         cells = ", ".join(str(len(knots) - 1) for knots in (*breaks, (0.0,))[:2])
         places = ", ".join((*axes, "0")[:2])
-        rows.append(
-            f"{{{degree}, {BEYOND[outside]}, {{{cells}}}, {{{places}}}, {name}_factors}}"
-        )
+        rows.append(f"{{{degree}, {BEYOND[outside]}, {{{cells}}}, {{{places}}}, {name}_factors}}")
     return [*lines, *array("const bg_table bg_tables[]", rows), ""] if tables else []

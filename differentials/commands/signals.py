@@ -56,7 +56,8 @@ def law(text: str) -> object:
         return expression(text, "law")
     if not 1 <= len(tree.args) <= 3:
         raise bg.ExpressionError("dry friction is friction(level), or (level, curve, breakaway)")
-    return bg.DryFriction(*(ast.unparse(argument) for argument in tree.args))
+    level, *more = (ast.unparse(argument) for argument in tree.args)
+    return bg.DryFriction(level, *more[:1], *more[1:2])
 
 
 def _parsed(text: str) -> ast.expr:
