@@ -1,22 +1,25 @@
 """Text, numbers and sympy expressions become exact sympy expressions; nothing is ever evaluated as Python."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from numbers import Real
 
 import sympy as sp
 
 from bondgraph.algebra.atoms import MAX_DIGITS, MAX_EXPONENT, decimal, number, symbol
-from bondgraph.algebra.functions import ALLOWED, PARTS
-from bondgraph.algebra.reading import callable_in_text, read
+from bondgraph.algebra.functions import ALLOWED, FUNCTIONS, PARTS
+from bondgraph.algebra.lookups import Handle, Look
+from bondgraph.algebra.reading import Functions, read
 from bondgraph.algebra.residues import residues
-from bondgraph.errors import ExpressionError, shortened
+from bondgraph.errors import ExpressionError, TableError, shortened
 from bondgraph.tables.record import Sampled
 
 TIME = sp.Symbol("t")
 """The time, in laws and known sources."""
 
 MAX_TERMS = 10_000
+
+_PARTS = (*PARTS, Handle, Look)
 
 _NOT_REAL = (sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I)
 
@@ -56,6 +59,28 @@ def expression(value: object, where: str, tables: Iterable[Sampled] = ()) -> sp.
     return result
 
 
+def callable_in_text(tables: Iterable[Sampled], where: str) -> Functions:
+    """The functions of all text, and these tables; `TableError` for two of one name.
+
+    Of tables that are equal one is enough.
+    """
+    found: dict[str, Sampled] = {}
+    for table in tables:
+        if not isinstance(table, Sampled):
+            raise TableError(f"{where}: {shortened(repr(table))} in tables is no LookupTable")
+        if found.setdefault(table.name, table).digest != table.digest:
+            raise TableError(f"{where}: there are two tables {table.name!r}; rename one")
+    if not found:
+        return FUNCTIONS
+    return {**FUNCTIONS, **{name: _looking(table) for name, table in found.items()}}
+
+
+def _looking(table: Sampled) -> tuple[int, int, Callable[..., sp.Expr]]:
+    count = len(table.axes)
+    handle = Handle(table, (0,) * count)
+    return count, count, lambda *places: Look(handle, *places)
+
+
 def _check_value(expr: sp.Expr, value: object, where: str) -> None:
     if expr.is_real is False or (not isinstance(expr, sp.Symbol) and expr.has(*_NOT_REAL)):
         raise ExpressionError(f"{where}: {value!r} is not a finite real expression")
@@ -79,7 +104,7 @@ def _check_parts(expr: sp.Expr, where: str) -> None:
         symbol(expr.name, where)
         return
     for part in sp.preorder_traversal(expr):
-        if not isinstance(part, PARTS) or part.is_commutative is False:
+        if not isinstance(part, _PARTS) or part.is_commutative is False:
             raise ExpressionError(f"{where}: {shortened(str(part))} is not allowed; {ALLOWED}")
         if isinstance(part, sp.Symbol):
             symbol(part.name, where)

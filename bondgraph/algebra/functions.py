@@ -5,8 +5,6 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.algebra.lookups import Handle, Look
-
 
 def hypotenuse(a: sp.Expr, b: sp.Expr) -> sp.Expr:
     """The longest side of a triangle with a right angle between sides ``a`` and ``b``."""
@@ -40,7 +38,7 @@ FUNCTIONS: dict[str, tuple[int, int, Callable[..., Any]]] = {
 """Functions that text may use: least and most number of arguments, and what is built."""
 
 PARTS = (
-    sp.Add, sp.Mul, sp.Pow, sp.Symbol, sp.Number, sp.NumberSymbol, sp.exp, Handle, Look,
+    sp.Add, sp.Mul, sp.Pow, sp.Symbol, sp.Number, sp.NumberSymbol, sp.exp,
     *(build for *_, build in FUNCTIONS.values() if isinstance(build, type)),
     sp.Piecewise, sp.functions.elementary.piecewise.ExprCondPair,
     sp.core.relational.Relational, sp.logic.boolalg.BooleanFunction, sp.logic.boolalg.BooleanAtom,

@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import sympy as sp
@@ -10,9 +10,7 @@ import sympy as sp
 from bondgraph.algebra.atoms import CONSTANTS, MAX_DIGITS, MAX_EXPONENT, normal, number, symbol
 from bondgraph.algebra.conditions import PIECEWISE, read_pieces
 from bondgraph.algebra.functions import ALLOWED, FUNCTIONS
-from bondgraph.algebra.lookups import Handle, Look
-from bondgraph.errors import ExpressionError, TableError, nearest, shortened
-from bondgraph.tables.record import Sampled
+from bondgraph.errors import ExpressionError, nearest, shortened
 
 MAX_LENGTH = 4_000
 MAX_DEPTH = 100
@@ -40,28 +38,6 @@ _SYMBOLS = (("&&", "and"), ("||", "or"), ("!", "not"), ("=", "=="))
 
 Functions = Mapping[str, tuple[int, int, Callable[..., Any]]]
 """What text may call: least and most number of arguments, and what is built."""
-
-
-def callable_in_text(tables: Iterable[Sampled], where: str) -> Functions:
-    """The functions of all text, and these tables; `TableError` for two of one name.
-
-    Of tables that are equal one is enough.
-    """
-    found: dict[str, Sampled] = {}
-    for table in tables:
-        if not isinstance(table, Sampled):
-            raise TableError(f"{where}: {shortened(repr(table))} in tables is no LookupTable")
-        if found.setdefault(table.name, table).digest != table.digest:
-            raise TableError(f"{where}: there are two tables {table.name!r}; rename one")
-    if not found:
-        return FUNCTIONS
-    return {**FUNCTIONS, **{name: _looking(table) for name, table in found.items()}}
-
-
-def _looking(table: Sampled) -> tuple[int, int, Callable[..., sp.Expr]]:
-    count = len(table.axes)
-    handle = Handle(table, (0,) * count)
-    return count, count, lambda *places: Look(handle, *places)
 
 
 def read(text: str, where: str, functions: Functions = FUNCTIONS) -> sp.Expr:

@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.table_corners import check_tables
 from bondgraph.analyse.slopes import Point
-from bondgraph.analyse.tabled import check_tables
 from bondgraph.analyse.unknowns import Moment, Unknowns
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError

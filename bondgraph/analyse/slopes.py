@@ -8,7 +8,7 @@ import sympy as sp
 from bondgraph.algebra.atoms import normal
 from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.algebra.residues import is_zero
-from bondgraph.analyse.tabled import check_tables
+from bondgraph.algebra.table_corners import check_tables
 from bondgraph.analyse.unknowns import still
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.errors import SignalError

@@ -5,10 +5,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import networkx as nx
+import sympy as sp
 
-from bondgraph.algebra.expressions import expression
-from bondgraph.algebra.reading import callable_in_text
+from bondgraph.algebra.expressions import callable_in_text, expression
+from bondgraph.algebra.lookups import Handle
 from bondgraph.declare.kinds import EXPRESSIONS
+from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.errors import TableError
 from bondgraph.tables.record import Sampled
 
@@ -35,6 +37,32 @@ def tables_of(graph: Any) -> tuple[Sampled, ...]:
         )
     callable_in_text(given, "graph attribute 'tables'")
     return tuple({table.name: table for table in given}.values())
+
+
+def tables_in(graph: Any) -> tuple[Sampled, ...]:
+    """The tables that a graph was given, and those that its values and laws carry, by name.
+
+    Raises `TableError` for two of one name.
+    """
+    found = list(tables_of(graph))
+    for _, attributes in graph.nodes(data=True):
+        found += sorted(_carried(list(attributes.values())), key=lambda table: table.name)
+    callable_in_text(found, "graph")
+    return tuple({table.name: table for table in found}.values())
+
+
+def _carried(value: Any) -> set[Sampled]:
+    if isinstance(value, sp.Basic | sp.MatrixBase):
+        return {handle.table for handle in value.atoms(Handle)}
+    if isinstance(value, ExpressionLaw):
+        return _carried(value.expression)
+    if isinstance(value, DryFriction):
+        return _carried([value.level, value.curve, value.breakaway])
+    if isinstance(value, Mapping):
+        return _carried(list(value.values()))
+    if isinstance(value, list | tuple):
+        return set[Sampled]().union(*map(_carried, value))
+    return set()
 
 
 def with_calls(

@@ -2,14 +2,33 @@
 
 import math
 from functools import lru_cache
-from typing import Any
+from typing import Any, Protocol
 
 from bondgraph.tables.looking import Patches
-from bondgraph.tables.record import Sampled
+
+
+class Points(Protocol):
+    """What a table's polynomials come of."""
+
+    @property
+    def axes(self) -> tuple[tuple[float, ...], ...]:
+        """The points along each axis."""
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """Row by row."""
+
+    @property
+    def method(self) -> str:
+        """By what name scipy's way is asked for."""
+
+    @property
+    def outside(self) -> str:
+        """What is beyond the ends."""
 
 
 @lru_cache(maxsize=64)
-def pieces(table: Sampled) -> Patches:
+def pieces(table: Points) -> Patches:
     """Breaks, degree and coefficients as `looked_up` takes them; the last ones are kept.
 
     "linear" has numpy's slopes, "pchip" (Fritsch and Butland 1984) and "akima" (Akima 1970) scipy's cubics,
