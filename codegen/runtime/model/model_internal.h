@@ -32,9 +32,9 @@ typedef struct {
 
 enum { BG_TABLE_HOLDS, BG_TABLE_EXTENDS, BG_TABLE_REFUSES };
 
-/* A table: polynomials of a degree between breaks, beyond whose ends it does one of these. Along each
- * axis there are `cells` between breaks; the factors of each cell, those along the last axis in turn,
- * are of (x - x_i)^p (y - y_j)^q, highest powers first. */
+/* A table: polynomials of a degree between breaks; `outside` tells what is beyond the ends. Along
+ * an axis there are `cells` between breaks. The factors of each cell, those along the last axis in
+ * turn, are of (x - x_i)^p (y - y_j)^q, highest powers first. */
 typedef struct {
     int degree, outside, cells[2];
     const double *breaks[2], *factors;

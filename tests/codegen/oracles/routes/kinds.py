@@ -9,7 +9,8 @@ from oracles.routes.resetting import RESETTING
 from oracles.routes.sloped import SLOPED
 from oracles.routes.stops import STOPS
 from oracles.routes.switches import SWITCHES
+from oracles.routes.tabled import TABLED
 
-EVERY = (*FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL)
+EVERY = (*FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL, *TABLED)
 
 KINDS = {make.__name__: make for make in EVERY}
