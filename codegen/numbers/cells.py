@@ -1,6 +1,7 @@
 """Tables cell by cell: where their polynomials meet, and which one an argument is in, as an expression."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import sympy as sp
 
@@ -40,8 +41,8 @@ def polynomial_at(look: Look, places: Sequence[float]) -> sp.Expr:
         )
     for u, order in zip(local, look.handle.orders, strict=True):
         found = sp.diff(found, u, order) if order else found
-    held = {u for u, part in zip(local, inside, strict=True) if part.is_Number}
-    if any(u in held and order for u, order in zip(local, look.handle.orders, strict=True)):
+    level = {u for u, part in zip(local, inside, strict=True) if part.is_Number}
+    if any(u in level and order for u, order in zip(local, look.handle.orders, strict=True)):
         return sp.Integer(0)
     return sp.expand(found.xreplace(dict(zip(local, inside, strict=True))))
 
@@ -49,3 +50,19 @@ def polynomial_at(look: Look, places: Sequence[float]) -> sp.Expr:
 def polynomials_at(look: Look, values: Sequence[Array]) -> list[sp.Expr]:
     """The same at each of many values of the arguments."""
     return [polynomial_at(look, row) for row in zip(*(one.tolist() for one in values), strict=True)]
+
+
+def cells(look: Look) -> list[float]:
+    """The narrowest cell along each axis."""
+    return [min(b - a for a, b in pairwise(axis)) for axis in pieces(look.handle.table)[0]]
+
+
+def steepest(look: Look) -> float:
+    """A bound on the slope of a table over one axis between its ends."""
+    (knots,), degree, _, factors = pieces(look.handle.table)
+    size, found = degree + 1, 0.0
+    for at, (a, b) in enumerate(pairwise(knots)):
+        powers = factors[at * size : (at + 1) * size]
+        terms = zip(range(degree, 0, -1), powers, strict=False)
+        found = max(found, sum(p * abs(factor) * (b - a) ** (p - 1) for p, factor in terms))
+    return found
