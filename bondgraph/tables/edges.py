@@ -10,12 +10,12 @@ from bondgraph.tables.looking import FREE, Patches
 
 
 def edges(table: Patches, axis: int) -> tuple[float, ...]:
-    """Where the slope may jump along an axis: between cells of degree one, and where ends are held."""
+    """Where the slope may jump along an axis: between cells of degree one, and at ends that do not go on."""
     breaks, degree, outside, _ = table
-    hold = outside == "hold"
+    ends = outside != "extend"
     if degree == 1:
-        return breaks[axis] if hold else breaks[axis][1:-1]
-    return (breaks[axis][0], breaks[axis][-1]) if hold else ()
+        return breaks[axis] if ends else breaks[axis][1:-1]
+    return (breaks[axis][0], breaks[axis][-1]) if ends else ()
 
 
 def bits(count: int) -> int:

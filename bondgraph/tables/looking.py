@@ -51,18 +51,16 @@ def placed(
     knots: Sequence[float], degree: int, outside: str, x: float, region: float
 ) -> tuple[int, float, bool]:
     """The cell along one axis, the distance from its beginning, and whether the end's value is held."""
-    last = len(knots) - 2
-    if outside == "refuse" and not knots[0] <= x <= knots[-1]:
-        return 0, math.nan, False
-    hold = outside == "hold"
-    if hold:
+    last, ends = len(knots) - 2, outside != "extend"
+    if ends:
+        nothing = 0.0 * x if outside == "hold" else math.nan
         top = last + 2 if degree == 1 else 2
         if x < knots[0] if region == FREE else region < 1:
-            return 0, 0.0 * x, True
+            return 0, nothing, True
         if x > knots[-1] if region == FREE else region >= top:
-            return last, knots[-1] - knots[-2] + 0.0 * x, True
+            return last, knots[-1] - knots[-2] + nothing, True
     if region != FREE and degree == 1:
-        at = min(int(region) - hold, last)
+        at = min(int(region) - ends, last)
     else:
         at = min(max(bisect_right(knots, x) - 1, 0), last)
     return at, x - knots[at], False

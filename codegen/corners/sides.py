@@ -4,7 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import sympy as sp
 
+from bondgraph.errors import SimulationError
+from codegen.corners.tabled import region_of
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
@@ -37,6 +40,12 @@ class Sight:
     def on(self, sides: Sides) -> "Sight":
         """The same by laws on these sides."""
         return replace(self, model=self.model.on_sides(sides))
+
+    @property
+    def ending(self) -> bool:
+        """Whether tables have ends that runs must not go beyond."""
+        corners = self.model.program.corners
+        return corners is not None and bool(corners.ends)
 
     def instant(self, t: float, s: Array) -> Instant:
         """An instant with all that corners hang on."""
@@ -84,6 +93,19 @@ def begun(sight: Sight, t: float, s: Array, ahead: float) -> Sides:
         near = (np.abs(values) <= limits) & (moved != 0)
         signs = np.where(near, np.where(moved > 0, 1, -1), signs)
     return tuple(signs.tolist())
+
+
+def check_ends(sight: Sight, sides: Sides, t: float, s: Array) -> None:
+    """Refuse sides beyond the end of a table that refuses what is outside, where it is looked into."""
+    corners = sight.model.program.corners
+    for one in () if corners is None else corners.ends:
+        region = region_of([sp.Integer(sides[at]) for at in one.sides])
+        beyond = region <= 0 or region >= one.last
+        if beyond and (sight.on(sides).values(t, s)[1][list(one.sides)] > 0).any():
+            raise SimulationError(
+                f"at t = {t:.9g} {one.argument} leaves table {one.name!r}, which is from {one.ends[0]!r} "
+                f"to {one.ends[1]!r} and refuses what is outside; give it more points, or another outside"
+            )
 
 
 def turned(sight: Sight, sides: Sides, over: frozenset[int], t: float, s: Array) -> Sides:

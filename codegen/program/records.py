@@ -127,6 +127,21 @@ class FrictionPort:
 
 
 @dataclass(frozen=True)
+class TableEnds:
+    """The ends of a table that refuses what is outside, along one axis, among the corners.
+
+    ``sides``: the places of those that tell the stretch, as `region_of` takes them; ``last``: the number of
+    the stretch beyond the upper end.
+    """
+
+    name: str
+    argument: sp.Expr
+    ends: tuple[float, float]
+    sides: tuple[int, ...]
+    last: int
+
+
+@dataclass(frozen=True)
 class Corners:
     """Where laws have corners or jump: at the zeros of what these hang on.
 
@@ -141,6 +156,8 @@ class Corners:
     values: Block
     blocks: tuple[Block, ...]
     on_sides: Block
+    #: What runs must not go beyond.
+    ends: tuple[TableEnds, ...] = ()
 
 
 @dataclass(frozen=True)

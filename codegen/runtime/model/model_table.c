@@ -23,26 +23,24 @@ static int cell_of(const double *breaks, int cells, double x)
 static int placed(const bg_table *of, int axis, double x, double region, double *u, int *held)
 {
     const double *const breaks = of->breaks[axis];
-    const int cells = of->cells[axis], hold = of->outside == BG_TABLE_HOLDS;
+    const int cells = of->cells[axis], ends = of->outside != BG_TABLE_EXTENDS;
     const int free = region < 0.0, top = of->degree == 1 ? cells + 1 : 2;
+    const double nothing = of->outside == BG_TABLE_HOLDS ? 0.0 * x : NAN;
     int at = 0;
-    *u = NAN;
-    if (of->outside == BG_TABLE_REFUSES && !(breaks[0] <= x && x <= breaks[cells]))
-        return 0;
-    if (hold && (free ? x < breaks[0] : region < 0.5)) {
+    if (ends && (free ? x < breaks[0] : region < 0.5)) {
         *held = 1;
-        *u = 0.0 * x;
+        *u = nothing;
         return 0;
     }
-    if (hold && (free ? x > breaks[cells] : region > top - 0.5)) {
+    if (ends && (free ? x > breaks[cells] : region > top - 0.5)) {
         *held = 1;
-        *u = breaks[cells] - breaks[cells - 1] + 0.0 * x;
+        *u = breaks[cells] - breaks[cells - 1] + nothing;
         return cells - 1;
     }
     if (free || of->degree > 1)
         at = cell_of(breaks, cells, x);
     else
-        at = (int)(region + 0.5) - hold;
+        at = (int)(region + 0.5) - ends;
     at = at < cells ? at : cells - 1;
     *u = x - breaks[at];
     return at;
@@ -91,16 +89,15 @@ double bg_interpolate_over(const bg_table *of, int order_x, int order_y, double 
 
 static double corner_at(const bg_table *of, int axis, int at)
 {
-    const int hold = of->outside == BG_TABLE_HOLDS, cells = of->cells[axis];
     if (of->degree > 1)
-        return of->breaks[axis][at > 0 ? cells : 0];
-    return of->breaks[axis][hold ? at : at + 1];
+        return of->breaks[axis][at > 0 ? of->cells[axis] : 0];
+    return of->breaks[axis][of->outside == BG_TABLE_EXTENDS ? at + 1 : at];
 }
 
 static int corners_of(const bg_table *of, int axis)
 {
-    const int hold = of->outside == BG_TABLE_HOLDS;
-    return of->degree > 1 ? 2 * hold : of->cells[axis] - 1 + 2 * hold;
+    const int ends = of->outside != BG_TABLE_EXTENDS;
+    return of->degree > 1 ? 2 * ends : of->cells[axis] - 1 + 2 * ends;
 }
 
 static int corners_below(const bg_table *of, int axis, double x)
