@@ -117,6 +117,13 @@ class Look(Tabled):
             return sp.Integer(0)
         return Look(Handle(handle.table, orders), *self.places)
 
+    def _eval_is_finite(self) -> bool | None:
+        """A number, wherever it has one; nothing is told of others."""
+        found = self.evalf() if self.is_number else None
+        return True if found is not None and found.is_Float else None
+
+    _eval_is_extended_real = _eval_is_finite
+
     def _eval_evalf(self, prec: int) -> sp.Expr | None:
         places = [place.evalf() for place in self.places]
         if not all(place.is_real for place in places):

@@ -11,8 +11,8 @@ from oracles.routes.lawful import LAWFUL
 from oracles.routes.plain import PLAIN
 from oracles.routes.sloped import SLOPED
 from oracles.routes.switches import SWITCHES
-from oracles.routes.tabled import TABLED
 from oracles.routes.table import REFUSALS, REFUSED
+from oracles.routes.tabled import TABLED
 
 HEAD = """# What goes which way
 

@@ -21,8 +21,9 @@ REFUSALS = (
         ("stribeck", "asymmetric", "level_of_state", "curve_of_state", "ruled_by_load", "bollard",
          "behind_moving_ratio", "nonlinear_resistance", "nonlinear_storage", "crank", "inverted_storage",
          "energy_field", "piecewise", "table", "play", "soft_stop", "bent_level", "ruled_flow",
-         "reset_bent", "one_way_damper", "warmed", "tabled_resistance", "tabled_storage", "engine_map", "tabled_ratio",
-         "tabled_curve", "tabled_level"),
+         "reset_bent", "one_way_damper", "warmed",
+         "tabled_resistance", "tabled_storage", "engine_map", "tabled_ratio", "tabled_curve",
+         "tabled_level"),
         ("C, exact",), True,
         "Matrix exponentials need rates that are affine in each mode, and here a law or a ratio bends them. "
         "`method=\"auto\"`, which users take, locates events with step control instead.",

@@ -26,7 +26,8 @@ def tabled_resistance() -> Kind:
 
     def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
         return {"v": stepwise(t, (0, lambda s: p / low - (1 + p / low) * np.exp(-low * s)),
-                              (goes, lambda s: -p * np.expm1(-s)), (held, lambda s: 3 + (p - 3) * s))}  # fmt: skip
+                              (goes, lambda s: -p * np.expm1(-s)),
+                              (held, lambda s: 3 + (p - 3) * s))}  # fmt: skip
 
     return Kind("table in a resistance", _with(bond_graph(nodes, "push>n>m n>b"), drag),
                 {"m": 1.0, "b": 1.0}, {"P": f"{p}"}, known, 2.5, {"v": -1.0}, at=0.6,
@@ -34,7 +35,7 @@ def tabled_resistance() -> Kind:
 
 
 def tabled_storage() -> Kind:
-    """A mass on a spring by a table, k on one side and 4 k on the other: half of one time, half of another."""
+    """A mass on a spring by a table, k on one side and 4 k on the other: half swings of two lengths."""
     k, v0 = 9.0, 0.5
     spring = bg.LookupTable("spring", [-1, 0, 2], [-4, 0, 2], outside="extend")
     nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"),
@@ -89,7 +90,8 @@ def tabled_ratio() -> Kind:
     q = np.linspace(-1, 3, 9)
     ratio = bg.LookupTable("ratio", q, 1 + 0.4 * np.sin(q), method="pchip", outside="extend")
     nodes = [bg.One("n"), bg.I("J", "J", flow="w"), bg.Df("angle", flow="w_seen", integrate="phi"),
-             bg.TF("cam", "ratio(phi)"), bg.One("far"), bg.I("m", "m", priority=-1), bg.Se("T", "T")]  # fmt: skip
+             bg.TF("cam", "ratio(phi)"), bg.One("far"), bg.I("m", "m", priority=-1),
+             bg.Se("T", "T")]  # fmt: skip
 
     def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
         gain = _pchip(q, 1 + 0.4 * np.sin(q))(run["phi"])
