@@ -95,13 +95,27 @@ def begun(sight: Sight, t: float, s: Array, ahead: float) -> Sides:
     return tuple(signs.tolist())
 
 
-def check_ends(sight: Sight, sides: Sides, t: float, s: Array) -> None:
-    """Refuse sides beyond the end of a table that refuses what is outside, where it is looked into."""
+def check_start(sight: Sight, t: float, s: Array) -> None:
+    """Refuse a start that is beyond the end of a table that refuses what is outside; on it is not beyond."""
+    if sight.ending:
+        values, limits = sight.values(t, s)[0], sight.limits(t, s)
+        on = frozenset(np.flatnonzero(np.abs(values) <= limits).tolist())
+        check_ends(sight, tuple(np.where(values >= 0, 1, -1).tolist()), t, s, on)
+
+
+def check_ends(
+    sight: Sight, sides: Sides, t: float, s: Array, on: frozenset[int] = frozenset()
+) -> None:
+    """Refuse sides beyond the end of a table that refuses what is outside, where it is looked into.
+
+    ``on``: corners on which it is.
+    """
     corners = sight.model.program.corners
     for one in () if corners is None else corners.ends:
         region = region_of([sp.Integer(sides[at]) for at in one.sides])
-        beyond = region <= 0 or region >= one.last
-        if beyond and (sight.on(sides).values(t, s)[1][list(one.sides)] > 0).any():
+        if 0 < region < one.last or on & set(one.sides):
+            continue
+        if (sight.on(sides).values(t, s)[1][list(one.sides)] > 0).any():
             raise SimulationError(
                 f"at t = {t:.9g} {one.argument} leaves table {one.name!r}, which is from {one.ends[0]!r} "
                 f"to {one.ends[1]!r} and refuses what is outside; give it more points, or another outside"
