@@ -71,7 +71,7 @@ def table_file(text: str) -> tuple[str, dict[str, str]]:
     for choice in choices:
         key, equals, value = choice.partition("=")
         if key.strip() not in ("method", "outside") or not equals:
-            raise bg.TableError(f"{choice.strip()!r} is neither method=... nor outside=...")
+            raise bg.TableError(f"{choice.strip()!r} is neither method=... nor outside=... there")
         found[key.strip()] = value.strip()
     return path.strip(), found
 
