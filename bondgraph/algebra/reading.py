@@ -130,7 +130,7 @@ def _call(
         known = sorted([*functions, PIECEWISE])
         raise ExpressionError(
             f"{where}: {name!r} is not a function an expression may use{nearest(name, known)}; "
-            f"there are {', '.join(known)}"
+            f"there are {', '.join(known)}, and the lookup tables that it is given as tables"
         )
     least, most, made = functions[name]
     if not least <= len(arguments) <= most:
