@@ -53,14 +53,16 @@ def placed(
     """The cell along one axis, the distance from its beginning, and whether the end's value is held."""
     last, ends = len(knots) - 2, outside != "extend"
     if ends:
-        nothing = 0.0 * x if outside == "hold" else math.nan
+        free, refused = region == FREE, outside == "refuse"
+        nothing = math.nan if refused else 0.0 * x
         top = last + 2 if degree == 1 else 2
-        if x < knots[0] if region == FREE else region < 1:
+        # On its end a table that refuses what is beyond still has a value, on whichever side of it.
+        if (free or region < 1) and (x < knots[0] or not (free or refused)):
             return 0, nothing, True
-        if x > knots[-1] if region == FREE else region >= top:
+        if (free or region >= top) and (x > knots[-1] or not (free or refused)):
             return last, knots[-1] - knots[-2] + nothing, True
     if region != FREE and degree == 1:
-        at = min(int(region) - ends, last)
+        at = min(max(int(region) - ends, 0), last)
     else:
         at = min(max(bisect_right(knots, x) - 1, 0), last)
     return at, x - knots[at], False

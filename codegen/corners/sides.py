@@ -92,7 +92,21 @@ def begun(sight: Sight, t: float, s: Array, ahead: float) -> Sides:
         moved = sight.values(t + ahead, s + ahead * rate)[0] - values
         near = (np.abs(values) <= limits) & (moved != 0)
         signs = np.where(near, np.where(moved > 0, 1, -1), signs)
+        resting = frozenset(np.flatnonzero((np.abs(values) <= limits) & (moved == 0)).tolist())
+        return _inside(sight, tuple(signs.tolist()), resting)
     return tuple(signs.tolist())
+
+
+def _inside(sight: Sight, sides: Sides, resting: frozenset[int]) -> Sides:
+    """What rests on the end of a table that refuses what is outside is inside."""
+    corners = sight.model.program.corners
+    found = list(sides)
+    for one in () if corners is None else corners.ends:
+        region = region_of([sp.Integer(found[at]) for at in one.sides])
+        if not 0 < region < one.last:
+            for at in resting & set(one.sides):
+                found[at] = -found[at]
+    return tuple(found)
 
 
 def check_start(sight: Sight, t: float, s: Array) -> None:

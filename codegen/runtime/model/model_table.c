@@ -25,14 +25,16 @@ static int placed(const bg_table *of, int axis, double x, double region, double 
     const double *const breaks = of->breaks[axis];
     const int cells = of->cells[axis], ends = of->outside != BG_TABLE_EXTENDS;
     const int free = region < 0.0, top = of->degree == 1 ? cells + 1 : 2;
+    /* On its end a table that refuses what is beyond has a value, on whichever side of it. */
+    const int always = of->outside == BG_TABLE_HOLDS && !free;
     const double nothing = of->outside == BG_TABLE_HOLDS ? 0.0 * x : NAN;
     int at = 0;
-    if (ends && (free ? x < breaks[0] : region < 0.5)) {
+    if (ends && (free || region < 0.5) && (x < breaks[0] || always)) {
         *held = 1;
         *u = nothing;
         return 0;
     }
-    if (ends && (free ? x > breaks[cells] : region > top - 0.5)) {
+    if (ends && (free || region > top - 0.5) && (x > breaks[cells] || always)) {
         *held = 1;
         *u = breaks[cells] - breaks[cells - 1] + nothing;
         return cells - 1;
@@ -41,7 +43,7 @@ static int placed(const bg_table *of, int axis, double x, double region, double 
         at = cell_of(breaks, cells, x);
     else
         at = (int)(region + 0.5) - ends;
-    at = at < cells ? at : cells - 1;
+    at = at < 0 ? 0 : at < cells ? at : cells - 1;
     *u = x - breaks[at];
     return at;
 }

@@ -136,3 +136,20 @@ def test_tables_of_parameters_and_time_alone_have_no_sides() -> None:
     for law in ("f(k)*v", "f(t)*v + f(k*t)"):
         program = lower(bg.derive(_graph(law, table)), None, ["k"], True)
         assert with_corners(program).corners is None
+
+
+@pytest.mark.parametrize("method", ["linear", "pchip"])
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_what_rests_on_an_end_is_inside(backend: str, method: str) -> None:
+    """At rest on the first point, then pushed along: v = (t - 1)^2/2; and so on the last."""
+    flat = bg.LookupTable("f", [0, 1, 2], [0, 0, 0], method=method, outside="refuse")
+    push = {"push": "Max(t - 1, 0)"}
+    ready = simulator(bg.derive(_graph("f(v)", flat)), {}, push, backend=backend)
+    run = ready.run([0, 0.5, 2.5])
+    assert run["v"] == pytest.approx([0, 0, 1.125], abs=1e-9)
+    assert run.backend == backend
+    down = {"push": "-Max(t - 1, 0)"}
+    ready = simulator(bg.derive(_graph("f(v)", flat)), {}, down, backend=backend)
+    assert ready.run([0, 0.5, 2.5], {"v": 2})["v"] == pytest.approx([2, 2, 0.875], abs=1e-9)
+    with pytest.raises(SimulationError, match=r"at t = 1\.\d* v leaves table 'f'"):
+        ready.run([0, 2.5])
