@@ -6,8 +6,11 @@ from typing import Any, Self
 import sympy as sp
 
 from bondgraph.tables.looking import looked_up
-from bondgraph.tables.pieces import pieces
+from bondgraph.tables.pieces import integrated, pieces
 from bondgraph.tables.record import Sampled
+
+INTEGRAL = (-1,)
+"""The orders of the integral of a table over one axis, which energies are told by."""
 
 
 class Handle(sp.AtomicExpr):  # type: ignore[misc]
@@ -35,7 +38,8 @@ class Handle(sp.AtomicExpr):  # type: ignore[misc]
     @property
     def code(self) -> str:
         """A text that no other table and no other derivative has."""
-        return f"{self.table.name}_{''.join(map(str, self.orders))}_{self.table.digest}"
+        orders = "whole" if self.orders == INTEGRAL else "".join(map(str, self.orders))
+        return f"{self.table.name}_{orders}_{self.table.digest}"
 
     def _sympystr(self, printer: Any) -> str:
         return self.code
@@ -45,6 +49,8 @@ class Handle(sp.AtomicExpr):  # type: ignore[misc]
 
     def looked_up(self, *places: float) -> float:
         """The value at numbers."""
+        if self.orders == INTEGRAL:
+            return looked_up(integrated(self.table), (0,), places)
         return looked_up(pieces(self.table), self.orders, places)
 
 
@@ -148,6 +154,8 @@ def _marks(handle: Handle) -> str:
 
 def _title(handle: Handle) -> str:
     """The table's name; of a derivative with a mark for each time, which no text can call."""
+    if handle.orders == INTEGRAL:
+        return f"{handle.table.name}'integral"
     if len(handle.orders) == 1:
         return handle.table.name + "'" * handle.orders[0]
     marks = _marks(handle)

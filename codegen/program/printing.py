@@ -6,9 +6,10 @@ from typing import Any
 
 import sympy as sp
 from sympy.printing.c import C99CodePrinter
+from sympy.printing.codeprinter import PrintMethodNotImplementedError
 from sympy.printing.pycode import PythonCodePrinter
 
-from bondgraph.algebra.lookups import Handle
+from bondgraph.algebra.lookups import INTEGRAL, Handle
 from bondgraph.tables.looking import FREE
 from bondgraph.tables.record import Sampled
 from codegen.program.identifiers import identifiers
@@ -73,6 +74,8 @@ class _C(C99CodePrinter):  # type: ignore[misc]
         return self._looked_up(handle, told[:count], told[count:])
 
     def _looked_up(self, handle: Handle, places: Sequence[Any], regions: Sequence[Any]) -> str:
+        if handle.orders == INTEGRAL:
+            raise PrintMethodNotImplementedError(f"the integral of table {handle.table.name!r}")
         call = "bg_interpolate" if len(places) == 1 else "bg_interpolate_over"
         given = [*map(str, handle.orders), *map(self._print, (*places, *regions))]
         return f"{call}(&bg_{table_name(handle.table)}, {', '.join(given)})"
