@@ -115,8 +115,13 @@ def _as_tensor(spline: RectBivariateSpline, places: list[Array], orders: Orders)
     return np.einsum("pi,ij,pj->p", along_x, flat.reshape(n, m), along_y, optimize=True)
 
 
-def orders_of(method: str) -> list[tuple[int, ...]]:
-    return [(0, 0), (1, 0), (0, 1), (1, 1)] if method.startswith("bi") else [(0,), (1,)]
+def orders_of(method: str) -> list[Orders]:
+    """Derivatives that are compared: of cubics higher ones, too."""
+    if method == "linear":
+        return [(0,), (1,)]
+    over_two: list[Orders] = [(0, 0), (1, 0), (0, 1), (1, 1)]
+    more: dict[str, list[Orders]] = {"bilinear": over_two, "bicubic": [*over_two, (2, 1)]}
+    return more.get(method, [(0,), (1,), (2,), (3,)])
 
 
 def off(found: Array, right: Array) -> float:

@@ -19,6 +19,9 @@ from codegen.standalone.arrays import Array
 ROUNDING = 1e-12
 """Of the largest number; polynomials lose a few digits where they go on beyond their ends."""
 
+FEW = 10_000
+"""Arguments of slopes; values are compared at ten times as many."""
+
 
 def _by_numpy(table: bg.LookupTable, orders: tuple[int, ...], places: list[Array]) -> Array:
     names = sp.symbols("x y")[: len(orders)]
@@ -34,8 +37,9 @@ def test_values_and_slopes_are_the_interpolators_own(method: str, outside: str) 
     table, parts = random_table(method, outside)
     places = random_places(parts[:-1], outside=True)
     for orders in orders_of(method):
-        found = _by_numpy(table, orders, places)
-        assert off(found, interpolated(method, outside, parts, places, orders)) < ROUNDING, orders
+        some = [one[:FEW] for one in places] if any(orders) else places
+        found = _by_numpy(table, orders, some)
+        assert off(found, interpolated(method, outside, parts, some, orders)) < ROUNDING, orders
 
 
 def test_numbers_give_numbers_and_arrays_arrays() -> None:
