@@ -3,13 +3,16 @@
 
 #include "model_internal.h"
 
-enum { ORDERS = 4 };
+enum {
+    ORDERS = 4,
+    HALVES = 20 /* that leave nothing of the points that a table may have at the most */
+};
 
 /* The cell in which x is, the first or the last where it is beyond. */
 static int cell_of(const double *breaks, int cells, double x)
 {
     int low = 0, high = cells + 1;
-    while (low < high) {
+    for (int half = 0; half < HALVES && low < high; half++) {
         const int middle = (low + high) / 2;
         if (x < breaks[middle])
             high = middle;
@@ -105,7 +108,7 @@ static int corners_of(const bg_table *of, int axis)
 static int corners_below(const bg_table *of, int axis, double x)
 {
     int low = 0, high = corners_of(of, axis);
-    while (low < high) {
+    for (int half = 0; half < HALVES && low < high; half++) {
         const int middle = (low + high) / 2;
         if (x < corner_at(of, axis, middle))
             high = middle;

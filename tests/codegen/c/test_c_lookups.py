@@ -22,6 +22,9 @@ import codegen
 from bondgraph.tables.edges import bits, edge, edges
 from bondgraph.tables.looking import FREE, looked_up
 from bondgraph.tables.pieces import pieces
+from codegen.c.bounded import findings
+from codegen.c.counting import counted
+from codegen.program.lower import lower
 from codegen.standalone.arrays import Array
 
 ROUNDING = 1e-12
@@ -133,3 +136,16 @@ def test_stretches_between_corners_are_those_of_python(
             )
             told = _by_c(program, (axis, bit), [places[axis]], [regions[axis]], "edge")
             assert off(told, right) < ROUNDING
+
+
+def test_looking_up_is_bounded_and_counted() -> None:
+    """Of 100 points seven halves; a line is two products and a sum for each of its two factors."""
+    x = np.linspace(0, 1, 100)
+    equations = _equations(bg.LookupTable("map", x, x))
+    files = codegen.to_c(equations, {})
+    assert findings(files) == []
+    found, plain = (
+        counted(code.values[0] for code in (one.known.values, one.groups[0].values) if code.results)
+        for one in (lower(equations), lower(equations, {"s": "sin(v)"}))
+    )
+    assert (plain.parts, found.parts) == ((0, 0, 0, 1), (4, 2 + 7, 0, 1))
