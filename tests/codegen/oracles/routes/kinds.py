@@ -11,6 +11,8 @@ from oracles.routes.stops import STOPS
 from oracles.routes.switches import SWITCHES
 from oracles.routes.tabled import TABLED
 
-EVERY = (*FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL, *TABLED)
+EVERY = (
+    *FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL, *TABLED,
+)  # fmt: skip
 
 KINDS = {make.__name__: make for make in EVERY}

@@ -114,7 +114,12 @@ def tabled_curve() -> Kind:
     m, v0 = 2.0, 3.0
     stribeck = bg.LookupTable("stribeck", [0, 1, 2], [2, 1, 1])
     friction = bg.DryFriction("F", "stribeck(slip)", tables=[stribeck])
-    nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"), bg.R("ground", law=friction)]
+    nodes = [
+        bg.Se("push", "P"),
+        bg.One("n"),
+        bg.I("m", "m", flow="v"),
+        bg.R("ground", law=friction),
+    ]
     F = 1.0
     bends = m * (v0 - 1) / F
     # m v' = F (v - 2) from v = 1 on.
