@@ -6,7 +6,7 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.expressions import TIME, callable_in_text
 from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import Law
 from bondgraph.errors import StructureError
@@ -145,6 +145,16 @@ class StateEquations:
             raise StructureError(f"no bond {tail!r} -> {head!r} was declared")
         effort, flow = bonds[tail, head]
         return self.reduction.reading(effort), self.reduction.reading(flow)
+
+    def with_tables(self, tables: Iterable[Sampled]) -> "StateEquations":
+        """The same equations; texts of laws that are put later may call these tables, beside the graph's.
+
+        Raises `TableError` for what is no table, and for two of one name.
+        """
+        known = (*self.tables, *tables)
+        callable_in_text(known, "tables")
+        structure = replace(self.reduction.structure, tables=known)
+        return replace(self, reduction=replace(self.reduction, structure=structure))
 
     def with_readings(self, names: Iterable[sp.Symbol]) -> "StateEquations":
         """The same equations that also know these signals as readings."""

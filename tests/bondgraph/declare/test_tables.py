@@ -65,6 +65,19 @@ def test_laws_that_are_put_later_call_them_as_well() -> None:
     assert there.J[0, 0] == -sp.diff(drag(v), v).subs(v, 2)
 
 
+def test_equations_may_be_given_tables_for_such_laws() -> None:
+    equations = bg.derive(_graph(drag, law="b*v"))
+    with pytest.raises(bg.ExpressionError, match=r"'ratio' is not a function.*given as tables"):
+        bg.linearize(equations, {"v": 2, "t": 2}, laws={"b": "ratio(v/9)"})
+    more = equations.with_tables([ratio, drag])
+    assert bg.linearize(more, {"v": 2, "t": 2}, laws={"b": "ratio(v/9)"}).J[0, 0] == -sp.Rational(
+        1, 9
+    ) * sp.diff(ratio(v), v).subs(v, sp.Rational(2, 9))
+    assert equations.tables == (drag,)
+    with pytest.raises(bg.TableError, match="two tables 'drag'"):
+        equations.with_tables([bg.LookupTable("drag", [0, 1], [0, 1])])
+
+
 def test_friction_is_told_the_tables_of_its_texts() -> None:
     stribeck = bg.LookupTable("stribeck", [0, 1], [2, 1])
     friction = bg.DryFriction("N*drag(x)", "stribeck(slip)", tables=[drag, stribeck])
