@@ -1,6 +1,7 @@
 """Symbolic bond graphs: declared with networkx, derived into ``A x' = J x + B u``, slip ``= F x``."""
 
 from bondgraph.algebra.expressions import expression
+from bondgraph.algebra.lookup_table import LookupTable
 from bondgraph.analyse.explicit import explicit
 from bondgraph.analyse.linear_model import LinearModel
 from bondgraph.analyse.linearize import linearize
@@ -35,6 +36,7 @@ from bondgraph.errors import (
     SingularStorageError,
     StoreError,
     StructureError,
+    TableError,
     WriteError,
 )
 from bondgraph.explaining.explanation import Explanation, explain
@@ -75,6 +77,7 @@ __all__ = [
     "JunctionStructure",
     "Kind",
     "LinearModel",
+    "LookupTable",
     "Loop",
     "MissingExtraError",
     "ModelWarning",
@@ -94,6 +97,7 @@ __all__ = [
     "Sw",
     "Switch",
     "SwitchPort",
+    "TableError",
     "WriteError",
     "Zero",
     "assemble",

@@ -90,7 +90,9 @@ def derive_again(
     Raises what `derive` raises.
     """
     kept = equations.reduction.structure
-    graph = graph_of({**kept.elements, **elements}, zip(kept.ends, kept.bonds, strict=True))
+    graph = graph_of(
+        {**kept.elements, **elements}, zip(kept.ends, kept.bonds, strict=True), kept.tables
+    )
     names = [*(name.name for name in kept.opened), *inputs]
     return _equations(
         opened(junction_structure(assign_causality(graph)), names),

@@ -6,7 +6,7 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.expressions import TIME, callable_in_text
 from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.errors import StructureError
@@ -16,6 +16,7 @@ from bondgraph.reduce.structure import Port, PortRow
 from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.show.display import equations_text
 from bondgraph.show.latex import notebook_latex
+from bondgraph.tables.record import Sampled
 
 LARGEST_REPR = 100
 """Equations with more states, inputs or outputs are represented by their sizes."""
@@ -94,6 +95,11 @@ class StateEquations:
         return told
 
     @property
+    def tables(self) -> tuple[Sampled, ...]:
+        """The tables that the graph was given, which texts of laws may call."""
+        return self.reduction.structure.tables
+
+    @property
     def varying(self) -> tuple[sp.Symbol, ...]:
         """The names in the matrices that change in time, sorted; none where all values are constant."""
         return tuple(sorted(self._names & self._moving, key=str))
@@ -146,6 +152,16 @@ class StateEquations:
             raise StructureError(f"no bond {tail!r} -> {head!r} was declared")
         effort, flow = bonds[tail, head]
         return self.reduction.reading(effort), self.reduction.reading(flow)
+
+    def with_tables(self, tables: Iterable[Sampled]) -> "StateEquations":
+        """The same equations; texts of laws that are put later may call these tables, beside the graph's.
+
+        Raises `TableError` for what is no table, and for two of one name.
+        """
+        known = (*self.tables, *tables)
+        callable_in_text(known, "tables")
+        structure = replace(self.reduction.structure, tables=known)
+        return replace(self, reduction=replace(self.reduction, structure=structure))
 
     def with_readings(self, names: Iterable[sp.Symbol]) -> "StateEquations":
         """The same equations that also know these signals as readings."""

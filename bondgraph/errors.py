@@ -35,6 +35,10 @@ class DependentSourceError(BondGraphError):
     """A law or a step would have to be differentiated in time."""
 
 
+class TableError(ExpressionError):
+    """A lookup table's points, or what is asked of it, cannot be used."""
+
+
 class ParameterError(BondGraphError):
     """A parameter is missing, is not a number, or leaves the equations without a solution."""
 

@@ -1,30 +1,36 @@
 """Text, numbers and sympy expressions become exact sympy expressions; nothing is ever evaluated as Python."""
 
 import math
+from collections.abc import Callable, Iterable
 from numbers import Real
 
 import sympy as sp
 
 from bondgraph.algebra.atoms import MAX_DIGITS, MAX_EXPONENT, decimal, number, symbol
-from bondgraph.algebra.functions import ALLOWED, PARTS
-from bondgraph.algebra.reading import read
+from bondgraph.algebra.functions import ALLOWED, FUNCTIONS, PARTS
+from bondgraph.algebra.lookups import Handle, Look
+from bondgraph.algebra.reading import Functions, read
 from bondgraph.algebra.residues import residues
-from bondgraph.errors import ExpressionError, shortened
+from bondgraph.errors import ExpressionError, TableError, shortened
+from bondgraph.tables.record import Sampled
 
 TIME = sp.Symbol("t")
 """The time, in laws and known sources."""
 
 MAX_TERMS = 10_000
 
+_PARTS = (*PARTS, Handle, Look)
+
 _NOT_REAL = (sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I)
 
 
-def expression(value: object, where: str) -> sp.Expr:
+def expression(value: object, where: str, tables: Iterable[Sampled] = ()) -> sp.Expr:
     """The exact expression that a number, a text or a sympy expression stands for.
 
     Text may hold numbers, names, ``pi``, ``+ - * / **``, parentheses, the functions in `FUNCTIONS`, and
     ``Piecewise((value, condition), ..., (value, True))`` with comparisons, ``and``, ``or``, ``not``; other
-    names become plain symbols. A float counts as the rational of its shortest decimal form.
+    names become plain symbols. It may call ``tables``, too: `LookupTable` objects. A float counts as the
+    rational of its shortest decimal form.
 
     Raises `ExpressionError`, naming ``where``, for anything else: text that calls or imports,
     numbers that are not finite and real, names that cannot be symbols.
@@ -33,7 +39,7 @@ def expression(value: object, where: str) -> sp.Expr:
     (h1/(h1 - 1), 1/10)
     """
     if isinstance(value, str):
-        result = read(value, where)
+        result = read(value, where, callable_in_text(tables, where))
     elif isinstance(value, sp.Expr):
         floats = value.atoms(sp.Float)
         result = (
@@ -51,6 +57,28 @@ def expression(value: object, where: str) -> sp.Expr:
             f"{where}: {shortened(str(value))} is out of bounds: {error}"
         ) from None
     return result
+
+
+def callable_in_text(tables: Iterable[Sampled], where: str) -> Functions:
+    """The functions of all text, and these tables; `TableError` for two of one name.
+
+    Of tables that are equal one is enough.
+    """
+    found: dict[str, Sampled] = {}
+    for table in tables:
+        if not isinstance(table, Sampled):
+            raise TableError(f"{where}: {shortened(repr(table))} in tables is no LookupTable")
+        if found.setdefault(table.name, table).digest != table.digest:
+            raise TableError(f"{where}: there are two tables {table.name!r}; rename one")
+    if not found:
+        return FUNCTIONS
+    return {**FUNCTIONS, **{name: _looking(table) for name, table in found.items()}}
+
+
+def _looking(table: Sampled) -> tuple[int, int, Callable[..., sp.Expr]]:
+    count = len(table.axes)
+    handle = Handle(table, (0,) * count)
+    return count, count, lambda *places: Look(handle, *places)
 
 
 def _check_value(expr: sp.Expr, value: object, where: str) -> None:
@@ -76,7 +104,7 @@ def _check_parts(expr: sp.Expr, where: str) -> None:
         symbol(expr.name, where)
         return
     for part in sp.preorder_traversal(expr):
-        if not isinstance(part, PARTS) or part.is_commutative is False:
+        if not isinstance(part, _PARTS) or part.is_commutative is False:
             raise ExpressionError(f"{where}: {shortened(str(part))} is not allowed; {ALLOWED}")
         if isinstance(part, sp.Symbol):
             symbol(part.name, where)

@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import sympy as sp
@@ -36,14 +36,18 @@ _SYMBOLS = (("&&", "and"), ("||", "or"), ("!", "not"), ("=", "=="))
 """Spellings of other languages that are no syntax here."""
 
 
-def read(text: str, where: str) -> sp.Expr:
+Functions = Mapping[str, tuple[int, int, Callable[..., Any]]]
+"""What text may call: least and most number of arguments, and what is built."""
+
+
+def read(text: str, where: str, functions: Functions = FUNCTIONS) -> sp.Expr:
     """The expression of a text; `ExpressionError`, naming ``where``, for what is none."""
     if len(text) > MAX_LENGTH:
         raise ExpressionError(f"{where}: text of {len(text)} characters, at most {MAX_LENGTH}")
     if _nesting(text) > MAX_DEPTH:
         raise ExpressionError(f"{where}: parentheses nested deeper than {MAX_DEPTH}")
     try:
-        return _build(ast.parse(text.strip(), mode="eval").body, where, 0)
+        return _build(ast.parse(text.strip(), mode="eval").body, where, 0, functions)
     except ExpressionError:
         raise
     except SyntaxError as error:
@@ -70,7 +74,7 @@ def _nesting(text: str) -> int:
     return deepest
 
 
-def _build(node: ast.AST, where: str, depth: int) -> sp.Expr:
+def _build(node: ast.AST, where: str, depth: int, functions: Functions) -> sp.Expr:
     """The expression of one syntax node; only the listed kinds of node exist here.
 
     A chain of sums and products is deep in the syntax tree without being nested, so it is walked in a loop.
@@ -81,9 +85,9 @@ def _build(node: ast.AST, where: str, depth: int) -> sp.Expr:
     while isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
         pending.append((type(node.op), node.right))
         node = node.left
-    result = _leaf(node, where, depth)
+    result = _leaf(node, where, depth, functions)
     for operator, right in reversed(pending):
-        operand = _build(right, where, depth + 1)
+        operand = _build(right, where, depth + 1, functions)
         if operator is ast.Div and operand.is_zero:
             raise ExpressionError(f"{where}: division by zero")
         try:
@@ -93,7 +97,7 @@ def _build(node: ast.AST, where: str, depth: int) -> sp.Expr:
     return result
 
 
-def _leaf(node: ast.AST, where: str, depth: int) -> sp.Expr:
+def _leaf(node: ast.AST, where: str, depth: int, functions: Functions) -> sp.Expr:
     if isinstance(node, ast.Constant) and type(node.value) in (int, float):
         if isinstance(node.value, int) and node.value.bit_length() > 4 * MAX_DIGITS:
             raise ExpressionError(f"{where}: a number of more than {MAX_DIGITS} digits")
@@ -102,29 +106,36 @@ def _leaf(node: ast.AST, where: str, depth: int) -> sp.Expr:
         name = str(normal(node.id))
         return CONSTANTS[name] if name in CONSTANTS else symbol(name, where)
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd | ast.USub):
-        operand = _build(node.operand, where, depth + 1)
+        operand = _build(node.operand, where, depth + 1, functions)
         return -operand if isinstance(node.op, ast.USub) else operand
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
-        return _call(node.func.id, node.args, where, depth)
+        return _call(node.func.id, node.args, where, depth, functions)
     kind = type(node.op) if isinstance(node, ast.BinOp | ast.UnaryOp) else type(node)
     raise ExpressionError(
         f"{where}: {shortened(ast.unparse(node))} is not allowed; {_SPELLED.get(kind, ALLOWED)}"
     )
 
 
-def _call(name: str, arguments: list[ast.expr], where: str, depth: int) -> sp.Expr:
+def _call(
+    name: str, arguments: list[ast.expr], where: str, depth: int, functions: Functions
+) -> sp.Expr:
+    name = str(normal(name))
+
+    def build(node: ast.AST) -> sp.Expr:
+        return _build(node, where, depth + 1, functions)
+
     if name == PIECEWISE:
-        return read_pieces(arguments, lambda node: _build(node, where, depth + 1), where)
-    if name not in FUNCTIONS:
-        known = sorted([*FUNCTIONS, PIECEWISE])
+        return read_pieces(arguments, build, where)
+    if name not in functions:
+        known = sorted([*functions, PIECEWISE])
         raise ExpressionError(
             f"{where}: {name!r} is not a function an expression may use{nearest(name, known)}; "
-            f"there are {', '.join(known)}"
+            f"there are {', '.join(known)}, and the lookup tables that it is given as tables"
         )
-    least, most, build = FUNCTIONS[name]
+    least, most, made = functions[name]
     if not least <= len(arguments) <= most:
         raise ExpressionError(f"{where}: {name} takes {least} argument(s), not {len(arguments)}")
-    return build(*(_build(argument, where, depth + 1) for argument in arguments))
+    return made(*map(build, arguments))
 
 
 def _power(base: Any, exponent: Any) -> sp.Expr:

@@ -26,7 +26,7 @@ def merged_laws(
             )
         declared = equations.laws.get(name)
         state = declared.state if isinstance(declared, ExpressionLaw) else None
-        closed = law(value, f"law at {name!r}", state)
+        closed = law(value, f"law at {name!r}", state, equations.tables)
         if isinstance(closed, DryFriction):
             if not port.element.kind.resists:
                 raise StructureError(f"law at {name!r}: dry friction closes an R")

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.table_corners import check_tables
 from bondgraph.analyse.slopes import Point
 from bondgraph.analyse.unknowns import Moment, Unknowns
 from bondgraph.equations import StateEquations
@@ -66,6 +67,7 @@ class Deviations:
         result = ReadingSum(Reading(*kept))
         for part, told in zip(row.parts, self.variables, strict=True):
             for j, entry in part.items():
+                check_tables(entry, f"the value {entry}", self.there)
                 for name in sorted(entry.free_symbols & self._varying, key=str):
                     slope = self.there(slope_of(entry, name))
                     if slope != 0:

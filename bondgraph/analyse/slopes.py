@@ -8,6 +8,7 @@ import sympy as sp
 from bondgraph.algebra.atoms import normal
 from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.algebra.residues import is_zero
+from bondgraph.algebra.table_corners import check_tables
 from bondgraph.analyse.unknowns import still
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.errors import SignalError
@@ -77,11 +78,21 @@ def slopes(
         _at(given, port, signals, point, "value")
     for turn in sorted(given.atoms(sp.atan2), key=str):
         _check_turn(turn, port, signals, point)
+    if read:
+        check_tables(
+            given, f"the law at {port!r}", lambda place: _there(place, port, signals, point)
+        )
     found = {
         name: _at(slope, port, signals, point, "slope")
         for name, slope in zip(read, derivatives, strict=True)
     }
     return {name: slope for name, slope in found.items() if slope != 0}
+
+
+def _there(expr: sp.Expr, port: Hashable, signals: set[sp.Symbol], point: Point) -> sp.Expr:
+    """A smooth part of a law at the point."""
+    _check_given(expr, port, signals, point, "slope")
+    return still(expr.subs(point))
 
 
 def turns_with_slip(law: Law, signals: set[sp.Symbol]) -> bool:

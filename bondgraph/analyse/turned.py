@@ -7,6 +7,7 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.factored import factored
+from bondgraph.algebra.lookups import Look
 from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import DryFriction
 from bondgraph.derive import derive_again
@@ -117,6 +118,8 @@ def _bounds(expr: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
         return sp.Integer(-1), sp.Integer(1)
     if isinstance(expr, sp.Abs | sp.exp | sp.cosh) or (expr.is_Pow and expr.exp.is_even):
         return sp.Integer(0), sp.oo
+    if isinstance(expr, Look) and (between := expr.bounds) is not None:
+        return between
     if expr.is_Add:
         parts = [_bounds(part) for part in expr.args]
         return sp.Add(*(low for low, _ in parts)), sp.Add(*(high for _, high in parts))

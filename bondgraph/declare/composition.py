@@ -9,6 +9,7 @@ from bondgraph.algebra.atoms import normal, symbol
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.laws import SLIP
 from bondgraph.declare.renaming import Names, Part, name_text, names_read, quantities, renamed
+from bondgraph.declare.tables import TABLES, tables_of, with_tables
 from bondgraph.errors import StructureError
 
 
@@ -17,7 +18,9 @@ def assemble(*parts: Part) -> Part:
 
     The order of the parts is the order of states and inputs.
 
-    Raises `StructureError` if two parts declare one node differently, or one bond twice.
+    Tables of one name must be equal.
+
+    Raises `StructureError` if two parts declare one node or table differently, or one bond twice.
 
     >>> import bondgraph as bg
     >>> wheel = nx.DiGraph()
@@ -29,7 +32,9 @@ def assemble(*parts: Part) -> Part:
     >>> list(assemble(wheel, road))
     ['hub', 'J', 'tire']
     """
+    tables = tables_of(nx.DiGraph(tables=[one for part in parts for one in tables_of(part)]))
     whole: nx.DiGraph[Hashable] = nx.DiGraph()
+    whole.graph.update({TABLES: list(tables)} if tables else {})
     for part in parts:
         for name, attributes in part.nodes(data=True):
             known = whole.nodes[name] if name in whole else {}
@@ -58,7 +63,7 @@ def prefixed(
     ``keep``: terminals, as names that stay or as a mapping of inner to outer names; what they name
     stays too. A terminal without attributes has the default names. ``parameters``: the names read
     that are no signals of the part, signals of elsewhere among them, are shared by all copies; True
-    prefixes them all, a list those in it.
+    prefixes them all, a list those in it. Tables keep their names.
 
     Raises `StructureError` for a prefix that makes no identifiers, for names in ``keep`` and
     ``parameters`` that the part does not have, and where two names would become one.
@@ -75,7 +80,7 @@ def prefixed(
     """
     if not isinstance(graph, nx.DiGraph) or graph.is_multigraph():
         raise StructureError(f"a part is a networkx.DiGraph, not a {type(graph).__name__}")
-    prefix = _checked_prefix(prefix)
+    prefix, graph = _checked_prefix(prefix), with_tables(graph)
     kept = _kept(graph, keep)
     nodes = _nodes(graph, prefix, kept)
     signals = _signal_names(graph, prefix, nodes, kept)
@@ -83,6 +88,7 @@ def prefixed(
     names = signals | _parameter_names(read - signals.keys(), prefix, parameters)
     _check_names(names, read, prefix)
     result: nx.DiGraph[Hashable] = nx.DiGraph()
+    result.graph.update({TABLES: graph.graph[TABLES]} if TABLES in graph.graph else {})
     for inner, attributes in graph.nodes(data=True):
         result.add_node(nodes[inner], **renamed(inner, attributes, names))
     for tail, head, attributes in graph.edges(data=True):

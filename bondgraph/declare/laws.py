@@ -1,5 +1,6 @@
 """What closes an open port: an expression, or dry friction that sticks and slips."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TypeGuard
 
@@ -7,6 +8,7 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import expression
 from bondgraph.errors import ExpressionError, StructureError
+from bondgraph.tables.record import Sampled
 
 SLIP = sp.Symbol("slip")
 """The argument of a friction curve: the magnitude of the slip."""
@@ -42,7 +44,8 @@ class DryFriction:
 
     ``level``: N m (or N, V, Pa), text, number or expression, not negative. ``curve``: an expression
     in ``slip``, normalised to 1 for plain Coulomb friction. ``breakaway``: the ratio at standstill, by
-    default the curve's value at ``slip = 0``; it must not be less than that value.
+    default the curve's value at ``slip = 0``; it must not be less than that value. ``tables``: what these
+    texts may call.
 
     >>> DryFriction("tau_h", "1 + 0.2*exp(-slip/0.1)").breakaway
     6/5
@@ -52,13 +55,21 @@ class DryFriction:
     curve: sp.Expr
     breakaway: sp.Expr
 
-    def __init__(self, level: object, curve: object = 1, breakaway: object = None) -> None:
-        object.__setattr__(self, "level", expression(level, "level of dry friction"))
-        object.__setattr__(self, "curve", expression(curve, "curve of dry friction"))
+    def __init__(
+        self,
+        level: object,
+        curve: object = 1,
+        breakaway: object = None,
+        tables: Iterable[Sampled] = (),
+    ) -> None:
+        tables = tuple(tables)
+        object.__setattr__(self, "level", expression(level, "level of dry friction", tables))
+        object.__setattr__(self, "curve", expression(curve, "curve of dry friction", tables))
         at_rest = self.curve.subs(SLIP, 0)
         if at_rest.has(sp.nan, sp.zoo, sp.oo):
             raise ExpressionError(f"curve of dry friction: {self.curve} is not finite at slip = 0")
-        ratio = at_rest if breakaway is None else expression(breakaway, "breakaway of dry friction")
+        what = "breakaway of dry friction"
+        ratio = at_rest if breakaway is None else expression(breakaway, what, tables)
         if (ratio - at_rest).is_negative:
             raise ExpressionError(
                 f"dry friction: breakaway {ratio} is below the curve at standstill, {at_rest}; "
@@ -106,10 +117,12 @@ def check_slider(friction: DryFriction, where: str) -> None:
         )
 
 
-def law(value: object, where: str, state: sp.Symbol | None = None) -> Law:
+def law(
+    value: object, where: str, state: sp.Symbol | None = None, tables: Iterable[Sampled] = ()
+) -> Law:
     """The law that a text, number, expression or ready law stands for."""
     if isinstance(value, ExpressionLaw | DryFriction):
         if state is not None and not (isinstance(value, ExpressionLaw) and value.state == state):
             raise ExpressionError(f"{where}: a storage takes an expression in {state} as its law")
         return value
-    return ExpressionLaw(expression(value, where), state)
+    return ExpressionLaw(expression(value, where, tables), state)

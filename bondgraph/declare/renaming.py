@@ -9,9 +9,10 @@ import sympy as sp
 from bondgraph.algebra.atoms import normal
 from bondgraph.algebra.expressions import expression
 from bondgraph.declare.attributes import bare_name
-from bondgraph.declare.kinds import EXPRESSIONS, Kind
+from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw
 from bondgraph.declare.stops import stop_parts
+from bondgraph.declare.tables import READ
 from bondgraph.errors import StructureError
 
 Part: TypeAlias = "nx.DiGraph[Hashable]"
@@ -19,9 +20,6 @@ Part: TypeAlias = "nx.DiGraph[Hashable]"
 
 Names = Mapping[str, str]
 """Old names of signals and parameters to new ones."""
-
-_READ = ("law", "reset", *EXPRESSIONS)
-"""The attributes that read names; the others own them, or hold none."""
 
 _OWN_SLIP = sp.Dummy("slip of a curve")
 """Stands for ``slip`` in friction curves while the graph's names change."""
@@ -95,7 +93,7 @@ def names_read(graph: Part) -> set[str]:
         return expr
 
     for name, attributes in graph.nodes(data=True):
-        for key in _READ:
+        for key in READ:
             _mapped_at(attributes, key, note, f"node {name!r}, {key}")
     return found - {_OWN_SLIP.name}
 
@@ -108,7 +106,7 @@ def renamed(name: Hashable, attributes: Mapping[str, Any], names: Names) -> dict
         return expr.xreplace({one: sp.Symbol(names[one.name], **one.assumptions0) for one in found})
 
     result = dict(attributes)
-    for key in _READ:
+    for key in READ:
         if key in result:
             result[key] = _mapped_at(result, key, rewrite, f"node {name!r}, {key}")
     for key in ("effort", "flow", "integrate"):

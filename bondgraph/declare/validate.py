@@ -9,7 +9,9 @@ from bondgraph.declare.declared import elements_of
 from bondgraph.declare.elements import Bond, Element
 from bondgraph.declare.fields import part
 from bondgraph.declare.names import check_names, check_one_whole
+from bondgraph.declare.tables import TABLES, tables_of, with_calls
 from bondgraph.errors import StructureError
+from bondgraph.tables.record import Sampled
 
 if TYPE_CHECKING:
     _DiGraph = nx.DiGraph[Hashable]
@@ -38,6 +40,7 @@ def validate(graph: Any) -> "nx.DiGraph[Hashable]":
     if len(graph) == 0:
         raise StructureError("the graph has no nodes; add elements and bonds first")
     result = _Validated()
+    result.graph[TABLES] = tables_of(graph)
     fields, controls = _add_elements(result, graph)
     for tail, head, attributes in graph.edges(data=True):
         _check_bond(graph, tail, head, attributes)
@@ -66,10 +69,13 @@ def with_elements(
 
 
 def graph_of(
-    elements: Mapping[Hashable, Element], bonds: Iterable[tuple[Bond, Bond]]
+    elements: Mapping[Hashable, Element],
+    bonds: Iterable[tuple[Bond, Bond]],
+    tables: tuple[Sampled, ...] = (),
 ) -> "nx.DiGraph[Hashable]":
     """The validated graph of these elements and bonds, each by its ends and as it was declared."""
     result = _Validated()
+    result.graph[TABLES] = tables
     for name, element in elements.items():
         result.add_node(name, element=element)
     for ends, declared in bonds:
@@ -99,7 +105,8 @@ def _add_elements(result: _Validated, graph: Any) -> tuple[set[Hashable], list[B
     fields: set[Hashable] = set()
     controls: list[Bond] = []
     for name, attributes in graph.nodes(data=True):
-        for own, element in elements_of(name, attributes).items():
+        told = with_calls(attributes, result.graph[TABLES], f"node {name!r}")
+        for own, element in elements_of(name, told).items():
             _add(result, own, element)
             if element.owner is not None:
                 fields.add(name)

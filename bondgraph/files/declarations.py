@@ -8,11 +8,14 @@ import sympy as sp
 
 from bondgraph.algebra.atoms import MAX_DIGITS, number
 from bondgraph.algebra.expressions import expression
+from bondgraph.algebra.lookups import Handle
 from bondgraph.algebra.written import written
 from bondgraph.declare.kinds import EXPRESSIONS, Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
+from bondgraph.declare.tables import TABLES, tables_in
 from bondgraph.declare.validate import validate
 from bondgraph.errors import ExpressionError, FileFormatError
+from bondgraph.files.tables import plain_table
 
 FRICTION = ("breakaway", "curve", "level")
 """The parts of a dry friction, in a file's order."""
@@ -25,11 +28,12 @@ NAMES = frozenset(
 
 @dataclass(frozen=True)
 class Declaration:
-    """A graph's name, its nodes and bonds in their order, and their attributes as plain data."""
+    """A graph's name, its nodes and bonds in their order, their attributes and its tables as plain data."""
 
     name: str | None
     nodes: tuple[tuple[Hashable, dict[str, Any]], ...]
     bonds: tuple[tuple[Hashable, Hashable, dict[str, Any]], ...]
+    tables: tuple[Any, ...] = ()
 
 
 def declaration(graph: Any) -> Declaration:
@@ -42,11 +46,13 @@ def declaration(graph: Any) -> Declaration:
     """
     if validate(graph) is graph:
         raise FileFormatError("this is the checked copy that validate made; write the graph itself")
-    unknown = sorted(repr(key) for key in graph.graph if key != "name")
+    unknown = sorted(repr(key) for key in graph.graph if key not in ("name", TABLES))
     name = graph.graph.get("name") or None
     if unknown or not isinstance(name, str | None):
         which = unknown[0] if unknown else f"'name' = {name!r}"
-        raise FileFormatError(f"graph attribute {which}: a file keeps a name, a text; remove it")
+        raise FileFormatError(
+            f"graph attribute {which}: a file keeps a name, a text, and tables; remove it"
+        )
     check_text(name or "", "the graph's name")
     nodes = []
     for node, attributes in graph.nodes(data=True):
@@ -59,7 +65,7 @@ def declaration(graph: Any) -> Declaration:
         (tail, head, _all_plain(attributes, None, f"bond {tail!r} -> {head!r}"))
         for tail, head, attributes in graph.edges(data=True)
     ]
-    return Declaration(name, tuple(nodes), tuple(bonds))
+    return Declaration(name, tuple(nodes), tuple(bonds), tuple(map(plain_table, tables_in(graph))))
 
 
 def _all_plain(attributes: Mapping[str, Any], kind: object, where: str) -> dict[str, Any]:
@@ -142,7 +148,7 @@ def _written(value: Any, where: str) -> str | int | float:
         )
     text = written(exact)
     try:
-        back = expression(text, where)
+        back = expression(text, where, {part.table for part in exact.atoms(Handle)})
     except ExpressionError as error:
         raise FileFormatError(f"{error}; it cannot be written as text") from None
     if back != exact:

@@ -1,7 +1,7 @@
 """Bond graphs as files: read without trust, written whole or not at all."""
 
 import os
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ import networkx as nx
 from bondgraph.errors import BondGraphError, FileFormatError
 from bondgraph.files.graphml import from_graphml, to_graphml
 from bondgraph.files.nodelink import from_json, to_json
+from bondgraph.tables.record import Sampled
 from bondgraph.writing import write_bytes
 
 MAX_BYTES = 10_000_000
@@ -21,9 +22,11 @@ def write_json(graph: Any, path: str | os.PathLike[str]) -> None:
     _write(to_json(graph), path)
 
 
-def read_json(path: str | os.PathLike[str]) -> "nx.DiGraph[Hashable]":
+def read_json(
+    path: str | os.PathLike[str], tables: Iterable[Sampled] = ()
+) -> "nx.DiGraph[Hashable]":
     """The validated graph in a JSON file, see `from_json`; the errors name the file."""
-    return _read(from_json, path)
+    return _read(from_json, path, tables)
 
 
 def write_graphml(graph: Any, path: str | os.PathLike[str]) -> None:
@@ -31,13 +34,17 @@ def write_graphml(graph: Any, path: str | os.PathLike[str]) -> None:
     _write(to_graphml(graph), path)
 
 
-def read_graphml(path: str | os.PathLike[str]) -> "nx.DiGraph[Hashable]":
+def read_graphml(
+    path: str | os.PathLike[str], tables: Iterable[Sampled] = ()
+) -> "nx.DiGraph[Hashable]":
     """The validated graph in a GraphML file, see `from_graphml`; the errors name the file."""
-    return _read(from_graphml, path)
+    return _read(from_graphml, path, tables)
 
 
 def _read(
-    parse: Callable[[str], "nx.DiGraph[Hashable]"], path: str | os.PathLike[str]
+    parse: Callable[[str, Iterable[Sampled]], "nx.DiGraph[Hashable]"],
+    path: str | os.PathLike[str],
+    tables: Iterable[Sampled],
 ) -> "nx.DiGraph[Hashable]":
     """What the file holds; files that are too large or not UTF-8 are refused."""
     with Path(path).open("rb") as file:
@@ -45,7 +52,7 @@ def _read(
     try:
         if len(raw) > MAX_BYTES:
             raise FileFormatError(f"more than {MAX_BYTES} bytes, too large for a bond graph")
-        return parse(raw.decode("utf-8-sig"))
+        return parse(raw.decode("utf-8-sig"), tables)
     except UnicodeDecodeError as error:
         raise FileFormatError(f"{os.fspath(path)}: not UTF-8: {error.reason}") from None
     except BondGraphError as error:

@@ -2,16 +2,18 @@
 
 import io
 import re
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterable
 from typing import Any
 
 import networkx as nx
 
+from bondgraph.declare.tables import TABLES
 from bondgraph.errors import FileFormatError
 from bondgraph.files.declarations import Declaration, declaration
 from bondgraph.files.nodelink import line, parsed
-from bondgraph.files.restored import restored
+from bondgraph.files.restored import check_type, restored
 from bondgraph.files.safexml import check_xml
+from bondgraph.tables.record import Sampled
 
 _INTEGER = re.compile(r"-?[0-9]{1,500}")
 _NO_XML = re.compile("[^\t\n\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -41,6 +43,8 @@ def to_graphml(graph: Any) -> str:
     result: nx.DiGraph[str] = nx.DiGraph(format="bondgraph", version="1")
     if told.name is not None:
         result.graph["name"] = _xml(told.name, "the graph's name")
+    if told.tables:
+        result.graph[TABLES] = line(told.tables)
     for name, attributes in told.nodes:
         texts = _texts(attributes, f"node {name!r}")
         if not isinstance(name, str):
@@ -85,8 +89,10 @@ def _xml(text: str, where: str, empty: bool = False) -> str:
     return text
 
 
-def from_graphml(text: str) -> "nx.DiGraph[Hashable]":
+def from_graphml(text: str, tables: Iterable[Sampled] = ()) -> "nx.DiGraph[Hashable]":
     """The graph that a GraphML text of `to_graphml` holds, validated.
+
+    ``tables``: `LookupTable` objects that its values and laws may call, beside its own.
 
     Document types and entities are refused before anything is expanded; so is every element and
     attribute that a bond graph has no use for.
@@ -103,7 +109,8 @@ def from_graphml(text: str) -> "nx.DiGraph[Hashable]":
         raise FileFormatError(
             "no GraphML of a bond graph: the graph needs format 'bondgraph' and version '1'"
         )
-    name = header.pop("name", None)
+    name, own = header.pop("name", None), parsed(header.pop(TABLES, "[]"))
+    check_type(own, (list,), "the graph's tables")
     if header:
         raise FileFormatError(f"graph attribute {min(header)!r} is unknown; remove it")
     names = {id_: _name(id_, texts) for id_, texts in raw.nodes(data=True)}
@@ -112,7 +119,7 @@ def from_graphml(text: str) -> "nx.DiGraph[Hashable]":
         (names[tail], names[head], _attributes(tail, texts))
         for tail, head, texts in raw.edges(data=True)
     ]
-    return restored(Declaration(name, tuple(nodes), tuple(bonds)))
+    return restored(Declaration(name, tuple(nodes), tuple(bonds), tuple(own)), tables)
 
 
 def _name(id_: str, texts: dict[str, str]) -> Hashable:

@@ -2,15 +2,17 @@
 
 import json
 import math
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterable
 from typing import Any
 
 import networkx as nx
 
 from bondgraph.algebra.atoms import MAX_DIGITS
+from bondgraph.declare.tables import TABLES
 from bondgraph.errors import FileFormatError
 from bondgraph.files.declarations import Declaration, declaration
 from bondgraph.files.restored import check_type, restored
+from bondgraph.tables.record import Sampled
 
 VERSION = 1
 MAX_PARTS = 500_000
@@ -51,12 +53,14 @@ def to_json(graph: Any) -> str:
     }
     """
     told = declaration(graph)
-    head = {
+    head: dict[str, Any] = {
         "format": "bondgraph",
         "version": VERSION,
         **_LAYOUT,
         "graph": {} if told.name is None else {"name": told.name},
     }
+    if told.tables:
+        head["graph"] |= {TABLES: told.tables}
     nodes = [line({"id": name, **attributes}) for name, attributes in told.nodes]
     bonds = [line({"source": tail, "target": to, **more}) for tail, to, more in told.bonds]
     entries = [f"{line(key)}: {line(value)}" for key, value in head.items()]
@@ -72,8 +76,10 @@ def line(value: object) -> str:
     return json.dumps(value, ensure_ascii=False, allow_nan=False)
 
 
-def from_json(text: str) -> "nx.DiGraph[Hashable]":
+def from_json(text: str, tables: Iterable[Sampled] = ()) -> "nx.DiGraph[Hashable]":
     """The graph that a JSON text of `to_json` holds, validated.
+
+    ``tables``: `LookupTable` objects that its values and laws may call, beside its own.
 
     Raises `FileFormatError` for text that is not such JSON - another version, unknown or repeated keys,
     wrong types, NaN, nodes or bonds that come twice - and what `validate` raises.
@@ -97,9 +103,11 @@ def from_json(text: str) -> "nx.DiGraph[Hashable]":
         if data.get(key, value) is not value:
             raise FileFormatError(f"{key} must be {json.dumps(value)}; an edge is one bond")
     about = data.get("graph", {})
-    _check_keys(about, set(), {"name"}, "graph")
-    for name in about.values():
-        check_type(name, (str,), "the graph's name")
+    _check_keys(about, set(), {"name", TABLES}, "graph")
+    if "name" in about:
+        check_type(about["name"], (str,), "the graph's name")
+    own = about.get(TABLES, [])
+    check_type(own, (list,), "the graph's tables")
     nodes, bonds = [], []
     for index, node in enumerate(data["nodes"]):
         check_type(node, (dict,), f"nodes[{index}]")
@@ -109,7 +117,8 @@ def from_json(text: str) -> "nx.DiGraph[Hashable]":
         check_type(edge, (dict,), f"edges[{index}]")
         _check_keys(edge, {"source", "target"}, set(edge), f"edges[{index}]")
         bonds.append((edge.pop("source"), edge.pop("target"), edge))
-    return restored(Declaration(about.get("name"), tuple(nodes), tuple(bonds)))
+    told = Declaration(about.get("name"), tuple(nodes), tuple(bonds), tuple(own))
+    return restored(told, tables)
 
 
 def parsed(text: str) -> Any:

@@ -9,9 +9,12 @@ from bondgraph.algebra.atoms import symbol
 from bondgraph.algebra.expressions import expression
 from bondgraph.declare.kinds import EXPRESSIONS
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
+from bondgraph.declare.tables import TABLES, tables_of
 from bondgraph.declare.validate import validate
 from bondgraph.errors import BondGraphError, FileFormatError
 from bondgraph.files.declarations import FRICTION, Declaration, check_text
+from bondgraph.files.tables import restored_table
+from bondgraph.tables.record import Sampled
 
 SCALARS = (str, int, float)
 TYPES: Mapping[str, tuple[type, ...]] = {
@@ -30,8 +33,10 @@ TYPES: Mapping[str, tuple[type, ...]] = {
 OWN_STATE = frozenset({"expression", "state"})
 
 
-def restored(declaration: Declaration) -> "nx.DiGraph[Hashable]":
+def restored(declaration: Declaration, tables: Iterable[Sampled] = ()) -> "nx.DiGraph[Hashable]":
     """The graph of a declaration that came from a file, validated.
+
+    ``tables``: given with it, beside those that it has.
 
     Raises `FileFormatError` for attributes of a wrong type, nodes and bonds that come twice and bonds
     to nodes that are not there, and what `validate` raises.
@@ -40,12 +45,15 @@ def restored(declaration: Declaration) -> "nx.DiGraph[Hashable]":
     if declaration.name is not None:
         check_type(declaration.name, (str,), "the graph's name")
         graph.graph["name"] = declaration.name
+    own = [restored_table(parts, f"tables[{at}]") for at, parts in enumerate(declaration.tables)]
+    known = tables_of(nx.DiGraph(tables=[*own, *tables]))
+    graph.graph.update({TABLES: list(known)} if known else {})
     for name, attributes in declaration.nodes:
         check_type(name, (str, int), "the id of a node")
         if name in graph:
             raise FileFormatError(f"node {name!r} is there twice; give each node an id of its own")
         graph.add_node(name)
-        graph.nodes[name].update(_attributes(attributes, f"node {name!r}"))
+        graph.nodes[name].update(_attributes(attributes, f"node {name!r}", known))
     for tail, head, attributes in declaration.bonds:
         for end in (tail, head):
             check_type(end, (str, int), "the end of a bond")
@@ -55,7 +63,7 @@ def restored(declaration: Declaration) -> "nx.DiGraph[Hashable]":
         if graph.has_edge(tail, head):
             raise FileFormatError(f"{where} is there twice; keep one")
         graph.add_edge(tail, head)
-        graph.edges[tail, head].update(_attributes(attributes, where))
+        graph.edges[tail, head].update(_attributes(attributes, where, ()))
     validate(graph)
     return graph
 
@@ -75,7 +83,9 @@ def check_type(value: object, types: Iterable[type], where: str) -> None:
     check_text(value, where)
 
 
-def _attributes(attributes: Mapping[str, Any], where: str) -> dict[str, Any]:
+def _attributes(
+    attributes: Mapping[str, Any], where: str, tables: tuple[Sampled, ...]
+) -> dict[str, Any]:
     """The attributes, checked for their types; a law of parts becomes a law."""
     result = {}
     for key, value in attributes.items():
@@ -90,17 +100,18 @@ def _attributes(attributes: Mapping[str, Any], where: str) -> dict[str, Any]:
             _check_list([*value, *value.values()], place, rows=False)
         result[key] = value
         if key == "law" and isinstance(value, dict):
-            result[key] = _laws(value, place) if "ports" in attributes else _law(value, place)
+            made = _laws if "ports" in attributes else _law
+            result[key] = made(value, place, tables)
     return result
 
 
-def _laws(parts: Mapping[str, Any], where: str) -> dict[str, Any]:
+def _laws(parts: Mapping[str, Any], where: str, tables: tuple[Sampled, ...]) -> dict[str, Any]:
     """The laws of a resistance with several ports."""
     for port, value in parts.items():
         check_type(port, (str,), where)
         check_type(value, (*SCALARS, dict), f"{where} at {port[:60]}")
     return {
-        port: _law(value, f"{where} at {port[:60]}") if isinstance(value, dict) else value
+        port: _law(value, f"{where} at {port[:60]}", tables) if isinstance(value, dict) else value
         for port, value in parts.items()
     }
 
@@ -123,15 +134,17 @@ def _check_reset(states: Mapping[str, Any], where: str) -> None:
             check_type(told, SCALARS, f"{where} of {state[:60]}")
 
 
-def _law(parts: Mapping[str, Any], where: str) -> DryFriction | ExpressionLaw:
+def _law(
+    parts: Mapping[str, Any], where: str, tables: tuple[Sampled, ...]
+) -> DryFriction | ExpressionLaw:
     for key, value in parts.items():
         check_type(value, SCALARS, f"{where}, {key[:60]}")
     try:
         if set(parts) == OWN_STATE:
             state = symbol(parts["state"], where)
-            return ExpressionLaw(expression(parts["expression"], where), state)
+            return ExpressionLaw(expression(parts["expression"], where, tables), state)
         if "level" in parts and set(parts) <= {*FRICTION}:
-            return DryFriction(**parts)
+            return DryFriction(**parts, tables=tables)
     except BondGraphError as error:
         text = str(error)
         raise type(error)(text if text.startswith(where) else f"{where}: {text}") from None

@@ -17,6 +17,7 @@ from bondgraph.algebra.exact import (
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations, causal_equations, causal_groups, loop_rows
+from bondgraph.declare.tables import TABLES
 from bondgraph.errors import AlgebraicLoopError
 from bondgraph.reduce.structure import JunctionStructure, Port
 
@@ -49,6 +50,7 @@ def junction_structure(causal: CausalGraph) -> JunctionStructure:
         elements=MappingProxyType(dict(zip(strokes.names, strokes.elements, strict=True))),
         loops=loops,
         ends=tuple((strokes.names[tail], strokes.names[head]) for tail, head in strokes.bonds),
+        tables=causal.graph.graph[TABLES],
     )
 
 

@@ -10,6 +10,7 @@ import sympy as sp
 from bondgraph.algebra.exact import FixedRow, matrix_of
 from bondgraph.declare.elements import Bond, Element
 from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.tables.record import Sampled
 
 PortRow = FixedRow
 """A signal over what the ports give."""
@@ -75,6 +76,8 @@ class JunctionStructure:
     ends: tuple[Bond, ...] = ()
     #: Names in values that are inputs, though no port gives them.
     opened: tuple[sp.Symbol, ...] = ()
+    #: Those that the graph was given; texts of laws that are put later may call them.
+    tables: tuple[Sampled, ...] = ()
 
     @cached_property
     def places(self) -> Mapping[Hashable, int]:

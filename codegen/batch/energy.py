@@ -16,6 +16,7 @@ from codegen.energy.stored import stored_energy
 from codegen.family import Family
 from codegen.model.exact_values import exact_parameters
 from codegen.numbers.arrays import Array
+from codegen.numbers.lambdified import lambdified
 from codegen.program.layout import places
 from codegen.record.measures import READY, Measure
 
@@ -131,7 +132,7 @@ def _balance(
 def _energy(gathered: Gathering, energy: sp.Expr, what: str, t: float) -> Column:
     """What a storage holds at one end of a run."""
     names = sorted(energy.free_symbols, key=str)
-    function = sp.lambdify(names, energy, "numpy")
+    function = lambdified(names, energy)
     at: Mapping[str, int] = {
         n.name: gathered.signal(what, n.name) for n in names if gathered.knows(n.name)
     }

@@ -19,6 +19,7 @@ from codegen.family import Family
 from codegen.model.exact_values import exact_parameters
 from codegen.model.numbers import check_values
 from codegen.numbers.arrays import Array
+from codegen.numbers.lambdified import lambdified
 from codegen.program.records import Program
 from codegen.tuning import TUNING
 
@@ -71,7 +72,7 @@ def _checked_values(equations: StateEquations, program: Program) -> Callable[[Ar
     known = {symbol.name for symbol in program.parameters}
     constant = [v for v in values if {s.name for s in v.free_symbols} <= known]
     pairs = [(value, _size(value)) for value in constant]
-    function = sp.lambdify(list(program.parameters), pairs, "numpy", cse=True)
+    function = lambdified(list(program.parameters), pairs, cse=True)
 
     def usable(parameters: Array) -> Flags:
         found = np.ones(len(parameters), dtype=bool)

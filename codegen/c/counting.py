@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from bondgraph.algebra.lookups import Tabled
+from bondgraph.tables.pieces import pieces
 from codegen.program.records import Block, Program
 from codegen.tuning import TUNING
 
@@ -88,13 +90,25 @@ def counted(expressions: Iterable[sp.Expr]) -> Count:
     >>> x, y = sp.symbols("x y")
     >>> print(counted([x*y + 2*x/y - sp.sin(x)]))
     2 multiplications, 2 additions, 1 divisions, 1 calls
+
+    A comparison, as when a table is halved to find an argument's cell, counts as an addition.
     """
     found = Count()
     for one in expressions:
+        for look in one.atoms(Tabled):
+            found += _looked_up(look)
         for term in sp.Add.make_args(sp.sympify(sp.count_ops(one, visual=True))):
             times, word = term.as_coeff_Mul()
             found += _of(str(word), int(times)) if word != 1 else Count()
     return found
+
+
+def _looked_up(look: Tabled) -> Count:
+    """What looking into a table takes beside its call: halving along each axis, and polynomials."""
+    breaks, degree, _, _ = pieces(look.handle.table)
+    halves = sum((len(knots) + 1).bit_length() for knots in breaks)
+    lines = 1 if len(breaks) == 1 else degree + 2
+    return Count(2 * lines * (degree + 1), lines * (degree + 1) + halves)
 
 
 def _of(word: str, times: int) -> Count:

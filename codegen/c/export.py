@@ -7,6 +7,7 @@ from typing import Any
 
 from bondgraph.equations import StateEquations
 from codegen.c.blocks import function, places
+from codegen.c.lookups import lookup_tables
 from codegen.c.prefix import external_symbols, renamed
 from codegen.c.rates import plain_rates, straight_rates
 from codegen.c.rhs import straights
@@ -170,6 +171,7 @@ def texts(
     lines = [
         *_head(program, equations, name, prefix),
         *name_tables(program, equations, name),
+        *lookup_tables(program.tables),
         "",
         *program_tables(program, defaults, [closed.coupled_directly(i) for i in ports], on),
         "",

@@ -6,6 +6,7 @@ import sympy as sp
 
 from bondgraph.equations import StateEquations
 from codegen.c.counting import StepCost, step_cost
+from codegen.c.lookups import lookup_names
 from codegen.c.rhs import Straight
 from codegen.c.text import array, comment, doubles, integers, quoted, strings
 from codegen.modes.stability import modes_told
@@ -46,6 +47,7 @@ def config(
     lines += [f"#define BG_ROSENBROCK {int(implicit)}"]
     lines += ["", *_steps(longest, len(program.friction))]
     lines += ["", *macros] if macros else []
+    lines += lookup_names(program.tables)
     return "\n".join([*lines, "", "#endif", ""])
 
 

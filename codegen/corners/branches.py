@@ -6,6 +6,10 @@ from typing import Any
 import sympy as sp
 from sympy.core.relational import Ge, Gt, Le, Lt
 
+from bondgraph.algebra.lookups import Look
+from bondgraph.tables.looking import FREE
+from codegen.corners.tabled import Edge, EdgeOn, LookOn, region_of, signs_of
+
 
 class Branch(sp.Function):  # type: ignore[misc]
     """``Branch(side, above, below)``: ``above`` where the side is 1, ``below`` where it is -1.
@@ -65,6 +69,11 @@ class Sided:
             return self._at(expr.args[0], sp.Integer(1), sp.Integer(0), plain)
         if isinstance(expr, sp.Max | sp.Min):
             return self._extreme(expr)
+        if isinstance(expr, Look):
+            return self._look(expr)
+        if isinstance(expr, Edge):
+            region = self._region(expr.all_bits)
+            return EdgeOn(*expr.args[:3], self.put(expr.args[3]), region)
         if isinstance(expr, sp.Piecewise):
             found = sp.nan
             for value, condition in reversed(expr.args):
@@ -89,6 +98,18 @@ class Sided:
             return plain
         side, way = told
         return Branch(side, above, below) if way > 0 else Branch(side, below, above)
+
+    def _look(self, expr: Look) -> sp.Expr:
+        """A table on the stretch that sides tell along each axis."""
+        regions = [self._region(signs_of(expr, axis)) for axis in range(len(expr.places))]
+        inside = map(self.put, expr.places)
+        if all(region == FREE for region in regions):
+            return Look(expr.handle, *inside)
+        return LookOn(expr.handle, *inside, *regions)
+
+    def _region(self, signs: list[Edge]) -> sp.Expr:
+        told = [self._side(sign) for sign in signs]
+        return region_of([way * side for side, way in filter(None, told)] if all(told) else [])
 
     def chosen(self, condition: sp.Basic, yes: sp.Expr, no: sp.Expr) -> sp.Expr:
         """One of two by a condition."""
@@ -126,5 +147,5 @@ def _either(side: sp.Expr, above: sp.Expr, below: sp.Expr) -> sp.Expr:
     return Branch(-side, below, above) if (-side).is_Symbol else Branch(side, above, below)
 
 
-KINDS = (sp.Abs, sp.sign, sp.Heaviside, sp.Max, sp.Min, sp.Piecewise)
+KINDS = (sp.Abs, sp.sign, sp.Heaviside, sp.Max, sp.Min, sp.Piecewise, Look, Edge)
 """What has corners or jumps."""

@@ -5,7 +5,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import sympy as sp
 
+from bondgraph.errors import SimulationError
+from codegen.corners.tabled import region_of
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
@@ -39,6 +42,12 @@ class Sight:
     def on(self, sides: Sides) -> "Sight":
         """The same by laws on these sides."""
         return replace(self, model=self.model.on_sides(sides))
+
+    @property
+    def ending(self) -> bool:
+        """Whether tables have ends that runs must not go beyond."""
+        corners = self.model.program.corners
+        return corners is not None and bool(corners.ends)
 
     def instant(self, t: float, s: Array) -> Instant:
         """An instant with all that corners hang on."""
@@ -90,7 +99,48 @@ def begun(sight: Sight, t: float, s: Array, ahead: float) -> Sides:
         moved = sight.values(t + ahead, s + ahead * rate)[0] - values
         near = (np.abs(values) <= limits) & (moved != 0)
         signs = np.where(near, np.where(moved > 0, 1, -1), signs)
+        resting = frozenset(np.flatnonzero((np.abs(values) <= limits) & (moved == 0)).tolist())
+        return _inside(sight, tuple(signs.tolist()), resting)
     return tuple(signs.tolist())
+
+
+def _inside(sight: Sight, sides: Sides, resting: frozenset[int]) -> Sides:
+    """What rests on the end of a table that refuses what is outside is inside."""
+    corners = sight.model.program.corners
+    found = list(sides)
+    for one in () if corners is None else corners.ends:
+        region = region_of([sp.Integer(found[at]) for at in one.sides])
+        if not 0 < region < one.last:
+            for at in resting & set(one.sides):
+                found[at] = -found[at]
+    return tuple(found)
+
+
+def check_start(sight: Sight, t: float, s: Array) -> None:
+    """Refuse a start that is beyond the end of a table that refuses what is outside; on it is not beyond."""
+    if sight.ending:
+        values, limits = sight.values(t, s)[0], sight.limits(t, s)
+        on = frozenset(np.flatnonzero(np.abs(values) <= limits).tolist())
+        check_ends(sight, tuple(np.where(values >= 0, 1, -1).tolist()), t, s, on)
+
+
+def check_ends(
+    sight: Sight, sides: Sides, t: float, s: Array, on: frozenset[int] = frozenset()
+) -> None:
+    """Refuse sides beyond the end of a table that refuses what is outside, where it is looked into.
+
+    ``on``: corners on which it is.
+    """
+    corners = sight.model.program.corners
+    for one in () if corners is None else corners.ends:
+        region = region_of([sp.Integer(sides[at]) for at in one.sides])
+        if 0 < region < one.last or on & set(one.sides):
+            continue
+        if (sight.on(sides).values(t, s)[1][list(one.sides)] > 0).any():
+            raise SimulationError(
+                f"at t = {t:.9g} {one.argument} leaves table {one.name!r}, which is from {one.ends[0]!r} "
+                f"to {one.ends[1]!r} and refuses what is outside; give it more points, or another outside"
+            )
 
 
 def turned(sight: Sight, sides: Sides, over: frozenset[int], t: float, s: Array) -> Sides:

@@ -5,10 +5,12 @@ from collections.abc import Hashable, Mapping, Sequence
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.lookups import Look
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, StructureError
 from bondgraph.reduce.structure import Port
+from codegen.energy.tabled import integral_of
 from codegen.model.exact_values import at_parameters
 
 
@@ -63,8 +65,8 @@ def _of_law(
     exact = at_parameters(law.expression, parameters)
     real = sp.Dummy("q", real=True)
     shape = exact.xreplace({state: real}).rewrite(sp.Piecewise)
-    integral = _from_zero(shape, real)
-    if integral.has(sp.Integral) or integral.free_symbols - {real}:
+    integral = integral_of(shape, real) if shape.has(Look) else _from_zero(shape, real)
+    if integral is None or integral.has(sp.Integral) or integral.free_symbols - {real}:
         raise SignalError(f"{element.name!r}: no closed form of the energy; ask for its work")
     # The inverse has parameters of its own.
     return at_parameters(_held(integral.xreplace({real: state}), ports), parameters)

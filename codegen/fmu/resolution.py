@@ -9,8 +9,10 @@ from collections.abc import Callable, Mapping, Sequence
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.lookups import Look
 from codegen.c.blocks import names_for, places, text_of
 from codegen.c.text import statement
+from codegen.numbers.cells import cells, steepest
 from codegen.program.records import Program
 
 TURNING = (sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc, sp.sinh, sp.cosh, sp.atan, sp.asin, sp.acos,
@@ -84,6 +86,13 @@ class _Writer:
 
     def _check(self, expr: sp.Expr, parts: Sequence[str]) -> None:
         rule: Callable[[str], str] | None = None
+        if isinstance(expr, Look):
+            # Corners of tables are events; between them those of degree one do nothing.
+            for part, width in zip(
+                parts, cells(expr) if expr.handle.table.smooth else (), strict=False
+            ):
+                of_cell = f"fmu_product({part}, fmu_level({1 / width!r}))"
+                self.lines += statement(f"fine &= fmu_turns_little({of_cell});")
         if isinstance(expr, TURNING):
             rule = "fmu_turns_little({})".format
         elif isinstance(expr, sp.exp):
@@ -103,6 +112,8 @@ class _Writer:
         if isinstance(expr, GENTLE):
             middle = self._called(expr.func, parts[0])
             return f"fmu_sloped({middle}, 1.0, {parts[0]})"
+        if isinstance(expr, Look) and len(parts) == 1:
+            return f"fmu_sloped({self._looked_up(expr, parts[0])}, {steepest(expr)!r}, {parts[0]})"
         # What has corners, and functions that are seldom inside another: the sum of all that they read.
         text = parts[0]
         for part in parts[1:]:
@@ -113,6 +124,10 @@ class _Writer:
         middle = sp.Symbol("middle")
         return text_of(function(middle), {"middle": f"{part}.mid"})
 
+    def _looked_up(self, look: Look, part: str) -> str:
+        middle = sp.Symbol("middle")
+        return text_of(Look(look.handle, middle), {"middle": f"{part}.mid"})
+
     def _constant(self, expr: sp.Expr) -> str:
         names: Mapping[str, str] = {name.name: self._places[name] for name in expr.free_symbols}
         return text_of(expr, names or names_for([]))
@@ -121,7 +136,7 @@ class _Writer:
 def _values(expr: sp.Expr) -> list[sp.Expr]:
     """What an expression reads, conditions as the differences that they compare."""
     found: list[sp.Expr] = []
-    for argument in expr.args:
+    for argument in expr.places if isinstance(expr, Look) else expr.args:
         if isinstance(argument, sp.core.relational.Relational):
             found.append(argument.lhs - argument.rhs)
         elif isinstance(argument, sp.logic.boolalg.BooleanFunction | sp.Tuple):

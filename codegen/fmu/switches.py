@@ -5,6 +5,8 @@ from collections.abc import Iterator
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.lookups import Look
+from codegen.corners.tabled import signs_of
 from codegen.program.records import Block, Program
 
 MOST_CHOICES = 4
@@ -12,7 +14,8 @@ MOST_CHOICES = 4
 
 
 def switching(program: Program) -> tuple[sp.Expr, ...]:
-    """Arguments of Abs, sign and Heaviside, differences that Min, Max and conditions compare.
+    """Arguments of Abs, sign and Heaviside, differences that Min, Max and conditions compare, and what
+    changes its sign at corners of tables.
 
     Not those of parameters or of time alone, nor the slips of friction ports, which are events anyway.
     """
@@ -65,3 +68,6 @@ def _arguments(expr: sp.Expr) -> Iterator[sp.Expr]:
                 yield from (one - other for other in choices[at + 1 :])
     for part in sorted(expr.atoms(sp.core.relational.Relational), key=sp.default_sort_key):
         yield part.lhs - part.rhs
+    for look in sorted(expr.atoms(Look), key=sp.default_sort_key):
+        for axis in range(len(look.places)):
+            yield from signs_of(look, axis)

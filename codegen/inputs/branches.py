@@ -7,18 +7,24 @@ import numpy as np
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.lookups import Look
+from bondgraph.errors import SimulationError
 from codegen.inputs.discs import disc_of
 from codegen.inputs.discs import known as analytic
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.inputs.segments import DEGREE, polynomial_segments
 from codegen.numbers.arrays import Array
+from codegen.numbers.cells import breaks_along, polynomials_at
 from codegen.tuning import TUNING
 
 CORNERED = (
     sp.Abs, sp.sign, sp.Heaviside, sp.Max, sp.Min, sp.floor, sp.ceiling, sp.frac, sp.Mod,
-    sp.core.relational.Relational,
+    sp.core.relational.Relational, Look,
 )  # fmt: skip
-"""What has corners or jumps; a Piecewise has them where its conditions change."""
+"""What has corners or jumps, and tables; a Piecewise has them where its conditions change."""
+
+ASIDE = (3 - 5**0.5) / 2
+"""So far inside a stretch, of its length, nothing that is symmetric has its extremes."""
 
 Part = tuple[float, sp.Expr]
 """Where a part begins [s], and what the expression is from there on."""
@@ -37,7 +43,7 @@ def smooth_parts(expr: sp.Expr, begin: float, end: float) -> list[Part]:
     cuts = sorted({cut for atom in atoms for cut in _cuts(atom, begin, end)})
     points = [begin, *cuts, end]
     middles = np.array([0.5 * (a + b) for a, b in pairwise(points)])
-    choices = [_choices(atom, middles) for atom in atoms]
+    choices = [_choices(atom, middles, points) for atom in atoms]
     known: dict[tuple[sp.Expr, ...], sp.Expr] = {}
     parts: list[Part] = []
     for k, (a, b) in enumerate(pairwise(points)):
@@ -80,7 +86,11 @@ def _innermost(expr: sp.Expr) -> list[sp.Basic]:
 
 def _cuts(atom: sp.Basic, begin: float, end: float) -> list[float]:
     """Where one of them has its corners, inside the interval."""
-    if isinstance(atom, sp.Max | sp.Min):
+    if isinstance(atom, Look):
+        sides = [
+            place - at for axis, place in enumerate(atom.places) for at in breaks_along(atom, axis)
+        ]
+    elif isinstance(atom, sp.Max | sp.Min):
         sides = [one - other for one, other in combinations(atom.args, 2)]
     elif isinstance(atom, sp.core.relational.Relational):
         sides = [atom.lhs - atom.rhs]
@@ -147,8 +157,10 @@ def _unit_interval() -> Array:
     return np.array(rows)
 
 
-def _choices(atom: sp.Basic, times: Array) -> list[sp.Basic]:
-    """What stands in an atom's place at each of some times."""
+def _choices(atom: sp.Basic, times: Array, points: list[float]) -> list[sp.Basic]:
+    """What stands in an atom's place at each of some times, between two of these points."""
+    if isinstance(atom, Look):
+        return _looked_up(atom, points)
     if isinstance(atom, sp.Max | sp.Min):
         table = np.array([_values(argument, times) for argument in atom.args])
         which = (table.argmax if isinstance(atom, sp.Max) else table.argmin)(axis=0)
@@ -162,6 +174,18 @@ def _choices(atom: sp.Basic, times: Array) -> list[sp.Basic]:
         return [_jumped(atom, below) for below in whole]
     signs = np.sign(_values(atom.args[0], times)).astype(int).tolist()
     return [_signed(atom, sign) for sign in signs]
+
+
+def _looked_up(look: Look, points: list[float]) -> list[sp.Basic]:
+    # In the middle an argument may touch a break without crossing it.
+    times = np.array([a + ASIDE * (b - a) for a, b in pairwise(points)])
+    found = polynomials_at(look, [_values(place, times) for place in look.places])
+    if sp.nan in found:
+        at, name = points[found.index(sp.nan)], look.handle.table.name
+        raise SimulationError(
+            f"{look} leaves table {name!r}, which refuses what is outside, at t = {at:.9g} s"
+        )
+    return found
 
 
 def _jumped(atom: sp.Basic, below: int) -> sp.Expr:

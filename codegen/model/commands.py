@@ -11,6 +11,7 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.equations import StateEquations
 from bondgraph.reduce.switch_port import SwitchPort
 from codegen.numbers.arrays import Array
+from codegen.numbers.lambdified import lambdified
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ def commands(equations: StateEquations, parameters: Mapping[str, Any]) -> tuple[
         if one.guard != "commanded" or one.off != -one.on:
             continue
         names = sorted(one.on.free_symbols - {TIME, *numbers}, key=str)
-        value = sp.lambdify([TIME, *names], one.on.subs(numbers), "numpy")
+        value = lambdified([TIME, *names], one.on.subs(numbers))
         timed = TIME in one.on.free_symbols
         found.append(Command(one.name, one.on, one.off, tuple(n.name for n in names), value, timed))
     return tuple(found)

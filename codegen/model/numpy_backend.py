@@ -6,6 +6,7 @@ from typing import Any
 
 import sympy as sp
 
+from codegen.numbers.lambdified import lambdified
 from codegen.program.records import Block
 
 
@@ -29,7 +30,5 @@ def compiled(code: Block) -> Callable[..., list[Any]]:
     def shared(expressions: Sequence[sp.Expr]) -> tuple[list[Any], list[Any]]:
         return list(zip(temporaries, values, strict=True)), list(expressions)
 
-    function: Callable[..., list[Any]] = sp.lambdify(
-        arguments, results, modules="numpy", cse=shared
-    )
+    function: Callable[..., list[Any]] = lambdified(arguments, results, cse=shared, beside=values)
     return function

@@ -16,6 +16,7 @@ from codegen.model.exact_values import at_parameters
 from codegen.model.hybrid import hybrid
 from codegen.model.real_roots import Roots, roots_of
 from codegen.numbers.arrays import Array
+from codegen.numbers.lambdified import lambdified
 from codegen.program.gains import shown, written_out
 from codegen.program.records import Group, Program
 from codegen.standalone.loops import searched
@@ -163,7 +164,7 @@ def _taken(loop: Loop, point: Point, unknown: sp.Symbol) -> float | None:
         for expr in (*loop.left, *loop.received, *loop.D)
         for name in expr.free_symbols - set(loop.unknowns)
     }
-    law = sp.lambdify(list(loop.unknowns), [expr.xreplace(rest) for expr in loop.left], "numpy")
+    law = lambdified(list(loop.unknowns), [expr.xreplace(rest) for expr in loop.left])
     nothing = rest | dict.fromkeys(loop.unknowns, sp.Integer(0))
 
     def left(values: Array) -> Array:

@@ -9,6 +9,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from codegen.model.exact_values import exact_parameters
 from codegen.numbers.arrays import Array
+from codegen.numbers.lambdified import lambdified
 
 
 def told_starts(equations: StateEquations, parameters: Mapping[str, object]) -> dict[str, float]:
@@ -32,6 +33,6 @@ def starts_of_runs(
     found = {}
     for state, start in equations.starts.items():
         names = sorted(name.name for name in start.free_symbols)
-        value = sp.lambdify(names, start, "numpy")(*(parameters[name] for name in names))
+        value = lambdified(names, start)(*(parameters[name] for name in names))
         found[state.name] = np.broadcast_to(np.asarray(value, dtype=float), (runs,))
     return found

@@ -5,7 +5,7 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.expressions import TIME, callable_in_text
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
@@ -104,6 +104,7 @@ def lower(
         equations=equations,
     )
     check_gains(program)
+    callable_in_text(program.tables, "laws and values")
     return program
 
 

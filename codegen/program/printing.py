@@ -2,10 +2,17 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import sympy as sp
 from sympy.printing.c import C99CodePrinter
+from sympy.printing.codeprinter import PrintMethodNotImplementedError
 from sympy.printing.pycode import PythonCodePrinter
+
+from bondgraph.algebra.lookups import INTEGRAL, Handle
+from bondgraph.tables.looking import FREE
+from bondgraph.tables.record import Sampled
+from codegen.program.identifiers import identifiers
 
 
 class _C(C99CodePrinter):  # type: ignore[misc]
@@ -56,6 +63,29 @@ class _C(C99CodePrinter):  # type: ignore[misc]
     def _print_Branch(self, expr: sp.Expr) -> str:
         side, above, below = map(self._print, expr.args)
         return f"(({side} > 0) ? ({above}) : ({below}))"
+
+    def _print_Look(self, expr: Any) -> str:
+        handle, *places = expr.args
+        return self._looked_up(handle, places, [sp.Integer(FREE)] * len(places))
+
+    def _print_LookOn(self, expr: Any) -> str:
+        handle, *told = expr.args
+        count = len(handle.orders)
+        return self._looked_up(handle, told[:count], told[count:])
+
+    def _looked_up(self, handle: Handle, places: Sequence[Any], regions: Sequence[Any]) -> str:
+        if handle.orders == INTEGRAL:
+            raise PrintMethodNotImplementedError(f"the integral of table {handle.table.name!r}")
+        call = "bg_interpolate" if len(places) == 1 else "bg_interpolate_over"
+        given = [*map(str, handle.orders), *map(self._print, (*places, *regions))]
+        return f"{call}(&bg_{table_name(handle.table)}, {', '.join(given)})"
+
+    def _print_Edge(self, expr: Any) -> str:
+        handle, axis, bit, x, *region = expr.args
+        given = ", ".join(map(self._print, (x, *(region or [sp.Integer(FREE)]))))
+        return f"bg_edge(&bg_{table_name(handle.table)}, {int(axis)}, {int(bit)}, {given})"
+
+    _print_EdgeOn = _print_Edge
 
     def _print_And(self, expr: sp.And) -> str:
         return " && ".join(f"({self._print(part)})" for part in expr.args)
@@ -113,6 +143,21 @@ class _Python(PythonCodePrinter):  # type: ignore[misc]
     def _print_sign(self, expr: sp.Expr) -> str:
         inside = self._print(expr.args[0])
         return f"(({inside} > 0) - ({inside} < 0))"
+
+    def _print_Look(self, expr: Any) -> str:
+        handle, *places = expr.args
+        given = ", ".join(map(self._print, places))
+        return f"looked_up(_{table_name(handle.table)}, {handle.orders}, ({given},))"
+
+
+def table_name(table: Sampled) -> str:
+    """What a table is called in generated code, after a beginning that nothing else has there.
+
+    >>> table_name(Sampled("map", ((0.0, 1.0),), (0.0, 1.0), "linear", "hold"))
+    'table_map'
+    """
+    plain = identifiers([f"table_{table.name}"], "c")[f"table_{table.name}"]
+    return plain if table.name.isascii() else f"{plain}_{table.digest}"
 
 
 class _Floats(_Python):

@@ -7,7 +7,9 @@ from functools import cached_property
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.lookups import Handle
 from bondgraph.equations import StateEquations
+from bondgraph.tables.record import Sampled
 from codegen.standalone.switchings import Reset, Switching
 
 TEMPORARY = "c"
@@ -25,8 +27,12 @@ class Block:
     @property
     def operations(self) -> int:
         """Additions, products and functions, each assignment once."""
-        values = [*(value for _, value in self.assignments), *self.results]
-        return sum(int(sp.count_ops(value)) for value in values)
+        return sum(int(sp.count_ops(value)) for value in self.values)
+
+    @property
+    def values(self) -> list[sp.Expr]:
+        """Every expression in it."""
+        return [*(value for _, value in self.assignments), *self.results]
 
 
 @dataclass(frozen=True)
@@ -121,6 +127,21 @@ class FrictionPort:
 
 
 @dataclass(frozen=True)
+class TableEnds:
+    """The ends of a table that refuses what is outside, along one axis, among the corners.
+
+    ``sides``: the places of those that tell the stretch, as `region_of` takes them; ``last``: the number of
+    the stretch beyond the upper end.
+    """
+
+    name: str
+    argument: sp.Expr
+    ends: tuple[float, float]
+    sides: tuple[int, ...]
+    last: int
+
+
+@dataclass(frozen=True)
 class Corners:
     """Where laws have corners or jump: at the zeros of what these hang on.
 
@@ -135,6 +156,8 @@ class Corners:
     values: Block
     blocks: tuple[Block, ...]
     on_sides: Block
+    #: What runs must not go beyond.
+    ends: tuple[TableEnds, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -210,6 +233,14 @@ class Program:
         """Every block that a target evaluates."""
         laws = (group.values for group in (self.known, *self.groups, self.coupled))
         return (self.coefficients, *laws, self.known_rates, self.friction_values, self.guards)
+
+    @cached_property
+    def tables(self) -> tuple[Sampled, ...]:
+        """What is looked into, by name."""
+        sided = () if self.corners is None else (self.corners.values, self.corners.on_sides)
+        parts = [value for code in (*self.blocks, *sided) for value in code.values]
+        found = {part.table for one in (*parts, *self.sources) for part in one.atoms(Handle)}
+        return tuple(sorted(found, key=lambda table: table.name))
 
     @property
     def sides(self) -> tuple[sp.Symbol, ...]:

@@ -111,6 +111,7 @@ def needed(program: Program, slips: SlipRows | None, implicit: bool) -> list[str
     names = [f"codegen.{folders[name]}.{name}" for name, wanted in also.items() if wanted]
     events = {"stopping": program.stopped, "resetting": program.resets, "hanging": program.hanging}
     names += [f"codegen.stops.{name}" for name, wanted in events.items() if wanted]
+    names += ["bondgraph.tables.looking"] if program.tables else []
     return ["codegen.standalone.formulas", "codegen.standalone.running", *names]
 
 

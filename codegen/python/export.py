@@ -23,7 +23,7 @@ from codegen.python.blocks import (
 )
 from codegen.python.closing import closing, needed
 from codegen.python.modules import written_out
-from codegen.python.tables import friction_tables, places, public, step_settings
+from codegen.python.tables import friction_tables, lookup_tables, places, public, step_settings
 from codegen.python.text import RULE, filled, plain, table
 from codegen.runs.start import start_of
 
@@ -89,6 +89,7 @@ def to_python(
         *_head(program, equations, name, imports),
         *("", *table("PARAMETERS", used)),
         *("", *public(program)),
+        *lookup_tables(program),
         *(("", *table("STARTS", starts)) if starts else ()),
         *("", *places(program)),
         *(friction_tables(program, closed.slips) if program.friction else ()),

@@ -9,8 +9,8 @@ from importlib.resources import files
 from codegen.python.text import RULE
 from codegen.tuning import TUNING
 
-PROJECT = "codegen."
-"""Modules of this package are written out; all others are imported."""
+PROJECT = ("codegen.", "bondgraph.tables.")
+"""Modules of these packages are written out; all others are imported."""
 
 TOLERANCES = "codegen.tuning"
 """Of this one only the numbers that the others read are written out."""

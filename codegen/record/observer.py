@@ -14,6 +14,7 @@ from codegen.energy.stored import stored_energy
 from codegen.model.exact_values import at_parameters
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array, real_array
+from codegen.numbers.lambdified import lambdified
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ class Observer:
                 f"the energy of {node!r} needs a number for {unknown[0]} in parameters, which the run did not"
             )
         given = [self.time if name == TIME else self._named(name.name) for name in names]
-        values = sp.lambdify(names, energy, modules="numpy")(*given)
+        values = lambdified(names, energy)(*given)
         result: Array = np.zeros(len(self.time)) + real_array(values)
         return result
 
@@ -104,7 +105,7 @@ class Observer:
             )
         if names:
             given = [self.time if name == TIME else self.columns[name.name] for name in names]
-            return real_array(sp.lambdify(names, exact, modules="numpy")(*given))
+            return real_array(lambdified(names, exact)(*given))
         value = sp.N(exact)
         if not value.is_real:
             raise ParameterError(f"{entry} has no real value at these parameters")

@@ -19,6 +19,7 @@ from codegen.model.snapshot import Mode, Snapshot
 from codegen.model.sources import source_signals
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array, read_only
+from codegen.numbers.lambdified import lambdified
 from codegen.program.layout import places
 from codegen.program.lower import lower
 from codegen.record.columns import named_columns
@@ -109,7 +110,7 @@ def held_in(model: ClosedModel) -> Callable[[float, Snapshot], float]:
         energies.append(energy)
     total, at = sp.Add(*energies), places(model.program)
     names = sorted(total.free_symbols, key=str)
-    function = sp.lambdify(names, total, "numpy")
+    function = lambdified(names, total)
 
     def held(t: float, now: Snapshot) -> float:
         vector = vector_of(now)

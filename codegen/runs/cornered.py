@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Callable, Hashable, Sequence
 from typing import Protocol
 
-from codegen.corners.sides import CornerWatch, Sight, begun, turned
+from codegen.corners.sides import CornerWatch, Sight, begun, check_ends, check_start, turned
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
@@ -55,9 +55,11 @@ class CorneredLeg:
 
     def run(self, t: float, s: Array, stop: float, times: Array, track: Track) -> Ended:
         """See `Leg.run`."""
+        check_start(self._sight, t, s)
         fastest, step, over = self._plain.fastest(t, s), None, 0.0
         sides = begun(self._sight, t, s, moment(self._time(fastest, t)))
         while True:
+            check_ends(self._sight, sides, t, s)
             blind = t + moment(self._time(fastest, t))
             watch = CornerWatch(self._sight.on(sides), sides, t, s, blind)
             leg = self._made(self._model.on_sides(sides), watch, step)

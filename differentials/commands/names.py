@@ -1,6 +1,6 @@
 """Names that are typed: near misses, and parameter types of click that know and complete them."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -50,10 +50,16 @@ class OneOf(click.ParamType):  # type: ignore[type-arg]
 
 
 class Assigned(click.ParamType):  # type: ignore[type-arg]
-    """``NAME=VALUE`` as a pair, the value converted; a ``ValueError`` tells that it can't be."""
+    """``NAME=VALUE`` as a pair, the value converted; a ``ValueError`` tells that it can't be.
 
-    def __init__(self, form: str, example: str, convert: Callable[[str], object]) -> None:
-        self.name, self._example, self._convert = form, example, convert
+    ``told``: what else the conversion takes, by what was read before.
+    """
+
+    def __init__(
+        self, form: str, example: str, convert: Callable[..., object],
+        told: Callable[[Any], Mapping[str, Any]] = lambda ctx: {},
+    ) -> None:  # fmt: skip
+        self.name, self._example, self._convert, self._told = form, example, convert, told
 
     def convert(self, value: Any, param: Any, ctx: Any) -> tuple[str, object]:
         """The name and what stands behind the first equals sign."""
@@ -64,7 +70,7 @@ class Assigned(click.ParamType):  # type: ignore[type-arg]
         if not name.strip() or not equals:
             raise click.BadParameter(message, ctx, param)
         try:
-            return name.strip(), self._convert(text.strip())
+            return name.strip(), self._convert(text.strip(), **self._told(ctx))
         except bg.BondGraphError as error:
             message = f"{name.strip()}: {error}"
         except ValueError:

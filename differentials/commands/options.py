@@ -8,10 +8,11 @@ from typing import Any
 
 import click
 
+import bondgraph as bg
 from codegen.simulate import BACKENDS
 from differentials.commands.names import Assigned, OneOf
-from differentials.commands.signals import law, signal
-from differentials.commands.subject import SubjectType
+from differentials.commands.signals import law, signal, table_file
+from differentials.commands.subject import TABLES, SubjectType, tables_given
 from differentials.scenarios import scenarios
 
 Command = Callable[..., Any]
@@ -19,7 +20,8 @@ Command = Callable[..., Any]
 NUMBER = Assigned("NAME=NUMBER", "k=4300", float)
 START = Assigned("STATE=NUMBER", "omega_1=80", float)
 SIGNAL = Assigned("INPUT=SIGNAL", "tau_e=step(0.1, 350)", signal)
-LAW = Assigned("NODE=LAW", "clutch=friction(1000)", law)
+LAW = Assigned("NODE=LAW", "clutch=friction(1000)", law, lambda ctx: {"tables": tables_given(ctx)})
+TABLE = Assigned("NAME=FILE[,...]", "map=map.csv,method=pchip", table_file)
 MODE = Assigned("NODE=MODE", "dog=off", str)
 
 
@@ -49,7 +51,26 @@ def assigned(flag: str, name: str, kind: Assigned, text: str) -> Callable[[Comma
     )  # fmt: skip
 
 
-subject = click.argument("subject", type=SubjectType(), metavar="MODEL")
+def _tables(ctx: Any, param: Any, given: tuple[tuple[str, Any], ...]) -> None:
+    """Read the tables, and keep them for what is read after them."""
+    ctx.meta[TABLES] = tuple(
+        bg.LookupTable.read(name, path, **choices)
+        for name, (path, choices) in _pairs(ctx, param, given).items()
+    )
+
+
+def subject(run: Command) -> Command:
+    """What the command is about, and the tables that its values and laws may call."""
+    argument = click.argument("subject", type=SubjectType(), metavar="MODEL")
+    tables = click.option(
+        "--table", multiple=True, type=TABLE, metavar=TABLE.name, callback=_tables, is_eager=True,
+        expose_value=False,
+        help="A lookup table in a CSV file, which values and laws may call: x and z in two columns, or a "
+        "grid; then ,method=linear|pchip|akima|bicubic and ,outside=hold|extend|refuse. May be repeated.",
+    )  # fmt: skip
+    return argument(tables(run))
+
+
 as_json = click.option("--json", "as_json", is_flag=True, help="Data for programs, as JSON.")
 parameters = assigned(
     "--set", "parameters", NUMBER, "A parameter's value, in SI units (`bondgraph show` lists them)."

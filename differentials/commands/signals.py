@@ -2,7 +2,7 @@
 
 import ast
 import inspect
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
@@ -43,20 +43,37 @@ def signal(text: str) -> codegen.Signal:
     return _signal(_parsed(text), 0)
 
 
-def law(text: str) -> object:
-    """A law: an expression, or ``friction(level[, curve[, breakaway]])``.
+def law(text: str, tables: Sequence[bg.LookupTable] = ()) -> object:
+    """A law: an expression, or ``friction(level[, curve[, breakaway]])``; it may call ``tables``.
 
     >>> law("friction(tau_h, 1 + 0.2*exp(-slip/0.1))").breakaway
     6/5
     """
     if not text.lstrip().startswith("friction"):
-        return expression(text, "law")
+        return expression(text, "law", tables)
     tree = _parsed(text)
     if not (isinstance(tree, ast.Call) and _called(tree) == "friction" and not tree.keywords):
-        return expression(text, "law")
+        return expression(text, "law", tables)
     if not 1 <= len(tree.args) <= 3:
         raise bg.ExpressionError("dry friction is friction(level), or (level, curve, breakaway)")
-    return bg.DryFriction(*(ast.unparse(argument) for argument in tree.args))
+    level, curve, breakaway = (*(ast.unparse(argument) for argument in tree.args), None, None)[:3]
+    return bg.DryFriction(level, "1" if curve is None else curve, breakaway, tables)
+
+
+def table_file(text: str) -> tuple[str, dict[str, str]]:
+    """The file of a table, and how it is looked into.
+
+    >>> table_file("map.csv,method=pchip,outside=refuse")
+    ('map.csv', {'method': 'pchip', 'outside': 'refuse'})
+    """
+    path, *choices = text.split(",")
+    found = {}
+    for choice in choices:
+        key, equals, value = choice.partition("=")
+        if key.strip() not in ("method", "outside") or not equals:
+            raise bg.TableError(f"{choice.strip()!r} is neither method=... nor outside=... there")
+        found[key.strip()] = value.strip()
+    return path.strip(), found
 
 
 def _parsed(text: str) -> ast.expr:

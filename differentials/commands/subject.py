@@ -20,6 +20,14 @@ READERS = {".json": bg.read_json, ".graphml": bg.read_graphml}
 
 ENDINGS = tuple(READERS)
 
+TABLES = "bondgraph.tables"
+"""Where a command keeps the tables that it was given."""
+
+
+def tables_given(ctx: Any) -> tuple[bg.LookupTable, ...]:
+    """The tables that a command was given, which are read before all else."""
+    return () if ctx is None else tuple(ctx.meta.get(TABLES, ()))
+
 
 @dataclass(frozen=True)
 class Subject:
@@ -104,7 +112,8 @@ class SubjectType(click.ParamType):  # type: ignore[type-arg]
                 f"there is no file {value!r}; `bondgraph convert alsd -o alsd.json` would write one"
             )
         name = re.sub(r"\W", "_", path.stem)
-        return Subject(f"_{name}" if name[:1].isdigit() else name, None, reader(path))
+        found = reader(path, tables_given(ctx))
+        return Subject(f"_{name}" if name[:1].isdigit() else name, None, found)
 
     def shell_complete(self, ctx: Any, param: Any, incomplete: str) -> list[CompletionItem]:
         """The catalog's names that begin so, and files."""

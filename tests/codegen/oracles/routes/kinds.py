@@ -10,18 +10,11 @@ from oracles.routes.sloped import SLOPED
 from oracles.routes.stops import STOPS
 from oracles.routes.supplied import SUPPLIED
 from oracles.routes.switches import SWITCHES
+from oracles.routes.tabled import TABLED
 
 EVERY = (
-    *FRICTION,
-    *JUMPING,
-    *SLOPED,
-    *SWITCHES,
-    *STOPS,
-    *RESETTING,
-    *CORNERED,
-    *PLAIN,
-    *LAWFUL,
-    *SUPPLIED,
-)
+    *FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL, *SUPPLIED,
+    *TABLED,
+)  # fmt: skip
 
 KINDS = {make.__name__: make for make in EVERY}

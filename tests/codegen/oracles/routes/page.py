@@ -12,6 +12,7 @@ from oracles.routes.plain import PLAIN
 from oracles.routes.sloped import SLOPED
 from oracles.routes.switches import SWITCHES
 from oracles.routes.table import REFUSALS, REFUSED
+from oracles.routes.tabled import TABLED
 
 HEAD = """# What goes which way
 
@@ -46,6 +47,7 @@ def page() -> str:
         ("Laws that jump", JUMPING),
         ("Switches", SWITCHES),
         ("No port that switches", (*PLAIN, *LAWFUL)),
+        ("Lookup tables", TABLED),
     ):
         plain = [route for route in ROUTES if route not in COMPILED]
         parts += [f"\n## {title}\n", *_table(kinds, plain), "", *_table(kinds, COMPILED)]

@@ -22,7 +22,9 @@ REFUSALS = (
          "behind_moving_ratio", "nonlinear_resistance", "nonlinear_storage", "crank", "inverted_storage",
          "energy_field", "piecewise", "table", "play", "soft_stop", "bent_level", "ruled_flow",
          "reset_bent", "one_way_damper", "warmed", "valve", "filled", "filled_behind", "braked_while_filled",
-         "shifted", "gyrated", "heated", "reaction", "accumulators"),
+         "shifted", "gyrated", "heated", "reaction", "accumulators",
+         "tabled_resistance", "tabled_storage", "engine_map", "tabled_ratio", "tabled_curve",
+         "tabled_level"),
         ("C, exact",), True,
         "Matrix exponentials need rates that are affine in each mode, and here a law or a ratio bends them. "
         "`method=\"auto\"`, which users take, locates events with step control instead.",

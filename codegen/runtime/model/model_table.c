@@ -1,0 +1,147 @@
+/* Looking up in tables, and the corners of these. As bondgraph/tables/looking.py and edges.py. */
+#include <math.h>
+
+#include "model_internal.h"
+
+enum {
+    ORDERS = 4,
+    HALVES = 20 /* that leave nothing of the points that a table may have at the most */
+};
+
+/* The cell in which x is, the first or the last where it is beyond. */
+static int cell_of(const double *breaks, int cells, double x)
+{
+    int low = 0, high = cells + 1;
+    for (int half = 0; half < HALVES && low < high; half++) {
+        const int middle = (low + high) / 2;
+        if (x < breaks[middle])
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low < 1 ? 0 : low > cells ? cells - 1 : low - 1;
+}
+
+/* The cell along one axis, the distance from its beginning, and whether the end's value is held. */
+static int placed(const bg_table *of, int axis, double x, double region, double *u, int *held)
+{
+    const double *const breaks = of->breaks[axis];
+    const int cells = of->cells[axis], ends = of->outside != BG_TABLE_EXTENDS;
+    const int free = region < 0.0, top = of->degree == 1 ? cells + 1 : 2;
+    /* On its end a table that refuses what is beyond has a value, on whichever side of it. */
+    const int always = of->outside == BG_TABLE_HOLDS && !free;
+    const double nothing = of->outside == BG_TABLE_HOLDS ? 0.0 * x : NAN;
+    int at = 0;
+    if (ends && (free || region < 0.5) && (x < breaks[0] || always)) {
+        *held = 1;
+        *u = nothing;
+        return 0;
+    }
+    if (ends && (free || region > top - 0.5) && (x > breaks[cells] || always)) {
+        *held = 1;
+        *u = breaks[cells] - breaks[cells - 1] + nothing;
+        return cells - 1;
+    }
+    if (free || of->degree > 1)
+        at = cell_of(breaks, cells, x);
+    else
+        at = (int)(region + 0.5) - ends;
+    at = at < 0 ? 0 : at < cells ? at : cells - 1;
+    *u = x - breaks[at];
+    return at;
+}
+
+/* The derivative of an order of a polynomial, its highest power first. */
+static double polynomial(const double *factors, int degree, int order, double u)
+{
+    double total = 0.0;
+    for (int power = degree; power >= order; power--) {
+        double times = 1.0;
+        for (int k = 0; k < order; k++)
+            times *= power - k;
+        total = total * u + times * factors[degree - power];
+    }
+    return total;
+}
+
+double bg_interpolate(const bg_table *of, int order, double x, double region)
+{
+    double u = 0.0;
+    int held = 0;
+    const int at = placed(of, 0, x, region, &u, &held);
+    if (held && order > 0 && !isnan(u))
+        return 0.0;
+    return polynomial(of->factors + at * (of->degree + 1), of->degree, order, u);
+}
+
+double bg_interpolate_over(const bg_table *of, int order_x, int order_y, double x, double y,
+                           double region_x, double region_y)
+{
+    const int size = of->degree + 1;
+    double u = 0.0, v = 0.0, rows[ORDERS];
+    int level_x = 0, level_y = 0;
+    const int i = placed(of, 0, x, region_x, &u, &level_x);
+    const int j = placed(of, 1, y, region_y, &v, &level_y);
+    const double *const factors = of->factors + (i * of->cells[1] + j) * size * size;
+    if (isnan(u) || isnan(v))
+        return NAN;
+    if ((level_x && order_x > 0) || (level_y && order_y > 0))
+        return 0.0;
+    for (int k = 0; k < size; k++)
+        rows[k] = polynomial(factors + k * size, of->degree, order_y, v);
+    return polynomial(rows, of->degree, order_x, u);
+}
+
+static double corner_at(const bg_table *of, int axis, int at)
+{
+    if (of->degree > 1)
+        return of->breaks[axis][at > 0 ? of->cells[axis] : 0];
+    return of->breaks[axis][of->outside == BG_TABLE_EXTENDS ? at + 1 : at];
+}
+
+static int corners_of(const bg_table *of, int axis)
+{
+    const int ends = of->outside != BG_TABLE_EXTENDS;
+    return of->degree > 1 ? 2 * ends : of->cells[axis] - 1 + 2 * ends;
+}
+
+static int corners_below(const bg_table *of, int axis, double x)
+{
+    int low = 0, high = corners_of(of, axis);
+    for (int half = 0; half < HALVES && low < high; half++) {
+        const int middle = (low + high) / 2;
+        if (x < corner_at(of, axis, middle))
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+/* The distance to the nearest corner at which the bit changes, that is a multiple of `step` and no
+ * multiple of twice that, counted from 1. */
+static double nearest(const bg_table *of, int axis, int step, int below, double x)
+{
+    const int whole = below / step, low = whole % 2 ? whole : whole - 1;
+    double found = INFINITY;
+    if (low > 0)
+        found = x - corner_at(of, axis, low * step - 1);
+    if ((low + 2) * step <= corners_of(of, axis))
+        found = bg_min(corner_at(of, axis, (low + 2) * step - 1) - x, found);
+    return found;
+}
+
+double bg_edge(const bg_table *of, int axis, int bit, double x, double region)
+{
+    const int count = corners_of(of, axis), step = 1 << bit, free = region < 0.0;
+    int at = free ? corners_below(of, axis, x) : (int)(region + 0.5);
+    at = at < count ? at : count;
+    const double sign = ((at ^ (at >> 1)) & step) ? -1.0 : 1.0;
+    if (free)
+        return sign * nearest(of, axis, step, at, x);
+    if (at > 0 && (at & -at) == step)
+        return sign * (x - corner_at(of, axis, at - 1));
+    if (at < count && ((at + 1) & -(at + 1)) == step)
+        return sign * (corner_at(of, axis, at) - x);
+    return sign * (of->breaks[axis][of->cells[axis]] - of->breaks[axis][0]) + 0.0 * x;
+}
