@@ -88,6 +88,16 @@ class Tuning:
     atol: float = _told(1e-11, "the same in units of each state")
     stiff_span: float = _told(2e5, "run over time constant from which steps are implicit")
     stiff_step: float = _told(5e3, "the same, over time constant, of a unit's communication step")
+    patience: int = _told(
+        30, "explicit steps in a row, held back by stability alone, before implicit ones"
+    )
+    eased: float = _told(1e-2, "error of a step, in tolerances, that stability alone holds back")
+    held: float = _told(0.9, "of the longest stable step: longer ones are held back")
+    worth: float = _told(300.0, "time constants left of a stretch that are worth implicit steps")
+    lot_implicit: int = _told(10, "implicit steps whose mean length is looked at")
+    gain: float = _told(1.0, "stable explicit steps, at the least, that an implicit one stands for")
+    gain_size: float = _told(0.125, "the same, more for each state: what its equations cost")
+    later: int = _told(8, "so many times the patience after implicit steps that were no longer")
     followed: float = _told(0.1, "an implicit step in time constants of the inputs")
     wary: int = _told(5, "explicit steps from a corner on that are judged by both estimates")
     risen: float = _told(8.0, "so many times that of the step before tells a corner of the rates")

@@ -23,6 +23,8 @@ def explicit() -> Any:
 
     class Wary(scipy.integrate.DOP853):
         _doubts, _before = 0, np.inf
+        #: That of the latest step, in tolerances.
+        error = np.inf
 
         def _estimate_error_norm(self, K: Array, h: float, scale: Array) -> float:
             fifth, third = (
@@ -37,7 +39,8 @@ def explicit() -> Any:
                 self._before = third / length**3
             else:
                 self._doubts = TUNING.wary
-            return float(error)
+            self.error = float(error)
+            return self.error
 
     return Wary
 

@@ -18,7 +18,7 @@ from codegen.modes.rounding import Peaks
 from codegen.numbers.arrays import Array
 from codegen.runs.cornered import CorneredLeg
 from codegen.runs.events import Watch
-from codegen.runs.methods import METHODS, integrator
+from codegen.runs.methods import METHODS, Turns, integrator
 from codegen.runs.progress import Progress, Rates, difference, no_progress
 from codegen.runs.track import Dense, Ended, Settings, Track
 from codegen.tuning import TUNING
@@ -82,12 +82,9 @@ class Leg:
         self.rate = fastest = self.fastest(t, s)
         name = self._integrator(fastest, float(times[-1]) - self._origin)
         explicit = name == "DOP853"
-        first = {} if self._first_step is None else {"first_step": min(self._first_step, stop - t)}
         trials = Trials(self._rates, self._lost)
-        solver = integrator(name)(
-            trials, t, s, stop, rtol=self._settings.rtol, atol=self._settings.atol,
-            max_step=self._bound(explicit, fastest, t), **first, **self._jacobian(name),
-        )  # fmt: skip
+        solver = self._solver(name, trials, t, s, stop, fastest, self._first_step)
+        turns = Turns(len(s), explicit)
         watch = Watch(self._model, self._pieces, self._mode, t, s, self._peaks)
         steps, progress = 0, self._progress(t)
         while solver.status == "running":
@@ -108,8 +105,26 @@ class Leg:
             progress.check(solver.t, solver.y)
             if explicit and steps % TUNING.refresh == 0 and not self._model.program.affine:
                 fastest = self.fastest(solver.t, solver.y)
+            if self._settings.method == "auto" and turns.over(
+                solver.t, self.step, fastest, getattr(solver, "error", np.inf), stop
+            ):
+                explicit = turns.explicit
+                fastest = self.fastest(solver.t, solver.y)
+                name = METHODS["auto"][not explicit]
+                solver = self._solver(name, trials, solver.t, solver.y, stop, fastest, self.step)
             solver.max_step = self._bound(explicit, fastest, solver.t)
         return stop, solver.y, frozenset()
+
+    def _solver(
+        self, name: str, trials: "Trials", t: float, s: Array, stop: float, fastest: float,
+        step: float | None,
+    ) -> Any:  # fmt: skip
+        """An integrator from t on; ``step`` [s]: tried first."""
+        first = {} if step is None else {"first_step": min(step, stop - t)}
+        return integrator(name)(
+            trials, t, s, stop, rtol=self._settings.rtol, atol=self._settings.atol,
+            max_step=self._bound(name == "DOP853", fastest, t), **first, **self._jacobian(name),
+        )  # fmt: skip
 
     def _jacobian(self, name: str) -> dict[str, Callable[[float, Array], Array]]:
         """What an implicit method is told of slopes: by formulas where there are some, else nothing."""

@@ -100,6 +100,7 @@ int bg_explicit_step(bg_located *c, double stop)
     memcpy(s->f_old, s->f, sizeof s->f);
     memcpy(s->f, s->stage[DOP_STAGES], sizeof s->f);
     s->h = h;
+    s->error = error;
     s->begun = 1;
     s->next = h * (error > 0.0 ? fmin(grow, SAFETY * pow(error, -0.125)) : grow);
     return BG_OK;

@@ -24,6 +24,10 @@ int bg_located_calm(bg_located *c, double *fastest);
 void bg_progress_begin(bg_located *c);
 int bg_progress_check(bg_located *c);
 
+/* located_turns.c, where the method is chosen: whether the other one goes on from the latest step. */
+void bg_turns_begin(bg_located *c);
+int bg_turns_over(bg_located *c, double fastest, double stop);
+
 /* located_watch.c: triggers from c->t on; the first event of the solver's latest step: its time,
  * which is infinite where there is none, and ports. */
 int bg_watch_begin(bg_located *c);

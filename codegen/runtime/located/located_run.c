@@ -153,6 +153,18 @@ static int step(bg_located *c, double stop, int *ended)
     return BG_OK;
 }
 
+/* The other method from the present instant on. */
+static int turn_over(bg_located *c, int *method, double *fastest, double stop)
+{
+    const double length = c->solver.t - c->solver.t_old;
+    int status = bg_located_fastest(c, c->run.at.t, c->s, fastest);
+    *method = *method == BG_RADAU ? BG_DOP853 : BG_RADAU;
+    if (status == BG_OK)
+        status = bg_solver_begin(c, *method, longest_now(c, *method, *fastest), stop);
+    c->solver.next = fmin(length, c->solver.longest);
+    return status;
+}
+
 int bg_located_stretch(bg_located *c, double stop, double first, int *ended)
 {
     double fastest;
@@ -171,12 +183,16 @@ int bg_located_stretch(bg_located *c, double stop, double first, int *ended)
         status = bg_corners_watch(c, c->corners.fastest);
     c->corners.fastest = fastest;
     bg_progress_begin(c);
+    bg_turns_begin(c);
     for (long count = 1; status == BG_OK && c->run.at.t < stop && !*ended; count++) {
         status = step(c, stop, ended);
         if (status == BG_OK && !*ended)
             status = bg_progress_check(c);
         if (status == BG_OK && !BG_AFFINE && count % BG_REFRESH == 0)
             status = bg_located_fastest(c, c->run.at.t, c->s, &fastest);
+        if (status == BG_OK && !*ended && c->asked->method == BG_AUTO
+            && bg_turns_over(c, fastest, stop))
+            status = turn_over(c, &method, &fastest, stop);
         c->solver.longest = longest_now(c, method, fastest);
     }
     return status;

@@ -57,6 +57,13 @@ typedef struct {
     int idle;
 } bg_progress;
 
+/* Of the steps of a stretch whose method is chosen: those in a row that speak against it, or of its
+ * lot; since when; how many it takes. */
+typedef struct {
+    double begin;
+    long count, patience;
+} bg_turns;
+
 /* A run: where it is, what it looks at, the next sample. From a rate `stiff` [1/s] on steps are
  * implicit, where the method is chosen; `ahead` tells the latest time to stop at after t, no later
  * than `stop`, to look what is to be decided; NULL: `stop`. */
@@ -76,6 +83,7 @@ typedef struct {
     bg_watch watch;
     bg_corner_watch corners;
     bg_progress progress;
+    bg_turns turns;
     bg_solver solver;
 } bg_located;
 
