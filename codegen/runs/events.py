@@ -1,6 +1,7 @@
 """Events inside one integration step: where a slip, a margin or a condition falls through zero."""
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from codegen.numbers.arrays import Array
 from codegen.numbers.falling import Falling
 from codegen.program.layout import CAPS, INPUTS, READINGS
 from codegen.runs.track import Dense
+from codegen.straight.modes import Plain
 
 
 class Watch:
@@ -35,9 +37,6 @@ class Watch:
         peaks: Peaks | None = None,
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
-        self._plain = (
-            model.plainly(pieces, mode, "efforts", "slips", "caps", "guards") if mode else None
-        )
         affine = model.affine_map(mode, len(pieces)) if mode else None
         if model.program.guards.results:
             affine = None
@@ -51,6 +50,10 @@ class Watch:
         blind = t + moment(peaks.time if peaks else 0.0)
         before = self._triggers(t, self._look.now)
         self._falling = Falling(limits_of(self._look), blind, before)
+
+    @cached_property
+    def _plain(self) -> Plain | None:
+        return self._model.plainly(self._pieces, self._mode, "efforts", "slips", "caps", "guards")
 
     def first_event(
         self, t_old: float, t_new: float, dense: Dense
