@@ -82,13 +82,13 @@ class Watch:
             found = [self._plain(t, s) for t, s in zip(times, vectors, strict=True)]
             sound = [values for values in found if values is not None]
             if len(sound) == len(found):
-                return list(self._of_values(np.array(sound)))
+                return list(self._of_values(np.array(sound, dtype=float)))
         return [self._at(t, s) for t, s in zip(times, vectors, strict=True)]
 
     def _at(self, t: float, s: Array) -> Array:
         values = None if self._plain is None else self._plain(t, s)
         if values is not None:
-            found: Array = self._of_values(np.array([values]))[0]
+            found: Array = self._of_values(np.array([values], dtype=float))[0]
             return found
         return self._triggers(t, self._model.at(t, s, self._pieces, self._mode))
 
