@@ -62,7 +62,11 @@ class Sight:
     def values(self, t: float, s: Array) -> Array:
         """What corners hang on, and for each whether it counts, in two rows."""
         values = None if self._plain is None else self._plain(t, s)
-        return self._rows(self.instant(t, s)) if values is None else np.array(values).reshape(2, -1)
+        return (
+            self._rows(self.instant(t, s))
+            if values is None
+            else np.array(values, dtype=float).reshape(2, -1)
+        )
 
     @cached_property
     def _plain(self) -> Plain | None:

@@ -332,7 +332,11 @@ class ClosedModel:
             def found(t: float, s: Array) -> Array:
                 values = None if plain is None else plain(t, s)
                 # Where that has no value the evaluation tells why.
-                return self.at(t, s, pieces, mode).rate if values is None else np.array(values)
+                return (
+                    self.at(t, s, pieces, mode).rate
+                    if values is None
+                    else np.array(values, dtype=float)
+                )
 
             return found
         rows = np.ascontiguousarray(affine.rows(RATE))

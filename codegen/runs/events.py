@@ -1,6 +1,7 @@
 """Events inside one integration step: where a slip, a margin or a condition falls through zero."""
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from codegen.numbers.arrays import Array
 from codegen.numbers.falling import Falling
 from codegen.program.layout import CAPS, INPUTS, READINGS
 from codegen.runs.track import Dense
+from codegen.straight.modes import Plain
 
 
 class Watch:
@@ -35,9 +37,6 @@ class Watch:
         peaks: Peaks | None = None,
     ) -> None:
         self._model, self._pieces, self._mode = model, pieces, mode
-        self._plain = (
-            model.plainly(pieces, mode, "efforts", "slips", "caps", "guards") if mode else None
-        )
         affine = model.affine_map(mode, len(pieces)) if mode else None
         if model.program.guards.results:
             affine = None
@@ -51,6 +50,10 @@ class Watch:
         blind = t + moment(peaks.time if peaks else 0.0)
         before = self._triggers(t, self._look.now)
         self._falling = Falling(limits_of(self._look), blind, before)
+
+    @cached_property
+    def _plain(self) -> Plain | None:
+        return self._model.plainly(self._pieces, self._mode, "efforts", "slips", "caps", "guards")
 
     def first_event(
         self, t_old: float, t_new: float, dense: Dense
@@ -79,13 +82,13 @@ class Watch:
             found = [self._plain(t, s) for t, s in zip(times, vectors, strict=True)]
             sound = [values for values in found if values is not None]
             if len(sound) == len(found):
-                return list(self._of_values(np.array(sound)))
+                return list(self._of_values(np.array(sound, dtype=float)))
         return [self._at(t, s) for t, s in zip(times, vectors, strict=True)]
 
     def _at(self, t: float, s: Array) -> Array:
         values = None if self._plain is None else self._plain(t, s)
         if values is not None:
-            found: Array = self._of_values(np.array([values]))[0]
+            found: Array = self._of_values(np.array([values], dtype=float))[0]
             return found
         return self._triggers(t, self._model.at(t, s, self._pieces, self._mode))
 

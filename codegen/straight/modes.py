@@ -47,13 +47,11 @@ class StraightMode:
 
     def under(self, pieces: Sequence[Piece], rated: bool, *parts: str) -> Plain:
         """The same with what the inputs do; ``rated``: whether their rates count."""
-        given, made = plainly(pieces, rated), list[Straight]()
+        given, made = plainly(pieces, rated), self.of(*parts)
 
         def plain(t: float, s: Array) -> list[float] | None:
-            if not made:
-                made.append(self.of(*parts))
             try:
-                return made[0](float(t), s.tolist(), *given(t))
+                return made(float(t), s.tolist(), *given(t))
             except (ArithmeticError, TypeError, ValueError):
                 return None
 
