@@ -88,7 +88,9 @@ class Tuning:
     atol: float = _told(1e-11, "the same in units of each state")
     stiff_span: float = _told(2e5, "run over time constant from which steps are implicit")
     stiff_step: float = _told(5e3, "the same, over time constant, of a unit's communication step")
-    patience: int = _told(30, "explicit steps that stability alone holds back, before implicit ones")
+    patience: int = _told(
+        30, "explicit steps that stability alone holds back, before implicit ones"
+    )
     eased: float = _told(1e-2, "error of a step, in tolerances, that stability alone holds back")
     held: float = _told(0.9, "of the longest stable step: longer ones are held back")
     worth: float = _told(300.0, "time constants left of a stretch that are worth implicit steps")

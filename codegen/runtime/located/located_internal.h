@@ -24,7 +24,7 @@ int bg_located_calm(bg_located *c, double *fastest);
 void bg_progress_begin(bg_located *c);
 int bg_progress_check(bg_located *c);
 
-/* located_turns.c, where the method is chosen: whether the other one goes on from the latest step. */
+/* located_turns.c: whether the other method goes on from the latest step, where it may. */
 void bg_turns_begin(bg_located *c);
 int bg_turns_over(bg_located *c, double fastest, double stop);
 
