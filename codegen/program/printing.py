@@ -163,6 +163,11 @@ def table_name(table: Sampled) -> str:
 class _Floats(_Python):
     """Python over floats that never becomes complex; what is no number stays so, or is an error."""
 
+    def _looked(self, expr: Any) -> str:
+        return str(expr._numpycode(self))
+
+    _print_Look = _print_LookOn = _print_Edge = _print_EdgeOn = _looked
+
     def _print_log(self, expr: sp.Expr) -> str:
         return f"math.log({self._print(expr.args[0])})"
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from bondgraph.algebra.lookups import Tabled
 from codegen.model.numpy_backend import compiled
 from codegen.program.records import Block
 from codegen.standalone.arrays import Array
@@ -36,10 +37,19 @@ def straight(recording: Recording, parts: Sequence[str]) -> Straight:
     body += ["return found if math.isfinite(sum(found)) else None"]
     text = "\n    ".join(["def straight(t, s, w, d):", *body]) + "\n"
     names: dict[str, Any] = {"math": math, "loops": recording.loops, "least": _least, "most": _most}
-    names |= {"inf": math.inf, "nan": math.nan}
+    names |= {"inf": math.inf, "nan": math.nan, **_tables(lines)}
     exec(compile(text, "<straight>", "exec"), names)
     found: Straight = names["straight"]
     return found
+
+
+def _tables(lines: Sequence[Line]) -> dict[str, Callable[..., float]]:
+    """What looks into tables, by the names that it is called by."""
+    blocks = [line.code for line in lines if isinstance(line.code, Block)]
+    values = [
+        value for code in blocks for value in (*dict(code.assignments).values(), *code.results)
+    ]
+    return {part.code: part.numeric for value in values for part in value.atoms(Tabled)}
 
 
 def _least(*values: float) -> float:
