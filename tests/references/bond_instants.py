@@ -36,17 +36,21 @@ def instants(edges: Iterable[float], panels: int = 1) -> Array:
 class Told:
     """What a run tells: (effort, flow) of every bond at `instants`.
 
-    ``given``: what each source and open port gives; ``levels``: of ports with dry friction.
+    ``given``: what each source and open port gives; ``levels``: of ports with dry friction; ``times_value``:
+    by how much the value of a one-port is more than the graph has, at all instants.
     """
 
     times: Array
     bonds: Mapping[Bond, tuple[Array, Array]]
     given: Mapping[str, Array]
     levels: Mapping[str, Array] = field(default_factory=dict)
+    times_value: Mapping[str, Array] = field(default_factory=dict)
 
-    def value(self, term: Term) -> Array:
+    def value(self, term: Term, node: str = "") -> Array:
         """A summand without its power of s."""
-        factor = float(term.factor)
+        factor: float | Array = float(term.factor)
+        if node in self.times_value and term.factor != 1:
+            factor = factor * self.times_value[node]
         return term.sign * factor * self.bonds[term.bond][term.variable == "flow"]
 
     def integrals(self, values: Array) -> Array:
@@ -69,9 +73,9 @@ def _misfits(graph: nx.DiGraph[str], node: str, told: Told) -> Iterable[float]:
         if is_input(graph, node):
             yield _over([told.value(terms[0]), -told.given[node]])
         elif any(term.order for term in terms):
-            yield _storage(terms, told)
+            yield _storage(terms, told, node)
         else:
-            yield _over([told.value(term) for term in terms])
+            yield _over([told.value(term, node) for term in terms])
 
 
 def _over(summands: list[Array]) -> float:
@@ -80,9 +84,9 @@ def _over(summands: list[Array]) -> float:
     return float(np.abs(sum(summands)).max()) / size if size else 0.0
 
 
-def _storage(terms: list[Term], told: Told) -> float:
+def _storage(terms: list[Term], told: Told, node: str) -> float:
     """What flows in over each panel, and how what is held changes."""
-    (stored,) = (told.value(term) for term in terms if term.order)
+    (stored,) = (told.value(term, node) for term in terms if term.order)
     (flowing,) = (told.value(term) for term in terms if not term.order)
     change = np.diff(stored[::13])
     widths = np.diff(told.times[::13])

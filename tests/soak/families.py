@@ -57,6 +57,8 @@ def family(name: str) -> Family:
 
 
 FAMILIES = (
+    # Values that read inputs.
+    Family("supplied", "codegen/test_supplied_random.py", 8, 500),
     # Derivation.
     Family(
         "graphs",
