@@ -5,17 +5,15 @@ conditions compare is equal. On either side a law goes on smoothly, beyond the c
 taken on one side keeps its order up to where ``a`` is zero, however far beyond that its stages look.
 """
 
-from collections.abc import Hashable, Iterable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator
 from dataclasses import replace
 
 import sympy as sp
 
-from bondgraph.tables.edges import edges
-from bondgraph.tables.pieces import pieces
 from codegen.corners.branches import KINDS, Branch, Sided
-from codegen.corners.tabled import Edge
+from codegen.corners.tabled import ends_of
 from codegen.program.gains import shown, written_out
-from codegen.program.records import Block, Corners, Program, TableEnds, block
+from codegen.program.records import Block, Corners, Program, block
 
 SIDE = "side_"
 """What a side is called, with a number; no result shows it."""
@@ -63,7 +61,7 @@ def with_corners(program: Program) -> Program:
         values(sides.sizes, [sp.Integer(1)] * count),
         blocks,
         values(arguments, [_active(way) for way in ways]),
-        tuple(_ends(list(sides.sizes))),
+        tuple(ends_of(list(sides.sizes))),
     )
     return replace(program, corners=corners)
 
@@ -156,20 +154,6 @@ def _told(program: Program) -> dict[sp.Symbol, sp.Expr]:
         if row and not set().union(*(entry.free_symbols for entry in row.values())) - still:
             found[name] = sp.Add(*(entry * program.states[j] for j, entry in row.items()))
     return found
-
-
-def _ends(sizes: Sequence[sp.Expr]) -> Iterator[TableEnds]:
-    """The ends of tables that refuse what is outside."""
-    for size in sizes:
-        if isinstance(size, Edge) and int(size.args[2]) == 0:
-            handle, axis, _, argument = size.args
-            table = pieces(handle.table)
-            if handle.table.outside == "refuse":
-                places, knots = edges(table, int(axis)), table[0][int(axis)]
-                sides = tuple(sizes.index(bit) for bit in size.all_bits)
-                yield TableEnds(
-                    handle.table.name, argument, (knots[0], knots[-1]), sides, len(places)
-                )
 
 
 Way = frozenset[tuple[sp.Symbol, int]]

@@ -4,7 +4,7 @@ The stretches between a table's corners are numbered, and each bit of the number
 polynomial of a stretch goes on beyond its ends, and at an end one side alone changes.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 import sympy as sp
@@ -13,6 +13,7 @@ from bondgraph.algebra.lookups import Handle, Look, Tabled
 from bondgraph.tables.edges import bits, edge, edges
 from bondgraph.tables.looking import FREE, looked_up
 from bondgraph.tables.pieces import pieces
+from codegen.program.records import TableEnds
 
 
 class LookOn(Tabled):
@@ -73,3 +74,17 @@ def region_of(sides: Sequence[sp.Expr]) -> sp.Expr:
         product = product * sides[bit]
         found += sp.Integer(2) ** bit * (1 - product) / 2
     return found
+
+
+def ends_of(sizes: Sequence[sp.Expr]) -> Iterator[TableEnds]:
+    """The ends of tables that refuse what is outside."""
+    for size in sizes:
+        if isinstance(size, Edge) and int(size.args[2]) == 0:
+            handle, axis, _, argument = size.args
+            table = pieces(handle.table)
+            if handle.table.outside == "refuse":
+                places, knots = edges(table, int(axis)), table[0][int(axis)]
+                sides = tuple(sizes.index(bit) for bit in size.all_bits)
+                yield TableEnds(
+                    handle.table.name, argument, (knots[0], knots[-1]), sides, len(places)
+                )

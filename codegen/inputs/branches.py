@@ -8,13 +8,12 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.lookups import Look
-from bondgraph.errors import SimulationError
 from codegen.inputs.discs import disc_of
 from codegen.inputs.discs import known as analytic
 from codegen.inputs.polynomials import first_fall, to_bernstein, value
 from codegen.inputs.segments import DEGREE, polynomial_segments
 from codegen.numbers.arrays import Array
-from codegen.numbers.cells import breaks_along, polynomials_at
+from codegen.numbers.cells import breaks_along, polynomials_between
 from codegen.tuning import TUNING
 
 CORNERED = (
@@ -22,9 +21,6 @@ CORNERED = (
     sp.core.relational.Relational, Look,
 )  # fmt: skip
 """What has corners or jumps, and tables; a Piecewise has them where its conditions change."""
-
-ASIDE = (3 - 5**0.5) / 2
-"""So far inside a stretch, of its length, nothing that is symmetric has its extremes."""
 
 Part = tuple[float, sp.Expr]
 """Where a part begins [s], and what the expression is from there on."""
@@ -160,7 +156,7 @@ def _unit_interval() -> Array:
 def _choices(atom: sp.Basic, times: Array, points: list[float]) -> list[sp.Basic]:
     """What stands in an atom's place at each of some times, between two of these points."""
     if isinstance(atom, Look):
-        return _looked_up(atom, points)
+        return polynomials_between(atom, points, _values)
     if isinstance(atom, sp.Max | sp.Min):
         table = np.array([_values(argument, times) for argument in atom.args])
         which = (table.argmax if isinstance(atom, sp.Max) else table.argmin)(axis=0)
@@ -174,18 +170,6 @@ def _choices(atom: sp.Basic, times: Array, points: list[float]) -> list[sp.Basic
         return [_jumped(atom, below) for below in whole]
     signs = np.sign(_values(atom.args[0], times)).astype(int).tolist()
     return [_signed(atom, sign) for sign in signs]
-
-
-def _looked_up(look: Look, points: list[float]) -> list[sp.Basic]:
-    # In the middle an argument may touch a break without crossing it.
-    times = np.array([a + ASIDE * (b - a) for a, b in pairwise(points)])
-    found = polynomials_at(look, [_values(place, times) for place in look.places])
-    if sp.nan in found:
-        at, name = points[found.index(sp.nan)], look.handle.table.name
-        raise SimulationError(
-            f"{look} leaves table {name!r}, which refuses what is outside, at t = {at:.9g} s"
-        )
-    return found
 
 
 def _jumped(atom: sp.Basic, below: int) -> sp.Expr:

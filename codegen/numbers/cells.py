@@ -1,14 +1,19 @@
 """Tables cell by cell: where their polynomials meet, and which one an argument is in, as an expression."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
+import numpy as np
 import sympy as sp
 
 from bondgraph.algebra.lookups import Look
+from bondgraph.errors import SimulationError
 from bondgraph.tables.looking import FREE, placed
 from bondgraph.tables.pieces import pieces
 from codegen.numbers.arrays import Array
+
+ASIDE = (3 - 5**0.5) / 2
+"""So far inside a stretch, of its length, nothing that is symmetric has its extremes."""
 
 
 def breaks_along(look: Look, axis: int) -> list[sp.Rational]:
@@ -47,9 +52,23 @@ def polynomial_at(look: Look, places: Sequence[float]) -> sp.Expr:
     return sp.expand(found.xreplace(dict(zip(local, inside, strict=True))))
 
 
-def polynomials_at(look: Look, values: Sequence[Array]) -> list[sp.Expr]:
-    """The same at each of many values of the arguments."""
-    return [polynomial_at(look, row) for row in zip(*(one.tolist() for one in values), strict=True)]
+def polynomials_between(
+    look: Look, points: Sequence[float], values: Callable[[sp.Expr, Array], Array]
+) -> list[sp.Expr]:
+    """The same over the time, between each two of these points [s], where no argument comes over a break.
+
+    ``values``: those of an argument at times. Raises `SimulationError` where a table has none.
+    """
+    # In the middle an argument may touch a break without crossing it.
+    times = np.array([a + ASIDE * (b - a) for a, b in pairwise(points)])
+    places = [values(place, times).tolist() for place in look.places]
+    found = [polynomial_at(look, row) for row in zip(*places, strict=True)]
+    if sp.nan in found:
+        at, name = points[found.index(sp.nan)], look.handle.table.name
+        raise SimulationError(
+            f"{look} leaves table {name!r}, which refuses what is outside, at t = {at:.9g} s"
+        )
+    return found
 
 
 def cells(look: Look) -> list[float]:

@@ -69,7 +69,7 @@ double bg_interpolate(const bg_table *of, int order, double x, double region)
     double u = 0.0;
     int held = 0;
     const int at = placed(of, 0, x, region, &u, &held);
-    if (held && order > 0 && !isnan(u))
+    if (held && order > 0 && u == u)
         return 0.0;
     return polynomial(of->factors + at * (of->degree + 1), of->degree, order, u);
 }
@@ -83,7 +83,7 @@ double bg_interpolate_over(const bg_table *of, int order_x, int order_y, double 
     const int i = placed(of, 0, x, region_x, &u, &level_x);
     const int j = placed(of, 1, y, region_y, &v, &level_y);
     const double *const factors = of->factors + (i * of->cells[1] + j) * size * size;
-    if (isnan(u) || isnan(v))
+    if (u != u || v != v)
         return NAN;
     if ((level_x && order_x > 0) || (level_y && order_y > 0))
         return 0.0;
