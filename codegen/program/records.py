@@ -354,8 +354,9 @@ class Program:
 
     @cached_property
     def rated(self) -> bool:
-        """Whether anything asks for the rates of the external inputs."""
-        return any(self.layout[letter].rows for letter in "EDHK")
+        """Whether anything asks for the rates of the external inputs: where values move, any bond may."""
+        moved = self.varying or bool(self.equations.reduction.energies)
+        return moved or any(self.layout[letter].rows for letter in "EDHK")
 
     @property
     def asked(self) -> tuple[sp.Symbol, ...]:
