@@ -105,9 +105,9 @@ class Leg:
             progress.check(solver.t, solver.y)
             if explicit and steps % TUNING.refresh == 0 and not self._model.program.affine:
                 fastest = self.fastest(solver.t, solver.y)
-            if self._settings.method == "auto" and turns.over(
-                solver.t, self.step, fastest, getattr(solver, "error", np.inf), stop
-            ):
+            chosen = self._settings.method == "auto" and solver.status == "running"
+            error = getattr(solver, "error", np.inf)
+            if chosen and turns.over(solver.t, self.step, fastest, error, stop):
                 explicit = turns.explicit
                 fastest = self.fastest(solver.t, solver.y)
                 name = METHODS["auto"][not explicit]

@@ -190,7 +190,7 @@ int bg_located_stretch(bg_located *c, double stop, double first, int *ended)
             status = bg_progress_check(c);
         if (status == BG_OK && !BG_AFFINE && count % BG_REFRESH == 0)
             status = bg_located_fastest(c, c->run.at.t, c->s, &fastest);
-        if (status == BG_OK && !*ended && c->asked->method == BG_AUTO
+        if (status == BG_OK && !*ended && c->asked->method == BG_AUTO && c->run.at.t < stop
             && bg_turns_over(c, fastest, stop))
             status = turn_over(c, &method, &fastest, stop);
         c->solver.longest = longest_now(c, method, fastest);
