@@ -41,7 +41,7 @@ def stored_rate(reduction: Reduction, port: int) -> Reading:
 def _add_inverse_rate(reduction: Reduction, port: int, result: ReadingSum) -> None:
     """The rate of a nonlinear storage's state as a function of what it receives."""
     one = reduction.structure.ports[port]
-    if one.element.by_inverse:
+    if one.element.by_inverse and one.integral:
         if one.element.inverse is not None and reduction.motion is not None:
             reduction.motion.add_total_rate(result, one.element.inverse, one.element.name)
         return

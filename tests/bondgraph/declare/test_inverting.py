@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 from references.build import bond_graph
+from scipy.integrate import solve_ivp
 
 import bondgraph as bg
 from bondgraph.declare.declared import elements_of
 from bondgraph.declare.inverting import with_inverse
-from codegen import simulator
+from codegen import Step, simulator
 
 TURNED = [
     ("E*log(1 + q_x/Q)", {"E": 2.0, "Q": 0.5}, (0.01, 3.0)),
@@ -86,3 +87,25 @@ def test_a_nonlinear_storage_behind_another_needs_no_inverse() -> None:
         np.linspace(0, 1, 11), inputs={"T": 3.0}
     )
     assert 2 * run["w"] + np.arcsinh(2 * run["w"]) == pytest.approx(3 * run.time, abs=1e-8)
+
+
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_accumulators_empty_through_a_valve_that_an_input_opens(backend: str) -> None:
+    """Derived once more for the input: of both ``p/(r (1 + closed))`` leaves, as of one thrice as large."""
+    graph = _bladders("p_0*(2*V/(2*V - q_b))**1.4")
+    graph.add_nodes_from([bg.R("valve", "r*(1 + closed)")])
+    graph.add_edge("n", "valve")
+    run = simulator(bg.derive(graph), {"p_0": 2.0, "V": 1.0, "r": 4.0}, backend=backend).run(
+        np.linspace(0, 1, 5), {"p": 4.0}, {"Q": 0.0, "closed": Step(0.5, 1.0)}
+    )
+
+    def rate(t: float, q: np.ndarray) -> np.ndarray:
+        return -2 * (1 - q / 3) ** -1.4 / (4 * (1 + (t >= 0.5)))
+
+    q = 3 * (1 - 0.5 ** (1 / 1.4))
+    first = solve_ivp(rate, (0, 0.5), [q], "DOP853", [0.25, 0.5 - 1e-15], rtol=1e-11, atol=1e-12)
+    last = solve_ivp(
+        rate, (0.5, 1), first.y[:, -1], "DOP853", [0.5, 0.75, 1], rtol=1e-11, atol=1e-12
+    )
+    held = np.array([q, first.y[0, 0], *last.y[0]])
+    assert run["p"] == pytest.approx(2 * (1 - held / 3) ** -1.4, rel=1e-8)

@@ -64,3 +64,17 @@ def test_an_infinite_potential_with_a_finite_rate_is_run(backend: str) -> None:
     run = model.run(times, {"q_A": 0.0})
     assert run["q_A"] == pytest.approx(-np.expm1(-times), abs=1e-9)
     assert run["mu"][0] == -np.inf
+
+
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_levels_that_meet_at_an_infinite_slope_stay_met(backend: str) -> None:
+    """Two tanks and an orifice: ``d' = -2 sqrt(d)`` of d = p_1 - p_2, from 4 to nothing in 2 s."""
+    nodes = [bg.Zero("a"), bg.C("C_1", 1, effort="p_1"), bg.One("o"), bg.Zero("b"),
+             bg.C("C_2", 1, effort="p_2"),
+             bg.R("v", law="sqrt(abs(e_v))*sign(e_v)", gives="flow")]  # fmt: skip
+    model = codegen.simulator(
+        bg.derive(bond_graph(nodes, "a>C_1 a>o>v o>b>C_2")), {}, backend=backend
+    )
+    times = np.linspace(0, 3, 31)
+    run = model.run(times, {"p_1": 4, "p_2": 0})
+    assert run["p_1"] == pytest.approx(2 + np.maximum(2 - times, 0) ** 2 / 2, abs=1e-8)
