@@ -39,14 +39,21 @@ def assign_causality(graph: Any) -> CausalGraph:
         return _assigned(checked)
     except AlgebraicLoopError as error:
         raise AlgebraicLoopError(f"{error}{_vanishing(checked)}") from None
-    except CausalityError:
+    except CausalityError as error:
         turned = _with_inverses(checked)
-        if not turned:
-            raise
-        found = _freed(with_elements(checked, turned))
+        found = _freed(with_elements(checked, turned)) if turned else None
         if found is None:
-            raise
+            raise CausalityError(f"{error}{_wanting(checked, str(error), turned)}") from None
         return found
+
+
+def _wanting(checked: "nx.DiGraph[Hashable]", story: str, turned: dict[Hashable, Element]) -> str:
+    """The way out where a story names a nonlinear storage whose law was not turned round."""
+    for name, element in elements_in(checked).items():
+        nonlinear = element.kind.stores and element.law is not None and element.gives is not None
+        if nonlinear and name not in turned and repr(name) in story:
+            return f"; or give {name!r} the inverse of its law, with which it goes either way"
+    return ""
 
 
 def _with_inverses(checked: "nx.DiGraph[Hashable]") -> dict[Hashable, Element]:

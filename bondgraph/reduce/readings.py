@@ -38,7 +38,7 @@ def check_laws(
             other = "flow" if port.gives == "effort" else "effort"
             way = f"let it give its {other} (gives={other!r}), by a law of its {port.gives}"
             if port.element.kind.stores:
-                way = "put a resistance between"
+                way = "give the inverse of its law, put a resistance between"
             raise DependentSourceError(
                 f"the law at {port.element.name!r} drives a dependent storage, so its slope in time "
                 f"would be needed; {way}, or put a storage that can be independent beside it"

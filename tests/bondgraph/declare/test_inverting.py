@@ -77,6 +77,10 @@ def test_two_accumulators_on_one_node_share_what_is_pumped(backend: str) -> None
 def test_laws_that_are_not_turned_round_are_refused_by_name() -> None:
     with pytest.raises(bg.BondGraphError, match="the law at 'b' drives a dependent storage"):
         bg.derive(_bladders("q_b + q_b**3"))
+    both = _bladders("q_b + q_b**3")
+    both.nodes["a"]["law"] = "q_a + q_a**3"
+    with pytest.raises(bg.CausalityError, match="; or give 'a' the inverse of its law, with which"):
+        bg.derive(both)
 
 
 def test_a_nonlinear_storage_behind_another_needs_no_inverse() -> None:
