@@ -167,7 +167,7 @@ class Simulator:
             pieces = [signal.piece(begin) for signal in signals]
             begun = beginning(self.closed, begin, start, pieces, on, {str(n) for n in told})
             asked = Request(times, states + begun.moved, begun, signals, settings, events, corners)
-            found = None
+            found = stopped = None
             if self.located is not None:
                 found = in_c(self.closed, asked, self.engine, self.located)
             if not isinstance(found, Recorded):
@@ -175,9 +175,9 @@ class Simulator:
                 if stopped is not None and stopped.limit:
                     tell(stopped)
                 found = in_numpy(self.closed, asked)
-                if stopped is not None and not stopped.limit:
-                    tell(stopped)
             columns, observer = named_columns(self.closed, times, found.shots)
+            if stopped is not None and not stopped.limit:
+                tell(stopped)
         columns = with_switches(columns, self.closed.program, found.modes)
         laws, numbers, start = self.laws, self.closed.parameters, read_only(begun.s)
         run = Run(laws, numbers, times, start, tuple(given), settings, begun.mode)

@@ -39,12 +39,12 @@ def named_columns(
                 continue
             columns.setdefault(name.name, read_only(table[:, at].copy()))
     # What laws give may be infinite where the rates are not, as the potential of what is used up.
-    states = {name.name for name in (*program.states, *program.law_states)}
-    bounded = np.isfinite(found.u).all(axis=1)
+    infinite = np.isinf(found.u).any(axis=1) & ~np.isnan(found.u).any(axis=1)
+    told = {name.name for name in (*program.states, *program.law_states)}
     _check_finite(
         times,
         {
-            name: column if name in states else np.where(bounded, column, 0.0)
+            name: column if name in told else np.where(infinite, 0.0, column)
             for name, column in columns.items()
         },
     )

@@ -217,7 +217,8 @@ class Trials:
         try:
             rate = self._rates(t, s)
         except SimulationError as error:
-            self._refused, self._at = error, None
+            if np.isfinite(s).all():
+                self._refused, self._at = error, None
             return np.full(len(s), np.nan)
         if math.isfinite(sum(rate.tolist())) or np.isfinite(rate).all():
             self._refused, self._at = None, None

@@ -56,7 +56,8 @@ def times(matrix: Array, values: Array) -> Array:
 
     Infinite efforts have finite effects where laws bound these, as the affinity of what is used up.
 
-    >>> times(np.array([[0.0, 2.0]]), np.array([np.inf, 1.0]))
+    >>> with np.errstate(invalid="ignore"):
+    ...     times(np.array([[0.0, 2.0]]), np.array([np.inf, 1.0]))
     array([2.])
     """
     found: Array = matrix @ values

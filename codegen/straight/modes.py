@@ -26,7 +26,7 @@ Plain = Callable[[float, Array], list[float] | None]
 """From t and s to numbers; None where the evaluation has to tell more."""
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class StraightMode:
     """What is evaluated in one mode; functions of parts that were asked for are kept."""
 

@@ -8,6 +8,7 @@ evaluation, and its fast form is a copy that a machine made.
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -136,7 +137,7 @@ def recorded(
         aside = lines.copied()
         parts[name] = tuple(map(_plain, _Noted(block, aside)(now)))
         more[name] = tuple(aside.listed[len(own) :])
-    return Recording(own, parts, tuple(loops), more)
+    return Recording(own, MappingProxyType(parts), tuple(loops), MappingProxyType(more))
 
 
 def _noted(form: Form, lines: Lines, loops: Calls, matrices: Numbers | Changing) -> Form:

@@ -1,6 +1,7 @@
 """The slopes of a recording's rates in the integrated vector: line by line, by the chain rule."""
 
 from functools import lru_cache
+from types import MappingProxyType
 
 import sympy as sp
 
@@ -33,7 +34,8 @@ def with_slopes(recording: Recording) -> tuple[Recording, Places] | None:
     places = [(i, j) for i, row in enumerate(rows) for j, value in row.items() if value]
     slopes = tuple(rows[i][j] for i, j in places)
     where = tuple(i for i, _ in places), tuple(j for _, j in places)
-    return Recording(tuple(lines.listed), {"slopes": slopes}, (), {}), where
+    told = MappingProxyType({"slopes": slopes})
+    return Recording(tuple(lines.listed), told, (), MappingProxyType({})), where
 
 
 def _of_line(line: Line, lines: Lines, known: dict[str, Slopes]) -> list[Slopes]:

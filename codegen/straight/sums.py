@@ -86,7 +86,7 @@ class Sum:
 
     >>> x, y = Lines().given("x", 2)
     >>> (2*x - y + 1 - x - x).terms, 0*x, (x + 3).constant
-    ({'y': -1.0}, 0.0, 3.0)
+    ({'x1': -1.0}, 0.0, 3.0)
     """
 
     __slots__ = ("constant", "lines", "terms")
@@ -146,6 +146,10 @@ class Sum:
         return self.lines.quotient(float(other), self) if other else 0.0
 
 
+Solve = Callable[..., list[float]]
+"""A loop of laws, from what it reads to what its laws give."""
+
+
 @dataclass(frozen=True)
 class Recording:
     """The lines of an evaluation, from t, s, w and w'; ``parts``: its results by name, rows of sums.
@@ -155,9 +159,9 @@ class Recording:
     """
 
     lines: tuple[Line, ...]
-    parts: dict[str, tuple[Value, ...]]
-    loops: tuple[Callable[..., list[float]], ...]
-    looks: dict[str, tuple[Line, ...]]
+    parts: Mapping[str, tuple[Value, ...]]
+    loops: tuple[Solve, ...]
+    looks: Mapping[str, tuple[Line, ...]]
 
 
 def names_in(values: Iterable[Value]) -> set[str]:

@@ -261,7 +261,10 @@ static int finish(bg_model *m, const bg_hold *held, bg_snapshot *shot)
     memcpy(shot->du, m->du, sizeof shot->du);
     memcpy(shot->y, now->y, sizeof shot->y);
     memcpy(shot->caps, m->caps, sizeof shot->caps);
-    /* What holds and what rubs is told by finite numbers alone. */
+    /* Efforts may be infinite, but are numbers; what holds and what rubs is told by finite ones. */
+    for (int i = 0; i < M && !bounded; i++)
+        if (shot->u[i] != shot->u[i])
+            return BG_NOT_FINITE;
     if (K > 0 && !(bounded && bg_finite(ROWS, shot->y)))
         return BG_NOT_FINITE;
     if (!bg_finite(BG_SIZE, shot->rate))

@@ -149,7 +149,8 @@ def test_a_level_of_the_state() -> None:
     "law", [bg.DryFriction("L"), bg.DryFriction("L", "1 + slip"), bg.DryFriction("L - 0*t")]
 )
 def test_a_level_that_becomes_negative_ends_the_run_with_its_port(law: bg.DryFriction) -> None:
-    message = r"at t = 1\.\d* .*'ground'.* -0\.\d+.*negative"
+    # Nothing is left of it at 1 s.
+    message = r"at t = 1(\.0\d*)? .*'ground' has level -\d\S*, curve \d.*negative"
     with pytest.raises(bg.SimulationError, match=message):
         _run(law, 3.0, more={"L": Ramp(0.0, -2.0, 2.0)})
 
