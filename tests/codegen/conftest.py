@@ -1,4 +1,4 @@
-"""Units that several files of tests call."""
+"""Units that several files of tests call, and what they count."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -28,3 +28,23 @@ def slider(
     from oracles.units import belt
 
     return Unit(belt(), str(request.param), tmp_path_factory.mktemp("belt"), name="belt")
+
+
+@pytest.fixture
+def evaluations(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """How often the rates of models were asked for."""
+    from codegen.modes.closed import ClosedModel
+
+    count, plain = [0], ClosedModel.rates
+
+    def counting(model: ClosedModel, *given: Any) -> Any:
+        rates = plain(model, *given)
+
+        def counted(t: float, s: Any) -> Any:
+            count[0] += 1
+            return rates(t, s)
+
+        return counted
+
+    monkeypatch.setattr(ClosedModel, "rates", counting)
+    return count

@@ -41,24 +41,6 @@ def two_slopes(times: np.ndarray) -> np.ndarray:
     return np.where(u < np.pi / 2, np.cos(2 * u), -np.cos(u - np.pi / 2))
 
 
-@pytest.fixture
-def evaluations(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """How often the rates of a model were asked for."""
-    count, plain = [0], ClosedModel.rates
-
-    def counting(model: ClosedModel, *given: object) -> object:
-        rates = plain(model, *given)  # type: ignore[arg-type]
-
-        def counted(t: float, s: np.ndarray) -> np.ndarray:
-            count[0] += 1
-            return rates(t, s)
-
-        return counted
-
-    monkeypatch.setattr(ClosedModel, "rates", counting)
-    return count
-
-
 @pytest.mark.parametrize(
     ("spring", "method"),
     [*((spring, "DOP853") for spring in SLOPES), (SLOPES[1], "Radau")],

@@ -8,7 +8,6 @@ from references.build import bond_graph
 
 import bondgraph as bg
 import codegen
-from codegen.modes.closed import ClosedModel
 from codegen.runs.methods import Turns
 from codegen.tuning import TUNING
 
@@ -34,24 +33,6 @@ def _run(K: float, method: str, backend: str = "numpy") -> float:
     model = codegen.simulator(bg.derive(_filter()), {"K": K}, backend=backend)
     inputs = {"F": codegen.Sine(1, ANGULAR / (2 * np.pi))}
     return float(model.run([0, SPAN], inputs=inputs, method=method)["v"][-1])
-
-
-@pytest.fixture
-def evaluations(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """How often rates were asked for."""
-    counted, made = [0], ClosedModel.rates
-
-    def counting(self: ClosedModel, *given: object):
-        rates = made(self, *given)
-
-        def rate(t: float, s: np.ndarray) -> np.ndarray:
-            counted[0] += 1
-            return rates(t, s)
-
-        return rate
-
-    monkeypatch.setattr(ClosedModel, "rates", counting)
-    return counted
 
 
 @pytest.mark.parametrize("K", [10.0, 2e3])
