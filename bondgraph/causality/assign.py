@@ -60,8 +60,7 @@ def _with_inverses(checked: "nx.DiGraph[Hashable]") -> dict[Hashable, Element]:
     """The storages whose laws have inverses that nobody declared."""
     found: dict[Hashable, Element] = {}
     for name, element in elements_in(checked).items():
-        fixed = element.kind.stores and element.gives is not None and element.energy is None
-        turned = with_inverse(element) if fixed else None
+        turned = with_inverse(element) if element.gives is not None else None
         if turned is not None:
             found[name] = turned
     return found

@@ -31,6 +31,8 @@ def with_inverse(element: Element) -> Element | None:
     >>> with_inverse(diode).inverse
     Q*(exp(e_diode/E) - 1)
     """
+    if not element.kind.stores or element.energy is not None:
+        return None
     if element.inverse is not None:
         return element
     law, given = element.law, element.co_energy

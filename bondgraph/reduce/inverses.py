@@ -22,11 +22,9 @@ def by_inverses(structure: JunctionStructure) -> JunctionStructure:
     }
     made = {}
     for at in sorted(driving):
-        element = ports[at].element
-        nonlinear = element.kind.stores and element.law is not None and ports[at].integral
-        turned = with_inverse(element) if nonlinear and element.energy is None else None
+        turned = with_inverse(ports[at].element) if ports[at].integral else None
         if turned is not None:
-            made[element.name] = replace(turned, by_inverse=True)
+            made[turned.name] = replace(turned, by_inverse=True)
     if not made:
         return structure
     new = tuple(replace(p, element=made.get(p.element.name, p.element)) for p in ports)

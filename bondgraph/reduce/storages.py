@@ -39,21 +39,18 @@ def stored_rate(reduction: Reduction, port: int) -> Reading:
 
 
 def _add_inverse_rate(reduction: Reduction, port: int, result: ReadingSum) -> None:
-    """The rate of a nonlinear storage's state as a function of what it receives."""
+    """The rate of what a nonlinear storage holds, as a function of what its law gives."""
     one = reduction.structure.ports[port]
-    if one.element.by_inverse and one.integral:
-        if one.element.inverse is not None and reduction.motion is not None:
-            reduction.motion.add_total_rate(result, one.element.inverse, one.element.name)
-        return
-    ruled = _ruled(reduction, port)
-    terms = [entry * reduction.names[j] for j, entry in ruled.F.items()]
-    terms += [entry * reduction.inputs[j] for j, entry in ruled.D.items()]
     inverse, motion = one.element.inverse, reduction.motion
     if inverse is None or motion is None:
         raise CausalityError(f"the law at {one.element.name!r} has no inverse")
-    motion.add_total_rate(
-        result, inverse.xreplace({one.received: sp.Add(*terms)}), one.element.name
-    )
+    # In integral causality the variable that the inverse is of is the state itself.
+    if not one.integral:
+        ruled = _ruled(reduction, port)
+        terms = [entry * reduction.names[j] for j, entry in ruled.F.items()]
+        terms += [entry * reduction.inputs[j] for j, entry in ruled.D.items()]
+        inverse = inverse.xreplace({one.received: sp.Add(*terms)})
+    motion.add_total_rate(result, inverse, one.element.name)
 
 
 def field_row(reduction: Reduction, port: int) -> list[tuple[int, sp.Expr]]:

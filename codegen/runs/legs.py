@@ -81,10 +81,9 @@ class Leg:
             return stop, s, frozenset()
         self.rate = fastest = self.fastest(t, s)
         name = self._integrator(fastest, float(times[-1]) - self._origin)
-        explicit = name == "DOP853"
         trials = Trials(self._rates, self._lost)
         solver = self._solver(name, trials, t, s, stop, fastest, self._first_step)
-        turns = Turns(len(s), explicit)
+        turns = Turns(len(s), explicit=name == "DOP853")
         watch = Watch(self._model, self._pieces, self._mode, t, s, self._peaks)
         steps, progress = 0, self._progress(t)
         while solver.status == "running":
@@ -103,16 +102,15 @@ class Leg:
                 return until, dense(until), found[1]
             steps += 1
             progress.check(solver.t, solver.y)
-            if explicit and steps % TUNING.refresh == 0 and not self._model.program.affine:
+            if turns.explicit and steps % TUNING.refresh == 0 and not self._model.program.affine:
                 fastest = self.fastest(solver.t, solver.y)
             chosen = self._settings.method == "auto" and solver.status == "running"
             error = getattr(solver, "error", np.inf)
             if chosen and turns.over(solver.t, self.step, fastest, error, stop):
-                explicit = turns.explicit
                 fastest = self.fastest(solver.t, solver.y)
-                name = METHODS["auto"][not explicit]
+                name = METHODS["auto"][not turns.explicit]
                 solver = self._solver(name, trials, solver.t, solver.y, stop, fastest, self.step)
-            solver.max_step = self._bound(explicit, fastest, solver.t)
+            solver.max_step = self._bound(turns.explicit, fastest, solver.t)
         return stop, solver.y, frozenset()
 
     def _solver(
