@@ -25,7 +25,7 @@ def with_corners(program: Program) -> Program:
     Not those of parameters, of known sources alone, whose instants are known, nor the slips of friction
     ports, which are events anyway.
     """
-    if not any(expr.has(*KINDS) for code in program.blocks for expr in _parts(code)):
+    if not any(expr.has(*KINDS) for code in program.blocks for expr in code.values):
         return program
     sides, named = _Sides(program), [one for one in _laws(program) if one[1].has(*KINDS)]
     for node, expr in named:
@@ -125,11 +125,6 @@ def _laws(program: Program) -> Iterator[tuple[Hashable, sp.Expr]]:
     for expr in written_out(program.coefficients):
         yield _modulated(program, expr) if expr.has(*KINDS) else None, expr
     yield from zip(program.known.ports, written_out(program.known_rates), strict=True)
-
-
-def _parts(code: Block) -> Iterator[sp.Expr]:
-    yield from (value for _, value in code.assignments)
-    yield from code.results
 
 
 def _modulated(program: Program, expr: sp.Expr) -> Hashable:

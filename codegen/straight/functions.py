@@ -46,10 +46,8 @@ def straight(recording: Recording, parts: Sequence[str]) -> Straight:
 def _tables(lines: Sequence[Line]) -> dict[str, Callable[..., float]]:
     """What looks into tables, by the names that it is called by."""
     blocks = [line.code for line in lines if isinstance(line.code, Block)]
-    values = [
-        value for code in blocks for value in (*dict(code.assignments).values(), *code.results)
-    ]
-    return {part.code: part.numeric for value in values for part in value.atoms(Tabled)}
+    looks = {part for code in blocks for value in code.values for part in value.atoms(Tabled)}
+    return {part.code: part.numeric for part in looks}
 
 
 def _least(*values: float) -> float:

@@ -31,10 +31,9 @@ _TOKEN = re.compile(r"_([ac])(\d+)_")
 @lru_cache(maxsize=256)
 def writable(code: Block) -> bool:
     """Whether all that a block is made of is written over floats."""
-    values = [*(value for _, value in code.assignments), *code.results]
     return all(
         isinstance(part, PLAIN) or type(part).__name__ == BRANCH
-        for value in values
+        for value in code.values
         for part in sp.preorder_traversal(value)
     )
 
