@@ -5,6 +5,7 @@ from typing import Any, Self
 
 import sympy as sp
 
+from bondgraph.algebra.called import Called
 from bondgraph.tables.looking import looked_up
 from bondgraph.tables.pieces import integrated, pieces
 from bondgraph.tables.record import Sampled
@@ -58,11 +59,8 @@ OVERSHOOTING = ("akima", "bicubic")
 """Methods by which values between points may be beyond these."""
 
 
-class Tabled(sp.Function):  # type: ignore[misc]
+class Tabled(Called):
     """What numbers come of by a table, its first argument a `Handle`, and by arguments that have numbers."""
-
-    FIXED = 1
-    """So many arguments come before those."""
 
     @property
     def handle(self) -> Handle:
@@ -76,14 +74,6 @@ class Tabled(sp.Function):  # type: ignore[misc]
         fixed = "".join(f"_{one}" for one in self.args[1 : self.FIXED])
         return f"_{type(self).__name__.lower()}_{self.handle.code}{fixed}"
 
-    @property
-    def numeric(self) -> Callable[..., float]:
-        """The function of numbers that is called there."""
-        raise NotImplementedError
-
-    def _numpycode(self, printer: Any) -> str:
-        return f"{self.code}({', '.join(map(printer._print, self.args[self.FIXED :]))})"
-
 
 class Look(Tabled):
     """``Look(handle, x[, y])``: a table, or one of its derivatives, at these arguments.
@@ -91,16 +81,6 @@ class Look(Tabled):
     To exact algebra it is a function that nothing is known of; only where numbers are asked for, it has
     those of `looked_up`.
     """
-
-    @property
-    def places(self) -> tuple[sp.Expr, ...]:
-        """The arguments of the table."""
-        return tuple(self.args[1:])
-
-    @property
-    def is_number(self) -> bool:
-        """Whether it has a value."""
-        return all(place.is_number for place in self.places)
 
     @property
     def numeric(self) -> Callable[..., float]:
@@ -122,20 +102,6 @@ class Look(Tabled):
         if orders[axis] > (3 if handle.table.smooth else 1):
             return sp.Integer(0)
         return Look(Handle(handle.table, orders), *self.places)
-
-    def _eval_is_finite(self) -> bool | None:
-        """A number, wherever it has one; nothing is told of others."""
-        found = self.evalf() if self.is_number else None
-        return True if found is not None and found.is_Float else None
-
-    _eval_is_extended_real = _eval_is_finite
-
-    def _eval_evalf(self, prec: int) -> sp.Expr | None:
-        places = [place.evalf() for place in self.places]
-        if not all(place.is_real for place in places):
-            return None
-        value = self.handle.looked_up(*map(float, places))
-        return sp.nan if value != value else sp.Float(value, precision=prec)
 
     def _sympystr(self, printer: Any) -> str:
         return f"{_title(self.handle)}({', '.join(map(printer._print, self.places))})"

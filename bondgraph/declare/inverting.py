@@ -9,6 +9,7 @@ import sympy as sp
 from bondgraph.declare.elements import Element
 from bondgraph.declare.fields import inverts
 from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.inverses.inverse import inverse_of
 
 BACK: Mapping[type, Callable[[sp.Expr], sp.Expr]] = MappingProxyType(
     {
@@ -23,7 +24,8 @@ def with_inverse(element: Element) -> Element | None:
     """The storage with its law's inverse, so that it goes either way; None where it has none that is found.
 
     It is found where the law holds its own state once, in functions that are undone one after the other, and
-    constants. What is found is put in and tried.
+    constants: what is found is put in and tried. Else it is an `Inverse`, which searches, where signs show
+    that the law rises or falls all the way.
 
     >>> from bondgraph.declare.elements import C
     >>> from bondgraph.declare.declared import elements_of
@@ -40,6 +42,8 @@ def with_inverse(element: Element) -> Element | None:
         return None
     found = _undone(law.expression, law.state, given)
     if found is None or not inverts(law.expression.xreplace({law.state: found}), given):
+        found = inverse_of(law.expression, law.state, given)
+    if found is None:
         return None
     return replace(element, inverse=found, gives=None)
 

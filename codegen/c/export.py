@@ -15,6 +15,7 @@ from codegen.c.runtime import runtime_file, runtime_names
 from codegen.c.scenario import scenario_text
 from codegen.c.tables import config, group_tables, name_tables, program_tables, slip_tables
 from codegen.c.text import comment
+from codegen.c.turnings import turned_laws
 from codegen.model.commands import conditions_told
 from codegen.model.doubts import warn_of_doubts
 from codegen.model.resting import warn_of_rests
@@ -172,6 +173,7 @@ def texts(
         *_head(program, equations, name, prefix),
         *name_tables(program, equations, name),
         *lookup_tables(program.tables),
+        *turned_laws(program.turnings),
         "",
         *program_tables(program, defaults, [closed.coupled_directly(i) for i in ports], on),
         "",

@@ -9,6 +9,7 @@ from codegen.c.counting import StepCost, step_cost
 from codegen.c.lookups import lookup_names
 from codegen.c.rhs import Straight
 from codegen.c.text import array, comment, doubles, integers, quoted, strings
+from codegen.c.turnings import turning_names
 from codegen.modes.stability import modes_told
 from codegen.modes.steps import told_step
 from codegen.program.records import FrictionPort, Group, Program
@@ -47,7 +48,7 @@ def config(
     lines += [f"#define BG_ROSENBROCK {int(implicit)}"]
     lines += ["", *_steps(longest, len(program.friction))]
     lines += ["", *macros] if macros else []
-    lines += lookup_names(program.tables)
+    lines += [*lookup_names(program.tables), *turning_names(program.turnings)]
     return "\n".join([*lines, "", "#endif", ""])
 
 

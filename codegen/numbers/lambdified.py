@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from bondgraph.algebra.lookups import Tabled
+from bondgraph.algebra.called import Called
 from codegen.numbers.arrays import Array
 
 
@@ -34,9 +34,9 @@ def elementwise(function: Callable[..., float]) -> Callable[..., float | Array]:
     return at
 
 
-def _tabled(expr: Any) -> Iterator[Tabled]:
+def _tabled(expr: Any) -> Iterator[Called]:
     if isinstance(expr, sp.Basic):
-        yield from expr.atoms(Tabled)
+        yield from expr.atoms(Called)
     elif isinstance(expr, Iterable):
         for part in expr:
             yield from _tabled(part)

@@ -80,6 +80,11 @@ class _C(C99CodePrinter):  # type: ignore[misc]
         given = [*map(str, handle.orders), *map(self._print, (*places, *regions))]
         return f"{call}(&bg_{table_name(handle.table)}, {', '.join(given)})"
 
+    def _print_Inverse(self, expr: Any) -> str:
+        value, *given = map(self._print, expr.places)
+        told = ", ".join(given or ["0.0"])
+        return f"bg_searched(bg_{expr.turning.code}, {value}, (const double[]){{{told}}})"
+
     def _print_Edge(self, expr: Any) -> str:
         handle, axis, bit, x, *region = expr.args
         given = ", ".join(map(self._print, (x, *(region or [sp.Integer(FREE)]))))
@@ -148,6 +153,9 @@ class _Python(PythonCodePrinter):  # type: ignore[misc]
         handle, *places = expr.args
         given = ", ".join(map(self._print, places))
         return f"looked_up(_{table_name(handle.table)}, {handle.orders}, ({given},))"
+
+    def _print_Inverse(self, expr: Any) -> str:
+        return str(expr._numpycode(self))
 
 
 def table_name(table: Sampled) -> str:

@@ -1,6 +1,6 @@
 """What a program is made of: straight-line code, patterns of matrices, groups of laws."""
 
-from collections.abc import Container, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Container, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -9,6 +9,7 @@ import sympy as sp
 from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.lookups import Handle
 from bondgraph.equations import StateEquations
+from bondgraph.inverses.inverse import Turning
 from bondgraph.tables.record import Sampled
 from codegen.standalone.switchings import Reset, Switching
 
@@ -237,10 +238,20 @@ class Program:
     @cached_property
     def tables(self) -> tuple[Sampled, ...]:
         """What is looked into, by name."""
-        sided = () if self.corners is None else (self.corners.values, self.corners.on_sides)
-        parts = [value for code in (*self.blocks, *sided) for value in code.values]
-        found = {part.table for one in (*parts, *self.sources) for part in one.atoms(Handle)}
+        found = {part.table for one in self._values() for part in one.atoms(Handle)}
         return tuple(sorted(found, key=lambda table: table.name))
+
+    @cached_property
+    def turnings(self) -> tuple[Turning, ...]:
+        """The laws that are turned round by a search, by their names."""
+        found = {part for one in self._values() for part in one.atoms(Turning)}
+        return tuple(sorted(found, key=lambda turning: turning.code))
+
+    def _values(self) -> Iterator[sp.Expr]:
+        """All that is evaluated."""
+        sided = () if self.corners is None else (self.corners.values, self.corners.on_sides)
+        yield from (value for code in (*self.blocks, *sided) for value in code.values)
+        yield from self.sources
 
     @property
     def sides(self) -> tuple[sp.Symbol, ...]:

@@ -112,6 +112,7 @@ def needed(program: Program, slips: SlipRows | None, implicit: bool) -> list[str
     events = {"stopping": program.stopped, "resetting": program.resets, "hanging": program.hanging}
     names += [f"codegen.stops.{name}" for name, wanted in events.items() if wanted]
     names += ["bondgraph.tables.looking"] if program.tables else []
+    names += ["bondgraph.inverses.searching"] if program.turnings else []
     return ["codegen.standalone.formulas", "codegen.standalone.running", *names]
 
 

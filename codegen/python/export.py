@@ -25,6 +25,7 @@ from codegen.python.closing import closing, needed
 from codegen.python.modules import written_out
 from codegen.python.tables import friction_tables, lookup_tables, places, public, step_settings
 from codegen.python.text import RULE, filled, plain, table
+from codegen.python.turnings import turned_laws
 from codegen.runs.start import start_of
 
 _HEAD = '''"""{title}: the equations of a bond graph, and their simulation in fixed steps.
@@ -134,7 +135,8 @@ def _head(
 
 def _functions(program: Program, names: Names) -> list[str]:
     """The blocks of the program."""
-    lines = coefficients_function(program, names)
+    lines = turned_laws(program.turnings)
+    lines += coefficients_function(program, names)
     lines += group_function("known_laws", program.known, program, names)
     rates = [f"rate of {program.inputs[j].name}" for j in program.known.inputs]
     doc = "How fast change what known laws give." if rates else "There are none."

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from bondgraph.algebra.lookups import Tabled
+from bondgraph.algebra.called import Called
 from codegen.model.numpy_backend import compiled
 from codegen.program.records import Block
 from codegen.standalone.arrays import Array
@@ -46,7 +46,7 @@ def straight(recording: Recording, parts: Sequence[str]) -> Straight:
 def _tables(lines: Sequence[Line]) -> dict[str, Callable[..., float]]:
     """What looks into tables, by the names that it is called by."""
     blocks = [line.code for line in lines if isinstance(line.code, Block)]
-    looks = {part for code in blocks for value in code.values for part in value.atoms(Tabled)}
+    looks = {part for code in blocks for value in code.values for part in value.atoms(Called)}
     return {part.code: part.numeric for part in looks}
 
 

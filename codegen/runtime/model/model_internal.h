@@ -48,6 +48,12 @@ double bg_interpolate_over(const bg_table *of, int order_x, int order_y, double 
 /* What changes its sign at corners where a bit of the stretch's number in Gray's code does. */
 double bg_edge(const bg_table *of, int axis, int bit, double x, double region);
 
+/* A law that rises or falls all over its domain, and its slope; no number outside that domain. */
+typedef double (*bg_law)(double x, const double *a, double *slope);
+
+/* Where a law has a value, with its parameters a; no number where it has it nowhere. */
+double bg_searched(bg_law law, double value, const double *a);
+
 /* As fmin, fmax and the sign, but no number where an argument is none. */
 static inline double bg_min(double a, double b)
 {
@@ -66,6 +72,7 @@ static inline double bg_sign(double a)
 
 /* Generated. */
 extern const bg_table bg_tables[]; /* config.h has a name for each */
+extern const bg_law bg_turnings[]; /* and for each of these */
 extern const bg_pattern bg_layout[BG_MATRICES];
 extern const bg_group bg_known, bg_groups[], bg_coupled;
 /* The slips F x + D u of friction ports as residues: port k has those from bg_slip_begins[k] on, at

@@ -1,0 +1,1 @@
+"""Laws turned round by a search: whether they go one way, functions for exact algebra, the search."""

@@ -1,0 +1,155 @@
+"""Whether a law rises, or falls, all the way: told by signs, parameters taken as positive."""
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+NEVER_NEGATIVE = (sp.exp, sp.cosh)
+ODD = (sp.sinh, sp.tanh, sp.atan, sp.asinh)
+"""Functions that have the sign of their argument."""
+
+CORNERED = (sp.sign, sp.Heaviside, sp.Max, sp.Min, sp.Piecewise, sp.Derivative)
+
+
+@dataclass(frozen=True)
+class Rising:
+    """A law of one name that goes one way all over its domain: its slope, and what that holds for.
+
+    ``positive``: parameters that have to be positive; ``domain``: expressions of the name that are positive
+    over the domain.
+    """
+
+    slope: sp.Expr
+    positive: tuple[sp.Symbol, ...]
+    domain: tuple[sp.Expr, ...]
+
+
+def rising(law: sp.Expr, name: sp.Symbol) -> Rising | None:
+    """What shows that a law rises or falls all the way; None where signs do not show it, or it has corners.
+
+    The domain lies about zero: a logarithm's argument, the base of a broken power and a denominator keep
+    the sign they have there. Each has to rise or fall itself, so that the domain is in one piece.
+
+    >>> q, k, c = sp.symbols("q k c")
+    >>> rising(k*q + c*q**3, q)
+    Rising(slope=3*c*q**2 + k, positive=(c, k), domain=())
+    >>> rising(k*q - c*q**3, q), rising(q**3, q)
+    (None, None)
+    >>> rising(k*q + c/(2 - q), q)
+    Rising(slope=c/(2 - q)**2 + k, positive=(c, k), domain=(2 - q,))
+    """
+    real = {one: sp.Dummy(one.name, real=True) for one in law.free_symbols}
+    plain = {dummy: one for one, dummy in real.items()}
+    x = real[name]
+    shown = law.xreplace(real)
+    slope = _of_tanh(_of_abs(sp.diff(shown, x)))
+    signs = _Signs(x, _domain(shown, x))
+    if slope.has(*CORNERED) or signs.facts is None or abs(signs.of(slope) or 0) < 2:
+        return None
+    needed = sorted((plain[one] for one in signs.needed), key=str)
+    return Rising(
+        slope.xreplace(plain), tuple(needed), tuple(one.xreplace(plain) for one in signs.facts)
+    )
+
+
+def _of_abs(slope: sp.Expr) -> sp.Expr:
+    """With ``|u|`` for ``u sign(u)``."""
+
+    def turned(product: sp.Expr) -> sp.Expr:
+        for part in product.args:
+            if isinstance(part, sp.sign) and part.args[0] in product.args:
+                (u,) = part.args
+                rest = [one for one in product.args if one not in (part, u)]
+                return sp.Mul(sp.Abs(u), *rest)
+        return product
+
+    return slope.replace(lambda part: part.is_Mul and part.has(sp.sign), turned)
+
+
+def _of_tanh(slope: sp.Expr) -> sp.Expr:
+    """With ``1/cosh(u)**2`` for ``1 - tanh(u)**2``."""
+    squares = [part for part in slope.atoms(sp.Pow) if isinstance(part.base, sp.tanh)]
+    put = {part: 1 - sp.cosh(part.base.args[0]) ** -2 for part in squares if part.exp == 2}
+    return sp.expand_mul(slope.xreplace(put)) if put else slope
+
+
+def _domain(law: sp.Expr, x: sp.Symbol) -> list[sp.Expr]:
+    """What stands in logarithms, broken powers and denominators."""
+    inside = [part.args[0] for part in law.atoms(sp.log)]
+    inside += [part.base for part in law.atoms(sp.Pow) if not part.exp.is_nonnegative
+               or not part.exp.is_Integer]  # fmt: skip
+    return sorted({one for one in inside if one.has(x)}, key=sp.default_sort_key)
+
+
+class _Signs:
+    """Signs of expressions: 2 and -2 never zero, 1 and -1 perhaps, 0 always; None not told."""
+
+    def __init__(self, x: sp.Symbol, inside: list[sp.Expr]) -> None:
+        self._x, self.needed = x, set[sp.Symbol]()
+        self.facts: tuple[sp.Expr, ...] | None = ()
+        found = []
+        for one in inside:
+            sign = self.of(one) or self.of(one.xreplace({x: sp.Integer(0)})) or 0
+            if abs(sign) < 2 or self.of(sp.diff(one, x)) is None:
+                self.facts = None
+                return
+            found.append(one if sign > 0 else -one)
+            self.facts = tuple(found)
+
+    def of(self, expr: sp.Expr) -> int | None:
+        for fact in self.facts or ():
+            if expr in (fact, -fact):
+                return 2 if expr == fact else -2
+        if expr.is_number:
+            return None if expr.is_zero is None else 0 if expr.is_zero else 2 * _sign(expr)
+        if expr.is_Symbol:
+            if expr == self._x:
+                return None
+            self.needed.add(expr)
+            return 2
+        if expr.is_Add:
+            return _sum([self.of(part) for part in expr.args])
+        if expr.is_Mul:
+            return _product([self.of(part) for part in expr.args])
+        if expr.is_Pow:
+            return self._power(expr.base, expr.exp)
+        return self._function(expr)
+
+    def _power(self, base: sp.Expr, exponent: sp.Expr) -> int | None:
+        below = self.of(base)
+        if exponent.is_even:
+            return 2 if exponent.is_negative or abs(below or 0) == 2 else 1
+        if exponent.is_odd:
+            return below
+        if below is None or below < 0:
+            return None
+        return below if below == 2 or (self.of(exponent) or 0) > 0 else None
+
+    def _function(self, expr: sp.Expr) -> int | None:
+        if isinstance(expr, NEVER_NEGATIVE):
+            return 2
+        inside = self.of(expr.args[0]) if len(expr.args) == 1 else None
+        if isinstance(expr, sp.Abs):
+            return abs(inside) if inside is not None else 1
+        return inside if isinstance(expr, ODD) else None
+
+
+def _sign(number: sp.Expr) -> int:
+    return 1 if number.is_positive else -1
+
+
+def _sum(signs: list[int | None]) -> int | None:
+    """Of terms none of which is against the others."""
+    known = [one for one in signs if one is not None]
+    if len(known) < len(signs) or (min(known) < 0 < max(known)):
+        return None
+    return max(known, key=abs)
+
+
+def _product(signs: list[int | None]) -> int | None:
+    if 0 in signs:
+        return 0
+    if None in signs:
+        return None
+    way = -1 if sum((one or 0) < 0 for one in signs) % 2 else 1
+    return way * min(abs(one or 0) for one in signs)

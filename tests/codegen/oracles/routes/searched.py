@@ -1,0 +1,50 @@
+"""Models whose laws are turned round by a search; each beside what scipy finds."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from oracles.routes.kind import Array, Kind
+from references.build import bond_graph
+from scipy.optimize import brentq
+
+import bondgraph as bg
+
+
+def unlike_springs() -> Kind:
+    """Two springs that harden, each in its own way, side by side: what one holds the other does not."""
+    k, c, m = 1.0, 2.0, 0.5
+    nodes = [bg.Sf("pump", "Q"), bg.Zero("n"), bg.C("a", law="k*q_a + c*q_a**3", effort="p"),
+             bg.C("b", law="m*q_b + exp(q_b) - 1", effort="p_b")]  # fmt: skip
+
+    def held(p: float) -> float:
+        return sum(
+            brentq(lambda q, law=law: law(q) - p, 0, 10, xtol=1e-14)
+            for law in (lambda q: k * q + c * q**3, lambda q: m * q + np.exp(q) - 1)
+        )
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        return {"p": np.array([brentq(lambda p, now=now: held(p) - now, 0, 20) for now in 1.5 * t])}
+
+    return Kind("two storages whose laws no algebra turns round", bond_graph(nodes, "pump>n>a n>b"),
+                {"k": k, "c": c, "m": m}, {"Q": "1.5"}, known, 1.0, at=0.3,
+                rest={"inputs": {"Q": 0.0}})  # fmt: skip
+
+
+def hardening_inertia() -> Kind:
+    """A law in derivative causality behind a gear: J_1 w + p_2/i = T t, with w/i = p_2/J_2 + c p_2^3."""
+    J1, J2, c, i, T = 1.0, 2.0, 0.3, 0.5, -4.0
+    second = bg.I("J_2", law="p_J_2/J_2 + c*p_J_2**3", flow="w_2", priority=-1)
+    nodes = [bg.Se("T", "T"), bg.One("a"), bg.I("J_1", "J_1", flow="w"), bg.TF("g", "1/i"), bg.One("b"),
+             second]  # fmt: skip
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        roots = (np.roots([c, 0.0, 1 / J2, -w2]) for w2 in run["w_2"])
+        p2 = np.array([next(one.real for one in found if abs(one.imag) < 1e-9) for found in roots])
+        return {"w_2": (T * t - p2 / i) / J1 / i}
+
+    return Kind("law in derivative causality, turned round by a search",
+                bond_graph(nodes, "T>a>J_1 a>g>b>J_2"), {"J_1": J1, "J_2": J2, "c": c, "i": i},
+                {"T": f"{T}"}, known, 1.0, at=0.5, rest={"inputs": {"T": 0.0}})  # fmt: skip
+
+
+SEARCHED = (unlike_springs, hardening_inertia)
