@@ -7,14 +7,13 @@ from typing import Any
 import networkx as nx
 
 from bondgraph.causality.causal_graph import CausalGraph
+from bondgraph.causality.freed import fewest_turned, storages_freed, wanting
 from bondgraph.causality.record import Contradiction, Reason
 from bondgraph.causality.regularity import regular_ports
 from bondgraph.causality.signals import causal_equations, causal_groups, loop_rows
 from bondgraph.causality.stories import contradiction_story
 from bondgraph.causality.strokes import StrokeSearch
 from bondgraph.causality.vanishing import elements_in, generic, told
-from bondgraph.declare.elements import Element
-from bondgraph.declare.inverting import with_inverse
 from bondgraph.declare.validate import validate, with_elements
 from bondgraph.errors import AlgebraicLoopError, BondGraphError, CausalityError
 
@@ -29,44 +28,29 @@ def assign_causality(graph: Any) -> CausalGraph:
     switches and linear resistances; what is left. Accepts a declared or a validated graph.
 
     Raises `CausalityError` when sources and fixed ports contradict each other, `AlgebraicLoopError`
-    when the structure is singular under every causality. Where nonlinear storages contradict each other,
-    those whose laws can be turned round may have derivative causality. Both are genuine: a graph is
+    when the structure is singular under every causality. Where laws contradict each other, those that can
+    be turned round are: of storages, which then may have derivative causality, and of resistances, these
+    also where they impose what a storage keeps. Both are genuine: a graph is
     refused only if the determinant of its bond equations vanishes identically. A switch has one causality
     for all of its modes: it gives zero in one, and in the other whatever keeps at zero what it receives.
     """
     checked = validate(graph)
     try:
-        return _assigned(checked)
+        found = _assigned(checked)
     except AlgebraicLoopError as error:
         raise AlgebraicLoopError(f"{error}{_vanishing(checked)}") from None
     except CausalityError as error:
-        turned = _with_inverses(checked)
-        found = _freed(with_elements(checked, turned)) if turned else None
-        if found is None:
-            raise CausalityError(f"{error}{_wanting(checked, str(error), turned)}") from None
-        return found
+        turned = storages_freed(checked)
+        freed = with_elements(checked, turned)
+        other = (_tried(freed) if turned else None) or fewest_turned(freed, _tried)
+        if other is None:
+            raise CausalityError(f"{error}{wanting(checked, str(error), turned)}") from None
+        return other
+    # A law that imposes what a storage keeps may do with the other causality.
+    return (fewest_turned(checked, _tried, found) if found.derivative else None) or found
 
 
-def _wanting(checked: "nx.DiGraph[Hashable]", story: str, turned: dict[Hashable, Element]) -> str:
-    """The way out where a story names a nonlinear storage whose law was not turned round."""
-    for name, element in elements_in(checked).items():
-        nonlinear = element.kind.stores and element.law is not None and element.gives is not None
-        if nonlinear and name not in turned and repr(name) in story:
-            return f"; or give {name!r} the inverse of its law, with which it goes either way"
-    return ""
-
-
-def _with_inverses(checked: "nx.DiGraph[Hashable]") -> dict[Hashable, Element]:
-    """The storages whose laws have inverses that nobody declared."""
-    found: dict[Hashable, Element] = {}
-    for name, element in elements_in(checked).items():
-        turned = with_inverse(element) if element.gives is not None else None
-        if turned is not None:
-            found[name] = turned
-    return found
-
-
-def _freed(graph: "nx.DiGraph[Hashable]") -> CausalGraph | None:
+def _tried(graph: "nx.DiGraph[Hashable]") -> CausalGraph | None:
     """The graph whose laws go either way, if that resolves what contradicted."""
     try:
         return _assigned(graph)

@@ -1,4 +1,4 @@
-"""Laws of storages turned round: the state as a function of what the law gives."""
+"""Laws turned round: a storage's state, or what a resistance receives, as a function of what it gives."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -6,7 +6,8 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from bondgraph.declare.elements import Element
+from bondgraph.algebra.expressions import TIME
+from bondgraph.declare.elements import OTHER, Element
 from bondgraph.declare.fields import inverts
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.inverses.inverse import inverse_of
@@ -40,12 +41,38 @@ def with_inverse(element: Element) -> Element | None:
     law, given = element.law, element.co_energy
     if not isinstance(law, ExpressionLaw) or law.state is None or given is None:
         return None
-    found = _undone(law.expression, law.state, given)
-    if found is None or not inverts(law.expression.xreplace({law.state: found}), given):
-        found = inverse_of(law.expression, law.state, given)
-    if found is None:
+    found = _inverse(law.expression, law.state, given)
+    return None if found is None else replace(element, inverse=found, gives=None)
+
+
+def flipped(element: Element) -> Element | None:
+    """The resistance that gives what its law receives; None where no inverse of its law is found.
+
+    >>> from bondgraph.declare.elements import R
+    >>> from bondgraph.declare.declared import elements_of
+    >>> damper, = elements_of(*R("damper", law="b*sinh(f_damper)")).values()
+    >>> flipped(damper).gives, flipped(damper).law.expression
+    ('flow', asinh(e_damper/b))
+    """
+    law, given, received = element.law, element.given, element.received
+    if not (element.kind.resists and isinstance(law, ExpressionLaw) and element.owner is None):
         return None
-    return replace(element, inverse=found, gives=None)
+    if element.gives is None or given is None or received is None:
+        return None
+    found = _inverse(law.expression, received, given)
+    if found is None or TIME in found.free_symbols:
+        return None
+    return replace(element, law=ExpressionLaw(found), gives=OTHER[element.gives])
+
+
+def _inverse(law: sp.Expr, name: sp.Symbol, value: sp.Expr) -> sp.Expr | None:
+    """What is undone step by step, or else searched."""
+    if name not in law.free_symbols:
+        return None
+    found = _undone(law, name, value)
+    if found is None or not inverts(law.xreplace({name: found}), value):
+        found = inverse_of(law, name, value)
+    return found
 
 
 def _undone(law: sp.Expr, state: sp.Symbol, value: sp.Expr) -> sp.Expr | None:

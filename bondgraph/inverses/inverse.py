@@ -95,6 +95,20 @@ class Inverse(Called):
         """Of the value and the parameters."""
         return self.turning.solver()
 
+    @property
+    def is_number(self) -> bool:
+        """Whether it has a value: not where the law never comes to that."""
+        return super().is_number and self.evalf().is_Float
+
+    def _eval_evalf(self, prec: int) -> sp.Expr | None:
+        found = super()._eval_evalf(prec)
+        return None if found is sp.nan else found
+
+    @property
+    def needed(self) -> tuple[sp.Expr, ...]:
+        """What has to be positive for the law to go one way."""
+        return tuple(map(self._there, self.turning.shown.positive))
+
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         """The law's slope below: one, or what a parameter changes the law by with the other sign."""
         slope = self._there(self.turning.shown.slope)

@@ -40,11 +40,11 @@ def rising(law: sp.Expr, name: sp.Symbol) -> Rising | None:
     """
     real = {one: sp.Dummy(one.name, real=True) for one in law.free_symbols}
     plain = {dummy: one for one, dummy in real.items()}
-    x = real[name]
+    x = real.get(name, sp.Dummy(real=True))
     shown = law.xreplace(real)
-    slope = _of_tanh(_of_abs(sp.diff(shown, x)))
+    slope = _of_abs(sp.diff(shown, x))
     signs = _Signs(x, _domain(shown, x))
-    if slope.has(*CORNERED) or signs.facts is None or abs(signs.of(slope) or 0) < 2:
+    if slope.has(*CORNERED) or signs.facts is None or abs(signs.of(_of_tanh(slope)) or 0) < 2:
         return None
     needed = sorted((plain[one] for one in signs.needed), key=str)
     return Rising(

@@ -4,89 +4,81 @@ Generated modules hold this text, and C the same in model_search.c: equal steps,
 """
 
 import math
+import struct
 from collections.abc import Callable, Sequence
 
 Sloped = Callable[[float], Sequence[float]]
 """From a place to a law's value and slope there, then to what is positive in its domain."""
 
-MOST = 1200
-"""A double is found between any two others by fewer halvings."""
+MOST = 200
+"""Halving the doubles between two places takes 64 steps, and no two of Newton's go between as many."""
+
+POWERS = 1000
+"""So many powers of two are tried for a place to begin at."""
 
 LEAST = 2.0**-52
 """A relative distance that rounding alone may make."""
+
+
+OVER = 8.0
+"""So many times that far a step goes that is to pass the answer."""
 
 
 def searched(law: Sloped, value: float) -> float:
     """The place where the law has this value; not a number where it has it nowhere.
 
     The search begins at zero or, where the law has no value there, at the first power of two that it has
-    one at. It goes on by doubled steps, halved where the law ends, until two places hold the answer; then by
-    Newton's steps, halving the distance between these wherever a step would leave them or hardly shorten it.
+    one at. From there to the end of all numbers, what is outside the law's domain counts as past the answer:
+    Newton's steps lead there, and where a step would leave what holds the answer, or is more than a quarter
+    of the last, the doubles in between are halved.
 
     >>> searched(lambda x: (x + x**3, 1 + 3*x**2), 10.0)
     2.0
     >>> searched(lambda x: (math.tanh(x), 1 - math.tanh(x)**2), 2.0)
     nan
     """
-    near = _begun(law)
-    off, slope = _off(law, near, value)
-    if off == 0.0 or math.isnan(off):
-        return near if off == 0.0 else math.nan
-    way = math.copysign(1.0, slope) * math.copysign(1.0, -off)
-    step, beyond = abs(off / slope) if slope else math.inf, math.nan
-    if not 0.0 < step < math.inf:
-        step = 1.0
+    x = near = beginning(law)
+    off, slope = off_at(law, near, value)
+    if not math.isfinite(off):
+        return math.nan
+    below, rises, there = off < 0.0, slope > 0.0, False
+    far = math.copysign(math.inf, 1.0 if rises == below else -1.0)
+    last = math.inf
     for _ in range(MOST):
-        far = near + way * step
-        if far == near or math.isinf(far):
-            return math.nan
-        there, slope = _off(law, far, value)
-        if math.isnan(there):
-            beyond = far
-        elif (there > 0.0) != (off > 0.0):
-            return _between(law, value, near, far) if there else far
+        if abs(off) <= LEAST * abs(value):
+            return x
+        move = -off / slope if slope != 0.0 else math.inf
+        onto = x + move
+        if abs(move) <= LEAST * abs(x):
+            if there:
+                return onto
+            # Close by what holds the answer it has to be shown that the law comes to it.
+            onto = x + math.copysign(OVER * LEAST * x, move)
+        if not min(near, far) < onto < max(near, far) or 4.0 * abs(move) > last:
+            onto = middle(near, far)
+            if onto in (near, far):
+                return onto if there else math.nan
+        x, last = onto, abs(onto - x)
+        off, slope = off_at(law, x, value)
+        if not math.isnan(off) and (off < 0.0) == below:
+            near = x
         else:
-            near, off, step = far, there, 2.0 * step
-        if not math.isnan(beyond):
-            step = min(step, 0.5 * abs(beyond - near))
+            far, there = x, there or not math.isnan(off)
     return math.nan
 
 
-def _between(law: Sloped, value: float, near: float, far: float) -> float:
-    """The answer between a place where the law is not there yet and one where it is past."""
-    x, last = far, abs(far - near)
-    before = _off(law, near, value)[0] > 0.0
-    for _ in range(MOST):
-        off, slope = _off(law, x, value)
-        if abs(off) <= LEAST * abs(value):
-            return x
-        if (off > 0.0) == before:
-            near = x
-        else:
-            far = x
-        step = -off / slope if slope else math.inf
-        x_new = x + step
-        if not min(near, far) < x_new < max(near, far) or 2.0 * abs(step) > last:
-            x_new = near + 0.5 * (far - near)
-            step = x_new - x
-        if abs(step) <= LEAST * abs(x_new) or x_new in (near, far):
-            return x_new
-        x, last = x_new, abs(step)
-    return x
-
-
-def _begun(law: Sloped) -> float:
-    """Where the law has a value."""
-    if math.isfinite(_off(law, 0.0, 0.0)[0]):
+def beginning(law: Sloped) -> float:
+    """A place at which the law has a value."""
+    if not math.isnan(off_at(law, 0.0, 0.0)[0]):
         return 0.0
-    for power in range(1000):
+    for power in range(POWERS):
         for place in (2.0**-power, 2.0**power, -(2.0**-power), -(2.0**power)):
-            if math.isfinite(_off(law, place, 0.0)[0]):
+            if not math.isnan(off_at(law, place, 0.0)[0]):
                 return place
     return math.nan
 
 
-def _off(law: Sloped, x: float, value: float) -> tuple[float, float]:
+def off_at(law: Sloped, x: float, value: float) -> tuple[float, float]:
     """How far the law is beyond the value, and its slope; no numbers where it has none."""
     try:
         found, slope, *above = law(x)
@@ -96,3 +88,25 @@ def _off(law: Sloped, x: float, value: float) -> tuple[float, float]:
         # What is complex is not to be compared.
         pass
     return math.nan, math.nan
+
+
+def middle(a: float, b: float) -> float:
+    """The double with as many doubles between it and either; one of both where there is none."""
+    return from_order(half(order_of(a)) + half(order_of(b)))
+
+
+def half(order: int) -> int:
+    """Of an integer, towards zero."""
+    return -(-order // 2) if order < 0 else order // 2
+
+
+def order_of(x: float) -> int:
+    """The number of a double among all, zero having 0."""
+    (bits,) = struct.unpack("<q", struct.pack("<d", abs(x)))
+    return -int(bits) if x < 0.0 else int(bits)
+
+
+def from_order(order: int) -> float:
+    """The double of this number."""
+    (size,) = struct.unpack("<d", struct.pack("<q", abs(order)))
+    return -float(size) if order < 0 else float(size)

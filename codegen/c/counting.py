@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import sympy as sp
 
 from bondgraph.algebra.lookups import Tabled
+from bondgraph.inverses.inverse import Inverse
+from bondgraph.inverses.searching import MOST
 from bondgraph.tables.pieces import pieces
 from codegen.program.records import Block, Program
 from codegen.tuning import TUNING
@@ -91,12 +93,15 @@ def counted(expressions: Iterable[sp.Expr]) -> Count:
     >>> print(counted([x*y + 2*x/y - sp.sin(x)]))
     2 multiplications, 2 additions, 1 divisions, 1 calls
 
-    A comparison, as when a table is halved to find an argument's cell, counts as an addition.
+    A comparison, as when a table is halved to find an argument's cell, counts as an addition. A law that is
+    turned round counts with all the steps that its search may take.
     """
     found = Count()
     for one in expressions:
         for look in one.atoms(Tabled):
             found += _looked_up(look)
+        for inverse in one.atoms(Inverse):
+            found += _searched(inverse)
         for term in sp.Add.make_args(sp.sympify(sp.count_ops(one, visual=True))):
             times, word = term.as_coeff_Mul()
             found += _of(str(word), int(times)) if word != 1 else Count()
@@ -109,6 +114,16 @@ def _looked_up(look: Tabled) -> Count:
     halves = sum((len(knots) + 1).bit_length() for knots in breaks)
     lines = 1 if len(breaks) == 1 else degree + 2
     return Count(2 * lines * (degree + 1), lines * (degree + 1) + halves)
+
+
+def _searched(inverse: Inverse) -> Count:
+    """What turning a law round takes where the search needs all of its steps, from zero on."""
+    once = counted(inverse.turning.evaluated())
+    steps = MOST + 1
+    return Count(
+        steps * once.multiplications, steps * (once.additions + 2), steps * (once.divisions + 1),
+        steps * once.calls,
+    )  # fmt: skip
 
 
 def _of(word: str, times: int) -> Count:

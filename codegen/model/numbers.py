@@ -8,8 +8,10 @@ import sympy as sp
 from bondgraph.algebra.elimination import ResidueRows
 from bondgraph.algebra.exact import FixedRow, rows_of
 from bondgraph.algebra.residues import residues
+from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
+from bondgraph.inverses.inverse import Inverse
 from bondgraph.reduce.resistances import resistive_loops
 from codegen.model.exact_values import at_parameters, residue_rows
 from codegen.model.numpy_backend import compiled
@@ -36,6 +38,7 @@ def numbers(
 def check_values(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
     """Refuse parameters that make a value zero, or a loop or A singular, whatever changes in time."""
     _check_elements(equations, parameters)
+    _check_turned(equations, parameters)
     _check_loops(equations, parameters)
     _check_regular(equations, parameters)
 
@@ -97,6 +100,21 @@ def _check_elements(equations: StateEquations, parameters: Mapping[str, sp.Ratio
                 f"{element.kind} {name!r}: its value {element.value} is zero or infinite at "
                 f"{_listed(element.value, parameters)}"
             )
+
+
+def _check_turned(equations: StateEquations, parameters: Mapping[str, sp.Rational]) -> None:
+    """Refuse parameters at which a law that is turned round by a search may not go one way."""
+    for name, element in equations.elements.items():
+        law = element.law.expression if isinstance(element.law, ExpressionLaw) else None
+        parts = {part for one in (element.inverse, law) if one for part in one.atoms(Inverse)}
+        needed = {factor for part in parts for factor in part.needed}
+        for factor in sorted(needed, key=str):
+            if at_parameters(factor, parameters).is_nonpositive:
+                raise ParameterError(
+                    f"{element.kind} {name!r}: its law is turned round by a search, for which {factor} has "
+                    f"to be positive, and here {_listed(factor, parameters)}; give the inverse of its law, "
+                    "or a law in the other causality"
+                )
 
 
 def _listed(expr: sp.Expr, parameters: Mapping[str, sp.Rational]) -> str:

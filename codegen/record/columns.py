@@ -62,9 +62,15 @@ def _check_finite(times: Array, columns: Mapping[str, Array]) -> None:
     first = {name: int(np.argmax(flags)) for name, flags in wrong.items() if flags.any()}
     if first:
         name = min(first, key=lambda one: first[one])
+        at = first[name]
+        if np.isnan(columns[name][at]):
+            raise SimulationError(
+                f"at t = {times[at]:.9g} {name} has no value: a law that it comes from is asked for one "
+                "where it has none"
+            )
         raise SimulationError(
-            f"at t = {times[first[name]]:.9g} {name} is not finite: it has grown past the largest number "
-            "in double precision; run it for a shorter time, or in larger units"
+            f"at t = {times[at]:.9g} {name} is not finite: it has grown past the largest number in double "
+            "precision; run it for a shorter time, or in larger units"
         )
 
 

@@ -1,15 +1,18 @@
 /* Laws turned round: Newton's method between two places that hold the answer. As
  * bondgraph/inverses/searching.py: equal steps, equal numbers. */
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 #include "model_internal.h"
 
 enum {
-    STEPS = 1200, /* halvings that find a double between any two others */
+    STEPS = 200, /* halving the doubles between two places takes 64, and Newton's no more between */
     POWERS = 1000
 };
 
 static const double LEAST = 0x1p-52; /* a relative distance that rounding alone may make */
+static const double OVER = 8.0;       /* so many times that far a step goes that is to pass */
 
 typedef struct {
     bg_law law;
@@ -27,7 +30,7 @@ static double off_at(const bg_sought *of, double x, double *slope)
     return NAN;
 }
 
-/* Where the law has a value. */
+/* A place at which the law has a value. */
 static double beginning(const bg_sought *of)
 {
     double slope = NAN, off = off_at(of, 0.0, &slope);
@@ -45,58 +48,60 @@ static double beginning(const bg_sought *of)
     return NAN;
 }
 
-/* The answer between a place where the law is not there yet and one where it is past. */
-static double between(const bg_sought *of, double near, double far)
+/* The number of a double among all, zero having 0. */
+static int64_t order_of(double x)
 {
-    double slope = NAN, x = far, last = fabs(far - near);
-    const int before = off_at(of, near, &slope) > 0.0;
-    for (int step = 0; step < STEPS; step++) {
-        const double off = off_at(of, x, &slope);
-        if (fabs(off) <= LEAST * fabs(of->value))
-            return x;
-        if ((off > 0.0) == before)
-            near = x;
-        else
-            far = x;
-        double move = slope != 0.0 ? -off / slope : HUGE_VAL, next = x + move;
-        if (!(fmin(near, far) < next && next < fmax(near, far)) || 2.0 * fabs(move) > last) {
-            next = near + 0.5 * (far - near);
-            move = next - x;
-        }
-        if (fabs(move) <= LEAST * fabs(next) || next == near || next == far)
-            return next;
-        x = next;
-        last = fabs(move);
-    }
-    return x;
+    const double size = fabs(x);
+    int64_t bits = 0;
+    memcpy(&bits, &size, sizeof bits);
+    return x < 0.0 ? -bits : bits;
+}
+
+/* The double with as many doubles between it and either; one of both where there is none. */
+static double middle(double a, double b)
+{
+    const int64_t order = order_of(a) / 2 + order_of(b) / 2;
+    const int64_t bits = order < 0 ? -order : order;
+    double size = 0.0;
+    memcpy(&size, &bits, sizeof size);
+    return order < 0 ? -size : size;
 }
 
 double bg_searched(bg_law law, double value, const double *a)
 {
     const bg_sought of = {law, a, value};
-    double slope = NAN, near = beginning(&of), off = off_at(&of, near, &slope), beyond = NAN;
-    if (off == 0.0 || off != off)
-        return off == 0.0 ? near : NAN;
-    const double way = (slope < 0.0) == (off < 0.0) ? -1.0 : 1.0;
-    double move = slope != 0.0 ? fabs(off / slope) : 0.0;
-    if (!(move > 0.0 && move - move == 0.0))
-        move = 1.0;
+    double near = beginning(&of), x = near, slope = NAN, off = off_at(&of, near, &slope);
+    const int below = off < 0.0, rises = slope > 0.0;
+    double far = rises == below ? HUGE_VAL : -HUGE_VAL, last = HUGE_VAL;
+    int there = 0;
+    if (off - off != 0.0)
+        return NAN;
     for (int step = 0; step < STEPS; step++) {
-        const double far = near + way * move;
-        if (far == near || far - far != 0.0)
-            return NAN;
-        const double there = off_at(&of, far, &slope);
-        if (there != there)
-            beyond = far;
-        else if ((there > 0.0) != (off > 0.0))
-            return there != 0.0 ? between(&of, near, far) : far;
-        else {
-            near = far;
-            off = there;
-            move = 2.0 * move;
+        if (fabs(off) <= LEAST * fabs(value))
+            return x;
+        const double move = slope != 0.0 ? -off / slope : HUGE_VAL;
+        double onto = x + move;
+        if (fabs(move) <= LEAST * fabs(x)) {
+            if (there)
+                return onto;
+            /* Close by what holds the answer it has to be shown that the law comes to it. */
+            onto = x + copysign(OVER * LEAST * x, move);
         }
-        if (beyond == beyond)
-            move = fmin(move, 0.5 * fabs(beyond - near));
+        const int inside = fmin(near, far) < onto && onto < fmax(near, far);
+        if (!inside || 4.0 * fabs(move) > last) {
+            onto = middle(near, far);
+            if (onto == near || onto == far)
+                return there ? onto : NAN;
+        }
+        last = fabs(onto - x);
+        x = onto;
+        off = off_at(&of, x, &slope);
+        if (off == off && (off < 0.0) == below) {
+            near = x;
+        } else {
+            far = x;
+            there = there || off == off;
+        }
     }
     return NAN;
 }

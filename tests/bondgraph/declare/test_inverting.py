@@ -38,7 +38,7 @@ def test_a_law_of_one_place_is_turned_round(law: str, numbers: dict, ends: tuple
 @pytest.mark.parametrize(
     "law",
     [
-        "q_x + q_x**3",
+        "q_x - q_x**3",
         "a*q_x**2",
         "q_x**3",
         "sqrt(q_x)",
@@ -76,9 +76,9 @@ def test_two_accumulators_on_one_node_share_what_is_pumped(backend: str) -> None
 
 def test_laws_that_are_not_turned_round_are_refused_by_name() -> None:
     with pytest.raises(bg.BondGraphError, match="the law at 'b' drives a dependent storage"):
-        bg.derive(_bladders("q_b + q_b**3"))
-    both = _bladders("q_b + q_b**3")
-    both.nodes["a"]["law"] = "q_a + q_a**3"
+        bg.derive(_bladders("q_b**3"))
+    both = _bladders("q_b**3")
+    both.nodes["a"]["law"] = "q_a**3"
     with pytest.raises(bg.CausalityError, match="; or give 'a' the inverse of its law, with which"):
         bg.derive(both)
 

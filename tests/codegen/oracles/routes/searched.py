@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 
 import numpy as np
-from oracles.routes.kind import Array, Kind
 from references.build import bond_graph
 from scipy.optimize import brentq
 
 import bondgraph as bg
+from oracles.routes.kind import Array, Kind
 
 
 def unlike_springs() -> Kind:
