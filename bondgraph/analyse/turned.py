@@ -13,6 +13,7 @@ from bondgraph.declare.laws import DryFriction
 from bondgraph.derive import derive_again
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError
+from bondgraph.reduce.inverses import by_inverse
 from bondgraph.reduce.structure import Port
 
 
@@ -37,10 +38,11 @@ def turned(equations: StateEquations, laws: object) -> StateEquations:
     ((), (F,))
     """
     elements = _elements(equations, laws)
-    if not elements:
+    held = _held(equations, laws)
+    if not elements and not held:
         return equations
-    found = derive_again(equations, elements)
-    for factor in _divisors_that_vanish(found, equations):
+    found = derive_again(equations, {**held, **elements})
+    for factor in _divisors_that_vanish(found, equations) if elements else ():
         names = ", ".join(map(repr, elements))
         raise DependentSourceError(
             f"the dry friction at {names} drives a dependent storage, so it is to have its other causality; "
@@ -67,6 +69,20 @@ def _elements(equations: StateEquations, laws: object) -> dict[Hashable, Element
         for port in driving
         if port.element.name in found
     }
+
+
+def _held(equations: StateEquations, laws: object) -> dict[Hashable, Element]:
+    """The nonlinear storages that friction put over open ports holds, by their inverses."""
+    if not isinstance(laws, Mapping):
+        return {}
+    structure = equations.reduction.structure
+    found: dict[Hashable, Element] = {}
+    for port, row in zip(structure.ports, structure.rows, strict=True):
+        names = (port.element.name, port.given, port.given.name)
+        law = next((laws[name] for name in names if name in laws), None)
+        if isinstance(law, DryFriction):
+            found |= by_inverse(structure, row)
+    return found
 
 
 def driving_ports(equations: StateEquations) -> tuple[Port, ...]:

@@ -13,6 +13,9 @@ Sloped = Callable[[float], Sequence[float]]
 MOST = 200
 """Halving the doubles between two places takes 64 steps, and no two of Newton's go between as many."""
 
+FREE = 8
+"""So many of Newton's steps may be as long as they come."""
+
 POWERS = 1000
 """So many powers of two are tried for a place to begin at."""
 
@@ -29,8 +32,8 @@ def searched(law: Sloped, value: float) -> float:
 
     The search begins at zero or, where the law has no value there, at the first power of two that it has
     one at. From there to the end of all numbers, what is outside the law's domain counts as past the answer:
-    Newton's steps lead there, and where a step would leave what holds the answer, or is more than a quarter
-    of the last, the doubles in between are halved.
+    Newton's steps lead there, and where a step would leave what holds the answer, or after the first few is
+    more than a quarter of the last, the doubles in between are halved.
 
     >>> searched(lambda x: (x + x**3, 1 + 3*x**2), 10.0)
     2.0
@@ -44,7 +47,7 @@ def searched(law: Sloped, value: float) -> float:
     below, rises, there = off < 0.0, slope > 0.0, False
     far = math.copysign(math.inf, 1.0 if rises == below else -1.0)
     last = math.inf
-    for _ in range(MOST):
+    for step in range(MOST):
         if abs(off) <= LEAST * abs(value):
             return x
         move = -off / slope if slope != 0.0 else math.inf
@@ -54,7 +57,7 @@ def searched(law: Sloped, value: float) -> float:
                 return onto
             # Close by what holds the answer it has to be shown that the law comes to it.
             onto = x + math.copysign(OVER * LEAST * x, move)
-        if not min(near, far) < onto < max(near, far) or 4.0 * abs(move) > last:
+        if not min(near, far) < onto < max(near, far) or (step > FREE and 4.0 * abs(move) > last):
             onto = middle(near, far)
             if onto in (near, far):
                 return onto if there else math.nan

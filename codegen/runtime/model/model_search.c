@@ -8,6 +8,7 @@
 
 enum {
     STEPS = 200, /* halving the doubles between two places takes 64, and Newton's no more between */
+    FREE = 8,    /* of Newton's steps that may be as long as they come */
     POWERS = 1000
 };
 
@@ -88,7 +89,7 @@ double bg_searched(bg_law law, double value, const double *a)
             onto = x + copysign(OVER * LEAST * x, move);
         }
         const int inside = fmin(near, far) < onto && onto < fmax(near, far);
-        if (!inside || 4.0 * fabs(move) > last) {
+        if (!inside || (step > FREE && 4.0 * fabs(move) > last)) {
             onto = middle(near, far);
             if (onto == near || onto == far)
                 return there ? onto : NAN;

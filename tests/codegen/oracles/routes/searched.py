@@ -47,4 +47,20 @@ def hardening_inertia() -> Kind:
                 {"T": f"{T}"}, known, 1.0, at=0.5, rest={"inputs": {"T": 0.0}})  # fmt: skip
 
 
-SEARCHED = (unlike_springs, hardening_inertia)
+def rubbing_nonlinear() -> Kind:
+    """Friction of 3 on a mass whose law bends: p' = 3 t - 3 from 1, at rest from 1 - 1/sqrt(3) to 1."""
+    m, c, p0 = 0.5, 0.4, 1.0
+    nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", law="p_m/m + c*p_m**3", flow="v"),
+             bg.R("rub", effort="f", flow="slip_v", law=bg.DryFriction("N"))]  # fmt: skip
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        slowing = np.where(t < 1 - 3**-0.5, p0 - 3 * t + 1.5 * t**2, 0.0)
+        p = np.where(t > 1, 1.5 * (t - 1) ** 2, slowing)
+        return {"v": p / m + c * p**3}
+
+    return Kind("dry friction on a nonlinear inertia", bond_graph(nodes, "push>n>m n>rub"),
+                {"m": m, "c": c, "N": 3.0}, {"P": "ramp(0, 3)"}, known, 1.6, {"v": p0 / m + c * p0**3},
+                at=0.8, mode={"rub": "stick"}, rest={"inputs": {"P": 2.0}})  # fmt: skip
+
+
+SEARCHED = (unlike_springs, hardening_inertia, rubbing_nonlinear)
