@@ -19,6 +19,7 @@ from bondgraph.causality.assign import assign_causality
 from bondgraph.declare.elements import Element
 from bondgraph.declare.validate import graph_of
 from bondgraph.equations import StateEquations
+from bondgraph.reduce.impulses import check_impulses
 from bondgraph.reduce.inertia import check_regular, inertia
 from bondgraph.reduce.inverses import by_inverses
 from bondgraph.reduce.junction import junction_structure
@@ -125,6 +126,7 @@ def _equations(
     check_starts(reduction)
     switches = switch_ports(reduction, signals)
     check_switches(switches, reduction.inputs, E, readings)
+    check_impulses(switches, reduction, A, readings)
     check_resets(switches, reduction)
     n, m = len(states), len(reduction.inputs)
     parts: list[tuple[Sequence[FixedRow], int]] = [

@@ -6,6 +6,7 @@ from types import MappingProxyType
 
 from bondgraph.declare.elements import Element
 from bondgraph.declare.inverting import with_inverse
+from bondgraph.declare.laws import DryFriction
 from bondgraph.reduce.structure import JunctionStructure, Port
 
 
@@ -13,7 +14,7 @@ def by_inverses(structure: JunctionStructure) -> JunctionStructure:
     """The structure whose nonlinear states that are held to something are what their laws give.
 
     Of ``e = law(q)`` the state is e, with ``q = inverse(e)`` and ``inverse'(e) e' = f``: a dependent storage
-    that it drives moves with e', and friction or a switch that holds it binds e, which a law of q would not
+    that it drives moves with e', and friction that holds it binds e, which a law of q would not
     tell. Laws without an inverse stay, and are refused where that is needed.
     """
     ports, rows = structure.ports, structure.rows
@@ -39,6 +40,6 @@ def by_inverse(structure: JunctionStructure, held: Iterable[int]) -> dict[Hashab
 
 
 def _holds(port: Port) -> bool:
-    """Whether what a port receives is bound at times: by a dependent storage, friction or a switch."""
+    """Whether what a port receives is bound at times: by a dependent storage or friction."""
     dependent = port.element.kind.stores and not port.integral and port.element.gives is None
-    return dependent or port.element.lets_go
+    return dependent or isinstance(port.element.law, DryFriction)
