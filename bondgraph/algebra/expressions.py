@@ -11,6 +11,7 @@ from bondgraph.algebra.functions import ALLOWED, FUNCTIONS, PARTS
 from bondgraph.algebra.lookups import Handle, Look
 from bondgraph.algebra.reading import Functions, read
 from bondgraph.algebra.residues import residues
+from bondgraph.algebra.whole import whole
 from bondgraph.errors import ExpressionError, TableError, shortened
 from bondgraph.tables.record import Sampled
 
@@ -42,7 +43,7 @@ def expression(value: object, where: str, tables: Iterable[Sampled] = ()) -> sp.
         result = read(value, where, callable_in_text(tables, where))
     elif isinstance(value, sp.Expr):
         floats = value.atoms(sp.Float)
-        result = (
+        result = whole(
             value.xreplace({part: decimal(part, where) for part in floats}) if floats else value
         )
     elif isinstance(value, Real | sp.Number) and not isinstance(value, bool):

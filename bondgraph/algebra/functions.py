@@ -5,6 +5,8 @@ from typing import Any
 
 import sympy as sp
 
+from bondgraph.algebra.whole import Floor, remainder
+
 
 def hypotenuse(a: sp.Expr, b: sp.Expr) -> sp.Expr:
     """The longest side of a triangle with a right angle between sides ``a`` and ``b``."""
@@ -31,6 +33,9 @@ FUNCTIONS: dict[str, tuple[int, int, Callable[..., Any]]] = {
     "Abs": (1, 1, sp.Abs),
     "sign": (1, 1, sp.sign),
     "min": (2, 16, sp.Min),
+    "floor": (1, 1, Floor),
+    "ceil": (1, 1, lambda x: -Floor(-x)),
+    "mod": (2, 2, remainder),
     "max": (2, 16, sp.Max),
     "Min": (2, 16, sp.Min),
     "Max": (2, 16, sp.Max),

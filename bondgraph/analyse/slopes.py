@@ -9,6 +9,7 @@ from bondgraph.algebra.atoms import normal
 from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.algebra.residues import is_zero
 from bondgraph.algebra.table_corners import check_tables
+from bondgraph.algebra.whole import Floor
 from bondgraph.analyse.unknowns import still
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.errors import SignalError
@@ -125,6 +126,7 @@ def _switches(expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
     for expr in expressions:
         found |= {part.args[0] for part in expr.atoms(sp.Heaviside, sp.DiracDelta, sp.sign, sp.Abs)}
         found |= {part.lhs - part.rhs for part in expr.atoms(sp.core.relational.Relational)}
+        found |= {part.crossing for part in expr.atoms(Floor)}
         for part in expr.atoms(sp.Max, sp.Min):
             found |= {a - b for a in part.args for b in part.args if str(a) < str(b)}
     return sorted(found, key=str)
@@ -199,6 +201,9 @@ def _on_sides(expr: sp.Expr, sides: Mapping[sp.Expr, int]) -> sp.Expr:
                     sp.sign: sp.Integer(side), sp.Heaviside: sp.Rational(side + 1, 2),
                     sp.Abs: side * switch,
                 }.get(part.func, part)  # fmt: skip
+        for part in expr.atoms(Floor):
+            if part.crossing == switch:
+                chosen[part] = part.on_side(part.args[0], side)
         for part in expr.atoms(sp.core.relational.Relational):
             if part.lhs - part.rhs == switch:
                 chosen[part] = sp.true if part.func(sp.Integer(side), 0) else sp.false

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from bondgraph.algebra.whole import Floor
+
 NEVER_NEGATIVE = (sp.exp, sp.cosh)
 ODD = (sp.sinh, sp.tanh, sp.atan, sp.asinh)
 """Functions that have the sign of their argument."""
@@ -44,7 +46,8 @@ def rising(law: sp.Expr, name: sp.Symbol) -> Rising | None:
     shown = law.xreplace(real)
     slope = _of_abs(sp.diff(shown, x))
     signs = _Signs(x, _domain(shown, x))
-    if slope.has(*CORNERED) or signs.facts is None or abs(signs.of(_of_tanh(slope)) or 0) < 2:
+    cornered = slope.has(*CORNERED) or law.has(Floor)
+    if cornered or signs.facts is None or abs(signs.of(_of_tanh(slope)) or 0) < 2:
         return None
     needed = sorted((plain[one] for one in signs.needed), key=str)
     return Rising(

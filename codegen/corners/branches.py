@@ -7,6 +7,7 @@ import sympy as sp
 from sympy.core.relational import Ge, Gt, Le, Lt
 
 from bondgraph.algebra.lookups import Look
+from bondgraph.algebra.whole import Floor
 from bondgraph.tables.looking import FREE
 from codegen.corners.tabled import Edge, EdgeOn, LookOn, region_of, signs_of
 
@@ -71,6 +72,10 @@ class Sided:
             return self._extreme(expr)
         if isinstance(expr, Look):
             return self._look(expr)
+        if isinstance(expr, Floor):
+            inside = self.put(expr.args[0])
+            above, below = (expr.on_side(inside, side) for side in (1, -1))
+            return self._at(expr.size, above, below, Floor(inside))
         if isinstance(expr, Edge):
             region = self._region(expr.all_bits)
             return EdgeOn(*expr.args[:3], self.put(expr.args[3]), region)
@@ -147,5 +152,5 @@ def _either(side: sp.Expr, above: sp.Expr, below: sp.Expr) -> sp.Expr:
     return Branch(-side, below, above) if (-side).is_Symbol else Branch(side, above, below)
 
 
-KINDS = (sp.Abs, sp.sign, sp.Heaviside, sp.Max, sp.Min, sp.Piecewise, Look, Edge)
+KINDS = (sp.Abs, sp.sign, sp.Heaviside, sp.Max, sp.Min, sp.Piecewise, Floor, Look, Edge)
 """What has corners or jumps."""

@@ -6,6 +6,7 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.lookups import Look
+from bondgraph.algebra.whole import Floor
 from codegen.corners.tabled import signs_of
 from codegen.program.records import Block, Program
 
@@ -61,6 +62,8 @@ def _whole(code: Block) -> Iterator[sp.Expr]:
 def _arguments(expr: sp.Expr) -> Iterator[sp.Expr]:
     for part in sorted(expr.atoms(sp.Abs, sp.sign, sp.Heaviside), key=sp.default_sort_key):
         yield part.args[0]
+    for part in sorted(expr.atoms(Floor), key=sp.default_sort_key):
+        yield part.size
     for part in sorted(expr.atoms(sp.Min, sp.Max), key=sp.default_sort_key):
         choices = sorted(part.args, key=sp.default_sort_key)
         if len(choices) <= MOST_CHOICES:
