@@ -129,6 +129,7 @@ class Asked:
     parameters: Mapping[str, float]
     laws: Mapping[str, Any]
     initial: Mapping[str, float]
+    equilibrium: bool
     inputs: Mapping[str, Any]
     until: float | None
     sample: float | None
@@ -140,6 +141,8 @@ _RUN = (
     scenario,
     parameters,
     assigned("--initial", "initial", START, "A state at the start; a file's others start at 0."),
+    click.option("--equilibrium", is_flag=True,
+                 help="Begin where all states rest under the inputs at the start."),
     assigned(
         "--input", "inputs", SIGNAL,
         "A number, or step(time, value), ramp(time, slope), sine(amplitude, frequency), "

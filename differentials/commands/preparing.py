@@ -35,6 +35,25 @@ def prepare(subject: Subject, asked: Asked, free: Collection[str] = ()) -> Prepa
 
     Raises `BondGraphError` for names and numbers that don't fit it.
     """
+    ready = _prepared(subject, asked, free)
+    return _at_rest(ready, asked, free) if asked.equilibrium else ready
+
+
+def _at_rest(ready: Prepared, asked: Asked, free: Collection[str]) -> Prepared:
+    """The same from where all states rest under the inputs at the start."""
+    if asked.initial:
+        raise bg.SignalError("--equilibrium tells all states at the start; leave --initial out")
+    if free:
+        raise bg.SignalError(
+            "--equilibrium: each run of a sweep rests elsewhere; give --initial, or let the runs begin "
+            "with an input that is held for a while"
+        )
+    simulator = codegen.simulator(ready.equations, ready.parameters, ready.laws)
+    point = codegen.trim(simulator, ready.inputs)
+    return replace(ready, initial={name: point[name] for name in simulator.states})
+
+
+def _prepared(subject: Subject, asked: Asked, free: Collection[str]) -> Prepared:
     if subject.differential is not None:
         return _from_catalog(subject, asked)
     _refuse_catalog_options(subject, asked)

@@ -61,6 +61,6 @@ def test_a_side_is_the_same_and_goes_on_beyond(side: int) -> None:
 def test_a_law_is_linearised_between_its_jumps_only() -> None:
     nodes = [bg.Se("F", "F"), bg.One("n"), bg.I("m", 1, flow="v"), bg.R("r", law="2*v + floor(v)")]
     equations = bg.derive(bond_graph(nodes, "F>n>m n>r"))
-    assert sp.Matrix([[-2]]) == bg.linearize(equations, at={"v": 0.6}).A
+    assert sp.Matrix([[-2]]) == bg.linearize(equations, at={"v": 0.6}).J
     with pytest.raises(bg.SignalError, match="corner at the operating point"):
         bg.linearize(equations, at={"v": 1})

@@ -119,6 +119,16 @@ def test_friction_over_a_port_on_a_spring_makes_the_spring_a_state(data: Data) -
     assert [round(event["time"], 9) for event in found["events"]] == [0.1]
 
 
+def test_a_file_begins_where_it_rests(call: Call, data: Data) -> None:
+    """A weight of 8 on a spring of 800: 0.01 below, where no step of the input disturbs it."""
+    found = data(*OSCILLATOR, "--equilibrium", "--input", "F=8")
+    assert found["final"]["v"] == pytest.approx(0, abs=1e-9)
+    assert found["final"]["F_k"] == pytest.approx(8, abs=1e-9)
+    refused = call(*OSCILLATOR, "--equilibrium", "--initial", "v=1", "--input", "F=8")
+    assert refused.exit_code != 0
+    assert "leave --initial out" in refused.output
+
+
 def test_a_file_is_drawn_too(call: Call, tmp_path: Path) -> None:
     assert call(*OSCILLATOR, "--initial", "v=1", "--input", "F=0").exit_code == 0
     assert (tmp_path / "out" / "oscillator_run.png").read_bytes().startswith(b"\x89PNG")
