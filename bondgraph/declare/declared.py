@@ -1,6 +1,6 @@
 """Nodes as checked elements: which kind of element the attributes of a node declare."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -49,14 +49,35 @@ def elements_of(name: Hashable, attributes: Mapping[str, Any]) -> dict[Hashable,
     kind = kind_of(attributes, where)
     check_keys(kind, attributes, where)
     ports = fields.port_names(attributes["ports"], where)
-    if attributes.get("start") is not None:
-        raise StructureError(
-            f"{where}: with ports, give its states a start in the run, by their names"
-        )
+    starts = _starts(attributes, ports, where)
     build = _energy_field if attributes.get("energy") is not None else _matrix_field
     if kind.resists and isinstance(attributes.get("law"), Mapping):
         build = _law_field
-    return {element.name: element for element in build(name, kind, ports, attributes)}
+    made = build(name, kind, ports, attributes)
+    if starts:
+        made = [replace(one, start=starts.get(port)) for one, port in zip(made, ports, strict=True)]
+    return {element.name: element for element in made}
+
+
+def _starts(
+    attributes: Mapping[str, Any], ports: tuple[str, ...], where: str
+) -> dict[str, sp.Expr | None]:
+    """What the states of a field's ports begin with, by the ports."""
+    given = attributes.get("start")
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
+        raise StructureError(f"{where}: with ports, start maps ports to values, not {given!r}")
+    _check_ports(given, ports, f"{where}, start")
+    return {port: start_of({"start": value}, f"{where} at {port}") for port, value in given.items()}
+
+
+def _check_ports(given: Iterable[str], ports: tuple[str, ...], where: str) -> None:
+    for port in given:
+        if port not in ports:
+            raise StructureError(
+                f"{where}: there is no port {port!r}{nearest(str(port), ports)}; there are {', '.join(ports)}"
+            )
 
 
 def _matrix_field(
@@ -119,12 +140,7 @@ def _law_field(
             f"{where}: with ports, gives maps ports to effort or flow, not {gives!r}"
         )
     for key, told in (("law", laws), ("gives", gives)):
-        for port in told:
-            if port not in ports:
-                raise StructureError(
-                    f"{where}, {key}: there is no port {port!r}{nearest(str(port), ports)}; there are "
-                    f"{', '.join(ports)}"
-                )
+        _check_ports(told, ports, f"{where}, {key}")
     if missing := [port for port in ports if laws.get(port) is None]:
         raise StructureError(f"{where}: no law at port {missing[0]!r}; each port needs one")
     made = []

@@ -152,7 +152,8 @@ def I(  # noqa: E743
     The higher ``priority`` is tried first for integral causality. ``start=``: what its state is where a run
     begins, unless that tells another: the flow, with a law the momentum. ``energy=``: a function of
     ``p_<name>`` whose slope is the law. ``ports=``: names of several ports, each bond's given as ``port=`` on
-    the edge; ``value`` is then their symmetric matrix, or ``energy`` a function of all ``p_<name>_<port>``.
+    the edge; ``value`` is then their symmetric matrix, or ``energy`` a function of all ``p_<name>_<port>``,
+    and ``start`` maps ports to what their states are.
     """
     return _node(name, Kind.I, value=value, flow=flow, law=law, priority=priority, **more)
 

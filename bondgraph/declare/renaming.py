@@ -120,9 +120,9 @@ def renamed(name: Hashable, attributes: Mapping[str, Any], names: Names) -> dict
 def _mapped_at(
     attributes: Mapping[str, Any], key: str, change: Callable[[sp.Expr], sp.Expr], where: str
 ) -> Any:
-    """An attribute with every expression in it changed; of laws by ports, the ports stay."""
+    """An attribute with every expression in it changed; of laws and starts by ports, the ports stay."""
     value = attributes.get(key)
-    if key == "law" and isinstance(value, Mapping):
+    if key in ("law", "start") and isinstance(value, Mapping):
         return {port: _mapped(one, change, f"{where} at {port}") for port, one in value.items()}
     return _mapped(value, change, where)
 

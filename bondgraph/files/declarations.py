@@ -78,7 +78,7 @@ def _plain(key: str, value: Any, kind: object, where: str) -> Any:
     """One attribute as a text, a number or, where that is not enough, a list or an object of such."""
     if key == "priority":
         return _priority(value, where)
-    if key == "law" and isinstance(value, Mapping):
+    if key in ("law", "start") and isinstance(value, Mapping):
         told = {_name(port, where): _law(one, kind, where) for port, one in value.items()}
         return dict(sorted(told.items()))
     if key == "law":

@@ -19,7 +19,7 @@ _INTEGER = re.compile(r"-?[0-9]{1,500}")
 _NO_XML = re.compile("[^\t\n\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Characters that XML cannot hold, and the carriage return, which it turns into another."""
 
-_NESTED = frozenset({"value", "law", "ports", "effort", "flow", "gives", "reset"})
+_NESTED = frozenset({"value", "law", "ports", "effort", "flow", "gives", "reset", "start"})
 
 
 def to_graphml(graph: Any) -> str:

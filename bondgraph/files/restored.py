@@ -21,6 +21,7 @@ TYPES: Mapping[str, tuple[type, ...]] = {
     **dict.fromkeys(EXPRESSIONS, SCALARS),
     "value": (*SCALARS, list),
     "law": (*SCALARS, dict),
+    "start": (*SCALARS, dict),
     "priority": (int, float),
     "effort": (str, dict),
     "flow": (str, dict),
@@ -96,6 +97,8 @@ def _attributes(
             _check_list(value, place, rows=key == "value")
         elif key == "reset":
             _check_reset(value, place)
+        elif key == "start" and isinstance(value, dict):
+            _check_starts(value, place)
         elif isinstance(value, dict) and key != "law":
             _check_list([*value, *value.values()], place, rows=False)
         result[key] = value
@@ -103,6 +106,13 @@ def _attributes(
             made = _laws if "ports" in attributes else _law
             result[key] = made(value, place, tables)
     return result
+
+
+def _check_starts(starts: Mapping[str, Any], where: str) -> None:
+    """Of a field, by its ports."""
+    for port, value in starts.items():
+        check_type(port, (str,), where)
+        check_type(value, SCALARS, f"{where} at {port[:60]}")
 
 
 def _laws(parts: Mapping[str, Any], where: str, tables: tuple[Sampled, ...]) -> dict[str, Any]:

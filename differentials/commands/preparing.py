@@ -49,7 +49,7 @@ def _at_rest(ready: Prepared, asked: Asked, free: Collection[str]) -> Prepared:
             "with an input that is held for a while"
         )
     simulator = codegen.simulator(ready.equations, ready.parameters, ready.laws)
-    point = codegen.trim(simulator, ready.inputs)
+    point = codegen.trim(simulator, {name: one(0.0) for name, one in ready.inputs.items()})
     return replace(ready, initial={name: point[name] for name in simulator.states})
 
 

@@ -7,6 +7,7 @@ from references.build import bond_graph
 
 import bondgraph as bg
 import codegen
+from bondgraph.declare.declared import elements_of
 
 
 def _swing(**more: object):
@@ -55,6 +56,58 @@ def test_exports_begin_there() -> None:
     assert module["simulate"]([0.0, 1.0], {}, {}, step=1e-3)["v"][0] == 0.5
     files = codegen.to_c(equations, numbers, name="swing", main=True)
     assert any("0.3" in text and "1.5" in text for text in files.values())
+
+
+def test_fields_have_starts_by_their_ports() -> None:
+    graph = bond_graph(
+        [bg.One("a"), bg.One("b"), bg.R("ra", 1), bg.R("rb", 1),
+         bg.I("core", [["L", "M"], ["M", "L"]], ports=["p", "s"], flow={"p": "i_p", "s": "i_s"},
+              start={"p": "i_0", "s": -1})],
+        "a>ra b>rb",
+    )  # fmt: skip
+    graph.add_edge("a", "core", port="p")
+    graph.add_edge("b", "core", port="s")
+    equations = bg.derive(graph)
+    told = {sp.Symbol("i_p"): sp.Symbol("i_0"), sp.Symbol("i_s"): sp.Integer(-1)}
+    assert equations.starts == told
+    for again in (bg.from_json(bg.to_json(graph)), bg.from_graphml(bg.to_graphml(graph))):
+        assert bg.derive(again).starts == told
+    part = bg.derive(bg.prefixed(graph, "one_", parameters=["i_0"]))
+    assert part.starts[sp.Symbol("one_i_p")] == sp.Symbol("one_i_0")
+    run = codegen.simulator(equations, {"L": 2.0, "M": 1.0, "i_0": 3.0}).run([0.0, 1.0])
+    # Sum and difference decay by themselves, by L + M = 3 and L - M = 1.
+    total, off = 2 * np.exp(-1 / 3), 4 * np.exp(-1.0)
+    assert run["i_p"] == pytest.approx([3.0, (total + off) / 2], abs=1e-9)
+    assert run["i_s"] == pytest.approx([-1.0, (total - off) / 2], abs=1e-9)
+
+
+def test_fields_of_energies_have_starts_too() -> None:
+    graph = bond_graph([bg.One("a"), bg.R("ra", 1)], "a>ra")
+    energy = "q_c_p**2 + q_c_s**2 + q_c_p*q_c_s"
+    graph.add_nodes_from([bg.C("c", energy=energy, ports=["p", "s"], start={"s": 0.5}), bg.One("b"),
+                          bg.R("rb", 1)])  # fmt: skip
+    graph.add_edge("b", "rb")
+    graph.add_edge("a", "c", port="p")
+    graph.add_edge("b", "c", port="s")
+    run = codegen.simulator(bg.derive(graph), {}).run([0.0, 1.0])
+    # Sum and difference, of stiffness 3 and 1.
+    total, off = 0.5 * np.exp(-3.0), -0.5 * np.exp(-1.0)
+    assert run["q_c_p"] == pytest.approx([0.0, (total + off) / 2], abs=1e-9)
+    assert run["q_c_s"] == pytest.approx([0.5, (total - off) / 2], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("start", "message"),
+    [
+        (1, "node 'c': with ports, start maps ports to values, not 1"),
+        ({"q": 1}, "node 'c', start: there is no port 'q'.*there are p, s"),
+        ({"p": "t"}, "node 'c' at p: its start t reads the time"),
+    ],
+)
+def test_starts_of_no_port_are_refused(start: object, message: str) -> None:
+    node = bg.C("c", [[2, 1], [1, 2]], ports=["p", "s"], start=start)
+    with pytest.raises(bg.StructureError, match=message):
+        elements_of(*node)
 
 
 @pytest.mark.parametrize(
