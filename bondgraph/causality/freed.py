@@ -1,6 +1,6 @@
 """Laws that are turned round where they contradict each other, or impose what a storage keeps."""
 
-from collections.abc import Callable, Collection, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
 
 import networkx as nx
@@ -10,7 +10,6 @@ from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.vanishing import elements_in
 from bondgraph.declare.elements import Element
 from bondgraph.declare.inverting import flipped, with_inverse
-from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.validate import with_elements
 
 Tried = Callable[["nx.DiGraph[Hashable]"], CausalGraph | None]
@@ -36,7 +35,6 @@ def fewest_turned(
     """
     elements = elements_in(checked)
     other = {name: new for name, one in elements.items() if (new := flipped(one)) is not None}
-    other = {name: new for name, new in other.items() if _reads_nothing(elements, name)}
     best = _freely(checked, other, tried)
     if best is None or (before is not None and len(best.derivative) >= len(before.derivative)):
         return None
@@ -63,20 +61,6 @@ def _freely(
 def _gives(found: CausalGraph, name: Hashable) -> str:
     """What a one-port gives."""
     return found.assignment.gives(found.assignment.names.index(name))
-
-
-def _reads_nothing(elements: Mapping[Hashable, Element], name: Hashable) -> bool:
-    """Whether a law reads, beside what its port receives, no other signal of the graph."""
-    one = elements[name]
-    law = one.law
-    used = law.free_symbols - {one.received} if law is not None else frozenset()
-    return not used & _signals(elements.values())
-
-
-def _signals(elements: Collection[Element]) -> set[sp.Symbol]:
-    states = {one.law.state for one in elements if isinstance(one.law, ExpressionLaw)}
-    parts = {part for one in elements for part in (one.effort, one.flow, one.integral)}
-    return {one for one in states | parts if one is not None}
 
 
 def wanting(checked: "nx.DiGraph[Hashable]", story: str, turned: Mapping[Hashable, Element]) -> str:
