@@ -42,12 +42,18 @@ def assign_causality(graph: Any) -> CausalGraph:
     except CausalityError as error:
         turned = storages_freed(checked)
         freed = with_elements(checked, turned)
-        other = (_tried(freed) if turned else None) or fewest_turned(freed, _tried)
+        other = _with_fewest(freed, _tried(freed) if turned else None)
         if other is None:
             raise CausalityError(f"{error}{wanting(checked, str(error), turned)}") from None
         return other
-    # A law that imposes what a storage keeps may do with the other causality.
-    return (fewest_turned(checked, _tried, found) if found.derivative else None) or found
+    return _with_fewest(checked, found) or found
+
+
+def _with_fewest(graph: "nx.DiGraph[Hashable]", found: CausalGraph | None) -> CausalGraph | None:
+    """The strokes with laws of resistances turned round where these impose what a storage keeps."""
+    if found is not None and not found.derivative:
+        return found
+    return fewest_turned(graph, _tried, found) or found
 
 
 def _tried(graph: "nx.DiGraph[Hashable]") -> CausalGraph | None:
