@@ -1,5 +1,6 @@
 """Tables inside expressions: opaque functions that carry their points and know their slopes."""
 
+import re
 from collections.abc import Callable
 from typing import Any, Self
 
@@ -40,7 +41,8 @@ class Handle(sp.AtomicExpr):  # type: ignore[misc]
     def code(self) -> str:
         """A text that no other table and no other derivative has."""
         orders = "whole" if self.orders == INTEGRAL else "".join(map(str, self.orders))
-        return f"{self.table.name}_{orders}_{self.table.digest}"
+        plain = re.sub(r"\W", "_", self.table.name, flags=re.ASCII)
+        return f"{plain}_{orders}_{self.table.digest}"
 
     def _sympystr(self, printer: Any) -> str:
         return self.code

@@ -7,10 +7,12 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
+from bondgraph.algebra.lookups import Look
 from bondgraph.declare.elements import OTHER, Element
 from bondgraph.declare.fields import inverts
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.inverses.inverse import inverse_of
+from bondgraph.inverses.tabled import turned_table
 
 BACK: Mapping[type, Callable[[sp.Expr], sp.Expr]] = MappingProxyType(
     {
@@ -70,6 +72,9 @@ def _inverse(law: sp.Expr, name: sp.Symbol, value: sp.Expr) -> sp.Expr | None:
     if name not in law.free_symbols:
         return None
     found = _undone(law, name, value)
+    if found is not None and law.has(Look):
+        # Its points, which the other is made of, may lie far from those that are tried.
+        return found
     if found is None or not inverts(law.xreplace({name: found}), value):
         found = inverse_of(law, name, value)
     return found
@@ -96,6 +101,8 @@ def _undone(law: sp.Expr, state: sp.Symbol, value: sp.Expr) -> sp.Expr | None:
             value = sp.log(value) / sp.log(law.base)
         elif law.func in BACK:
             value = BACK[law.func](value)
+        elif isinstance(law, Look) and (back := turned_table(law.handle)) is not None:
+            value = Look(back, value)
         else:
             return None
         law = inside

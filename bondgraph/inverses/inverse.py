@@ -9,7 +9,7 @@ import sympy as sp
 
 from bondgraph.algebra.called import Called
 from bondgraph.inverses.rising import Rising, rising
-from bondgraph.inverses.searching import searched
+from bondgraph.inverses.searching import place_where
 
 PLACE = sp.Symbol("x")
 """The argument of a law that is turned round, inside it."""
@@ -63,7 +63,7 @@ class Turning(sp.AtomicExpr):  # type: ignore[misc]
         law = sp.lambdify([PLACE, *self.parameters], self.evaluated(), modules="math", cse=True)
 
         def solved(value: float, *given: float) -> float:
-            return searched(lambda x: law(x, *given), value)
+            return place_where(lambda x: law(x, *given), value)
 
         return solved
 

@@ -13,7 +13,7 @@ Sloped = Callable[[float], Sequence[float]]
 MOST = 200
 """Halving the doubles between two places takes 64 steps, and no two of Newton's go between as many."""
 
-FREE = 8
+NEWTONS = 8
 """So many of Newton's steps may be as long as they come."""
 
 POWERS = 1000
@@ -27,7 +27,7 @@ OVER = 8.0
 """So many times that far a step goes that is to pass the answer."""
 
 
-def searched(law: Sloped, value: float) -> float:
+def place_where(law: Sloped, value: float) -> float:
     """The place where the law has this value; not a number where it has it nowhere.
 
     The search begins at zero or, where the law has no value there, at the first power of two that it has
@@ -35,9 +35,9 @@ def searched(law: Sloped, value: float) -> float:
     Newton's steps lead there, and where a step would leave what holds the answer, or after the first few is
     more than a quarter of the last, the doubles in between are halved.
 
-    >>> searched(lambda x: (x + x**3, 1 + 3*x**2), 10.0)
+    >>> place_where(lambda x: (x + x**3, 1 + 3*x**2), 10.0)
     2.0
-    >>> searched(lambda x: (math.tanh(x), 1 - math.tanh(x)**2), 2.0)
+    >>> place_where(lambda x: (math.tanh(x), 1 - math.tanh(x)**2), 2.0)
     nan
     """
     x = near = beginning(law)
@@ -57,7 +57,9 @@ def searched(law: Sloped, value: float) -> float:
                 return onto
             # Close by what holds the answer it has to be shown that the law comes to it.
             onto = x + math.copysign(OVER * LEAST * x, move)
-        if not min(near, far) < onto < max(near, far) or (step > FREE and 4.0 * abs(move) > last):
+        if not min(near, far) < onto < max(near, far) or (
+            step > NEWTONS and 4.0 * abs(move) > last
+        ):
             onto = middle(near, far)
             if onto in (near, far):
                 return onto if there else math.nan

@@ -14,7 +14,7 @@ from codegen.program.printing import printed
 from codegen.program.records import Block, Group, Pattern, Program
 from codegen.python.text import WIDTH, assignment, plain, quoted
 
-TAKEN = ("parameters", "now", "matrix", "log_of", "looked_up", "searched", "l", "O", "I")
+TAKEN = ("parameters", "now", "matrix", "log_of", "looked_up", "place_where", "l", "O", "I")
 """Names that the functions use themselves, and letters that look like digits."""
 
 _HUGGED = re.compile(r"(\b[\w.]+) \*\* (-?[\w.]+\b(?![(\[]))")

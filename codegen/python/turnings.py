@@ -21,5 +21,5 @@ def turned_laws(turnings: Sequence[Turning]) -> list[str]:
         ]
         for one in turning.evaluated():
             lines += assignment("", text_of(one, Names({}, {})), indent=12, end=",", sign="")
-        lines += ["        )", "", "    return searched(law, value)"]
+        lines += ["        )", "", "    return place_where(law, value)"]
     return lines

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from bondgraph.inverses.searching import MOST, searched
+from bondgraph.inverses.searching import MOST, place_where
 
 LAWS: dict[str, tuple[Callable, tuple[float, float]]] = {
     "cubic": (lambda x: (x + x**3, 1 + 3 * x**2), (-1e5, 1e5)),
@@ -34,7 +34,7 @@ def test_the_place_is_brentqs(name: str) -> None:
     )
     for place in inside.tolist():
         value = law(place)[0]
-        found = searched(law, value)
+        found = place_where(law, value)
         right = brentq(lambda x, v=value: law(x)[0] - v, low, high, xtol=1e-300, rtol=1e-15)
         slope = abs(law(right)[1])
         assert abs(found - right) <= 1e-14 * abs(right) + 4e-16 * abs(value) / slope + 1e-300
@@ -42,7 +42,9 @@ def test_the_place_is_brentqs(name: str) -> None:
 
 @pytest.mark.parametrize("value", [2.0, -2.0, math.inf, math.nan])
 def test_a_value_that_the_law_has_nowhere_is_no_number(value: float) -> None:
-    assert math.isnan(searched(lambda x: (math.tanh(x), 1 / math.cosh(min(x, 300.0)) ** 2), value))
+    assert math.isnan(
+        place_where(lambda x: (math.tanh(x), 1 / math.cosh(min(x, 300.0)) ** 2), value)
+    )
 
 
 @pytest.mark.parametrize("name", LAWS)
@@ -58,7 +60,7 @@ def test_it_ends_long_before_its_last_step(name: str) -> None:
     for size in range(-300, 301, 12):
         for value in (10.0**size, -(10.0**size)):
             calls.clear()
-            searched(counting, value)
+            place_where(counting, value)
             assert len(calls) < 0.75 * MOST
 
 
@@ -72,5 +74,5 @@ def test_steps_are_few() -> None:
 
     for value in np.logspace(-12, 12, 49).tolist():
         calls.clear()
-        searched(law, value)
+        place_where(law, value)
         assert len(calls) < 40

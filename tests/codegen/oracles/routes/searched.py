@@ -47,6 +47,25 @@ def hardening_inertia() -> Kind:
                 {"T": f"{T}"}, known, 1.0, at=0.5, rest={"inputs": {"T": 0.0}})  # fmt: skip
 
 
+def cells() -> Kind:
+    """Two cells side by side, one by points, one by a law: what is charged is the sum of what they hold."""
+    held, rests = [0.0, 1.0, 3.0, 6.0], [1.0, 2.0, 2.5, 5.0]
+    graph = bond_graph([bg.Sf("charger", "i"), bg.Zero("n"), bg.C("a", law="rest(q_a)", effort="u"),
+                        bg.C("b", law="k*q_b + c*q_b**3")], "charger>n>a n>b")  # fmt: skip
+    graph.graph["tables"] = [bg.LookupTable("rest", held, rests, outside="extend")]
+    k, c, u0 = 0.5, 0.2, 1.4
+
+    def both(u: float) -> float:
+        return np.interp(u, rests, held) + brentq(lambda q: k * q + c * q**3 - u, 0, 10, xtol=1e-14)
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        left = both(u0) + 3.0 * t
+        return {"u": np.array([brentq(lambda u, q=q: both(u) - q, 1, 5, xtol=1e-14) for q in left])}
+
+    return Kind("two cells, one by a table", graph, {"k": k, "c": c}, {"i": "3"}, known, 1.0, {"u": u0},
+                at=0.4, rest={"inputs": {"i": 0.0}, "initial": {"u": u0}})  # fmt: skip
+
+
 def rubbing_nonlinear() -> Kind:
     """Friction of 3 on a mass whose law bends: p' = 3 t - 3 from 1, at rest from 1 - 1/sqrt(3) to 1."""
     m, c, p0 = 0.5, 0.4, 1.0
@@ -63,4 +82,4 @@ def rubbing_nonlinear() -> Kind:
                 at=0.8, mode={"rub": "stick"}, rest={"inputs": {"P": 2.0}})  # fmt: skip
 
 
-SEARCHED = (unlike_springs, hardening_inertia, rubbing_nonlinear)
+SEARCHED = (unlike_springs, hardening_inertia, cells, rubbing_nonlinear)
