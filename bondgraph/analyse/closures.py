@@ -3,9 +3,10 @@
 from collections.abc import Hashable, Mapping, Sequence
 
 from bondgraph.algebra.exact import rows_of
+from bondgraph.declare.inverting import as_received
 from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, check_slider, law
 from bondgraph.equations import StateEquations
-from bondgraph.errors import StructureError
+from bondgraph.errors import DependentSourceError, StructureError
 from bondgraph.reduce.readings import check_laws
 from bondgraph.reduce.structure import Port
 
@@ -32,6 +33,14 @@ def merged_laws(
                 raise StructureError(f"law at {name!r}: dry friction closes an R")
             if port.gives == "flow":
                 check_slider(closed, f"law at {name!r}")
+        else:
+            told = as_received(port.element, closed)
+            if told is None:
+                raise DependentSourceError(
+                    f"law at {name!r}: the port gives its {port.gives} here, and {closed.expression} is not "
+                    f"turned round; give a law of {port.received}"
+                )
+            closed = told
         merged[name] = closed
     matrix_rows = rows_of(equations.E)
     check_laws(merged, equations.signals, equations.ports, matrix_rows, equations.readings)

@@ -9,7 +9,9 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.factored import factored
 from bondgraph.algebra.lookups import Look
 from bondgraph.declare.elements import Element
-from bondgraph.declare.laws import DryFriction
+from bondgraph.declare.inverting import flipped
+from bondgraph.declare.laws import DryFriction, ExpressionLaw
+from bondgraph.declare.laws import law as as_law
 from bondgraph.derive import derive_again
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError
@@ -21,9 +23,9 @@ def turned(equations: StateEquations, laws: object) -> StateEquations:
     """The equations in which every port has the causality that its law needs; the same ones where they do.
 
     ``laws``: as for a simulator, looked at only as far as they are right. An open port gives what its
-    ``gives`` says. Where that drives a dependent storage and dry friction is put over the port, which goes
-    either way, the graph is derived once more, the port's stroke taken after the storages: directly on a
-    spring it then gives its flow, and the spring is a state. All other names stay as they are.
+    ``gives`` says. Where that drives a dependent storage and dry friction is put over the port, or a law
+    that can be turned round, which go either way, the graph is derived once more: directly on a spring the
+    port then gives its flow, and the spring is a state. All other names stay as they are.
 
     Raises `StructureError` where friction in its other causality has a curve or a breakaway,
     `DependentSourceError` where it would divide there by a ratio that may pass through zero.
@@ -45,7 +47,7 @@ def turned(equations: StateEquations, laws: object) -> StateEquations:
     for factor in _divisors_that_vanish(found, equations) if elements else ():
         names = ", ".join(map(repr, elements))
         raise DependentSourceError(
-            f"the dry friction at {names} drives a dependent storage, so it is to have its other causality; "
+            f"the law at {names} drives a dependent storage, so it is to have its other causality; "
             f"there it would divide by {factor}, which may pass through zero: put a storage that can be "
             "independent beside it"
         )
@@ -53,7 +55,7 @@ def turned(equations: StateEquations, laws: object) -> StateEquations:
 
 
 def _elements(equations: StateEquations, laws: object) -> dict[Hashable, Element]:
-    """The nodes whose ports drive dependent storages and are put under dry friction, with it as their law."""
+    """The nodes whose ports drive dependent storages, with laws that go either way put over them."""
     if not isinstance(laws, Mapping):
         return {}
     found: dict[Hashable, Element] = {}
@@ -63,6 +65,10 @@ def _elements(equations: StateEquations, laws: object) -> dict[Hashable, Element
         fixed = element.kind.resists and element.gives is not None
         if fixed and isinstance(law, DryFriction):
             found[element.name] = replace(element, law=law, gives=None)
+        elif fixed and isinstance(law, str | sp.Expr | ExpressionLaw) and not element.turned:
+            told = as_law(law, f"law at {element.name!r}", None, equations.tables)
+            other = flipped(replace(element, law=told))
+            found |= {} if other is None else {element.name: other}
     driving = driving_ports(equations) if found else ()
     return {
         port.element.name: found[port.element.name]

@@ -64,7 +64,21 @@ def flipped(element: Element) -> Element | None:
     found = _inverse(law.expression, received, given)
     if found is None or TIME in found.free_symbols:
         return None
-    return replace(element, law=ExpressionLaw(found), gives=OTHER[element.gives])
+    return replace(element, law=ExpressionLaw(found), gives=OTHER[element.gives], turned=True)
+
+
+def as_received(element: Element, law: ExpressionLaw) -> ExpressionLaw | None:
+    """A law over a port that is turned, by what the port now receives; None where that is not found.
+
+    A law may be written either way: by what the port gave before, or by what it gives now.
+    """
+    given, received = element.given, element.received
+    if not element.turned or given is None or received is None:
+        return law
+    if given not in law.free_symbols or received in law.free_symbols:
+        return law
+    found = _inverse(law.expression, given, received)
+    return None if found is None else ExpressionLaw(found)
 
 
 def _inverse(law: sp.Expr, name: sp.Symbol, value: sp.Expr) -> sp.Expr | None:
