@@ -1,7 +1,8 @@
 """Laws put later over open ports that drive dependent storages: the equations with these ports turned."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import sympy as sp
 
@@ -17,6 +18,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError
 from bondgraph.reduce.inverses import by_inverse
 from bondgraph.reduce.structure import Port
+from bondgraph.tables.record import Sampled
 
 
 def turned(equations: StateEquations, laws: object) -> StateEquations:
@@ -58,23 +60,31 @@ def _elements(equations: StateEquations, laws: object) -> dict[Hashable, Element
     """The nodes whose ports drive dependent storages, with laws that go either way put over them."""
     if not isinstance(laws, Mapping):
         return {}
-    found: dict[Hashable, Element] = {}
-    for port in equations.ports:
-        element, names = port.element, (port.element.name, port.given, port.given.name)
-        law = next((laws[name] for name in names if name in laws), None)
-        fixed = element.kind.resists and element.gives is not None
-        if fixed and isinstance(law, DryFriction):
-            found[element.name] = replace(element, law=law, gives=None)
-        elif fixed and isinstance(law, str | sp.Expr | ExpressionLaw) and not element.turned:
-            told = as_law(law, f"law at {element.name!r}", None, equations.tables)
-            other = flipped(replace(element, law=told))
-            found |= {} if other is None else {element.name: other}
-    driving = driving_ports(equations) if found else ()
-    return {
-        port.element.name: found[port.element.name]
-        for port in driving
-        if port.element.name in found
+    told = {port.element.name: _law_over(port, laws) for port in equations.ports}
+    if all(law is None for law in told.values()):
+        return {}
+    made = {
+        port.element.name: _either_way(port.element, told[port.element.name], equations.tables)
+        for port in driving_ports(equations)
     }
+    return {name: element for name, element in made.items() if element is not None}
+
+
+def _law_over(port: Port, laws: Mapping[Any, object]) -> object:
+    """What is put over a port, by its node or by what it gives; None where nothing is."""
+    names = (port.element.name, port.given, port.given.name)
+    return next((laws[name] for name in names if name in laws), None)
+
+
+def _either_way(element: Element, law: object, tables: Iterable[Sampled]) -> Element | None:
+    """A resistance with a law that goes either way; None where it does not."""
+    if not element.kind.resists or element.gives is None or element.turned:
+        return None
+    if isinstance(law, DryFriction):
+        return replace(element, law=law, gives=None)
+    if not isinstance(law, str | sp.Expr | ExpressionLaw):
+        return None
+    return flipped(replace(element, law=as_law(law, f"law at {element.name!r}", None, tables)))
 
 
 def _held(equations: StateEquations, laws: object) -> dict[Hashable, Element]:
@@ -84,9 +94,7 @@ def _held(equations: StateEquations, laws: object) -> dict[Hashable, Element]:
     structure = equations.reduction.structure
     found: dict[Hashable, Element] = {}
     for port, row in zip(structure.ports, structure.rows, strict=True):
-        names = (port.element.name, port.given, port.given.name)
-        law = next((laws[name] for name in names if name in laws), None)
-        if isinstance(law, DryFriction):
+        if isinstance(_law_over(port, laws), DryFriction):
             found |= by_inverse(structure, row)
     return found
 

@@ -109,7 +109,5 @@ def test_a_law_of_what_the_port_receives_now_is_taken_as_it_is() -> None:
 
 def test_a_law_that_is_not_turned_round_is_refused_where_the_port_was() -> None:
     equations = bg.derive(bond_graph([*LATER, bg.R("r", law="5*f_r")], "pump>n>c n>r"))
-    with pytest.raises(
-        bg.DependentSourceError, match="is not turned round; give a law of e_r"
-    ):
+    with pytest.raises(bg.DependentSourceError, match="is not turned round; give a law of e_r"):
         simulator(equations, {"C": 1.0}, {"r": "f_r**3 - f_r"})
