@@ -72,6 +72,16 @@ def all_of(flags: NDArray[np.bool_]) -> bool:
     return all(flags.ravel().tolist()) if flags.size <= FEW else bool(flags.all())
 
 
+def dot(matrix: Array, vector: Array) -> Array:
+    """A matrix times a vector; of stacks each times its own.
+
+    >>> dot(np.eye(2)[None] * [[[2.0]], [[3.0]]], np.ones((2, 2))).tolist()
+    [[2.0, 2.0], [3.0, 3.0]]
+    """
+    found: Array = matrix @ vector if vector.ndim == 1 else (matrix @ vector[..., None])[..., 0]
+    return found
+
+
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
     """The array, which nobody can write to any more, nor to what it is a view of.
 

@@ -83,7 +83,7 @@ def over_z(rows: Array, made: Generator, n: int) -> Array:
     """Rows over [s, w, dw, 1] as rows over [s, g]: the first component of g is 1."""
     m = len(made.C)
     fed = np.vstack([made.C, made.C @ made.G, np.eye(1, len(made.G))])
-    return np.hstack([rows[:, :n], rows[:, n : n + 2 * m + 1] @ fed])
+    return np.concatenate([rows[..., :n], rows[..., n : n + 2 * m + 1] @ fed], axis=-1)
 
 
 def watched(
@@ -135,7 +135,7 @@ def lasting(M: Array, span: float) -> float:
     return float((np.abs(rates) * ends).max(initial=0.0))
 
 
-def series(M: Array, rows: Array, step: float) -> Array:
+def series(M: Array, rows: Array, step: float | Array) -> Array:
     """``rows (M step)^k / k!`` for each k: the coefficients of their power series over a step."""
     found = [rows]
     for k in range(1, TUNING.degree + 1):
@@ -144,9 +144,9 @@ def series(M: Array, rows: Array, step: float) -> Array:
     return np.array(found)
 
 
-def exponential(M: Array, step: float) -> tuple[Array, Array]:
-    """``exp(M step)`` and its integral over the step, which has ``|M| step <= 1``."""
-    size = len(M)
+def exponential(M: Array, step: float | Array) -> tuple[Array, Array]:
+    """``exp(M step)`` and its integral over the step, which has ``|M| step <= 1``; of stacks, too."""
+    size = M.shape[-1]
     total = term = np.eye(size)
     for k in range(2, TUNING.degree + 2):
         term = M @ term * (step / k)

@@ -90,6 +90,10 @@ class Job:
             return f"{type(error).__name__}: {error}"
         if completed is not None:
             completed |= getattr(result, "completed", {})
+        return self.measured(result)
+
+    def measured(self, result: Result) -> tuple[Array, ...] | str:
+        """The measures of the record of a run, or why there are none."""
         found = []
         for name, measure in self.measures.items():
             try:
@@ -97,6 +101,10 @@ class Job:
             except Exception as error:  # noqa: BLE001 - the caller's code
                 return f"measure {name!r}: {type(error).__name__}: {error}"
         return tuple(found)
+
+    def record(self, row: Sequence[float]) -> Result:
+        """The record of one run; raises what refuses it."""
+        return self._result(dict(zip(self.names, row, strict=True)), [])
 
     def _result(self, values: Mapping[str, float], fallen: list[str]) -> Result:
         model = self.model
@@ -110,12 +118,12 @@ class Job:
         # Times differ from run to run; the reason is what is counted.
         return runner.run_telling(
             lambda stopped: fallen.append(stopped.reason),
-            self.time, initial, inputs, events=self._eventful, corners=self._cornered,
+            self.time, initial, inputs, events=self.eventful, corners=self._cornered,
             **self._settings,
         )  # fmt: skip
 
     @property
-    def _eventful(self) -> bool:
+    def eventful(self) -> bool:
         """Whether a measure may ask for events."""
         ready = (isinstance(m, Measure) and m.function in READY for m in self.measures.values())
         return (self.events and not all(ready)) or bool(self.asking)

@@ -1,0 +1,184 @@
+"""Many runs of one affine model from their starts to the end that they share, as `runs.hybrid` does one."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from codegen.abreast.fleet import Fleet
+from codegen.abreast.leading import Instant, Leader, Outcome, outcomes
+from codegen.abreast.modes import ModesAbreast
+from codegen.abreast.seen import Group, Seen
+from codegen.abreast.stretch import Walk
+from codegen.abreast.systems import systems
+from codegen.inputs.generators import Generator, generator
+from codegen.inputs.present import Inputs, Present
+from codegen.inputs.signal import Signal
+from codegen.model.snapshot import Mode
+from codegen.modes.closed import ClosedModel
+from codegen.modes.pace import hardly_apart, look_ahead, time_constant
+from codegen.numbers.arrays import Array, dot
+from codegen.program.layout import INPUTS, STATES
+from codegen.runs.hybrid import changes_of
+from codegen.runs.track import Event
+from codegen.tuning import TUNING
+
+NONE = frozenset[int]()
+
+Due = dict[Instant, list[Array]]
+"""Runs at whose times something is to be decided, by what they have in common."""
+
+
+class Course:
+    """The loop over many runs: their modes are decided and they are stepped together as far as that goes.
+
+    ``signals``: the external inputs that all share, of which each run has its own sizes. ``lead``: a run by
+    itself at its time. Runs of which anything is doubtful are left ``alone``.
+    """
+
+    def __init__(
+        self, model: ClosedModel, modes: ModesAbreast, fleet: Fleet, signals: Sequence[Signal],
+        times: Array, lead: Callable[[int], Leader],
+    ) -> None:  # fmt: skip
+        self._model, self._modes, self._fleet = model, modes, fleet
+        self._times, self._lead, self._inputs = times, lead, Inputs(signals)
+        self._begin, self._end = float(times[0]), float(times[-1])
+        self._present, self._made = self._driven(self._begin)
+        self._settled = False
+
+    def run(self) -> None:
+        """To the end of all runs that are not alone."""
+        fleet, t = self._fleet, self._begin
+        modes = {self._model.program.before(()): np.arange(len(fleet.t))}
+        while modes:
+            self._present, self._made = self._driven(t)
+            stop = min(self._present.following, self._end)
+            modes, t = self._to(stop, modes, t >= self._end), stop
+        fleet.vectors[:, -1] = fleet.s
+
+    def _driven(self, t: float) -> tuple[Present, Generator]:
+        """What inputs do from a time on, and the system that gives them."""
+        present = self._inputs.at(t)
+        return present, generator(present.pieces, present.begin)
+
+    def _to(self, stop: float, modes: dict[Mode, Array], ends: bool) -> dict[Mode, Array]:
+        """Runs that are at one time go on to ``stop`` [s], from event to event; ``ends``: they are there."""
+        due: Due = {Instant(mode, NONE): [at] for mode, at in modes.items()}
+        arrived: dict[Mode, list[Array]] = {}
+        while due:
+            came: Due = {}
+            for now, parts in due.items():
+                for mode, at, limits in self._settle(now, self._together(parts), ends):
+                    if ends:
+                        continue
+                    there = self._advance(mode, at, limits, stop, came)
+                    arrived.setdefault(mode, []).append(there)
+            due, self._settled = came, True
+        joined = {mode: self._together(parts) for mode, parts in arrived.items()}
+        return {mode: at for mode, at in joined.items() if len(at)}
+
+    def _together(self, parts: list[Array]) -> Array:
+        """Runs that are not alone, in their order."""
+        at = np.sort(np.concatenate(parts))
+        return at[~self._fleet.alone[at]]
+
+    def _settle(self, now: Instant, at: Array, ends: bool) -> list[tuple[Mode, Array, Array]]:
+        """Decide the modes of runs just after their times: runs by mode, with what counts as zero there."""
+        if not len(at):
+            return []
+        group = self._seen(now, at)
+        if ends:
+            self._check_end(now, group)
+        found = []
+        for one in outcomes(now, group, self._modes, lambda place: self._lead(int(at[place]))):
+            runs = at[one.places]
+            if one.mode is None:
+                self._fleet.alone[runs] = True
+                continue
+            self._take(now, runs, one)
+            found.append((one.mode, runs, one.limits))
+        return found
+
+    def _seen(self, now: Instant, at: Array) -> Group:
+        """The runs as they are, once their magnitudes and time constants are taken into account."""
+        fleet, model = self._fleet, self._model
+        vectors = np.hstack([fleet.s[at], self._given(fleet.t[at])])
+        forwards = self._modes.of(tuple(sign or 1 for sign in now.mode))
+        before = self._modes.of(now.mode)
+        assert forwards is not None and before is not None
+        maps, sizes = forwards.maps, np.abs(vectors)
+        inputs = len(model.program.external)
+        sizes[:, -1 - inputs : -1] = 0.0
+        x = dot(maps.rows(STATES)[at], vectors)
+        terms = dot(np.abs(maps.rows(INPUTS)[at]), sizes)
+        fleet.both[at] = np.maximum(fleet.both[at], np.hstack([np.abs(x), terms]))
+        if now.mode:
+            fastest = np.maximum(before.fastest[at], self._present.fastest)
+            elapsed = (fleet.t[at] - self._begin).tolist()
+            pairs = zip(fastest.tolist(), elapsed, strict=True)
+            fleet.time[at] = [time_constant(rate, age) for rate, age in pairs]
+        following = self._present.following
+        pairs = zip(fleet.time[at].tolist(), fleet.t[at].tolist(), strict=True)
+        ahead = np.array([look_ahead(time, t, following) for time, t in pairs])
+        parts = fleet.t[at], fleet.s[at], fleet.both[at], fleet.time[at]
+        return Group(at, *parts, ahead, self._given)
+
+    def _given(self, times: Array) -> Array:
+        """The external inputs that all runs share, their rates and 1, [w, w', 1], at times [s] by rows."""
+        g, C = self._components(times), self._made.C
+        w = g @ C.T
+        dw = g @ (C @ self._made.G).T if self._model.program.rated else np.zeros_like(w)
+        return np.hstack([w, dw, np.ones((len(times), 1))])
+
+    def _components(self, times: Array) -> Array:
+        """Those of the inputs' system, at times [s] by rows."""
+        return self._made.at(times - self._present.begin)
+
+    def _check_end(self, now: Instant, group: Group) -> None:
+        """What may be an event at the very end, missed by a rounding, is looked at by itself."""
+        slipping = [i for i, sign in enumerate(now.mode) if sign]
+        before = self._modes.of(now.mode)
+        assert before is not None
+        if slipping:
+            seen = Seen(self._model, self._modes, before, now.mode, group)
+            near = TUNING.surely * TUNING.wide * seen.scales.slip[:, slipping]
+            self._fleet.alone[group.at] |= (np.abs(seen.slips[:, slipping]) <= near).any(axis=1)
+
+    def _take(self, now: Instant, runs: Array, found: Outcome) -> None:
+        """The runs go on in the mode that they have come to."""
+        fleet, mode = self._fleet, found.mode
+        assert mode is not None
+        n = len(self._model.program.states)
+        fleet.s[runs, :n] += found.added
+        changes = changes_of(self._model, now.mode, mode) if self._settled else []
+        samples = self._times.searchsorted(fleet.t[runs]).tolist()
+        moments = [hardly_apart(time) for time in fleet.time[runs].tolist()]
+        times = fleet.t[runs].tolist()
+        for run, sample, t, moment in zip(runs.tolist(), samples, times, moments, strict=True):
+            fleet.note(run, sample, mode)
+            fleet.events[run] += [Event(t, port, kind) for port, kind in changes]
+            if now.touched:
+                fleet.alone[run] |= t - fleet.latest[run] < moment
+                fleet.latest[run] = t
+
+    def _advance(self, mode: Mode, at: Array, limits: Array, stop: float, came: Due) -> Array:
+        """Step to ``stop`` [s] or to events, which are added to what came; the runs that arrive."""
+        fleet, found = self._fleet, self._modes.of(mode)
+        assert found is not None
+        near = stop - fleet.t[at] <= 8 * np.spacing(stop)
+        system = systems(self._model, found.maps, at, self._made, mode)
+        work = system.norms * (stop - fleet.t[at])
+        fleet.alone[at] |= near | (work > (TUNING.many if mode else TUNING.rounded) / TUNING.surely)
+        keep = ~fleet.alone[at]
+        if not keep.all():
+            at, limits = at[keep], limits[keep]
+            if not len(at):
+                return at
+            system = systems(self._model, found.maps, at, self._made, mode)
+        z = np.hstack([fleet.s[at], self._components(fleet.t[at])])
+        walk = Walk(fleet, at, system, z, limits[:, list(system.ports)], self._times)
+        events = walk.to(stop)
+        for ports, runs in events.items():
+            came.setdefault(Instant(mode, ports), []).append(runs)
+        fleet.alone[at] |= ~np.isfinite(fleet.s[at]).all(axis=1)
+        gone = np.concatenate([*events.values(), np.zeros(0, dtype=int)])
+        return np.setdiff1d(at, gone)
