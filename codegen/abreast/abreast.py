@@ -10,7 +10,7 @@ from bondgraph.errors import BondGraphError
 from codegen.abreast.course import Course
 from codegen.abreast.fit import even, fits, sound, suits
 from codegen.abreast.fleet import Fleet
-from codegen.abreast.leading import Leader
+from codegen.abreast.leading import Leader, Precedents
 from codegen.abreast.modes import ModesAbreast
 from codegen.abreast.results import Shared, names_of, result_of
 from codegen.family import Family
@@ -57,6 +57,9 @@ class Abreast:
         self._units, self._columns = _shared(asked)
         self._swept = frozenset(name for name in names if name in asked.family.parameters)
         self._models = dict[tuple[float, ...], Simulator]()
+        #: The run that tells what is exact.
+        self._first: Simulator | None = None
+        self._precedents: Precedents = {}
         self._names = names_of(program)
         given = {str(normal(name)): value for name, value in asked.initial.items()}
         states = asked.family.states
@@ -91,7 +94,10 @@ class Abreast:
         self, rows: Array, alone: Callable[[Sequence[float]], Result]
     ) -> list[Result | None]:
         asked, runs = self._asked, len(rows)
-        first = self._simulator(rows[0])
+        if self._first is None:
+            self._first = self._simulator(rows[0])
+            refuse_impulses(self._first.closed, self._signals(rows[0]), asked.times)
+        first = self._first
         model, program = first.closed, first.closed.program
         if not suits(model):
             return [None] * runs
@@ -102,7 +108,6 @@ class Abreast:
         for input_at, column in self._columns.items():
             sizes[:, input_at] = rows[:, column]
         modes = ModesAbreast(model, parameters, sizes)
-        refuse_impulses(model, self._signals(first, rows[0]), asked.times)
         fleet = self._fleet(rows, modes, model.size)
         fleet.alone |= ~sound(model.equations, {**model.parameters, **parameters}, self._swept, runs)
         fleet.alone |= ~(modes.finite & np.isfinite(rows).all(axis=1))
@@ -110,10 +115,10 @@ class Abreast:
 
         def lead(run: int) -> Leader:
             ready = self._simulator(rows[run])
-            inputs = Inputs(self._signals(ready, rows[run]))
+            inputs = Inputs(self._signals(rows[run]))
             return Leader(ready.closed, fleet.s[run].copy(), inputs.at(float(fleet.t[run])))
 
-        Course(model, modes, fleet, self._units, asked.times, lead).run()
+        Course(modes, fleet, self._units, asked.times, self._precedents, lead).run()
         self._models.clear()
         fleet.alone |= ~(np.abs(fleet.vectors).max(axis=(1, 2)) < TUNING.ordinary)
         return self._records(first, rows, modes, fleet, sizes, alone)
@@ -168,7 +173,7 @@ class Abreast:
             self._models[key] = self._asked.family.simulator(**changes)
         return self._models[key]
 
-    def _signals(self, ready: Simulator, row: Array) -> list[Signal]:
+    def _signals(self, row: Array) -> list[Signal]:
         """The external inputs of one run."""
         return [
             float(row[self._columns[at]]) * unit if at in self._columns else unit

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from codegen.abreast.fleet import Fleet
-from codegen.abreast.leading import Instant, Leader, Outcome, outcomes
+from codegen.abreast.leading import Instant, Leader, Outcome, Precedents, outcomes
 from codegen.abreast.modes import ModesAbreast
 from codegen.abreast.seen import Group, Seen
 from codegen.abreast.stretch import Walk
@@ -14,7 +14,6 @@ from codegen.inputs.generators import Generator, generator
 from codegen.inputs.present import Inputs, Present
 from codegen.inputs.signal import Signal
 from codegen.model.snapshot import Mode
-from codegen.modes.closed import ClosedModel
 from codegen.modes.pace import hardly_apart, look_ahead, time_constant
 from codegen.numbers.arrays import Array, dot
 from codegen.program.layout import INPUTS, STATES
@@ -32,14 +31,15 @@ class Course:
     """The loop over many runs: their modes are decided and they are stepped together as far as that goes.
 
     ``signals``: the external inputs that all share, of which each run has its own sizes. ``lead``: a run by
-    itself at its time. Runs of which anything is doubtful are left ``alone``.
+    itself at its time. ``precedents``: what runs came to before. Runs of which anything is doubtful are left ``alone``.
     """
 
     def __init__(
-        self, model: ClosedModel, modes: ModesAbreast, fleet: Fleet, signals: Sequence[Signal],
-        times: Array, lead: Callable[[int], Leader],
+        self, modes: ModesAbreast, fleet: Fleet, signals: Sequence[Signal], times: Array,
+        precedents: Precedents, lead: Callable[[int], Leader],
     ) -> None:  # fmt: skip
-        self._model, self._modes, self._fleet = model, modes, fleet
+        self._model, self._modes, self._fleet = modes.model, modes, fleet
+        self._precedents = precedents
         self._times, self._lead, self._inputs = times, lead, Inputs(signals)
         self._begin, self._end = float(times[0]), float(times[-1])
         self._present, self._made = self._driven(self._begin)
@@ -89,7 +89,9 @@ class Course:
         if ends:
             self._check_end(now, group)
         found = []
-        for one in outcomes(now, group, self._modes, lambda place: self._lead(int(at[place]))):
+        lead = self._lead
+        known = self._precedents
+        for one in outcomes(now, group, self._modes, known, lambda place: lead(int(at[place]))):
             runs = at[one.places]
             if one.mode is None:
                 self._fleet.alone[runs] = True
@@ -120,7 +122,7 @@ class Course:
         pairs = zip(fleet.time[at].tolist(), fleet.t[at].tolist(), strict=True)
         ahead = np.array([look_ahead(time, t, following) for time, t in pairs])
         parts = fleet.t[at], fleet.s[at], fleet.both[at], fleet.time[at]
-        return Group(at, *parts, ahead, self._given)
+        return Group(at, *parts, ahead, self._given, tuple(sorted(now.loose)))
 
     def _given(self, times: Array) -> Array:
         """The external inputs that all runs share, their rates and 1, [w, w', 1], at times [s] by rows."""
@@ -139,7 +141,7 @@ class Course:
         before = self._modes.of(now.mode)
         assert before is not None
         if slipping:
-            seen = Seen(self._model, self._modes, before, now.mode, group)
+            seen = Seen(self._modes, before, now.mode, group)
             near = TUNING.surely * TUNING.wide * seen.scales.slip[:, slipping]
             self._fleet.alone[group.at] |= (np.abs(seen.slips[:, slipping]) <= near).any(axis=1)
 

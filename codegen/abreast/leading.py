@@ -1,7 +1,7 @@
 """What an instant comes to in many runs: decided for one of them, and for all in which the same decides.
 
 One run leads: its mode is decided as in a run by itself, and note is taken of what decided. Of the others those
-follow in which all of that is told alike, far from a tie; one of the rest leads next.
+follow in which all of that is told alike, far from a tie; one of the rest leads next. What led once is a precedent for all later runs.
 """
 
 from collections.abc import Callable, Sequence
@@ -59,29 +59,102 @@ class Instant(NamedTuple):
         return self.touched | {i for i, sign in enumerate(self.mode) if sign == 0}
 
 
+class Precedent(NamedTuple):
+    """What one run came to, what decided, and the signs that others must have, too, for each part of that."""
+
+    mode: Mode
+    log: Log
+    signs: tuple[Array, ...]
+
+
+Precedents = dict[Instant, list[Precedent]]
+"""Those of a sweep, the latest first."""
+
+MOST_KEPT = 16
+"""So many precedents of one kind of instant are kept."""
+
+
 def outcomes(
-    now: Instant, group: Group, modes: ModesAbreast, lead: Callable[[int], Leader]
+    now: Instant, group: Group, modes: ModesAbreast, known: Precedents, lead: Callable[[int], Leader]
 ) -> list[Outcome]:
-    """What every run of a group comes to; ``lead``: the run at a place of it by itself."""
+    """What every run of a group comes to.
+
+    ``known``: what others have come to. ``lead``: the run at a place of the group by itself.
+    """
     left, found = np.arange(len(group.at)), list[Outcome]()
+    kept = known.setdefault(now, [])
+    for one in list(kept):
+        if len(left):
+            left = _follow(one, group, left, modes, found)
     while len(left):
         first = int(left[0])
-        leader = lead(first)
-        told = _decided(now, group, leader, first)
-        part = group.part(left)
-        follow, seen = np.zeros(len(left), dtype=bool), None
+        told = _decided(now, group, lead(first), first)
         if told is not None:
-            mode, log = told
-            follow, seen = _following(now, part, modes, leader.model, log, mode)
-        if not follow[0]:
-            found.append(Outcome(left[:1], None))
-            left = left[1:]
-            continue
-        assert told is not None and seen is not None
-        parts = seen.settled()[follow], seen.limits[follow]
-        found.append(Outcome(left[follow], told[0], *parts))
-        left = left[~follow]
+            one = _precedent(*told, group.part(left[:1]), modes)
+            if one is not None:
+                left = _follow(one, group, left, modes, found)
+                kept[:] = [one, *kept[: MOST_KEPT - 1]]
+        if len(left) and left[0] == first:
+            found.append(Outcome(np.array([first]), None))
+            left = left[left != first]
     return found
+
+
+def _follow(
+    one: Precedent, group: Group, left: Array, modes: ModesAbreast, found: list[Outcome]
+) -> Array:
+    """The places of a group that are left once those that surely follow a precedent are found."""
+    part = group.part(left)
+    follow, known = np.ones(len(left), dtype=bool), dict[Mode, Seen]()
+    for told, signs in zip(one.log, one.signs, strict=True):
+        look = _seen(told.mode, part, modes, known)
+        if look is None:
+            return left
+        follow &= look.sound & (_signs(told, look) == signs).all(axis=1)
+        if isinstance(told, Rested):
+            follow &= look.rests(told.ports)
+        else:
+            follow &= look.tells(told)
+    seen = _seen(one.mode, part, modes, known)
+    if seen is None or not follow.any():
+        return left
+    follow &= seen.sound
+    found.append(Outcome(left[follow], one.mode, seen.settled()[follow], seen.limits[follow]))
+    return left[~follow]
+
+
+def _precedent(mode: Mode, log: Log, first: Group, modes: ModesAbreast) -> Precedent | None:
+    """What the one run of a group came to; None where it has modes that are not looked at here."""
+    known, signs = dict[Mode, Seen](), list[Array]()
+    for told in log:
+        look = _seen(told.mode, first, modes, known)
+        if look is None:
+            return None
+        signs.append(_signs(told, look)[0])
+    return Precedent(mode, tuple(log), tuple(signs))
+
+
+def _seen(
+    mode: Mode, group: Group, modes: ModesAbreast, known: dict[Mode, Seen]
+) -> Seen | None:
+    """A group in a mode."""
+    if mode not in known:
+        made = modes.of(mode)
+        if made is None:
+            return None
+        known[mode] = Seen(modes, made, mode, group)
+    return known[mode]
+
+
+def _signs(told: Rested | Tried, look: Seen) -> Array:
+    """What must be alike where a precedent is followed: which way other ports slip, and what these touch.
+
+    And which way ports that contradict a mode are pushed.
+    """
+    if isinstance(told, Rested):
+        return np.hstack([look.sides(told.ports), look.touching(told.ports)])
+    verdicts = {**(told.verdicts or {}), **told.later}
+    return look.ways([i for i, sign in verdicts.items() if sign < 0])
 
 
 def _decided(
@@ -109,41 +182,3 @@ def _decided(
 
 def _is_clear(one: Tried) -> bool:
     return one.verdicts is not None
-
-
-def _following(
-    now: Instant, group: Group, modes: ModesAbreast, model: ClosedModel, log: Log, mode: Mode
-) -> tuple[Array, Seen | None]:
-    """Which runs of a group come to the same mode by the same as its first, and what they are in it."""
-    found, known = np.ones(len(group.at), dtype=bool), dict[Mode, Seen]()
-
-    def seen(one: Mode) -> Seen | None:
-        if one not in known:
-            made = modes.of(one)
-            if made is None:
-                return None
-            found[:] &= made.sound[group.at]
-            known[one] = Seen(model, modes, made, one, group)
-        return known[one]
-
-    for one in log:
-        look = seen(one.mode)
-        if look is None:
-            return np.zeros_like(found), None
-        if isinstance(one, Rested):
-            found &= look.rests(one.ports, sorted(now.loose))
-            found &= _alike(look.sides([i for i in range(len(mode)) if i not in one.ports]))
-            if len(one.ports) > 1:
-                ports = np.ix_(group.at, one.ports, one.ports)
-                found &= _alike(modes.touching[ports].reshape(len(found), -1))
-        else:
-            assert one.verdicts is not None
-            found &= look.tells(one)
-            told = {**one.verdicts, **one.later}
-            found &= _alike(look.ways([i for i, sign in told.items() if sign < 0]))
-    return found, seen(mode)
-
-
-def _alike(values: Array) -> Array:
-    """Which rows are like the first."""
-    return np.asarray((values == values[:1]).all(axis=1))

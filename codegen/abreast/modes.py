@@ -50,7 +50,7 @@ class ModesAbreast:
         self, model: ClosedModel, parameters: Mapping[str, float | Array], sizes: Array
     ) -> None:
         program, runs = model.program, len(sizes)
-        self._model, self._modes = model, dict[Mode, ModeMap | None]()
+        self.model, self._modes = model, dict[Mode, ModeMap | None]()
         objects = matrices_of(program, parameters, runs)
         binding = RunsBinding(program, parameters)
         inputs = len(program.external)
@@ -66,13 +66,13 @@ class ModesAbreast:
     @cached_property
     def moves(self) -> Moves:
         """How slips change in each run."""
-        model = self._model
+        model = self.model
         return moves(self.numbers, model.friction_readings, model.friction_inputs)
 
     @cached_property
     def touching(self) -> Array:
         """Which ports' efforts move which ports' slips in each run."""
-        model, m = self._model, self.numbers
+        model, m = self.model, self.numbers
         rows, columns = model.friction_readings, model.friction_inputs
         moved = m.F[:, rows] @ m.Q[:, :, columns]
         return np.asarray((moved != 0) | (m.D[:, rows][:, :, columns] != 0))
@@ -87,13 +87,13 @@ class ModesAbreast:
         stuck = [i for i, sign in enumerate(mode) if sign == 0]
         hold, sound = None, self.finite
         if stuck:
-            if not _binds(self._model.slips.held(tuple(stuck)), len(stuck)):
+            if not _binds(self.model.slips.held(tuple(stuck)), len(stuck)):
                 return None
             hold = self._hold(stuck)
             sound = self.finite & np.isfinite(hold.inverse).all(axis=(1, 2))
             sound = sound & np.isfinite(hold.take_away).all(axis=(1, 2))
-        maps = in_mode(self._base, mode, hold, self._model.program.law_rates)
-        rates = maps.rows(RATE)[:, :, : self._model.size]
+        maps = in_mode(self._base, mode, hold, self.model.program.law_rates)
+        rates = maps.rows(RATE)[:, :, : self.model.size]
         sound = sound & np.isfinite(maps.matrix).all(axis=(1, 2))
         rates = np.where(sound[:, None, None], rates, 0.0)
         fastest = np.abs(np.linalg.eigvals(rates)).max(axis=1)
@@ -101,7 +101,7 @@ class ModesAbreast:
 
     def _hold(self, stuck: Sequence[int]) -> Hold:
         """The holding equations of ports each of which binds the states by itself; see `holding.hold`."""
-        model, numbers, runs = self._model, self.numbers, len(self.numbers.A)
+        model, numbers, runs = self.model, self.numbers, len(self.numbers.A)
         rows = np.array(model.friction_readings)[list(stuck)]
         chosen = np.array(model.friction_inputs)[list(stuck)]
         slip_x, slip_u = numbers.F[:, rows], numbers.D[:, rows]

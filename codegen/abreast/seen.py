@@ -9,7 +9,6 @@ import numpy as np
 from codegen.abreast.modes import ModeMap, ModesAbreast
 from codegen.model.snapshot import Mode
 from codegen.modes.choices import Tried
-from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Scales, scales_by
 from codegen.numbers.arrays import Array, dot
 from codegen.program.layout import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, STATES
@@ -32,11 +31,13 @@ class Group:
     time: Array
     ahead: Array
     inputs: Callable[[Array], Array]
+    #: Ports that are at rest to an event's own rounding.
+    loose: tuple[int, ...]
 
     def part(self, places: Array) -> "Group":
         """Some of them."""
         rows = (self.at, self.t, self.s, self.both, self.time, self.ahead)
-        return Group(*(values[places] for values in rows), self.inputs)
+        return Group(*(values[places] for values in rows), self.inputs, self.loose)
 
     def moved(self, s: Array, after: Array) -> "Group":
         """The same after a time [s], with other vectors."""
@@ -51,12 +52,11 @@ class Group:
 class Seen:
     """A group in one mode: what its ports give, may give and receive, and what counts as zero of it."""
 
-    def __init__(
-        self, model: ClosedModel, modes: ModesAbreast, found: ModeMap, mode: Mode, group: Group
-    ) -> None:
-        self._model, self._modes, self._found = model, modes, found
-        self.mode, self._group = mode, group
-        maps, at = found.maps, group.at
+    def __init__(self, modes: ModesAbreast, found: ModeMap, mode: Mode, group: Group) -> None:
+        self._modes, self._found, self.mode, self._group = modes, found, mode, group
+        maps, at, model = found.maps, group.at, modes.model
+        #: The runs whose numbers leave no doubt.
+        self.sound = found.sound[at]
         values = dot(maps.matrix[at], group.vectors)
         parts = (STATES, INPUTS, RATES_OF_INPUTS, READINGS, CAPS, RATE)
         x, u, du, y, self.caps, self._rate = (values[:, maps.parts[part]] for part in parts)
@@ -94,10 +94,10 @@ class Seen:
         slips = dot(hold.slip_x[at], self.x) + dot(hold.slip_u[at], self.u)
         return dot(hold.take_away[at], slips)
 
-    def rests(self, ports: Sequence[int], loose: Sequence[int]) -> Array:
-        """Where surely these ports are told to be at rest and no others; ``loose``: to an event's rounding."""
+    def rests(self, ports: Sequence[int]) -> Array:
+        """Where surely these ports are told to be at rest and no others."""
         near = self.scales.slip.copy()
-        near[:, list(loose)] *= TUNING.wide
+        near[:, list(self._group.loose)] *= TUNING.wide
         sizes, inside = np.abs(self.slips), np.zeros(near.shape[1], dtype=bool)
         inside[list(ports)] = True
         sure = np.where(inside, TUNING.surely * sizes <= near, sizes > TUNING.surely * near)
@@ -137,7 +137,7 @@ class Seen:
     @cached_property
     def _later(self) -> "Seen":
         """The same a little later, by one midpoint step."""
-        group, given = self._group, (self._model, self._modes, self._found, self.mode)
+        group, given = self._group, (self._modes, self._found, self.mode)
         ahead = group.ahead
         half = Seen(*given, group.moved(group.s + 0.5 * ahead[:, None] * self._rate, 0.5 * ahead))
         return Seen(*given, group.moved(group.s + ahead[:, None] * half._rate, ahead))
@@ -152,8 +152,17 @@ class Seen:
 
     def ways(self, ports: Sequence[int]) -> Array:
         """The signs of what these ports give."""
-        return np.sign(self.efforts[:, list(ports)])
+        return np.asarray(np.sign(self.efforts[:, list(ports)]))
 
     def sides(self, ports: Sequence[int]) -> Array:
-        """The signs of these ports' slips."""
-        return np.sign(self.slips[:, list(ports)])
+        """The signs of the slips of all other ports."""
+        others = [i for i in range(self.slips.shape[1]) if i not in ports]
+        return np.asarray(np.sign(self.slips[:, others]))
+
+    def touching(self, ports: Sequence[int]) -> Array:
+        """Which of these ports touch one another, where there are several."""
+        count = len(self._group.at)
+        if len(ports) < 2:
+            return np.zeros((count, 0))
+        found = self._modes.touching[np.ix_(self._group.at, ports, ports)]
+        return np.asarray(found.reshape(count, -1), dtype=float)

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from codegen.abreast.falling import roots, together, told
 from codegen.abreast.fleet import Fleet
 from codegen.abreast.systems import Strides, Systems, parts_of_steps
 from codegen.numbers.arrays import Array
@@ -36,7 +37,8 @@ class Walk:
         self._begin, self._z, self._limits = fleet.t[at].copy(), z, limits
         self._n = fleet.s.shape[1]
         self._values = np.einsum("rji,ri->rj", system.triggers, z)
-        self._ready = (self._values >= limits).all(axis=1)
+        self._armed = self._values >= limits
+        self._ready = self._armed.all(axis=1)
         self._falls = dict[int, Falls]()
         self._stops = list[Stop]()
 
@@ -124,8 +126,9 @@ class Walk:
         ends = begin + counts * h
         while len(live):
             block = max(1, min(TUNING.abreast // len(live), int(total[live].max()) - done))
-            beyond, change = strides.take(beyond, change, block)
-            states = z[live, None] + beyond
+            states, change = strides.take(change, block)
+            base, beyond = z[live] + beyond, beyond + states[:, -1]
+            states += base[:, None]
             valid = np.minimum(total[live] - done, block)
             stopped = self._look(places[live], strides, states, valid, begin[live], steps[live], done)
             begun = done // parts + 1
@@ -137,9 +140,8 @@ class Walk:
             self._begin[places[rows]], survivors[rows] = ends[rows], True
             left = ~(stopped | through)
             done += block
-            beyond = beyond[left, -1]
             if not left.all():
-                change, live = change[left], live[left]
+                change, beyond, live = change[left], beyond[left], live[left]
                 strides.keep(left)
         return places[survivors]
 
@@ -153,26 +155,64 @@ class Walk:
             return stopped
         shapes = strides.shapes(states[:, :-1])
         least = shapes.reshape(len(places), -1).min(axis=1)
-        for k in np.flatnonzero(~((least > 0) & self._ready[places])).tolist():
-            place, step = int(places[k]), float(steps[k])
-            own = states[k, : valid[k]]
-            powers = np.einsum("dji,si->sjd", strides.powers[:, k], own)
-            falls = self._falls_of(place)
-            found = falls.first(powers, float(begin[k]) + done * step, step)
-            self._ready[place] = falls.ready
-            if found is not None:
-                whole, tau, ports = found
-                t = float(begin[k]) + (done + whole + tau) * step
-                self._stops.append(Stop(place, t, own[whole], tau * step, ports))
-                stopped[k] = True
+        k = np.flatnonzero(~((least > 0) & self._ready[places]))
+        if not len(k):
+            return stopped
+        own, count = places[k], len(self._system.ports)
+        shapes = shapes[k].reshape(len(k), shapes.shape[1], count, -1)
+        found = told(shapes, valid[k], self._armed[own], self._limits[own])
+        for j in k[found.doubtful].tolist():
+            t = float(begin[j]), done, float(steps[j])
+            stopped[j] = self._closer(int(places[j]), strides, j, states[j, : valid[j]], *t)
+        sure = k[~found.doubtful]
+        self._armed[places[sure]] = self._ready[places[sure]] = True
+        ended = ~found.doubtful & (found.step >= 0)
+        if ended.any():
+            j, whole = k[ended], found.step[ended]
+            stopped[j] = True
+            t = begin[j], done + whole, steps[j]
+            self._stop(places[j], strides, j, states[j, whole], found.due[ended], *t)
         return stopped
+
+    def _stop(
+        self, places: Array, strides: Strides, rows: Array, states: Array, due: Array,
+        begin: Array, done: Array, steps: Array,
+    ) -> None:  # fmt: skip
+        """Note the events in steps from these states, at triggers that surely fall there."""
+        powers = np.matmul(strides.powers[:, rows], states[:, :, None])[..., 0].transpose(1, 2, 0)
+        taus = np.zeros(due.shape)
+        taus[due] = roots(powers[due])
+        tau, whose = together(taus, due, begin + done * steps, steps)
+        times = begin + (done + tau) * steps
+        for k, place in enumerate(places.tolist()):
+            ports = frozenset(self._system.ports[row] for row in np.flatnonzero(whose[k]).tolist())
+            since = float(tau[k] * steps[k])
+            self._stops.append(Stop(place, float(times[k]), states[k], since, ports))
+
+    def _closer(
+        self, place: int, strides: Strides, row: int, states: Array, begin: float, done: int,
+        step: float,
+    ) -> bool:  # fmt: skip
+        """Whether one run comes to an event in steps from these states, told as in a run by itself."""
+        rows = strides.powers[:, row]
+        powers = (states @ rows.reshape(-1, states.shape[1]).T).reshape(len(states), *rows.shape[:2])
+        falls = self._falls_of(place)
+        found = falls.first(powers.transpose(0, 2, 1), begin + done * step, step)
+        self._ready[place] = falls.ready
+        if found is None:
+            return False
+        whole, tau, ports = found
+        t = begin + (done + whole + tau) * step
+        self._stops.append(Stop(place, t, states[whole], tau * step, ports))
+        return True
 
     def _falls_of(self, place: int) -> Falls:
         if place not in self._falls:
             run, limits = self._at[place], self._limits[place]
             self._falls[place] = Falls(
                 self._system.ports, lambda: limits, float(self._fleet.t[run]),
-                float(self._fleet.time[run]), self._values[place],
+                float(self._fleet.time[run]),
+                np.where(self._armed[place], np.inf, self._values[place]),
             )  # fmt: skip
         return self._falls[place]
 

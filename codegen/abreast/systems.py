@@ -100,24 +100,33 @@ class Strides:
             if name in self.__dict__:
                 self.__dict__[name] = np.compress(left, self.__dict__[name], axis)
 
-    def take(self, beyond: Array, change: Array, count: int) -> tuple[Array, Array]:
-        """What lies beyond the first state after 0, 1, .. ``count`` steps, and the change of the next step.
+    def take(self, change: Array, count: int) -> tuple[Array, Array]:
+        """What 0, 1, .. ``count`` steps add up to, of which the first makes a change, and that of the next.
 
-        As `runs.watched.Steps`: told from the first state, so that nothing large is rounded in every step.
+        As `runs.watched.Steps`: told from one state, so that nothing large is rounded in every step. Of sums
+        ``S_k`` of the first changes is ``S_(m + k) = S_m + P^m S_k``.
         """
-        rows = np.empty((len(change), count + 2, change.shape[1]))
-        rows[:, 0], rows[:, 1] = beyond, change
+        rows = np.empty((len(change), count + 1, change.shape[1]))
+        rows[:, 0], rows[:, 1] = 0.0, change
         done, level = 1, 0
-        while done <= count:
-            more = min(done, count + 1 - done)
-            if level == len(self._squares):
-                self._squares.append(self._squares[-1] @ self._squares[-1])
-            if more:
-                rows[:, 1 + done : 1 + done + more] = rows[:, 1 : 1 + more] @ self._squares[level]
+        while done < count:
+            more = min(done, count - done)
+            power = self._power(level)
+            np.matmul(rows[:, 1 : 1 + more], power, out=rows[:, 1 + done : 1 + done + more])
+            rows[:, 1 + done : 1 + done + more] += rows[:, done, None]
             done, level = done + more, level + 1
-        after = rows[:, count + 1].copy()
-        beyond = np.cumsum(rows[:, : count + 1], axis=1)
-        return beyond, after
+        after, level = change[:, None], 0
+        while count >> level:
+            if count >> level & 1:
+                after = after @ self._power(level)
+            level += 1
+        return rows, after[:, 0]
+
+    def _power(self, level: int) -> Array:
+        """What takes states, by rows, so many times two steps farther."""
+        while level >= len(self._squares):
+            self._squares.append(self._squares[-1] @ self._squares[-1])
+        return self._squares[level]
 
 
 def parts_of_steps(M: Array, states: Array, steps: Array) -> Array:
