@@ -236,8 +236,7 @@ class Tuning:
     regular: float = _told(
         1e-8, "of the largest singular value, or of terms: what is smaller takes an exact look"
     )
-    abreast: int = _told(8192, "so many steps of runs side by side are looked at together")
-    together_in_numpy: int = _told(1_000_000, "numbers at samples of runs done side by side")
+    beside_at_once: int = _told(1_000_000, "numbers at samples of runs done side by side")
     ordinary: float = _told(1e100, "numbers that runs side by side stay below")
     surely: float = _told(4.0, "times what counts as zero: what is beyond is told alike everywhere")
     independent: float = _told(1e-13, "of the largest singular value: smaller ones are none")

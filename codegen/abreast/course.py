@@ -8,7 +8,7 @@ from codegen.abreast.fleet import Fleet
 from codegen.abreast.leading import Instant, Leader, Outcome, Precedents, outcomes
 from codegen.abreast.modes import ModesAbreast
 from codegen.abreast.seen import Group, Seen
-from codegen.abreast.stretch import Walk
+from codegen.abreast.stretch import Walk, parted
 from codegen.abreast.systems import systems
 from codegen.inputs.generators import Generator, generator
 from codegen.inputs.present import Inputs, Present
@@ -19,11 +19,12 @@ from codegen.numbers.arrays import Array, dot
 from codegen.program.layout import INPUTS, STATES
 from codegen.runs.hybrid import changes_of
 from codegen.runs.track import Event
+from codegen.standalone.arrays import Places
 from codegen.tuning import TUNING
 
 NONE = frozenset[int]()
 
-Due = dict[Instant, list[Array]]
+Due = dict[Instant, list[Places]]
 """Runs at whose times something is to be decided, by what they have in common."""
 
 
@@ -48,7 +49,8 @@ class Course:
     def run(self) -> None:
         """To the end of all runs that are not alone."""
         fleet, t = self._fleet, self._begin
-        modes = {self._model.program.before(()): np.arange(len(fleet.t))}
+        every: Places = np.arange(len(fleet.t))
+        modes = {self._model.program.before(()): every}
         while modes:
             self._present, self._made = self._driven(t)
             stop = min(self._present.following, self._end)
@@ -60,10 +62,10 @@ class Course:
         present = self._inputs.at(t)
         return present, generator(present.pieces, present.begin)
 
-    def _to(self, stop: float, modes: dict[Mode, Array], ends: bool) -> dict[Mode, Array]:
+    def _to(self, stop: float, modes: dict[Mode, Places], ends: bool) -> dict[Mode, Places]:
         """Runs that are at one time go on to ``stop`` [s], from event to event; ``ends``: they are there."""
         due: Due = {Instant(mode, NONE): [at] for mode, at in modes.items()}
-        arrived: dict[Mode, list[Array]] = {}
+        arrived: dict[Mode, list[Places]] = {}
         while due:
             came: Due = {}
             for now, parts in due.items():
@@ -76,12 +78,12 @@ class Course:
         joined = {mode: self._together(parts) for mode, parts in arrived.items()}
         return {mode: at for mode, at in joined.items() if len(at)}
 
-    def _together(self, parts: list[Array]) -> Array:
+    def _together(self, parts: list[Places]) -> Places:
         """Runs that are not alone, in their order."""
-        at = np.sort(np.concatenate(parts))
+        at: Places = np.sort(np.concatenate(parts))
         return at[~self._fleet.alone[at]]
 
-    def _settle(self, now: Instant, at: Array, ends: bool) -> list[tuple[Mode, Array, Array]]:
+    def _settle(self, now: Instant, at: Places, ends: bool) -> list[tuple[Mode, Places, Array]]:
         """Decide the modes of runs just after their times: runs by mode, with what counts as zero there."""
         if not len(at):
             return []
@@ -100,7 +102,7 @@ class Course:
             found.append((one.mode, runs, one.limits))
         return found
 
-    def _seen(self, now: Instant, at: Array) -> Group:
+    def _seen(self, now: Instant, at: Places) -> Group:
         """The runs as they are, once their magnitudes and time constants are taken into account."""
         fleet, model = self._fleet, self._model
         vectors = np.hstack([fleet.s[at], self._given(fleet.t[at])])
@@ -126,9 +128,9 @@ class Course:
 
     def _given(self, times: Array) -> Array:
         """The external inputs that all runs share, their rates and 1, [w, w', 1], at times [s] by rows."""
-        g, C = self._components(times), self._made.C
-        w = g @ C.T
-        dw = g @ (C @ self._made.G).T if self._model.program.rated else np.zeros_like(w)
+        g, C = self._components(times), self._made.C[None]
+        w = dot(C, g)
+        dw = dot(C @ self._made.G, g) if self._model.program.rated else np.zeros_like(w)
         return np.hstack([w, dw, np.ones((len(times), 1))])
 
     def _components(self, times: Array) -> Array:
@@ -145,7 +147,7 @@ class Course:
             near = TUNING.surely * TUNING.wide * seen.scales.slip[:, slipping]
             self._fleet.alone[group.at] |= (np.abs(seen.slips[:, slipping]) <= near).any(axis=1)
 
-    def _take(self, now: Instant, runs: Array, found: Outcome) -> None:
+    def _take(self, now: Instant, runs: Places, found: Outcome) -> None:
         """The runs go on in the mode that they have come to."""
         fleet, mode = self._fleet, found.mode
         assert mode is not None
@@ -162,25 +164,24 @@ class Course:
                 fleet.alone[run] |= t - fleet.latest[run] < moment
                 fleet.latest[run] = t
 
-    def _advance(self, mode: Mode, at: Array, limits: Array, stop: float, came: Due) -> Array:
+    def _advance(self, mode: Mode, at: Places, limits: Array, stop: float, came: Due) -> Places:
         """Step to ``stop`` [s] or to events, which are added to what came; the runs that arrive."""
         fleet, found = self._fleet, self._modes.of(mode)
         assert found is not None
-        near = stop - fleet.t[at] <= 8 * np.spacing(stop)
-        system = systems(self._model, found.maps, at, self._made, mode)
+        system = systems(self._model, found, at, self._made, mode)
+        limits, step = limits[:, list(system.ports)], float(np.diff(self._times[[0, -1]])[0])
         work = system.norms * (stop - fleet.t[at])
-        fleet.alone[at] |= near | (work > (TUNING.many if mode else TUNING.rounded) / TUNING.surely)
-        keep = ~fleet.alone[at]
-        if not keep.all():
-            at, limits = at[keep], limits[keep]
-            if not len(at):
-                return at
-            system = systems(self._model, found.maps, at, self._made, mode)
+        fleet.alone[at] |= stop - fleet.t[at] <= 8 * np.spacing(stop)
+        fleet.alone[at] |= work > (TUNING.many if mode else TUNING.rounded) / TUNING.surely
         z = np.hstack([fleet.s[at], self._components(fleet.t[at])])
-        walk = Walk(fleet, at, system, z, limits[:, list(system.ports)], self._times)
-        events = walk.to(stop)
-        for ports, runs in events.items():
-            came.setdefault(Instant(mode, ports), []).append(runs)
+        gone = list[Places]()
+        for parts, of in parted(system, step / (len(self._times) - 1)).items():
+            own = of & ~fleet.alone[at]
+            if own.any():
+                given = fleet, at[own], system.part(own), parts, z[own], limits[own]
+                events = Walk(*given, self._times, stop).go()
+                for ports, runs in events.items():
+                    came.setdefault(Instant(mode, ports), []).append(runs)
+                gone += events.values()
         fleet.alone[at] |= ~np.isfinite(fleet.s[at]).all(axis=1)
-        gone = np.concatenate([*events.values(), np.zeros(0, dtype=int)])
-        return np.setdiff1d(at, gone)
+        return np.setdiff1d(at, np.concatenate(gone)) if gone else at

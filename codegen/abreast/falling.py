@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, Flags
+from codegen.standalone.arrays import Places
 from codegen.tuning import TUNING
 
 MOST = 100
@@ -14,12 +15,12 @@ MOST = 100
 class Told(NamedTuple):
     """Of runs: which take a closer look; of the others the step of the event, -1 without, and whose it may be."""
 
-    doubtful: Array
-    step: Array
-    due: Array
+    doubtful: Flags
+    step: Places
+    due: Flags
 
 
-def told(shapes: Array, valid: Array, armed: Array, limits: Array) -> Told:
+def told(shapes: Array, valid: Places, armed: Flags, limits: Array) -> Told:
     """What Bernstein coefficients of triggers tell: runs x steps x triggers x coefficients.
 
     ``valid``: so many steps of each run count. ``armed``, ``limits``: runs x triggers; those that are not armed
@@ -51,6 +52,7 @@ def roots(powers: Array) -> Array:
     """
     low, high = np.zeros(len(powers)), np.ones(len(powers))
     tau, before = np.full(len(powers), 0.5), np.ones(len(powers))
+    done = np.zeros(len(powers), dtype=bool)
     for _ in range(MOST):
         value, slope = np.zeros_like(tau), np.zeros_like(tau)
         for coefficient in powers.T[::-1]:
@@ -62,15 +64,17 @@ def roots(powers: Array) -> Array:
         # Where it would not come nearer, the interval is halved.
         inside = (new >= low) & (new <= high)
         new = np.where(value == 0, tau, np.where(inside, new, 0.5 * (low + high)))
-        change, tau = np.abs(new - tau), new
-        stalls = (change >= before) & (before <= TUNING.rounding)
-        if (stalls | (change <= np.spacing(tau))).all():
+        change = np.abs(new - tau)
+        # Each stays where it came to, whatever the others do.
+        tau = np.where(done, tau, new)
+        done |= (change <= np.spacing(tau)) | ((change >= before) & (before <= TUNING.rounding))
+        if done.all():
             break
         before = change
     return tau
 
 
-def together(found: Array, due: Array, t: Array, step: Array) -> tuple[Array, Array]:
+def together(found: Array, due: Flags, t: Array, step: Array) -> tuple[Array, Flags]:
     """The first of each run's roots, and whose roots are one with it, by triggers; ``t`` [s]: of each step."""
     places = np.where(due, found, np.inf)
     tau = places.min(axis=1)

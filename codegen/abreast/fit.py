@@ -1,16 +1,15 @@
 """Which sweeps can be done side by side, and which of their runs have numbers that need no exact look."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 import sympy as sp
 
-from bondgraph.declare.elements import Element
 from bondgraph.equations import StateEquations
 from bondgraph.reduce.resistances import resistive_loops
 from codegen.abreast.matrices import swept_in
 from codegen.modes.closed import ClosedModel
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, Flags
 from codegen.numbers.lambdified import lambdified
 from codegen.program.records import Program
 from codegen.tuning import TUNING
@@ -51,36 +50,45 @@ def _looped(equations: StateEquations) -> Iterable[sp.Expr]:
             yield from row.values()
 
 
-def sound(
-    equations: StateEquations, parameters: Mapping[str, float | Array], swept: frozenset[str],
-    runs: int,
-) -> Array:  # fmt: skip
-    """Which runs surely have no element whose value is zero or no number; of the others an exact look tells."""
-    found = np.ones(runs, dtype=bool)
-    for element in equations.elements.values():
-        if element.value is None or element.kind.resists or not swept_in(element.value, swept):
-            continue
-        found &= _surely(element, parameters)
-    return found
+class Sound:
+    """Tells which runs surely have no element whose value is zero or no number; others take an exact look."""
+
+    def __init__(self, equations: StateEquations, swept: frozenset[str]) -> None:
+        values = (e.value for e in equations.elements.values() if not e.kind.resists)
+        told = dict.fromkeys(v for v in values if v is not None and swept_in(v, swept))
+        self._sums = [_Sum(part) for value in told for part in _fraction(value)]
+
+    def of(self, parameters: Mapping[str, float | Array], runs: int) -> Flags:
+        """Which of so many runs; ``parameters``: a number, or one for each run."""
+        found = np.ones(runs, dtype=bool)
+        for one in self._sums:
+            found &= one.surely(parameters)
+        return found
 
 
-def _surely(element: Element, parameters: Mapping[str, float | Array]) -> Array:
-    """Whether its value is far from zero beside the terms that make it up, and finite."""
-    expr = sp.sympify(element.value)
-    names = sorted(name.name for name in expr.free_symbols)
-    given = [np.asarray(parameters[name], dtype=float) for name in names]
-    terms = sp.Add.make_args(sp.expand(sp.together(expr).as_numer_denom()[0]))
-    bottom = sp.Add.make_args(sp.expand(sp.together(expr).as_numer_denom()[1]))
-    sure: Array = np.ones((), dtype=bool)
-    for parts in (terms, bottom):
-        values = [np.asarray(lambdified(names, part)(*given), dtype=float) for part in parts]
-        size = np.asarray(sum(abs(value) for value in values))
-        total = np.abs(np.asarray(sum(values)))
-        sure = sure & np.isfinite(size) & (size > 0) & (total > TUNING.regular * size)
-    return sure
+class _Sum:
+    """A sum of terms of parameters."""
+
+    def __init__(self, expr: sp.Expr) -> None:
+        self._names = sorted(name.name for name in expr.free_symbols)
+        self._terms = lambdified(self._names, list(sp.Add.make_args(sp.expand(expr))))
+
+    def surely(self, parameters: Mapping[str, float | Array]) -> Flags:
+        """Whether it is far from zero beside its terms, and these are finite."""
+        given = [np.asarray(parameters[name], dtype=float) for name in self._names]
+        terms = [np.asarray(term, dtype=float) for term in self._terms(*given)]
+        size = np.asarray(sum(map(np.abs, terms)))
+        total = np.abs(np.asarray(sum(terms)))
+        sure: Flags = np.isfinite(size) & (size > 0) & (total > TUNING.regular * size)
+        return sure
 
 
-def even(times: Sequence[float] | Array) -> bool:
+def _fraction(value: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    top, bottom = sp.fraction(sp.together(sp.sympify(value)))
+    return top, bottom
+
+
+def even(times: Array) -> bool:
     """Whether samples lie at one distance."""
     lengths = np.diff(times)
     step = (times[-1] - times[0]) / len(lengths)

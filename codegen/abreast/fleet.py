@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from codegen.model.snapshot import Mode
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, Flags
 from codegen.runs.track import Event
 
 
@@ -23,7 +23,7 @@ class Fleet:
     time: Array
     vectors: Array
     latest: Array = field(init=False)
-    alone: Array = field(init=False)
+    alone: Flags = field(init=False)
     #: Of each run from which sample on it is in which mode, later ones over earlier ones.
     modes: list[dict[int, Mode]] = field(init=False)
     events: list[list[Event]] = field(init=False)

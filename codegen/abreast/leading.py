@@ -75,7 +75,11 @@ MOST_KEPT = 16
 
 
 def outcomes(
-    now: Instant, group: Group, modes: ModesAbreast, known: Precedents, lead: Callable[[int], Leader]
+    now: Instant,
+    group: Group,
+    modes: ModesAbreast,
+    known: Precedents,
+    lead: Callable[[int], Leader],
 ) -> list[Outcome]:
     """What every run of a group comes to.
 
@@ -88,7 +92,7 @@ def outcomes(
             left = _follow(one, group, left, modes, found)
     while len(left):
         first = int(left[0])
-        told = _decided(now, group, lead(first), first)
+        told = _decided(now, group, lead, first)
         if told is not None:
             one = _precedent(*told, group.part(left[:1]), modes)
             if one is not None:
@@ -134,9 +138,7 @@ def _precedent(mode: Mode, log: Log, first: Group, modes: ModesAbreast) -> Prece
     return Precedent(mode, tuple(log), tuple(signs))
 
 
-def _seen(
-    mode: Mode, group: Group, modes: ModesAbreast, known: dict[Mode, Seen]
-) -> Seen | None:
+def _seen(mode: Mode, group: Group, modes: ModesAbreast, known: dict[Mode, Seen]) -> Seen | None:
     """A group in a mode."""
     if mode not in known:
         made = modes.of(mode)
@@ -158,13 +160,17 @@ def _signs(told: Rested | Tried, look: Seen) -> Array:
 
 
 def _decided(
-    now: Instant, group: Group, leader: Leader, place: int
+    now: Instant, group: Group, lead: Callable[[int], Leader], place: int
 ) -> tuple[Mode, Log] | None:
     """The mode that one run comes to, and what decided; None where a look at the instant is not enough."""
-    model, s, present = leader
     t, log = float(group.t[place]), list[Rested | Tried]()
     if not now.mode:
         return (), log
+    try:
+        model, s, present = lead(place)
+    except BondGraphError:
+        # Its numbers are refused, which the run by itself tells.
+        return None
     n = len(model.program.states)
     peaks = Peaks(group.both[place].copy(), n, float(group.time[place]))
     ahead = float(group.ahead[place])

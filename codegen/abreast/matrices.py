@@ -96,7 +96,9 @@ def forwards_map(
         table[row] = value
     table[:, 1:] = (table[:, 1:] - table[:, :1]) / TUNING.far
     columns = [*range(1, length + 1), 0]
-    return AffineMap(widths(program)[: len(parts)], table[:, columns].transpose(2, 0, 1).copy(), RATE)
+    return AffineMap(
+        widths(program)[: len(parts)], table[:, columns].transpose(2, 0, 1).copy(), RATE
+    )
 
 
 def stacked(matrix: Array, runs: int) -> Array:

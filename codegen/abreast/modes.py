@@ -17,7 +17,7 @@ from codegen.model.affine_modes import let_go, in_mode
 from codegen.model.moves import Moves, moves
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, Flags
 from codegen.program.affine import AffineMap
 from codegen.program.layout import RATE
 from codegen.standalone.holding import HeldSet, Hold
@@ -26,17 +26,23 @@ from codegen.standalone.matrices import Numbers
 NONE: Array = np.zeros((0, 0))
 
 
+SWEEPS = 4
+"""So often each row and column are balanced."""
+
+
 @dataclass(frozen=True)
 class ModeMap:
     """A mode of all runs: its maps, what holds its sticking ports, and the largest rate [1/s] of each run.
 
-    ``sound``: the runs whose numbers leave no doubt that these ports have unique holding efforts.
+    ``norms``: bounds on the matrices of rates in norms in which these are about balanced. ``sound``: the runs
+    whose numbers leave no doubt that these ports have unique holding efforts.
     """
 
     maps: AffineMap
     hold: Hold | None
     fastest: Array
-    sound: Array
+    norms: Array
+    sound: Flags
 
 
 class ModesAbreast:
@@ -97,7 +103,7 @@ class ModesAbreast:
         sound = sound & np.isfinite(maps.matrix).all(axis=(1, 2))
         rates = np.where(sound[:, None, None], rates, 0.0)
         fastest = np.abs(np.linalg.eigvals(rates)).max(axis=1)
-        return ModeMap(maps, hold, fastest, sound)
+        return ModeMap(maps, hold, fastest, _norms(rates), sound)
 
     def _hold(self, stuck: Sequence[int]) -> Hold:
         """The holding equations of ports each of which binds the states by itself; see `holding.hold`."""
@@ -115,6 +121,25 @@ class ModesAbreast:
             fixed=slip_u + slip_x @ numbers.R, take_away=-moved @ _inverse(slip_x @ moved),
             mix=np.broadcast_to(np.eye(len(stuck)), (runs, len(stuck), len(stuck))), free=none,
         )  # fmt: skip
+
+
+def _norms(matrices: Array) -> Array:
+    """Bounds on the norms of matrices that are balanced first: E. E. Osborne, J. ACM 7 (1960) 338-345.
+
+    >>> _norms(np.array([[[0.0, 1e6], [1.0, -2.0]]])).tolist()
+    [1002.0]
+    """
+    sizes, own = np.abs(matrices), np.abs(np.diagonal(matrices, axis1=1, axis2=2))
+    count = range(sizes.shape[1])
+    sizes[:, count, count] = 0.0
+    for i in SWEEPS * [*count]:
+        row, column = sizes[:, i].sum(axis=1), sizes[:, :, i].sum(axis=1)
+        both = (row > 0) & (column > 0)
+        factor = np.sqrt(np.divide(row, column, out=np.ones_like(row), where=both))[:, None]
+        sizes[:, :, i] *= factor
+        sizes[:, i] /= factor
+    sizes[:, count, count] = own
+    return np.asarray(np.minimum(sizes.sum(axis=1).max(axis=1), sizes.sum(axis=2).max(axis=1)))
 
 
 def _inverse(matrices: Array) -> Array:

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -124,13 +123,11 @@ class Again:
 
 
 def result_of(
-    shared: Shared, run: int, times: Array, about: Mapping[str, Any], events: bool,
-    alone: Callable[[], Result],
+    shared: Shared, run: int, times: Array, names: tuple[tuple[str, ...], ...],
+    units: Mapping[str, str], events: bool, alone: Callable[[], Result],
 ) -> Result:  # fmt: skip
-    """The record of one run; ``about``: what all have in common; ``alone``: the same run by itself."""
-    again = Again(alone)
+    """The record of one run; ``names``: of states, inputs, outputs; ``alone``: the same run by itself."""
+    again, columns = Again(alone), RunColumns(shared, run)
     happened = tuple(shared.fleet.events[run]) if events else ()
-    columns = RunColumns(shared, run)
-    return Result(
-        time=times, events=happened, columns=columns, observer=again, ledger=again, **about
-    )
+    states, inputs, outputs = names
+    return Result(times, states, inputs, outputs, happened, columns, again, again, units)

@@ -10,8 +10,9 @@ from codegen.abreast.modes import ModeMap, ModesAbreast
 from codegen.model.snapshot import Mode
 from codegen.modes.choices import Tried
 from codegen.modes.rounding import Scales, scales_by
-from codegen.numbers.arrays import Array, dot
+from codegen.numbers.arrays import Array, Flags, dot
 from codegen.program.layout import CAPS, INPUTS, RATE, RATES_OF_INPUTS, READINGS, STATES
+from codegen.standalone.arrays import Places
 from codegen.tuning import TUNING
 
 
@@ -24,7 +25,7 @@ class Group:
     those of each run in the size that all share.
     """
 
-    at: Array
+    at: Places
     t: Array
     s: Array
     both: Array
@@ -34,10 +35,12 @@ class Group:
     #: Ports that are at rest to an event's own rounding.
     loose: tuple[int, ...]
 
-    def part(self, places: Array) -> "Group":
+    def part(self, places: Places) -> "Group":
         """Some of them."""
-        rows = (self.at, self.t, self.s, self.both, self.time, self.ahead)
-        return Group(*(values[places] for values in rows), self.inputs, self.loose)
+        t, s, both, time, ahead = (
+            values[places] for values in (self.t, self.s, self.both, self.time, self.ahead)
+        )
+        return Group(self.at[places], t, s, both, time, ahead, self.inputs, self.loose)
 
     def moved(self, s: Array, after: Array) -> "Group":
         """The same after a time [s], with other vectors."""
@@ -72,7 +75,11 @@ class Seen:
         """Below these slips, margins and rates of slips count as zero, by runs and ports."""
         group, moves = self._group, self._modes.moves
         by = type(moves)(
-            moves.slips, None, moves.terms[group.at], moves.pushes[group.at], moves.mobility[group.at]
+            moves.slips,
+            None,
+            moves.terms[group.at],
+            moves.pushes[group.at],
+            moves.mobility[group.at],
         )
         sizes = np.maximum(np.abs(np.hstack([self.x, self.u])), group.both)
         late = TUNING.late * np.spacing(np.abs(group.t))[:, None] * np.abs(self.rates)
@@ -94,7 +101,7 @@ class Seen:
         slips = dot(hold.slip_x[at], self.x) + dot(hold.slip_u[at], self.u)
         return dot(hold.take_away[at], slips)
 
-    def rests(self, ports: Sequence[int]) -> Array:
+    def rests(self, ports: Sequence[int]) -> Flags:
         """Where surely these ports are told to be at rest and no others."""
         near = self.scales.slip.copy()
         near[:, list(self._group.loose)] *= TUNING.wide
@@ -103,7 +110,7 @@ class Seen:
         sure = np.where(inside, TUNING.surely * sizes <= near, sizes > TUNING.surely * near)
         return np.asarray(sure.all(axis=1))
 
-    def tells(self, told: Tried) -> Array:
+    def tells(self, told: Tried) -> Flags:
         """Where surely the mode's ports tell the same of it."""
         found, size = self._stopped(), self.scales
         for port, sign in (told.verdicts or {}).items():
@@ -118,7 +125,7 @@ class Seen:
             found &= self._tells_later(port, sign)
         return found
 
-    def _tells_later(self, port: int, sign: int) -> Array:
+    def _tells_later(self, port: int, sign: int) -> Flags:
         """Where a tie surely tells so a moment later; as `Look.later_verdict`."""
         then, size, way = self._later, self.scales, self.mode[port]
         if way == 0:
@@ -142,13 +149,13 @@ class Seen:
         half = Seen(*given, group.moved(group.s + 0.5 * ahead[:, None] * self._rate, 0.5 * ahead))
         return Seen(*given, group.moved(group.s + ahead[:, None] * half._rate, ahead))
 
-    def _stopped(self) -> Array:
+    def _stopped(self) -> Flags:
         """Where no levels are below zero, and ports that stick surely are at rest."""
-        found = (self.caps >= 0).all(axis=1)
+        found: Flags = (self.caps >= 0).all(axis=1)
         stuck = [i for i, sign in enumerate(self.mode) if sign == 0]
         near = TUNING.wide * self.scales.slip[:, stuck]
         found &= (TUNING.surely * np.abs(self.slips[:, stuck]) <= near).all(axis=1)
-        return np.asarray(found)
+        return found
 
     def ways(self, ports: Sequence[int]) -> Array:
         """The signs of what these ports give."""
@@ -164,5 +171,6 @@ class Seen:
         count = len(self._group.at)
         if len(ports) < 2:
             return np.zeros((count, 0))
-        found = self._modes.touching[np.ix_(self._group.at, ports, ports)]
+        own = list(ports)
+        found = self._modes.touching[self._group.at][:, own][:, :, own]
         return np.asarray(found.reshape(count, -1), dtype=float)

@@ -10,6 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from codegen.standalone.arrays import Array as Array
 
+Flags = NDArray[np.bool_]
+"""What is so and what is not, place by place."""
+
 NUMBER = int | float | np.integer | np.floating
 """What is a number by itself; truth values are integers, too, and are refused with `is_number`."""
 

@@ -11,12 +11,13 @@ import numpy as np
 
 from bondgraph.errors import SignalError
 from codegen.abreast.abreast import Abreast, abreast
-from codegen.abreast.abreast import Asked as Wanted
+from codegen.abreast.asked import Asked as Wanted
 from codegen.batch.asked import Asked
 from codegen.batch.batch import Batch, batch
 from codegen.family import Family
 from codegen.numbers.arrays import Array
 from codegen.packing import packed
+from codegen.record.result import Result
 from codegen.runs.track import Settings
 from codegen.sweeps.chunks import Chunk, Outcome
 from codegen.sweeps.columns import Columns
@@ -33,10 +34,12 @@ def measured(job: Job, chunk: Chunk) -> Outcome:
     results: tuple[tuple[Array, ...] | str, ...] | Columns
     if loop is None:
         side = abreast_of(job)
-        found = [None] * len(rows) if side is None else side.results(rows, job.record)
+        none: list[Result | None] = [None] * len(rows)
+        found = none if side is None else side.results(rows, job.record)
         each = zip(rows.tolist(), starts, found, strict=True)
         results = tuple(
-            job.run(row, fallen, own) if one is None else job.measured(one) for row, own, one in each
+            job.run(row, fallen, own) if one is None else job.measured(one)
+            for row, own, one in each
         )
     else:
         columns, left, completed = loop.telling(rows)
@@ -78,8 +81,9 @@ def abreast_of(job: Job) -> Abreast | None:
 
 def _made(job: Job) -> Abreast | None:
     model, initial, inputs = job.model, job.initial or {}, job.inputs or {}
-    plain = isinstance(initial, Mapping) and isinstance(inputs, Mapping) and not job.initially_on
-    if not isinstance(model, Family) or not plain:
+    if not isinstance(model, Family) or job.initially_on:
+        return None
+    if not isinstance(initial, Mapping) or not isinstance(inputs, Mapping):
         return None
     method = Settings(**job.settings).method
     asked = Wanted(model, job.names, job.time, initial, inputs, method, job.eventful)
