@@ -1,4 +1,4 @@
-"""Runs of a family side by side: those with other numbers for the same model, of which nothing is doubtful."""
+"""Runs of a family side by side: the same model with other numbers, as long as nothing is doubtful."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -92,7 +92,7 @@ class Abreast:
         ]
 
     def _same(self, modes: ModesAbreast) -> Flags:
-        """Which runs have finite numbers, and surely no slip or output that depends on what none does here."""
+        """Which runs have finite numbers, and slips and outputs that surely depend on no more than here."""
         model, own = self.model, modes.numbers
         direct = own.D[:, model.friction_readings][:, :, model.friction_inputs]
         shown = (own.G != 0) == (model.constant.G != 0)

@@ -31,8 +31,9 @@ Due = dict[Instant, list[Places]]
 class Course:
     """The loop over many runs: their modes are decided and they are stepped together as far as that goes.
 
-    ``signals``: the external inputs that all share, of which each run has its own sizes. ``lead``: a run by
-    itself at its time. ``precedents``: what runs came to before. Runs of which anything is doubtful are left ``alone``.
+    ``signals``: the external inputs that all share, of which each run has its own sizes. ``precedents``: what
+    runs came to before. ``lead``: a run by itself at its time. Runs of which anything is doubtful are left
+    alone.
     """
 
     def __init__(
@@ -108,7 +109,8 @@ class Course:
         vectors = np.hstack([fleet.s[at], self._given(fleet.t[at])])
         forwards = self._modes.of(tuple(sign or 1 for sign in now.mode))
         before = self._modes.of(now.mode)
-        assert forwards is not None and before is not None
+        assert forwards is not None
+        assert before is not None
         maps, sizes = forwards.maps, np.abs(vectors)
         inputs = len(model.program.external)
         sizes[:, -1 - inputs : -1] = 0.0

@@ -13,7 +13,7 @@ MOST = 100
 
 
 class Told(NamedTuple):
-    """Of runs: which take a closer look; of the others the step of the event, -1 without, and whose it may be."""
+    """Of runs: which take a closer look; of the others the step of the event, or -1, and whose it may be."""
 
     doubtful: Flags
     step: Places
@@ -23,8 +23,8 @@ class Told(NamedTuple):
 def told(shapes: Array, valid: Places, armed: Flags, limits: Array) -> Told:
     """What Bernstein coefficients of triggers tell: runs x steps x triggers x coefficients.
 
-    ``valid``: so many steps of each run count. ``armed``, ``limits``: runs x triggers; those that are not armed
-    must rise through the first step, beyond their limits, and are armed then: never again do they fall by these.
+    ``valid``: so many steps of each run count. ``armed``, ``limits``: runs x triggers; those that are not
+    armed must rise through the first step, beyond their limits, and are armed then: they fall by less in it.
     """
     first, every = shapes[:, 0], np.arange(len(shapes))
     # The slope is the degree times a mean of the differences.
@@ -75,7 +75,7 @@ def roots(powers: Array) -> Array:
 
 
 def together(found: Array, due: Flags, t: Array, step: Array) -> tuple[Array, Flags]:
-    """The first of each run's roots, and whose roots are one with it, by triggers; ``t`` [s]: of each step."""
+    """The first of each run's roots, and the triggers whose roots are one with it; ``t`` [s]: of steps."""
     places = np.where(due, found, np.inf)
     tau = places.min(axis=1)
     near = tau + TUNING.together * np.maximum(1.0, t / step)

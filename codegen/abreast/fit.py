@@ -45,8 +45,8 @@ def _looped(equations: StateEquations) -> Iterable[sp.Expr]:
     for rows in reduction.structure.loops:
         for row in rows:
             yield from row.values()
-    for _, rows in resistive_loops(reduction):
-        for row in rows:
+    for _, inside in resistive_loops(reduction):
+        for row in inside:
             yield from row.values()
 
 

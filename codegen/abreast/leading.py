@@ -1,7 +1,8 @@
 """What an instant comes to in many runs: decided for one of them, and for all in which the same decides.
 
-One run leads: its mode is decided as in a run by itself, and note is taken of what decided. Of the others those
-follow in which all of that is told alike, far from a tie; one of the rest leads next. What led once is a precedent for all later runs.
+One run leads: its mode is decided as in a run by itself, and note is taken of what decided. Of the others
+those follow in which all of that is told alike, far from a tie; one of the rest leads next. What led once is
+a precedent for all later runs.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,6 +21,7 @@ from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks
 from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
+from codegen.standalone.arrays import Places
 
 NOTHING: Array = np.zeros((0, 0))
 
@@ -37,11 +39,11 @@ class Leader(NamedTuple):
 class Outcome(NamedTuple):
     """Runs of a group, by their places in it, and the mode that they come to; None: by themselves.
 
-    ``added``: to their states, so that ports that stick are at rest. ``limits``: below these what is watched of
-    their ports counts as zero.
+    ``added``: to their states, so that ports that stick are at rest. ``limits``: below these what is watched
+    of their ports counts as zero.
     """
 
-    places: Array
+    places: Places
     mode: Mode | None
     added: Array = NOTHING
     limits: Array = NOTHING
@@ -85,7 +87,8 @@ def outcomes(
 
     ``known``: what others have come to. ``lead``: the run at a place of the group by itself.
     """
-    left, found = np.arange(len(group.at)), list[Outcome]()
+    left: Places = np.arange(len(group.at))
+    found = list[Outcome]()
     kept = known.setdefault(now, [])
     for one in list(kept):
         if len(left):
@@ -94,10 +97,10 @@ def outcomes(
         first = int(left[0])
         told = _decided(now, group, lead, first)
         if told is not None:
-            one = _precedent(*told, group.part(left[:1]), modes)
-            if one is not None:
-                left = _follow(one, group, left, modes, found)
-                kept[:] = [one, *kept[: MOST_KEPT - 1]]
+            made = _precedent(*told, group.part(left[:1]), modes)
+            if made is not None:
+                left = _follow(made, group, left, modes, found)
+                kept[:] = [made, *kept[: MOST_KEPT - 1]]
         if len(left) and left[0] == first:
             found.append(Outcome(np.array([first]), None))
             left = left[left != first]
@@ -105,8 +108,8 @@ def outcomes(
 
 
 def _follow(
-    one: Precedent, group: Group, left: Array, modes: ModesAbreast, found: list[Outcome]
-) -> Array:
+    one: Precedent, group: Group, left: Places, modes: ModesAbreast, found: list[Outcome]
+) -> Places:
     """The places of a group that are left once those that surely follow a precedent are found."""
     part = group.part(left)
     follow, known = np.ones(len(left), dtype=bool), dict[Mode, Seen]()

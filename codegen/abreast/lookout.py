@@ -34,8 +34,8 @@ class Lookout:
     def __init__(self, system: Systems, z: Array, limits: Array, t: Array, time: Array) -> None:
         self._ports, self._limits, self._t, self._time = system.ports, limits, t, time
         self._values = dot(system.triggers, z)
-        self._armed: Flags = self._values >= limits
-        self._ready: Flags = self._armed.all(axis=1)
+        self._armed: Flags = np.asarray(self._values >= limits)
+        self._ready: Flags = np.asarray(self._armed.all(axis=1))
         self._falls = dict[int, Falls]()
         self.stops = list[Stop]()
 

@@ -1,13 +1,14 @@
-"""The matrices and the maps of many runs at once: programs evaluated over arrays with a place for each run."""
+"""The matrices and maps of many runs at once: a program evaluated over arrays with a place for each run."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from codegen.model.numpy_backend import compiled
+from bondgraph.errors import SimulationError
 from codegen.model.numbers import assembled
+from codegen.model.numpy_backend import compiled
 from codegen.numbers.arrays import Array
 from codegen.ports.forming import formed, rubbing
 from codegen.ports.slips import ExactSlips
@@ -41,13 +42,17 @@ class RunsBlock(Formula):
 
     def of_pool(self, pool: Array, like: Instant) -> Array:
         """The results, of a pool."""
-        return _objects(self._run(*(pool[at] for at in self._read)))
+        return _called(self._run, [pool[at] for at in self._read])
 
 
 def matrices_of(program: Program, parameters: Mapping[str, float | Array], runs: int) -> Numbers:
-    """The matrices of each run; each entry is a number, or an array of those of all runs."""
+    """The matrices of each run; each entry is a number, or an array of those of all runs.
+
+    Raises `SimulationError` where formulas do not take arrays, as that of a largest of numbers of which some
+    are the same in all runs.
+    """
     code = program.coefficients
-    values = _objects(compiled(code)(*(parameters[name.name] for name in code.arguments)))
+    values = _called(compiled(code), [parameters[name.name] for name in code.arguments])
 
     def solve(A: Array, right: Array) -> Array:
         return unstacked(solved(stacked(A, runs), stacked(right, runs)))
@@ -115,6 +120,13 @@ def unstacked(stack: Array) -> Array:
     for at in np.ndindex(found.shape):
         found[at] = stack[(slice(None), *at)]
     return found
+
+
+def _called(function: Callable[..., list[Any]], given: Sequence[Any]) -> Array:
+    try:
+        return _objects(function(*given))
+    except (ArithmeticError, TypeError, ValueError) as error:
+        raise SimulationError(f"a formula has no values over many runs: {error}") from None
 
 
 def _objects(values: list[Any]) -> Array:

@@ -13,7 +13,7 @@ from codegen.abreast.matrices import (
     solved,
     stacked,
 )
-from codegen.model.affine_modes import let_go, in_mode
+from codegen.model.affine_modes import in_mode, let_go
 from codegen.model.moves import Moves, moves
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
@@ -22,6 +22,7 @@ from codegen.program.affine import AffineMap
 from codegen.program.layout import RATE
 from codegen.standalone.holding import HeldSet, Hold
 from codegen.standalone.matrices import Numbers
+from codegen.tuning import TUNING
 
 NONE: Array = np.zeros((0, 0))
 
@@ -66,7 +67,7 @@ class ModesAbreast:
         forwards.matrix[...] *= columns[:, None, :]
         self.numbers = Numbers(*(stacked(matrix, runs) for matrix in vars(objects).values()))
         #: Which runs have finite numbers throughout.
-        self.finite = np.isfinite(forwards.matrix).all(axis=(1, 2))
+        self.finite: Flags = np.asarray(np.isfinite(forwards.matrix).all(axis=(1, 2)))
         self._base = let_go(forwards, self.numbers, model.friction_inputs)
 
     @cached_property
@@ -84,7 +85,10 @@ class ModesAbreast:
         return np.asarray((moved != 0) | (m.D[:, rows][:, :, columns] != 0))
 
     def of(self, mode: Mode) -> ModeMap | None:
-        """A mode; None of one in which not every port that sticks binds states by itself."""
+        """A mode; None of one in which not every port that sticks binds states by itself.
+
+        Raises `SimulationError` where the ports of the one model cannot hold.
+        """
         if mode not in self._modes:
             self._modes[mode] = self._made(mode)
         return self._modes[mode]
@@ -96,14 +100,29 @@ class ModesAbreast:
             if not _binds(self.model.slips.held(tuple(stuck)), len(stuck)):
                 return None
             hold = self._hold(stuck)
-            sound = self.finite & np.isfinite(hold.inverse).all(axis=(1, 2))
-            sound = sound & np.isfinite(hold.take_away).all(axis=(1, 2))
+            sound = self.finite & self._holds(mode, hold)
         maps = in_mode(self._base, mode, hold, self.model.program.law_rates)
         rates = maps.rows(RATE)[:, :, : self.model.size]
         sound = sound & np.isfinite(maps.matrix).all(axis=(1, 2))
         rates = np.where(sound[:, None, None], rates, 0.0)
         fastest = np.abs(np.linalg.eigvals(rates)).max(axis=1)
         return ModeMap(maps, hold, fastest, _norms(rates), sound)
+
+    def _holds(self, mode: Mode, hold: Hold) -> Flags:
+        """Which runs have unique holding efforts, by nothing that those of the one model do not need.
+
+        Ports that act with other factors than they are acted on with are stopped in another way.
+        """
+        exact = self.model.hold(mode, self.model.constant)
+        pushed = self.numbers.Q[:, :, hold.inputs]
+        by = hold.slip_x @ pushed
+        aside = np.abs(pushed + hold.take_away @ by)
+        sizes = np.abs(pushed) + np.abs(hold.take_away) @ np.abs(by)
+        wanted = np.abs(hold.V).max(axis=1) > TUNING.nothing_held
+        found = np.isfinite(hold.inverse).all(axis=(1, 2))
+        found &= (aside <= TUNING.consistent * sizes).all(axis=(1, 2))
+        found &= ~(wanted & (np.abs(exact.V).max(axis=0) <= TUNING.nothing_held)).any(axis=1)
+        return np.asarray(found)
 
     def _hold(self, stuck: Sequence[int]) -> Hold:
         """The holding equations of ports each of which binds the states by itself; see `holding.hold`."""

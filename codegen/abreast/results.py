@@ -1,4 +1,4 @@
-"""What runs side by side have recorded, as the records of single runs: worked out as far as it is asked for."""
+"""What runs side by side have recorded, as records of single runs: worked out as far as it is asked for."""
 
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass

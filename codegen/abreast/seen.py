@@ -151,7 +151,7 @@ class Seen:
 
     def _stopped(self) -> Flags:
         """Where no levels are below zero, and ports that stick surely are at rest."""
-        found: Flags = (self.caps >= 0).all(axis=1)
+        found: Flags = np.asarray((self.caps >= 0).all(axis=1))
         stuck = [i for i, sign in enumerate(self.mode) if sign == 0]
         near = TUNING.wide * self.scales.slip[:, stuck]
         found &= (TUNING.surely * np.abs(self.slips[:, stuck]) <= near).all(axis=1)

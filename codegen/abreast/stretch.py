@@ -43,20 +43,27 @@ class Walk:
         on &= np.abs(lengths - step) <= TUNING.alike * step
         # To the first sample, or where there is none to the end, each its own way.
         heads = np.flatnonzero(~on)
-        heads = self._steps(heads, lengths[heads], np.ones_like(heads), first[heads])
+        heads = self._once(heads, lengths[heads], first[heads])
         self._begin[heads] = target[heads]
         first[heads] += 1
         heads = heads[target[heads] < self._stop]
         here = np.sort(np.concatenate([np.flatnonzero(on), heads]))
         tail = self._stop - float(times[last - 1])
         whole = abs(tail - step) <= TUNING.alike * step
-        counts = last - first[here] + whole
-        even = self._steps(here, np.full(len(here), step), counts, first[here])
+        counts = (last - first[here] + whole) * self._parts
+        steps = np.full(len(here), step / self._parts)
+        even = self._steps(here, steps, counts, first[here], self._parts)
         if not whole and tail > 2 * np.spacing(self._stop):
             self._begin[even] = times[last - 1]
-            ones = np.ones_like(even)
-            self._steps(even, np.full(len(even), tail), ones, ones * last)
+            self._once(even, np.full(len(even), tail), np.full_like(even, last))
         return self._arrived()
+
+    def _once(self, places: Places, lengths: Array, first: Places) -> Places:
+        """So far [s] in each run, to a sample or not; the places of those that come to no event."""
+        parts = np.maximum(np.ceil(self._system.norms[places] * lengths), 1.0)
+        left = self._steps(places, lengths / parts, parts.astype(int), first, 0)
+        self._record(left, self._z[left, None], first[np.isin(places, left)])
+        return left
 
     def _first_samples(self) -> Places:
         """Each run's next sample; one that is where it begins, but for the rounding of time, is recorded."""
@@ -87,28 +94,32 @@ class Walk:
         rows, columns = np.nonzero(samples < last)
         fleet.vectors[runs[rows], samples[rows, columns]] = own[rows, columns]
 
-    def _steps(self, places: Places, h: Array, counts: Places, first: Places) -> Places:
-        """So many times h [s] of each of these runs; the places of those that come to no event.
+    def _steps(
+        self, places: Places, steps: Array, total: Places, first: Places, every: int
+    ) -> Places:
+        """So many steps [s] of each of these runs; the places of those that come to no event.
 
-        ``first``: the sample at the end of the first.
+        ``every``: so many steps there is a sample, at the end of the first of them ``first``; 0: there is none.
         """
-        going = np.flatnonzero(counts > 0)
+        going = np.flatnonzero(total > 0)
         if not len(going):
             return places
-        left, parts = places[going], self._parts
-        total, first, z = counts[going] * parts, first[going], self._z[left]
-        strides = Strides(self._system, h[going] / parts, left)
+        left, total, first = places[going], total[going], first[going]
+        z, strides = self._z[left], Strides(self._system, steps[going], left)
         beyond, change = np.zeros_like(z), strides.change(z)
-        block, done, ended = min(BLOCK, int(total.max())), 0, list[Places]()
+        # Powers of two, so that products have the same shapes whatever other runs do.
+        block = min(BLOCK, 1 << (int(total.max()) - 1).bit_length())
+        done, ended = 0, list[Places]()
         while len(left):
             states, change = strides.take(change, block)
             base, beyond = z + beyond, beyond + states[:, -1]
             states += base[:, None]
             valid = np.minimum(total - done, block)
             stopped = self._lookout.look(left, strides, states, valid, self._begin[left], done)
-            begun = done // parts + 1
-            samples = np.arange(begun, (done + block) // parts + 1) * parts - done
-            self._record(left, states[:, samples], first + begun - 1)
+            if every:
+                begun = done // every
+                samples = np.arange(begun + 1, (done + block) // every + 1) * every - done
+                self._record(left, states[:, samples], first + begun)
             through = ~stopped & (total <= done + block)
             self._z[left[through]] = states[through, valid[through]]
             ended.append(left[stopped])

@@ -35,8 +35,8 @@ def falls(here: Sight, mode: Mode, peaks: Peaks, system: Watched, z: Array | Non
 class Falls:
     """Triggers of ports from t [s] on; one that begins at zero must rise before it falls.
 
-    ``limits``: below these they count as zero at t. ``time`` [s]: the shortest time constant. ``values``: theirs
-    at t; None where all are well above zero.
+    ``limits``: below these they count as zero at t. ``time`` [s]: the shortest time constant. ``values``:
+    theirs at t; None where all are well above zero.
     """
 
     def __init__(
