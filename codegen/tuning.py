@@ -236,6 +236,7 @@ class Tuning:
     regular: float = _told(
         1e-8, "of the largest singular value, or of terms: what is smaller takes an exact look"
     )
+    side_by_side: int = _told(8, "runs of a sweep in numpy: fewer are done one by one")
     beside_at_once: int = _told(1_000_000, "numbers at samples of runs done side by side")
     ordinary: float = _told(1e100, "numbers that runs side by side stay below")
     surely: float = _told(4.0, "times what counts as zero: what is beyond is told alike everywhere")

@@ -99,7 +99,7 @@ class Walk:
     ) -> Places:
         """So many steps [s] of each of these runs; the places of those that come to no event.
 
-        ``every``: so many steps there is a sample, at the end of the first of them ``first``; 0: there is none.
+        ``every``: after so many steps there is a sample, the first of them ``first``; 0: there is none.
         """
         going = np.flatnonzero(total > 0)
         if not len(going):

@@ -60,7 +60,8 @@ class Model(Protocol):
 class Job:
     """A model and all that its runs share; ``names`` are what each run has numbers for.
 
-    ``events``: whether functions that are no ready measures find what happened in a run.
+    ``events``: whether functions that are no ready measures find what happened in a run. ``runs``: how many
+    there are in all.
     """
 
     model: Model
@@ -72,6 +73,7 @@ class Job:
     settings: Mapping[str, Any] = field(default_factory=dict)
     initially_on: tuple[Hashable, ...] = ()
     events: bool = True
+    runs: int = 0
 
     def run(
         self, row: Sequence[float], fallen: list[str] | None = None,

@@ -22,6 +22,7 @@ from codegen.runs.track import Settings
 from codegen.sweeps.chunks import Chunk, Outcome
 from codegen.sweeps.columns import Columns
 from codegen.sweeps.job import Job
+from codegen.tuning import TUNING
 
 
 def measured(job: Job, chunk: Chunk) -> Outcome:
@@ -81,7 +82,7 @@ def abreast_of(job: Job) -> Abreast | None:
 
 def _made(job: Job) -> Abreast | None:
     model, initial, inputs = job.model, job.initial or {}, job.inputs or {}
-    if not isinstance(model, Family) or job.initially_on:
+    if not isinstance(model, Family) or job.initially_on or job.runs < TUNING.side_by_side:
         return None
     if not isinstance(initial, Mapping) or not isinstance(inputs, Mapping):
         return None
