@@ -120,7 +120,8 @@ class ModesAbreast:
         sizes = np.abs(pushed) + np.abs(hold.take_away) @ np.abs(by)
         wanted = np.abs(hold.V).max(axis=1) > TUNING.nothing_held
         found = np.isfinite(hold.inverse).all(axis=(1, 2))
-        found &= (aside <= TUNING.consistent * sizes).all(axis=(1, 2))
+        largest = sizes.max(axis=(1, 2), keepdims=True)
+        found &= (aside <= TUNING.consistent * largest).all(axis=(1, 2))
         found &= ~(wanted & (np.abs(exact.V).max(axis=0) <= TUNING.nothing_held)).any(axis=1)
         return np.asarray(found)
 

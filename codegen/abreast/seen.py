@@ -130,7 +130,8 @@ class Seen:
         then, size, way = self._later, self.scales, self.mode[port]
         if way == 0:
             margin, near = then._margin(port), size.effort[:, port]
-            return np.asarray(margin >= 0 if sign > 0 else margin < -TUNING.surely * near)
+            holds, slips = TUNING.surely * margin >= -near, margin < -TUNING.surely * near
+            return np.asarray(holds if sign > 0 else slips)
         rate, slip = way * then.rates[:, port], way * then.slips[:, port]
         moving, near = TUNING.moving * size.acceleration[:, port], size.slip[:, port]
         if sign > 0:
