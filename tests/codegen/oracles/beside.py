@@ -3,13 +3,13 @@
 from typing import Any, NamedTuple
 
 import numpy as np
-from oracles.chains import random_chain
 
 import bondgraph as bg
 from codegen import Family, Result, Swept, Table
 from codegen.abreast.abreast import Abreast, abreast
 from codegen.abreast.asked import Asked
 from codegen.numbers.arrays import Array
+from oracles.chains import random_chain
 
 TIMES = np.linspace(0.0, 2.0, 81)
 
