@@ -6,13 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from codegen.inputs.generators import Generator
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.modes.keeping import GUARDS, is_kept, watched_by
-from codegen.numbers.arrays import Array, read_only
+from codegen.numbers.arrays import Array
 from codegen.numbers.latest import Latest
 from codegen.program.affine import AffineMap, balanced_norm
 from codegen.program.layout import CAPS, INPUTS, RATE, READINGS
@@ -47,8 +46,6 @@ class Watched:
     norm: float
     #: Whether a port has a friction level.
     limited: bool
-    #: Every port's trigger, armed.
-    armed: NDArray[np.bool_]
     _strides: Latest[str, Stride] = field(default_factory=lambda: Latest(STRIDES), repr=False)
     _met: Latest[str, bool] = field(default_factory=Latest, repr=False)
 
@@ -121,8 +118,8 @@ def watched(
         rows = [sign * slips[i]] if sign else [below - moved, below + moved]
         triggers.append(np.array(rows))
         ports += [i] * len(rows)
-    armed, norm = read_only(np.ones(len(ports), dtype=bool)), balanced_norm(M)
-    return Watched(M, np.vstack(triggers), caps, tuple(ports), norm, affine.limited, armed)
+    norm = balanced_norm(M)
+    return Watched(M, np.vstack(triggers), caps, tuple(ports), norm, affine.limited)
 
 
 def lasting(M: Array, span: float) -> float:
