@@ -233,6 +233,13 @@ class Tuning:
     least_each: float = _told(1e-6, "s, the least that a run counts as")
     close: float = _told(1e-10, "of its terms: what may be left of a steady state")
     trim_floor: float = _told(1e-9, "added to the terms of a steady state")
+    regular: float = _told(
+        1e-8, "of the largest singular value, or of terms: what is smaller takes an exact look"
+    )
+    side_by_side: int = _told(8, "runs of a sweep in numpy: fewer are done one by one")
+    beside_at_once: int = _told(1_000_000, "numbers at samples of runs done side by side")
+    ordinary: float = _told(1e100, "numbers that runs side by side stay below")
+    surely: float = _told(4.0, "times what counts as zero: what is beyond is told alike everywhere")
     independent: float = _told(1e-13, "of the largest singular value: smaller ones are none")
 
 

@@ -19,7 +19,7 @@ ORDER = {
     "analyse explaining drawing files",
     "codegen": "tuning standalone fixed stops numbers inputs targets supplied program model ports straight "
     "modes corners instants energy runs pictures record plots analysis c engine simulator simulate trim "
-    "packing family batch sweeps python switched sparse fmu exports",
+    "packing family batch abreast sweeps python switched sparse fmu exports",
     "differentials": "laws parts pieces passive active topologies parameters model identification speeds "
     "scenarios exporting figures report commands",
 }

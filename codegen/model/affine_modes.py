@@ -21,6 +21,7 @@ class LetGo:
     """The map of a mode in which ports give nothing, and what they give slipping forwards.
 
     ``rub``: rows of that. ``shown``, ``pushed``: what readings and rates of states gain per unit of it.
+    All may be stacks of those of many runs.
     """
 
     base: AffineMap
@@ -31,19 +32,19 @@ class LetGo:
 
     def at(self, columns: Places) -> "LetGo":
         """Some columns of the same."""
-        base = AffineMap(self.base.sizes, self.base.matrix[:, columns], RATE)
-        return replace(self, base=base, rub=self.rub[:, columns])
+        base = AffineMap(self.base.sizes, self.base.matrix[..., columns], RATE)
+        return replace(self, base=base, rub=self.rub[..., columns])
 
 
 def let_go(forwards: AffineMap, numbers: Numbers, ports: Sequence[int]) -> LetGo:
     """The same from the map in which all ports slip forwards."""
     base = AffineMap(forwards.sizes, forwards.matrix.copy(), RATE)
     x, u, du = (base.rows(part) for part in (STATES, INPUTS, RATES_OF_INPUTS))
-    rub = u[ports].copy()
-    u[ports] = 0.0
+    rub, n = u[..., ports, :].copy(), x.shape[-2]
+    u[..., ports, :] = 0.0
     base.rows(READINGS)[:] = numbers.F @ x + numbers.D @ u + numbers.G @ du
-    base.rows(RATE)[: len(x)] = numbers.P @ x + numbers.Q @ u
-    return LetGo(base, ports, rub, thin(numbers.D[:, ports]), thin(numbers.Q[:, ports]))
+    base.rows(RATE)[..., :n, :] = numbers.P @ x + numbers.Q @ u
+    return LetGo(base, ports, rub, thin(numbers.D[..., ports]), thin(numbers.Q[..., ports]))
 
 
 def in_mode(known: LetGo, mode: Mode, hold: Hold | None, law_rates: Sequence[int]) -> AffineMap:
@@ -51,16 +52,16 @@ def in_mode(known: LetGo, mode: Mode, hold: Hold | None, law_rates: Sequence[int
     base, ports = known.base, known.ports
     parts = AffineMap(base.sizes, base.matrix.copy(), RATE)
     x, u, du = (parts.rows(part) for part in (STATES, INPUTS, RATES_OF_INPUTS))
-    u[ports] = known.rub * np.array(mode, dtype=float)[:, None]
+    u[..., ports, :] = known.rub * np.array(mode, dtype=float)[:, None]
     if hold is not None:
         right = product(hold.X, x) + product(hold.U, u) + product(hold.V, du)
-        u[hold.inputs] = -product(hold.inverse[:, : len(right)], right)
-    readings, rates, n = parts.rows(READINGS), parts.rows(RATE), len(x)
-    given = u[ports]
+        u[..., hold.inputs, :] = -product(hold.inverse[..., : right.shape[-2]], right)
+    readings, rates, n = parts.rows(READINGS), parts.rows(RATE), x.shape[-2]
+    given, own = u[..., ports, :], rates[..., :n, :]
     readings += known.shown @ given
-    rates[:n] += known.pushed @ given
-    rates[n : n + len(law_rates)] = readings[list(law_rates)]
+    own += known.pushed @ given
+    rates[..., n : n + len(law_rates), :] = readings[..., list(law_rates), :]
     if hold is not None:
-        left = product(hold.slip_x, rates[:n]) + product(hold.fixed, du)
-        rates[:n] += product(hold.take_away, left)
+        left = product(hold.slip_x, own) + product(hold.fixed, du)
+        own += product(hold.take_away, left)
     return parts

@@ -4,7 +4,7 @@ What a mode tells are signs of combinations that are linear in the integrated ve
 as none of them is near zero: those of all modes that were tried are looked at in one product.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -148,6 +148,24 @@ def _signs(
     return told + [(np.copysign(1.0, now[i]) * rows[i], bounds.least[i]) for i in free]
 
 
+class Rested(NamedTuple):
+    """That these ports were told to be at rest, with friction slipping as in ``mode``."""
+
+    mode: Mode
+    ports: tuple[int, ...]
+
+
+class Tried(NamedTuple):
+    """What each port that was asked told of a mode, as `Look.verdict` has it; None where it is none.
+
+    ``later``: what ties told a moment later, where they were asked.
+    """
+
+    mode: Mode
+    verdicts: Mapping[int, int] | None
+    later: Mapping[int, int]
+
+
 class Occasion(NamedTuple):
     """An instant at which a mode is to be decided.
 
@@ -169,6 +187,8 @@ class Occasion(NamedTuple):
     choices: Choices | None = None
     #: Stops that are apart, or about to throw back what meets them, and so let go.
     barred: frozenset[int] = frozenset()
+    #: What takes note of all that decided, in turn, if it is asked for.
+    log: list[Rested | Tried] | None = None
 
     def seen(self, s: Array) -> Sight:
         """The model at this instant with another integrated vector."""

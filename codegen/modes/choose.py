@@ -19,7 +19,7 @@ from codegen.modes.bounce import (
     stopped,
     thrown_back,
 )
-from codegen.modes.choices import Decision, Occasion
+from codegen.modes.choices import Decision, Occasion, Rested, Tried
 from codegen.modes.impact import impact, pushed
 from codegen.modes.rounding import scales
 from codegen.modes.timed import told
@@ -225,13 +225,16 @@ def _undecided(now: Occasion, here: Sight, mode: Mode, away: Collection[int]) ->
     slips = np.abs(shot.y[model.friction_readings])
     near = with_leaps(scales(model, shot, now.t, now.peaks), here, shot, now.peaks).slip
     near[list(now.loose)] *= TUNING.wide
-    return [
+    found = [
         i
         for i, slip in enumerate(slips)
         if model.switching[i] is None
         and i not in away
         and (model.coupled_directly(i) or slip <= near[i])
     ]
+    if now.log is not None:
+        now.log.append(Rested(mode, tuple(found)))
+    return found
 
 
 def _in_blocks(now: Occasion, here: Sight, mode: Mode, blocks: list[list[int]]) -> Mode | _Refusal:
@@ -322,7 +325,8 @@ def _looked_at(
         look = look_at(here, mode, now.peaks)
         wrong = ruled_out(look) or torn(look)
         if wrong is not None:
-            return _Finding(wrong)
+            return _noted(now, mode, _Finding(wrong))
+        later: dict[int, int] = {}
         shocks = [0] * len(mode) if jump is None else pushed(look, now.t, jump)
         verdicts = {i: shocks[i] or look.verdict(i) for i in asked}
         contrary = [i for i, sure in verdicts.items() if sure < 0]
@@ -330,17 +334,29 @@ def _looked_at(
         if not contrary and (tied or len(look.ruled[0])):
             then = _moment_later(now, look)
             wrong = ruled_out_later(look, then)
-            contrary = [i for i in tied if look.later_verdict(i, then, now.ahead) < 0]
+            later = {i: look.later_verdict(i, then, now.ahead) for i in tied}
+            contrary = [i for i, sure in later.items() if sure < 0]
     except SlopeNeededError:
         raise
     except SimulationError as error:
-        return _Finding(str(error), none=True)
+        return _noted(now, mode, _Finding(str(error), none=True))
     if wrong is not None or not contrary:
-        return _Finding(wrong)
+        return _noted(now, mode, _Finding(wrong), verdicts, later)
     rubbing = [i for i in contrary if model.switching[i] is None]
     broken = NONE if rubbing else frozenset(contrary)
     reason = _contradiction(look, (rubbing or contrary)[0])
-    return _Finding(reason, broken, turned=_turned(look, rubbing))
+    found = _Finding(reason, broken, turned=_turned(look, rubbing))
+    return _noted(now, mode, found, verdicts, later)
+
+
+def _noted(
+    now: Occasion, mode: Mode, found: _Finding, verdicts: Mapping[int, int] | None = None,
+    later: Mapping[int, int] = MappingProxyType({}),
+) -> _Finding:  # fmt: skip
+    """What was found, once note is taken of it."""
+    if now.log is not None:
+        now.log.append(Tried(mode, verdicts, later))
+    return found
 
 
 def _turned(look: Look, ports: Sequence[int]) -> dict[int, int]:

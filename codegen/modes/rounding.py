@@ -6,10 +6,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from codegen.inputs.pieces import Piece
+from codegen.model.moves import Moves
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.modes.trials import Sight
-from codegen.numbers.arrays import Array, all_of
+from codegen.numbers.arrays import Array, all_of, dot
 from codegen.program.affine import ONE, AffineMap
 from codegen.program.layout import INPUTS, STATES
 from codegen.standalone.friction import moved_on
@@ -105,16 +106,28 @@ class Scales:
 
 def scales(model: ClosedModel, now: Snapshot, t: float = 0.0, peaks: Peaks | None = None) -> Scales:
     """The rounding to be expected, from the magnitude of the terms that cancel, and of the time's."""
-    peaks, count = peaks or Peaks.none(model), len(model.switching)
-    sizes, n, by = peaks.sizes(now), len(now.x), model.moves(now.numbers)
+    peaks, n = peaks or Peaks.none(model), len(now.x)
     late = TUNING.late * np.spacing(abs(t)) * np.abs(slip_rates(model, now))
-    terms = by.terms @ sizes
-    # At rest states are rounding themselves: of what moves them within a time constant.
-    np.maximum(sizes[:n], peaks.time * terms[count:], out=sizes[:n])
-    moved = by.pushes @ sizes
     efforts = np.abs(now.u[model.friction_inputs]) + now.caps
+    return scales_by(model.moves(now.numbers), peaks.sizes(now), n, efforts, late, peaks.time)
+
+
+def scales_by(
+    by: Moves, sizes: Array, states: int, efforts: Array, late: Array, time: float | Array
+) -> Scales:
+    """The same by what moves slips; of many runs, whose arrays have a row each, ``time`` a column.
+
+    ``sizes``: of states and inputs, which are used up. ``efforts``: what ports give and may give. ``late``:
+    what the time's rounding makes of slips. ``time`` [s]: the shortest time constant.
+    """
+    terms = dot(by.terms, sizes)
+    count = terms.shape[-1] - states
+    # At rest states are rounding themselves: of what moves them within a time constant.
+    own = sizes[..., :states]
+    np.maximum(own, time * terms[..., count:], out=own)
+    moved = dot(by.pushes, sizes)
     return Scales(
-        TUNING.rounding * (terms[:count] + moved * peaks.time) + late + TINY,
+        TUNING.rounding * (terms[..., :count] + moved * time) + late + TINY,
         TUNING.rounding * (efforts + moved * by.mobility) + TINY,
         TUNING.rounding * TUNING.pushes * moved + TINY,
     )

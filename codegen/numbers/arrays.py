@@ -10,6 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from codegen.standalone.arrays import Array as Array
 
+Flags = NDArray[np.bool_]
+"""What is so and what is not, place by place."""
+
 NUMBER = int | float | np.integer | np.floating
 """What is a number by itself; truth values are integers, too, and are refused with `is_number`."""
 
@@ -70,6 +73,16 @@ def all_of(flags: NDArray[np.bool_]) -> bool:
     (False, True)
     """
     return all(flags.ravel().tolist()) if flags.size <= FEW else bool(flags.all())
+
+
+def dot(matrix: Array, vector: Array) -> Array:
+    """A matrix times a vector; of stacks each times its own.
+
+    >>> dot(np.eye(2)[None] * [[[2.0]], [[3.0]]], np.ones((2, 2))).tolist()
+    [[2.0, 2.0], [3.0, 3.0]]
+    """
+    found: Array = matrix @ vector if vector.ndim == 1 else (matrix @ vector[..., None])[..., 0]
+    return found
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:

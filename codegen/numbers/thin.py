@@ -10,9 +10,10 @@ from codegen.tuning import TUNING
 
 
 def thin(matrix: Array) -> Any:
-    """The matrix as products with it are quickest."""
+    """The matrix as products with it are quickest; a stack of matrices as it is."""
     few = matrix.size / TUNING.few_entries
-    if matrix.size < TUNING.large_table or few < np.count_nonzero(matrix):
+    stack = matrix.ndim > 2
+    if stack or matrix.size < TUNING.large_table or few < np.count_nonzero(matrix):
         return matrix
     return scipy.sparse.csr_array(matrix)
 

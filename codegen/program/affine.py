@@ -56,7 +56,10 @@ def _degree(expr: sp.Expr, signals: set[sp.Symbol]) -> int | None:
 
 
 class AffineMap:
-    """``v = T [s, w, dw, 1]``, cut into the parts of ``v``, of which ``rate`` is the rate of s."""
+    """``v = T [s, w, dw, 1]``, cut into the parts of ``v``, of which ``rate`` is the rate of s.
+
+    The matrix may be a stack of those of many runs.
+    """
 
     def __init__(self, sizes: Sequence[int], matrix: Array, rate: int) -> None:
         self.sizes, self.matrix, self._rate = tuple(sizes), matrix, rate
@@ -102,7 +105,7 @@ class AffineMap:
 
     def rows(self, part: int) -> Array:
         """The rows of one part."""
-        return self.matrix[self.parts[part]]
+        return self.matrix[..., self.parts[part], :]
 
 
 def balanced_norm(M: Array) -> float:

@@ -12,7 +12,7 @@ from codegen.modes.trials import Sight
 from codegen.modes.verdicts import Look, look_at
 from codegen.numbers.arrays import Array
 from codegen.program.affine import AffineMap
-from codegen.runs.falls import Falls
+from codegen.runs.falls import falls
 from codegen.runs.stretches import Stretches
 from codegen.runs.track import Ended, Track
 from codegen.runs.watched import FewSteps, Steps, lasting, series, stride
@@ -45,7 +45,7 @@ class ExactLeg:
         rest = None if clear else _rest(look_at(here, mode, peaks))
         self._system, inputs = stretches.system(affine, mode, here.pieces, here.t, rest)
         self._z = np.concatenate([here.s, inputs])
-        self._falls = Falls(here, mode, peaks, self._system, None if clear else self._z)
+        self._falls = falls(here, mode, peaks, self._system, None if clear else self._z)
 
     def steps(self, stop: float) -> float:
         """How many steps the stretch takes, of ``|M| h <= 1`` each."""

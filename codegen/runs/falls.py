@@ -1,5 +1,6 @@
 """Where what is watched in an exact stretch first falls to zero, by power series over its steps."""
 
+from collections.abc import Callable, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -16,25 +17,46 @@ from codegen.runs.watched import Watched
 from codegen.tuning import TUNING
 
 
+def falls(here: Sight, mode: Mode, peaks: Peaks, system: Watched, z: Array | None) -> "Falls":
+    """The triggers of a stretch that begins ``here``.
+
+    ``z``: the system's components where it begins; None where all triggers are well above zero.
+    """
+
+    def limits() -> Array:
+        look = look_at(here, mode, peaks)
+        limits = np.where(look.ruling.any(axis=0), look.size.slip, limits_of(look))
+        return np.asarray(limits[list(system.ports)], dtype=float)
+
+    values = None if z is None else system.triggers @ z
+    return Falls(system.ports, limits, here.t, peaks.time, values)
+
+
 class Falls:
-    """The triggers of a stretch that begins ``here``; one that begins at zero must rise before it falls."""
+    """Triggers of ports from t [s] on; one that begins at zero must rise before it falls.
+
+    ``limits``: below these they count as zero at t. ``time`` [s]: the shortest time constant. ``values``:
+    theirs at t; None where all are well above zero.
+    """
 
     def __init__(
-        self, here: Sight, mode: Mode, peaks: Peaks, system: Watched, z: Array | None
-    ) -> None:
-        """``z``: the system's components where it begins; None where all triggers are well above zero."""
-        self._here, self._mode, self._peaks, self._system = here, mode, peaks, system
-        self._armed = system.armed
-        if z is not None:
-            self._armed = np.asarray(system.triggers @ z >= self._limits, dtype=np.bool_)
-        self._ready = z is None or all_of(self._armed)
+        self, ports: Sequence[int], limits: Callable[[], Array], t: float, time: float,
+        values: Array | None,
+    ) -> None:  # fmt: skip
+        self._ports, self._told, self._t, self._time = ports, limits, t, time
+        self._armed = np.ones(len(ports), dtype=np.bool_)
+        if values is not None:
+            self._armed = np.asarray(values >= self._limits, dtype=np.bool_)
+        self._ready = values is None or all_of(self._armed)
 
     @cached_property
     def _limits(self) -> Array:
-        """Below these what is watched counts as zero where the stretch begins."""
-        look = look_at(self._here, self._mode, self._peaks)
-        limits = np.where(look.ruling.any(axis=0), look.size.slip, limits_of(look))
-        return np.asarray(limits[list(self._system.ports)], dtype=float)
+        return self._told()
+
+    @property
+    def ready(self) -> bool:
+        """Whether every trigger has been well above zero."""
+        return self._ready
 
     def first(
         self, powers: Array, t: float, step: float
@@ -55,9 +77,9 @@ class Falls:
             at += int(ahead[0])
             roots: dict[int, float] = {}
             for row in np.flatnonzero(suspects[at]).tolist():
-                root = self._root(row, powers[at, row], (t - self._here.t) + at * step, step)
+                root = self._root(row, powers[at, row], (t - self._t) + at * step, step)
                 if root is not None:
-                    port = self._system.ports[row]
+                    port = self._ports[row]
                     roots[port] = min(root, roots.get(port, 2.0))
             if roots:
                 tau = min(roots.values())
@@ -83,7 +105,7 @@ class Falls:
             rise[0] += limit
             fall[0] += 2 * limit
             armed = 0.0 if rise[0] <= 0 else first_fall(rise)
-            blind = min(max((moment(self._peaks.time) - elapsed) / step, 0.0), 1.0)
+            blind = min(max((moment(self._time) - elapsed) / step, 0.0), 1.0)
             lost = blind if value(fall, blind) <= 0 else first_fall(fall, blind)
             if armed is None or (lost is not None and lost < armed):
                 return lost if lost is not None and lost < 1.0 else None

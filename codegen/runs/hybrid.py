@@ -169,7 +169,7 @@ class _Course:
         """Tell what has happened."""
         for part in parts:
             modes = part.before, part.mode
-            changes = self._changes.of(modes, partial(_changes, self._model, *modes))
+            changes = self._changes.of(modes, partial(changes_of, self._model, *modes))
             self.track.note(_told(self._model, self.t, changes, part))
 
     def _fastest(self, here: Sight, present: Present) -> float:
@@ -294,7 +294,7 @@ def _at_rest(here: Sight, mode: Mode) -> Array:
     return s
 
 
-def _changes(model: ClosedModel, old: Mode, new: Mode) -> list[tuple[Hashable, str]]:
+def changes_of(model: ClosedModel, old: Mode, new: Mode) -> list[tuple[Hashable, str]]:
     """What happens to ports whose mode is another: to switches, then what friction does about it."""
     switching: list[tuple[Hashable, str]] = []
     rubbing: list[tuple[Hashable, str]] = []

@@ -6,13 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from codegen.inputs.generators import Generator
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.modes.keeping import GUARDS, is_kept, watched_by
-from codegen.numbers.arrays import Array, read_only
+from codegen.numbers.arrays import Array
 from codegen.numbers.latest import Latest
 from codegen.program.affine import AffineMap, balanced_norm
 from codegen.program.layout import CAPS, INPUTS, RATE, READINGS
@@ -47,8 +46,6 @@ class Watched:
     norm: float
     #: Whether a port has a friction level.
     limited: bool
-    #: Every port's trigger, armed.
-    armed: NDArray[np.bool_]
     _strides: Latest[str, Stride] = field(default_factory=lambda: Latest(STRIDES), repr=False)
     _met: Latest[str, bool] = field(default_factory=Latest, repr=False)
 
@@ -83,7 +80,7 @@ def over_z(rows: Array, made: Generator, n: int) -> Array:
     """Rows over [s, w, dw, 1] as rows over [s, g]: the first component of g is 1."""
     m = len(made.C)
     fed = np.vstack([made.C, made.C @ made.G, np.eye(1, len(made.G))])
-    return np.hstack([rows[:, :n], rows[:, n : n + 2 * m + 1] @ fed])
+    return np.concatenate([rows[..., :n], rows[..., n : n + 2 * m + 1] @ fed], axis=-1)
 
 
 def watched(
@@ -121,8 +118,8 @@ def watched(
         rows = [sign * slips[i]] if sign else [below - moved, below + moved]
         triggers.append(np.array(rows))
         ports += [i] * len(rows)
-    armed, norm = read_only(np.ones(len(ports), dtype=bool)), balanced_norm(M)
-    return Watched(M, np.vstack(triggers), caps, tuple(ports), norm, affine.limited, armed)
+    norm = balanced_norm(M)
+    return Watched(M, np.vstack(triggers), caps, tuple(ports), norm, affine.limited)
 
 
 def lasting(M: Array, span: float) -> float:
@@ -135,7 +132,7 @@ def lasting(M: Array, span: float) -> float:
     return float((np.abs(rates) * ends).max(initial=0.0))
 
 
-def series(M: Array, rows: Array, step: float) -> Array:
+def series(M: Array, rows: Array, step: float | Array) -> Array:
     """``rows (M step)^k / k!`` for each k: the coefficients of their power series over a step."""
     found = [rows]
     for k in range(1, TUNING.degree + 1):
@@ -144,9 +141,9 @@ def series(M: Array, rows: Array, step: float) -> Array:
     return np.array(found)
 
 
-def exponential(M: Array, step: float) -> tuple[Array, Array]:
-    """``exp(M step)`` and its integral over the step, which has ``|M| step <= 1``."""
-    size = len(M)
+def exponential(M: Array, step: float | Array) -> tuple[Array, Array]:
+    """``exp(M step)`` and its integral over the step, which has ``|M| step <= 1``; of stacks, too."""
+    size = M.shape[-1]
     total = term = np.eye(size)
     for k in range(2, TUNING.degree + 2):
         term = M @ term * (step / k)

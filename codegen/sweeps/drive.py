@@ -35,6 +35,9 @@ STEADY = Rhythm(shortest=0.5, longest=10.0, shares=4, first=1, growth=4)
 QUICK = Rhythm(shortest=TUNING.quick, longest=1.0, shares=2, first=1, growth=16)
 """For runs by a loop in C, where a chunk costs little beside its runs and cannot be interrupted."""
 
+BESIDE = Rhythm(shortest=0.5, longest=10.0, shares=2, first=64, growth=16)
+"""For runs side by side, of which few cost about as much as many."""
+
 ENDED = "the process that did it ended: killed, out of memory, or by an exit in a measure"
 
 

@@ -60,7 +60,8 @@ class Model(Protocol):
 class Job:
     """A model and all that its runs share; ``names`` are what each run has numbers for.
 
-    ``events``: whether functions that are no ready measures find what happened in a run.
+    ``events``: whether functions that are no ready measures find what happened in a run. ``runs``: how many
+    there are in all.
     """
 
     model: Model
@@ -72,6 +73,7 @@ class Job:
     settings: Mapping[str, Any] = field(default_factory=dict)
     initially_on: tuple[Hashable, ...] = ()
     events: bool = True
+    runs: int = 0
 
     def run(
         self, row: Sequence[float], fallen: list[str] | None = None,
@@ -90,6 +92,10 @@ class Job:
             return f"{type(error).__name__}: {error}"
         if completed is not None:
             completed |= getattr(result, "completed", {})
+        return self.measured(result)
+
+    def measured(self, result: Result) -> tuple[Array, ...] | str:
+        """The measures of the record of a run, or why there are none."""
         found = []
         for name, measure in self.measures.items():
             try:
@@ -97,6 +103,10 @@ class Job:
             except Exception as error:  # noqa: BLE001 - the caller's code
                 return f"measure {name!r}: {type(error).__name__}: {error}"
         return tuple(found)
+
+    def record(self, row: Sequence[float]) -> Result:
+        """The record of one run; raises what refuses it."""
+        return self._result(dict(zip(self.names, row, strict=True)), [])
 
     def _result(self, values: Mapping[str, float], fallen: list[str]) -> Result:
         model = self.model
@@ -110,12 +120,12 @@ class Job:
         # Times differ from run to run; the reason is what is counted.
         return runner.run_telling(
             lambda stopped: fallen.append(stopped.reason),
-            self.time, initial, inputs, events=self._eventful, corners=self._cornered,
+            self.time, initial, inputs, events=self.eventful, corners=self._cornered,
             **self._settings,
         )  # fmt: skip
 
     @property
-    def _eventful(self) -> bool:
+    def eventful(self) -> bool:
         """Whether a measure may ask for events."""
         ready = (isinstance(m, Measure) and m.function in READY for m in self.measures.values())
         return (self.events and not all(ready)) or bool(self.asking)

@@ -2,6 +2,7 @@
 
 import pickle
 import time
+from collections.abc import Mapping
 from functools import lru_cache
 from threading import Lock
 from weakref import WeakKeyDictionary
@@ -9,15 +10,19 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from bondgraph.errors import SignalError
+from codegen.abreast.abreast import Abreast, abreast
+from codegen.abreast.asked import Asked as Wanted
 from codegen.batch.asked import Asked
 from codegen.batch.batch import Batch, batch
 from codegen.family import Family
 from codegen.numbers.arrays import Array
 from codegen.packing import packed
+from codegen.record.result import Result
 from codegen.runs.track import Settings
 from codegen.sweeps.chunks import Chunk, Outcome
 from codegen.sweeps.columns import Columns
 from codegen.sweeps.job import Job
+from codegen.tuning import TUNING
 
 
 def measured(job: Job, chunk: Chunk) -> Outcome:
@@ -29,8 +34,14 @@ def measured(job: Job, chunk: Chunk) -> Outcome:
     starts: list[dict[str, float]] = [{} for _ in rows]
     results: tuple[tuple[Array, ...] | str, ...] | Columns
     if loop is None:
-        each = zip(rows.tolist(), starts, strict=True)
-        results = tuple(job.run(row, fallen, own) for row, own in each)
+        side = abreast_of(job)
+        none: list[Result | None] = [None] * len(rows)
+        found = none if side is None else side.results(rows, job.record)
+        each = zip(rows.tolist(), starts, found, strict=True)
+        results = tuple(
+            job.run(row, fallen, own) if one is None else job.measured(one)
+            for row, own, one in each
+        )
     else:
         columns, left, completed = loop.telling(rows)
         for at in np.flatnonzero(np.isfinite(completed).any(axis=1)):
@@ -61,6 +72,26 @@ def batch_of(job: Job) -> Batch | None:
         return _batches[job]
 
 
+def abreast_of(job: Job) -> Abreast | None:
+    """What does the runs of a job side by side in numpy, made once; None where there is none."""
+    with _making:
+        if job not in _abreast:
+            _abreast[job] = _made(job)
+        return _abreast[job]
+
+
+def _made(job: Job) -> Abreast | None:
+    model, initial, inputs = job.model, job.initial or {}, job.inputs or {}
+    if not isinstance(model, Family) or job.initially_on or job.runs < TUNING.side_by_side:
+        return None
+    if not isinstance(initial, Mapping) or not isinstance(inputs, Mapping):
+        return None
+    method = Settings(**job.settings).method
+    asked = Wanted(model, job.names, job.time, initial, inputs, method, job.eventful)
+    return abreast(asked)
+
+
+_abreast: WeakKeyDictionary[Job, Abreast | None] = WeakKeyDictionary()
 _batches: WeakKeyDictionary[Job, Batch | None] = WeakKeyDictionary()
 _making = Lock()
 

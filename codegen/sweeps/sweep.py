@@ -25,9 +25,9 @@ from codegen.sweeps.cluster import Cluster
 from codegen.sweeps.crew import Crew
 from codegen.sweeps.crews import Here, Processes, Threads
 from codegen.sweeps.design import Table, design
-from codegen.sweeps.drive import QUICK, STEADY, Pace, Work, drive
+from codegen.sweeps.drive import BESIDE, QUICK, STEADY, Pace, Rhythm, Work, drive
 from codegen.sweeps.job import Job, Model
-from codegen.sweeps.measuring import batch_of, sent
+from codegen.sweeps.measuring import abreast_of, batch_of, sent
 from codegen.sweeps.resting import tell_all_resting
 from codegen.sweeps.result import Collected, Sweep, SweepInterrupted
 from codegen.sweeps.store import Store
@@ -68,7 +68,10 @@ def sweep(
     ``workers``: processes to run in, by default one for each core; 0: in this process. A family with
     backend "c" and ready measures (all of this package) is run by threads instead, many runs in
     one call of C, where none of the model's outputs shows the rate of an input. That is fastest without
-    functions of a run's numbers, which Python calls run by run.
+    functions of a run's numbers, which Python calls run by run. In numpy the runs of an affine model whose
+    only switching is friction are done side by side, from so many on that it pays, with what single runs
+    give but for rounding; a run of which anything is doubtful is done by itself, and so are runs with
+    functions of their numbers for ``initial`` or ``inputs``.
     What is sent to processes must be picklable, and a script needs the line
     ``if __name__ == "__main__":``. ``client``: a `distributed.Client` to run on instead. ``chunk``: how
     many runs are done together, by default what takes some seconds, in C one at most. None of these
@@ -107,7 +110,8 @@ def sweep(
     settings = MappingProxyType({"method": method, "rtol": rtol, "atol": atol})
     asked = MappingProxyType(dict(measures))
     on = tuple(initially_on)
-    job = Job(model, runs.names, checked_times(time), asked, initial, inputs, settings, on, events)
+    given = initial, inputs, settings, on, events, len(runs)
+    job = Job(model, runs.names, checked_times(time), asked, *given)
     _check(job)
     _check_count(workers, "workers", 0)
     _check_count(chunk, "chunk", 1)
@@ -130,9 +134,8 @@ def sweep(
                 advance(new)
 
             if len(todo):
-                quick = client is None and batch_of(job) is not None
-                pace = Pace(chunk, QUICK if quick else STEADY)
-                _run(_crew(job, client, workers, len(todo)), Work(runs, todo, pace), keep)
+                work = Work(runs, todo, Pace(chunk, _rhythm(job, client)))
+                _run(_crew(job, client, workers, len(todo)), work, keep)
     except KeyboardInterrupt:
         raise SweepInterrupted(collected.sweep(runs, job.time, over_time)) from None
     tell_all(collected.fallen, len(runs))
@@ -140,6 +143,13 @@ def sweep(
     tell_all_completed(found.completed, len(runs))
     tell_all_resting(job, runs)
     return found
+
+
+def _rhythm(job: Job, client: Any) -> Rhythm:
+    """How chunks grow: by what does their runs."""
+    if batch_of(job) is not None:
+        return STEADY if client is not None else QUICK
+    return STEADY if abreast_of(job) is None else BESIDE
 
 
 def _run(crew: Crew, work: Work, keep: Callable[[Outcome], None]) -> None:

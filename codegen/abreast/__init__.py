@@ -1,0 +1,1 @@
+"""Runs of one affine model side by side in numpy, for sweeps."""
