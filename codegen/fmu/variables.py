@@ -1,14 +1,18 @@
 """The variables of a functional mock-up unit: their names, what they are, where they start."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
 
 import sympy as sp
 
 from bondgraph.equations import StateEquations
+from bondgraph.tables.record import Sampled
 from codegen.model.commands import conditions_told
 from codegen.program.records import Program
 from codegen.program.units import units
+from codegen.tuning import TUNING
 
 STEP = "fixed_internal_step"
 """The parameter that is the length of co-simulation's fixed steps [s]; 0: events are located."""
@@ -18,7 +22,8 @@ STEP = "fixed_internal_step"
 class Variable:
     """One variable; its place in the list is its value reference.
 
-    ``kind`` and ``index``: what it is to the C glue (`enum fmu_kind`). ``derivative``: the value
+    ``kind`` and ``index``: what it is to the C glue (`enum fmu_kind`). ``array``: where all of its values
+    start, row by row, where it has several, of such ``sizes``. ``derivative``: the value
     reference of the state that it is the rate of. ``description``: for people.
     """
 
@@ -32,6 +37,8 @@ class Variable:
     unit: str = ""
     derivative: int | None = None
     description: str = ""
+    array: tuple[float, ...] = ()
+    sizes: tuple[int, ...] = ()
 
     @property
     def integer(self) -> bool:
@@ -60,11 +67,15 @@ def moved(program: Program) -> bool:
 
 
 def variables(
-    program: Program, equations: StateEquations, starts: Starts, indicators: int
+    program: Program, equations: StateEquations, starts: Starts, indicators: int, version: str
 ) -> tuple[Variable, ...]:
-    """All variables, names made unique; those of the model come before those that are made up."""
+    """All variables, names made unique; those of the model come before those that are made up.
+
+    ``version``: of FMI; 2.0 has no arrays, so there a table is a parameter for each of its values, and
+    one of more than `TUNING.most_scalars` is a constant.
+    """
     listing = _Listing(program, units(equations), starts)
-    listing.known()
+    listing.known(arrays=version != "2.0")
     listing.unknown()
     listing.made_up(indicators)
     return tuple(_described(one, program, equations) for one in listing.found)
@@ -103,8 +114,8 @@ class _Listing:
         self._reserved = {plain(symbol.name) for symbol in symbols}
         self._used: set[str] = set()
 
-    def known(self) -> None:
-        """Time, parameters, inputs and where states start."""
+    def known(self, arrays: bool) -> None:
+        """Time, parameters, tables, inputs and where states start."""
         program, starts = self._program, self._starts
         self._made("time", "FMU_TIME", causality="independent", initial=None, unit="s")
         kept = "fixed" if self._moved else "tunable"
@@ -115,6 +126,7 @@ class _Listing:
                 symbol, "FMU_PARAMETER", at, "parameter", variability=kept, initial="exact",
                 start=value,
             )  # fmt: skip
+        self._tables(kept, arrays)
         self._made(
             STEP, "FMU_INTERNAL_STEP", causality="parameter", variability="fixed", initial="exact",
             start=0.0, unit="s",
@@ -130,6 +142,28 @@ class _Listing:
             self._made(name, "FMU_SLOPE", at, causality="input", initial=None, start=0.0)
         for at, symbol in enumerate((*program.states, *program.law_states)):
             self._named(symbol, "FMU_STATE", at, initial="exact", start=starts.states[at])
+
+    def _tables(self, kept: str, arrays: bool) -> None:
+        """The values of tables, as arrays with their axes, or one by one with their places."""
+        first = 0
+        for at, table in enumerate(self._program.tables):
+            sizes = tuple(map(len, table.axes))
+            if arrays:
+                told = {"variability": kept, "initial": "exact", "array": table.values, "sizes": sizes}
+                self._made(table.name, "FMU_TABLE", at, causality="parameter", **told)
+                for axis, (letter, points) in enumerate(zip("xy", table.axes, strict=False)):
+                    self._made(
+                        f"{table.name}.{letter}", "FMU_AXIS", 2 * at + axis, variability="constant",
+                        initial="exact", array=points, sizes=(len(points),),
+                    )  # fmt: skip
+            elif len(table.values) <= TUNING.most_scalars:
+                for k, (place, value) in enumerate(zip(_places(table), table.values, strict=True)):
+                    self._made(
+                        f"{table.name}[{','.join(str(one + 1) for one in place)}]", "FMU_TABLE_VALUE",
+                        first + k, causality="parameter", variability=kept, initial="exact",
+                        start=value, description=_place_told(table, place),
+                    )  # fmt: skip
+            first += len(table.values)
 
     def unknown(self) -> None:
         """Readings, outputs among them, and what laws and sources give."""
@@ -191,19 +225,28 @@ class _Listing:
     def _made(
         self, name: str, kind: str, index: int = 0, causality: str = "local",
         variability: str = "continuous", initial: str | None = "calculated",
-        start: float | None = None, unit: str = "", derivative: int | None = None,
+        **more: Any,
     ) -> None:  # fmt: skip
         """A variable under a name that the model leaves free."""
         name = self._free(plain(name), self._used | self._reserved)
-        self.found.append(
-            Variable(name, kind, index, causality, variability, initial, start, unit, derivative)
-        )
+        self.found.append(Variable(name, kind, index, causality, variability, initial, **more))
 
     def _free(self, name: str, taken: set[str]) -> str:
         while name in taken:
             name += "_"
         self._used.add(name)
         return name
+
+
+def _places(table: Sampled) -> Iterator[tuple[int, ...]]:
+    """Where the values of a table stand along its axes, in their order."""
+    return product(*(range(len(axis)) for axis in table.axes))
+
+
+def _place_told(table: Sampled, place: Sequence[int]) -> str:
+    """The arguments of one value."""
+    told = zip("xy", table.axes, place, strict=False)
+    return "at " + ", ".join(f"{letter} = {axis[at]!r}" for letter, axis, at in told)
 
 
 def plain(name: str) -> str:
