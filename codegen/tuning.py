@@ -183,7 +183,9 @@ class Tuning:
     cancelled: float = _told(1e-6, "of an input's largest coefficient: above it nothing cancels")
 
     # Units
-    most_scalars: int = _told(1000, "values of a table that a unit of FMI 2.0, without arrays, lists")
+    most_scalars: int = _told(
+        1000, "values of a table that a unit of FMI 2.0, without arrays, lists"
+    )
     unit_difference: float = _told(6e-6, "relative difference for a unit's directional derivatives")
     switch_part: float = _told(
         1e-9, "of a switch's largest value by which it may be beyond zero .."

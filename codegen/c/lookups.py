@@ -1,18 +1,15 @@
 """Tables that are looked into, as C: how a model is generated, and where they may be left."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
-import sympy as sp
-
-from bondgraph.algebra.lookups import Look
 from bondgraph.tables.pieces import pieces
 from bondgraph.tables.record import OUTSIDE, Sampled
 from codegen.c.blocks import function, places
-from codegen.c.constants import expanded
 from codegen.c.text import array, comment, doubles, quoted, strings
+from codegen.corners.refusing import arguments, refusals
 from codegen.numbers.cells import steepest
 from codegen.program.printing import table_name
-from codegen.program.records import Program, block
+from codegen.program.records import Program
 
 BEYOND = dict(zip(OUTSIDE, ("BG_TABLE_HOLDS", "BG_TABLE_EXTENDS", "BG_TABLE_REFUSES"), strict=True))
 
@@ -25,7 +22,7 @@ def lookup_sizes(program: Program) -> Mapping[str, int]:
         "TABLE_VALUES": sum(len(table.values) for table in tables),
         "TABLE_FACTORS": sum(len(pieces(table)[3]) for table in tables),
         "TABLE_WORK": max([0, *map(_work, tables)]),
-        "REFUSING": len(_refusing(program)),
+        "REFUSING": len(refusals(program)),
     }
 
 
@@ -79,42 +76,14 @@ def _lookup_table(table: Sampled) -> tuple[list[str], str]:
     )
 
 
-Place = tuple[Sampled, int, sp.Expr]
-"""A table, one of its axes, and the argument there."""
-
-
-def refusals(program: Program) -> list[str]:
+def refused(program: Program) -> list[str]:
     """Arguments of tables that refuse what is outside, in the order in which laws are evaluated."""
-    found = _refusing(program)
     rows = [
-        f"{{bg_{table_name(table)}, {axis}, {quoted(str(place))}}}" for table, axis, place in found
+        f"{{bg_{table_name(one.table)}, {one.axis}, {quoted(str(one.argument))}}}"
+        for one in refusals(program)
     ]
-    own = {*program.parameters, *program.inputs, *program.readings, *program.external}
-    code = block([place for _, _, place in found], own)
     what = "Arguments of tables that refuse what is outside"
     return [
         *array("const bg_refusing bg_refusings[]", rows, "{0, 0, 0}"),
-        *function("bg_refused", what, code, places(program), local=False),
+        *function("bg_refused", what, arguments(program), places(program), local=False),
     ]
-
-
-def _refusing(program: Program) -> list[Place]:
-    """Each of them once; those inside an argument before it."""
-    if not any(table.outside == "refuse" for table in program.tables):
-        return []
-    early, late = program.groups[: program.early], program.groups[program.early :]
-    blocks = [program.known.values, program.coefficients, *(group.values for group in early)]
-    blocks += [program.friction_values, program.coupled.values, program.guards]
-    blocks += [group.values for group in late]
-    found: dict[Place, None] = {}
-    for code in blocks:
-        for expr in expanded(code):
-            for look in _looks(expr):
-                for axis, place in enumerate(look.places):
-                    found.setdefault((look.handle.table, axis, place))
-    return [one for one in found if one[0].outside == "refuse"]
-
-
-def _looks(expr: sp.Expr) -> Iterator[Look]:
-    found = sorted(expr.atoms(Look), key=sp.default_sort_key)
-    return iter(sorted(found, key=lambda look: len(look.atoms(Look))))

@@ -1,49 +1,20 @@
 """The variables of a functional mock-up unit: their names, what they are, where they start."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from itertools import product
 from typing import Any
 
 import sympy as sp
 
 from bondgraph.equations import StateEquations
-from bondgraph.tables.record import Sampled
+from codegen.fmu.tabled import arrays_of, scalars_of
+from codegen.fmu.variable import Variable
 from codegen.model.commands import conditions_told
 from codegen.program.records import Program
 from codegen.program.units import units
-from codegen.tuning import TUNING
 
 STEP = "fixed_internal_step"
 """The parameter that is the length of co-simulation's fixed steps [s]; 0: events are located."""
-
-
-@dataclass(frozen=True)
-class Variable:
-    """One variable; its place in the list is its value reference.
-
-    ``kind`` and ``index``: what it is to the C glue (`enum fmu_kind`). ``array``: where all of its values
-    start, row by row, where it has several, of such ``sizes``. ``derivative``: the value
-    reference of the state that it is the rate of. ``description``: for people.
-    """
-
-    name: str
-    kind: str
-    index: int = 0
-    causality: str = "local"
-    variability: str = "continuous"
-    initial: str | None = "calculated"
-    start: float | None = None
-    unit: str = ""
-    derivative: int | None = None
-    description: str = ""
-    array: tuple[float, ...] = ()
-    sizes: tuple[int, ...] = ()
-
-    @property
-    def integer(self) -> bool:
-        """Friction modes and switches are whole numbers."""
-        return self.kind in ("FMU_MODE", "FMU_SWITCH", "FMU_SLIDES")
 
 
 @dataclass(frozen=True)
@@ -144,26 +115,12 @@ class _Listing:
             self._named(symbol, "FMU_STATE", at, initial="exact", start=starts.states[at])
 
     def _tables(self, kept: str, arrays: bool) -> None:
-        """The values of tables, as arrays with their axes, or one by one with their places."""
-        first = 0
-        for at, table in enumerate(self._program.tables):
-            sizes = tuple(map(len, table.axes))
-            if arrays:
-                told = {"variability": kept, "initial": "exact", "array": table.values, "sizes": sizes}
-                self._made(table.name, "FMU_TABLE", at, causality="parameter", **told)
-                for axis, (letter, points) in enumerate(zip("xy", table.axes, strict=False)):
-                    self._made(
-                        f"{table.name}.{letter}", "FMU_AXIS", 2 * at + axis, variability="constant",
-                        initial="exact", array=points, sizes=(len(points),),
-                    )  # fmt: skip
-            elif len(table.values) <= TUNING.most_scalars:
-                for k, (place, value) in enumerate(zip(_places(table), table.values, strict=True)):
-                    self._made(
-                        f"{table.name}[{','.join(str(one + 1) for one in place)}]", "FMU_TABLE_VALUE",
-                        first + k, causality="parameter", variability=kept, initial="exact",
-                        start=value, description=_place_told(table, place),
-                    )  # fmt: skip
-            first += len(table.values)
+        """The values of tables, and their axes, under names that the model leaves free."""
+        tables = self._program.tables
+        for one in arrays_of(tables) if arrays else scalars_of(tables):
+            name = self._free(plain(one.name), self._used | self._reserved)
+            tuned = kept if one.causality == "parameter" else "constant"
+            self.found.append(replace(one, name=name, variability=tuned))
 
     def unknown(self) -> None:
         """Readings, outputs among them, and what laws and sources give."""
@@ -236,17 +193,6 @@ class _Listing:
             name += "_"
         self._used.add(name)
         return name
-
-
-def _places(table: Sampled) -> Iterator[tuple[int, ...]]:
-    """Where the values of a table stand along its axes, in their order."""
-    return product(*(range(len(axis)) for axis in table.axes))
-
-
-def _place_told(table: Sampled, place: Sequence[int]) -> str:
-    """The arguments of one value."""
-    told = zip("xy", table.axes, place, strict=False)
-    return "at " + ", ".join(f"{letter} = {axis[at]!r}" for letter, axis, at in told)
 
 
 def plain(name: str) -> str:

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 from codegen.fmu.dependencies import dependencies
 from codegen.fmu.model import FmuModel
-from codegen.fmu.variables import Variable
+from codegen.fmu.variable import Variable
 
 Element = ElementTree.Element
 

@@ -152,7 +152,7 @@ class _Python(PythonCodePrinter):  # type: ignore[misc]
     def _print_Look(self, expr: Any) -> str:
         handle, *places = expr.args
         given = ", ".join(map(self._print, places))
-        return f"looked_up(_{table_name(handle.table)}, {handle.orders}, ({given},))"
+        return f"looked_up(tables[{handle.table.name!r}], {handle.orders}, ({given},))"
 
 
 def table_name(table: Sampled) -> str:

@@ -100,16 +100,22 @@ static void print_head(void)
     printf("\n");
 }
 
-/* Whether a call failed, which is told; of a stop that begins beyond its bound, which one. */
+/* Whether a call failed, which is told; of a table that was left, which one; of a stop that begins beyond its bound, which one. */
 static int failed(const bg_model *m, int status)
 {
+    char text[256];
+    if (status == BG_OK)
+        return 0;
+    if (bg_model_left(m, status, text, sizeof text)) {
+        fprintf(stderr, "%s: %s\n", bg_model_name, text);
+        return 1;
+    }
     if (status == BG_BEYOND)
         fprintf(stderr, "%s: stop %s: ", bg_model_name, bg_friction_names[m->where]);
-    else if (status != BG_OK)
+    else
         fprintf(stderr, "%s: ", bg_model_name);
-    if (status != BG_OK)
-        fprintf(stderr, "%s\n", bg_model_message(status));
-    return status != BG_OK;
+    fprintf(stderr, "%s\n", bg_model_message(status));
+    return 1;
 }
 
 /* Told of a step that was taken nevertheless, once of each kind; whether it was not taken. */

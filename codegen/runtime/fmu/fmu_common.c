@@ -5,9 +5,12 @@
 
 #include "fmu_common.h"
 
-static fmu_error message(int status)
+fmu_error fmu_message(fmu_instance *f, int status)
 {
-    return status == BG_OK ? NULL : bg_model_message(status);
+    if (status == BG_OK)
+        return NULL;
+    return bg_model_left(&f->model, status, f->text, sizeof f->text) ? f->text
+                                                                     : bg_model_message(status);
 }
 
 /* Sources inside and what the importer gives, for the view. An importer's integrator looks past a
@@ -73,14 +76,14 @@ fmu_error fmu_apply(fmu_instance *f)
     f->model.fastest = f->at.fastest;
     f->changed = status != BG_OK;
     f->located.view.measured = 0;
-    return message(status);
+    return fmu_message(f, status);
 }
 
 /* The same of a start; of a stop that begins beyond its bound, which one. */
 static fmu_error message_of_start(fmu_instance *f, int status)
 {
     if (status != BG_BEYOND)
-        return message(status);
+        return fmu_message(f, status);
     snprintf(f->text, sizeof f->text, "stop %.120s: %s", bg_friction_names[f->model.where],
              bg_model_message(status));
     return f->text;
@@ -127,7 +130,7 @@ fmu_error fmu_refresh(fmu_instance *f)
 
 fmu_error fmu_look(fmu_instance *f)
 {
-    return message(bg_view_look(&f->located.view, f->at.time, f->at.s, f->at.mode));
+    return fmu_message(f, bg_view_look(&f->located.view, f->at.time, f->at.s, f->at.mode));
 }
 
 static double state_of(const fmu_instance *f, int at)

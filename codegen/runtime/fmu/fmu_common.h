@@ -74,7 +74,9 @@ void fmu_switch_values(const bg_values *v, double *out);
 void fmu_timed_values(const bg_values *v, double *out);
 int fmu_resolved(const bg_values *v, double t, double h); /* known sources do little in h */
 
-/* fmu_common.c: everything at the time and states of the instance in its mode. */
+/* fmu_common.c: what a status of the model means, and of a table that was left which; everything at
+ * the time and states of the instance in its mode. */
+fmu_error fmu_message(fmu_instance *f, int status);
 fmu_error fmu_look(fmu_instance *f);
 void fmu_reset(fmu_instance *f, int exchange);
 fmu_error fmu_apply(fmu_instance *f);

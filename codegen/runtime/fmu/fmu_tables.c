@@ -6,7 +6,7 @@
 
 #include "fmu_common.h"
 
-static size_t values_of(int table)
+static size_t points_of(int table)
 {
     return (size_t)(bg_tables[table].counts[0] * bg_tables[table].counts[1]);
 }
@@ -15,7 +15,7 @@ size_t fmu_size(unsigned reference)
 {
     const fmu_variable *const v = &fmu_variables[reference];
     if (v->kind == FMU_TABLE)
-        return values_of(v->index);
+        return points_of(v->index);
     return v->kind == FMU_AXIS ? (size_t)bg_tables[v->index / 2].counts[v->index % 2] : 1;
 }
 
@@ -31,8 +31,8 @@ size_t fmu_sizes(const unsigned *references, size_t count)
 static int table_of(int index, int *at)
 {
     int table = 0;
-    for (*at = index; *at >= (int)values_of(table); table++)
-        *at -= (int)values_of(table);
+    for (*at = index; *at >= (int)points_of(table); table++)
+        *at -= (int)points_of(table);
     return table;
 }
 
@@ -51,7 +51,7 @@ void fmu_get_table(const fmu_instance *f, unsigned reference, double *values)
 }
 
 /* What is no number, by its row and column. */
-static fmu_error refused(fmu_instance *f, int table, int at, double value)
+static fmu_error no_number(fmu_instance *f, int table, int at, double value)
 {
     const int columns = bg_tables[table].counts[1];
     if (bg_tables[table].points[1])
@@ -76,7 +76,7 @@ fmu_error fmu_set_table(fmu_instance *f, unsigned reference, const double *value
         table = table_of(v->index, &at);
     for (size_t i = 0; i < count; i++)
         if (!isfinite(values[i]))
-            return refused(f, table, at + (int)i, values[i]);
+            return no_number(f, table, at + (int)i, values[i]);
     if (memcmp(f->own.tables[table].values + at, values, count * sizeof *values) == 0)
         return NULL;
     memcpy(bg_tables_values(&f->own, table) + at, values, count * sizeof *values);
@@ -105,8 +105,8 @@ fmu_error fmu_save(const fmu_instance *f, fmu_saved *to)
         return "no memory for the state";
     to->at = f->at;
     values[0] = 0.0;
-    for (int i = 0; i < BG_TABLES; values += values_of(i), i++)
-        memcpy(values, f->own.tables[i].values, values_of(i) * sizeof *values);
+    for (int i = 0; i < BG_TABLES; values += points_of(i), i++)
+        memcpy(values, f->own.tables[i].values, points_of(i) * sizeof *values);
     return NULL;
 }
 
@@ -114,8 +114,8 @@ void fmu_load(fmu_instance *f, const fmu_saved *from)
 {
     const double *values = from->tables;
     fmu_restore(f, &from->at);
-    for (int i = 0; i < BG_TABLES; values += values_of(i), i++) {
-        const size_t bytes = values_of(i) * sizeof *values;
+    for (int i = 0; i < BG_TABLES; values += points_of(i), i++) {
+        const size_t bytes = points_of(i) * sizeof *values;
         if (memcmp(f->own.tables[i].values, values, bytes) != 0) {
             memcpy(bg_tables_values(&f->own, i), values, bytes);
             f->retabled[i] = 1;

@@ -205,7 +205,7 @@ static double steepest(const bg_table *of)
     return found;
 }
 
-static int values_of(const bg_table *of)
+static int cells_of(const bg_table *of)
 {
     return of->counts[0] * of->counts[1];
 }
@@ -226,11 +226,11 @@ double *bg_tables_values(bg_own_tables *own, int table)
 {
     int values = 0;
     for (int i = 0; i < table; i++)
-        values += values_of(bg_tables + i);
+        values += cells_of(bg_tables + i);
     bg_table *const of = own->tables + table;
     double *const mine = own->values + values;
     if (of->values != mine)
-        memcpy(mine, of->values, sizeof(double) * (size_t)values_of(of));
+        memcpy(mine, of->values, sizeof(double) * (size_t)cells_of(of));
     of->values = mine;
     return mine;
 }
@@ -255,8 +255,8 @@ int bg_tables_fit(bg_own_tables *own, int table)
 
 int bg_tables_set(bg_own_tables *own, int table, const double *values)
 {
-    if (table < 0 || table >= BG_TABLES || !bg_finite(values_of(bg_tables + table), values))
+    if (table < 0 || table >= BG_TABLES || !bg_finite(cells_of(bg_tables + table), values))
         return BG_TABLE_VALUE;
-    memcpy(bg_tables_values(own, table), values, sizeof(double) * (size_t)values_of(bg_tables + table));
+    memcpy(bg_tables_values(own, table), values, sizeof(double) * (size_t)cells_of(bg_tables + table));
     return bg_tables_fit(own, table);
 }

@@ -210,9 +210,9 @@ int bg_model_init_with(bg_model *m, const double *parameters, const bg_own_table
 void bg_tables_init(bg_own_tables *own);
 int bg_tables_set(bg_own_tables *own, int table, const double *values);
 
-/* After a failure: the table that refuses what is outside and was left, with the argument that left
- * it; -1 where none was. */
-int bg_model_left(const bg_model *m, const char **argument, double *place);
+/* After a call that failed: whether a table that refuses what is outside was left, which is told in
+ * `text`: when, which, and by which argument. */
+int bg_model_left(const bg_model *m, int status, char *text, size_t room);
 
 /* s from the states (law states last) and the external inputs: they differ where inputs drive
  * dependent storages. */

@@ -130,7 +130,10 @@ def test_slopes_of_values_in_rows_and_plateaus_are_scipys(method: str, tmp_path:
         if not z.any():
             continue
         _, *found = _looked_up(program, z, (0,), places)
-        assert off(np.array(found), interpolated(method, "extend", [*axes, z], places, (0,))) < ROUNDING
+        assert (
+            off(np.array(found), interpolated(method, "extend", [*axes, z], places, (0,)))
+            < ROUNDING
+        )
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, 1e308])
