@@ -8,9 +8,10 @@ import numpy as np
 
 from bondgraph.tables.looking import Patches
 from bondgraph.tables.pieces import pieces
-from codegen.standalone.arrays import Array
+from codegen.standalone.arrays import Array, EvaluationError, Mode
+from codegen.standalone.evaluation import Point
 from codegen.standalone.instant import Formula, Instant
-from codegen.standalone.stepping import FixedSteps
+from codegen.standalone.stepping import FixedSteps, Given
 
 
 class Shape(NamedTuple):
@@ -74,6 +75,22 @@ class InsideTables(FixedSteps):
 
     refusing: Sequence[Refusing] = ()
     places: Formula
+    #: What was first seen outside in a step; stages that follow may have no numbers.
+    outside = ""
+
+    def at(self, at: Point, mode: Mode) -> Instant:
+        """Every variable at one time."""
+        now = super().at(at, mode)
+        self.outside = self.outside or self._told(now)
+        return now
+
+    def step(self, t: float, h: float, s: Array, given: Sequence[Given], mode: Mode) -> Array:
+        """A step in one mode, if that has values."""
+        self.outside = ""
+        try:
+            return super().step(t, h, s, given, mode)
+        except EvaluationError as error:
+            raise EvaluationError(self.outside or str(error)) from None
 
     def noted(self, now: Instant, part: float) -> None:
         """What ports give at an instant of a step, if that is inside."""
@@ -86,10 +103,15 @@ class InsideTables(FixedSteps):
         return super().named(now)
 
     def _check(self, now: Instant) -> None:
+        if told := self._told(now):
+            raise EvaluationError(told)
+
+    def _told(self, now: Instant) -> str:
         places: Array = self.places(now)
         for one, place in zip(self.refusing, places.tolist(), strict=True):
             if place < one.low or place > one.high:
-                raise ArithmeticError(
+                return (
                     f"at t = {now.t:.9g} {one.argument} leaves table {one.table!r}, which is from "
                     f"{one.low!r} to {one.high!r} and refuses what is outside"
                 )
+        return ""

@@ -1,5 +1,6 @@
 """Values that a program gives to tables of exported C: between them what scipy's interpolators have."""
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import networkx as nx
 import numpy as np
 import pytest
 from oracles.c_model import WARNED, compiled, written
+from oracles.tuned import END, LEAVES, NUMBERS, PUSH, START, dragged, speed
 from references.interpolated import (
     METHODS,
     interpolated,
@@ -143,3 +145,51 @@ def test_what_is_no_number_is_refused(bad: float, tmp_path: Path) -> None:
     z = np.array([0.0, -bad, bad, 1.0])
     done = subprocess.run([program, "0", "0"], input=z.tobytes(), capture_output=True, check=False)
     assert done.returncode == 11
+
+
+def _printed(program: Path, *words: str) -> Array:
+    done = subprocess.run(
+        [program, f"{END!r}", "0.01", *words], capture_output=True, text=True, check=True
+    )
+    return np.array([row.split(",")[:2] for row in done.stdout.splitlines()[1:]], dtype=float).T
+
+
+@pytest.fixture(scope="module")
+def pushed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """Programs over a table of zeros, that holds its ends or refuses what is beyond."""
+    found = {}
+    for outside in ("hold", "refuse"):
+        folder = tmp_path_factory.mktemp(outside)
+        files = codegen.to_c(dragged(outside), NUMBERS, main=True, initial=START, inputs=PUSH)
+        found[outside] = compiled(folder, written(folder, files), *WARNED, "-O1")
+    return found
+
+
+@pytest.mark.parametrize(("words", "within"), [(["located"], 1e-9), ([], 1e-4)])
+def test_a_program_takes_values_and_locates_the_corners_that_they_make(
+    words: list[str], within: float, pushed: dict[str, Path]
+) -> None:
+    """The table is flat where it is written: it has no corner then, and three with these values."""
+    t, v = _printed(pushed["hold"], "drag=-4,0,1,3", *words)
+    assert np.abs(v - speed(t)).max() < within
+    t, v = _printed(pushed["hold"], *words)
+    assert v == pytest.approx(4 * t - 1, abs=1e-9)
+
+
+@pytest.mark.parametrize("words", [["located"], [], ["step=0.001"]])
+def test_a_table_that_is_left_is_named(words: list[str], pushed: dict[str, Path]) -> None:
+    asked = [pushed["refuse"], "2.5", "0.01", "drag=-4,0,1,3", *words]
+    done = subprocess.run(asked, capture_output=True, text=True, check=False)
+    told = re.search(r"at t = (\S+) w leaves table 'drag', which is from -2 to 3", done.stderr)
+    assert done.returncode == 1
+    assert told is not None
+    assert float(told[1]) == pytest.approx(LEAVES, abs=0.02)
+
+
+@pytest.mark.parametrize("told", ["drag=1,2,3", "drag=1,2,3,4,5", "drag=1,nan,3,4", "drag="])
+def test_wrong_values_are_refused_by_name(told: str, pushed: dict[str, Path]) -> None:
+    done = subprocess.run(
+        [pushed["hold"], "1", "0.1", told], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "table drag: give 4 finite numbers" in done.stderr
