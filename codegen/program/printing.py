@@ -78,12 +78,12 @@ class _C(C99CodePrinter):  # type: ignore[misc]
             raise PrintMethodNotImplementedError(f"the integral of table {handle.table.name!r}")
         call = "bg_interpolate" if len(places) == 1 else "bg_interpolate_over"
         given = [*map(str, handle.orders), *map(self._print, (*places, *regions))]
-        return f"{call}({_told(handle)}, {', '.join(given)})"
+        return f"{call}({table_place(handle)}, {', '.join(given)})"
 
     def _print_Edge(self, expr: Any) -> str:
         handle, axis, bit, x, *region = expr.args
         given = ", ".join(map(self._print, (x, *(region or [sp.Integer(FREE)]))))
-        return f"bg_edge({_told(handle)}, {int(axis)}, {int(bit)}, {given})"
+        return f"bg_edge({table_place(handle)}, {int(axis)}, {int(bit)}, {given})"
 
     _print_EdgeOn = _print_Edge
 
@@ -103,7 +103,7 @@ class _C(C99CodePrinter):  # type: ignore[misc]
         return "0"
 
 
-def _told(handle: Handle) -> str:
+def table_place(handle: Handle) -> str:
     """Where a table is among those of an instant ``v``."""
     return f"v->tables + bg_{table_name(handle.table)}"
 

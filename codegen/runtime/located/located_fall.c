@@ -91,8 +91,16 @@ static int first_fall(root_search *asked, const double *times, double values[POI
     const bg_falling *const f = asked->f;
     const int i = asked->which;
     double own[POINTS];
-    for (int k = 0; k < POINTS; k++)
+    int level = values[0][i] > 0.0;
+    for (int k = 0; k < POINTS; k++) {
         own[k] = values[k][i];
+        level &= own[k] == own[0];
+    }
+    /* As of most bits that tell in which stretch of a table an argument is. */
+    if (level) {
+        asked->f->armed[i] |= own[0] > f->limit[i];
+        return 0;
+    }
     for (int k = 0; k + 1 < POINTS; k++) {
         const int risen = f->armed[i] || own[k] > f->limit[i];
         if (trigger_fall(asked, times[k], times[k + 1], own[k], own[k + 1], root)

@@ -40,6 +40,8 @@ double bg_interpolate_over(const bg_table *of, int order_x, int order_y, double 
                            double region_x, double region_y);
 /* What changes its sign at corners where a bit of the stretch's number in Gray's code does. */
 double bg_edge(const bg_table *of, int axis, int bit, double x, double region);
+/* The same of the lowest `bits` at once. */
+void bg_edges(const bg_table *of, int axis, int bits, double x, double region, double *out);
 
 /* model_fit.c: values of a table's own, to be changed; what is between them, worked out anew. */
 double *bg_tables_values(bg_own_tables *own, int table);
