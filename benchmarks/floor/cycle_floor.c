@@ -60,7 +60,7 @@ static double second(const cycle_car *car, double from, double to, double v, dou
             tried = v + step * sum;
             stage[i] = rate(car, from + (t + DOP_C[i] * step) * (to - from), tried);
         }
-        const double scale = tolerance * (1.0 + fmax(fabs(v), fabs(tried)));
+        const double scale = tolerance * (0.1 + fmax(fabs(v), fabs(tried)));
         for (int i = 0; i <= DOP_STAGES; i++) {
             fifth += E5[i] * stage[i] / scale;
             third += E3[i] * stage[i] / scale;

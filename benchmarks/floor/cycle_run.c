@@ -24,7 +24,8 @@ int cycle_run(const double *times, int count, double tolerance, double *speeds, 
     asked.states = start;
     asked.samples = count;
     asked.method = BG_DOP853;
-    asked.rtol = asked.atol = tolerance;
+    asked.rtol = tolerance;
+    asked.atol = 0.1 * tolerance;
     asked.to = speeds;
     asked.record = keep;
     asked.corners = 1;
