@@ -39,6 +39,7 @@ class Tuning:
     breakaway: float = _told(1e-12, "part by which a limit may fall short: its own rounding")
     nothing_held: float = _told(1e-12, "entries of a holding equation that are none")
     consistent: float = _told(1e-9, "part of a combination's terms that may be left of it")
+    akima_level: float = _told(1e-9, "of the largest turn of Akima's chords: none, as scipy has it")
     nothing: float = _told(1e-11, "entries below this part of the largest are rounding")
     least_cap: float = _told(
         1e-15, "of the largest effort: the least that a port's limit counts as"
@@ -182,6 +183,9 @@ class Tuning:
     cancelled: float = _told(1e-6, "of an input's largest coefficient: above it nothing cancels")
 
     # Units
+    most_scalars: int = _told(
+        1000, "values of a table that a unit of FMI 2.0, without arrays, lists"
+    )
     unit_difference: float = _told(6e-6, "relative difference for a unit's directional derivatives")
     switch_part: float = _told(
         1e-9, "of a switch's largest value by which it may be beyond zero .."

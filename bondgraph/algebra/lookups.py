@@ -2,13 +2,15 @@
 
 import re
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any, Self
 
 import sympy as sp
 
 from bondgraph.algebra.called import Called
-from bondgraph.tables.looking import looked_up
-from bondgraph.tables.pieces import integrated, pieces
+from bondgraph.tables.integral import integrated
+from bondgraph.tables.looking import Patches, looked_up
+from bondgraph.tables.pieces import pieces
 from bondgraph.tables.record import Sampled
 
 INTEGRAL = (-1,)
@@ -53,8 +55,13 @@ class Handle(sp.AtomicExpr):  # type: ignore[misc]
     def looked_up(self, *places: float) -> float:
         """The value at numbers."""
         if self.orders == INTEGRAL:
-            return looked_up(integrated(self.table), (0,), places)
+            return looked_up(_integral(self.table), (0,), places)
         return looked_up(pieces(self.table), self.orders, places)
+
+
+@lru_cache(maxsize=64)
+def _integral(table: Sampled) -> Patches:
+    return integrated(pieces(table), table.values[0], table.values[-1])
 
 
 OVERSHOOTING = ("akima", "bicubic")

@@ -17,9 +17,8 @@ def check_tables(expr: sp.Expr, what: str, there: Callable[[sp.Expr], sp.Expr]) 
     ``what``: what the expression belongs to; ``there``: an expression at the point. Raises `SignalError`.
     """
     for look in sorted(expr.atoms(Look), key=sp.default_sort_key):
-        table = pieces(look.handle.table)
         places = [there(place) for place in look.places]
-        cornered = any(edges(table, axis) for axis in range(len(places)))
+        cornered = any(_jumps(look, axis) for axis in range(len(places)))
         open_ = sorted({str(one) for place in places for one in place.free_symbols})
         if open_ and (cornered or look.handle.table.outside == "refuse"):
             raise SignalError(
@@ -40,15 +39,22 @@ def _check_place(look: Look, what: str, places: list[float]) -> None:
             "more points, or another outside"
         )
     for axis, x in enumerate(places):
-        corners = edges(table, axis)
-        if x in corners:
-            at = corners.index(x)
+        if x in _jumps(look, axis):
+            at = edges(table, axis).index(x)
             sides = [_slopes(look, places, axis, at + side) for side in (0, 1)]
             if sides[0] != sides[1]:
                 raise SignalError(
                     f"{what} has a corner at the operating point, where table {name!r} has one at "
                     f"{look.places[axis]} = {x!r}; linearise on one side of it"
                 )
+
+
+def _jumps(look: Look, axis: int) -> tuple[float, ...]:
+    """Where first slopes may jump: of a smooth table at its ends alone."""
+    breaks, *_ = table = pieces(look.handle.table)
+    ends = (breaks[axis][0], breaks[axis][-1])
+    smooth = look.handle.table.smooth
+    return tuple(x for x in edges(table, axis) if x in ends or not smooth)
 
 
 def _slopes(look: Look, places: list[float], axis: int, region: int) -> list[float]:

@@ -10,12 +10,12 @@ from bondgraph.tables.looking import FREE, Patches
 
 
 def edges(table: Patches, axis: int) -> tuple[float, ...]:
-    """Where the slope may jump along an axis: between cells of degree one, and at ends that do not go on."""
-    breaks, degree, outside, _ = table
-    ends = outside != "extend"
-    if degree == 1:
-        return breaks[axis] if ends else breaks[axis][1:-1]
-    return (breaks[axis][0], breaks[axis][-1]) if ends else ()
+    """Where one polynomial takes over from another along an axis, and ends that do not go on.
+
+    There slopes jump, or those of slopes: to an integrator of high order all of them are corners.
+    """
+    breaks, _, outside, _ = table
+    return breaks[axis][1:-1] if outside == "extend" else breaks[axis]
 
 
 def bits(count: int) -> int:

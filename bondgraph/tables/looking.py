@@ -55,13 +55,13 @@ def placed(
     if ends:
         free, refused = region == FREE, outside == "refuse"
         nothing = math.nan if refused else 0.0 * x
-        top = last + 2 if degree == 1 else 2
+        top = last + 2
         # On its end a table that refuses what is beyond still has a value, on whichever side of it.
         if (free or region < 1) and (x < knots[0] or not (free or refused)):
             return 0, nothing, True
         if (free or region >= top) and (x > knots[-1] or not (free or refused)):
             return last, knots[-1] - knots[-2] + nothing, True
-    if region != FREE and degree == 1:
+    if region != FREE:
         at = min(max(int(region) - ends, 0), last)
     else:
         at = min(max(bisect_right(knots, x) - 1, 0), last)

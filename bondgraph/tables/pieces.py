@@ -47,26 +47,6 @@ def pieces(table: Points) -> Patches:
     return told, degree, table.outside, tuple(factors.ravel().tolist())
 
 
-@lru_cache(maxsize=64)
-def integrated(table: Points) -> Patches:
-    """The integral of a table over one axis, from its first point on; beyond held ends it is straight."""
-    (knots,), degree, outside, factors = pieces(table)
-    size, cells = degree + 1, [list[float]() for _ in knots[1:]]
-    total = 0.0
-    for at, cell in enumerate(cells):
-        width = knots[at + 1] - knots[at]
-        powers = factors[at * size : (at + 1) * size]
-        cell += [factor / (size - k) for k, factor in enumerate(powers)] + [total]
-        total = sum(factor * width ** (size - k) for k, factor in enumerate(cell))
-    if outside == "hold":
-        low, high, flat = table.values[0], table.values[-1], [0.0] * degree
-        span = knots[-1] - knots[0]
-        knots = (knots[0] - span, *knots, knots[-1] + span)
-        cells = [[*flat, low, -low * span], *cells, [*flat, high, total]]
-    beyond = "refuse" if outside == "refuse" else "extend"
-    return (knots,), size, beyond, tuple(factor for cell in cells for factor in cell)
-
-
 def _linear(method: str, axes: list[Any], z: Any) -> tuple[list[Any], Any]:
     import numpy as np
 

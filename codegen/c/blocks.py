@@ -1,15 +1,18 @@
 """Blocks of a program as C functions of an instant, with readable local names."""
 
 from collections.abc import Mapping, Sequence
+from itertools import takewhile
 
 import sympy as sp
 from sympy.printing.codeprinter import PrintMethodNotImplementedError
 
 from bondgraph.errors import ExpressionError
+from bondgraph.tables.looking import FREE
 from codegen.c.text import comment, statement
+from codegen.corners.tabled import Edge
 from codegen.program.identifiers import identifiers
 from codegen.program.layout import readable
-from codegen.program.printing import printed
+from codegen.program.printing import printed, table_place
 from codegen.program.records import Block, Program
 
 _MACROS = """
@@ -56,9 +59,34 @@ def body(code: Block, where: Mapping[sp.Symbol, str], result: str) -> list[str]:
         lines += statement(f"const double {names[name.name]} = {where[name]};")
     for name, value in code.assignments:
         lines += statement(f"const double {names[name.name]} = {text_of(value, names)};")
-    for at, value in enumerate(code.results):
-        lines += statement(f"{result}[{at}] = {text_of(value, names)};")
+    at = 0
+    while at < len(code.results):
+        count = _bits(code.results[at:])
+        lines += _edges(code.results[at], count, names, f"{result} + {at}") if count > 1 else statement(
+            f"{result}[{at}] = {text_of(code.results[at], names)};"
+        )  # fmt: skip
+        at += count
     return lines
+
+
+def _bits(results: Sequence[sp.Expr]) -> int:
+    """How many of the first are the bits of one argument of a table, in turn, which C finds at once."""
+    first = results[0]
+    if not isinstance(first, Edge):
+        return 1
+    same = (type(first), *first.args[:2], *first.args[3:])
+    alike = (
+        isinstance(one, Edge) and (type(one), *one.args[:2], *one.args[3:]) == same and one.args[2] == bit
+        for bit, one in enumerate(results)
+    )  # fmt: skip
+    return max(1, sum(1 for _ in takewhile(bool, alike)))
+
+
+def _edges(first: Edge, count: int, names: Mapping[str, str], out: str) -> list[str]:
+    """The statement for all of them."""
+    handle, axis, _, *told = first.args
+    x, region = (text_of(one, names) for one in (*told, sp.Integer(FREE))[:2])
+    return statement(f"bg_edges({table_place(handle)}, {axis}, {count}, {x}, {region}, {out});")
 
 
 def function(

@@ -7,7 +7,7 @@ from typing import Any
 
 from bondgraph.equations import StateEquations
 from codegen.c.blocks import function, places
-from codegen.c.lookups import lookup_tables
+from codegen.c.lookups import lookup_tables, refused
 from codegen.c.prefix import external_symbols, renamed
 from codegen.c.rates import plain_rates, straight_rates
 from codegen.c.rhs import straights
@@ -180,6 +180,7 @@ def texts(
         *slip_tables(closed.slips, len(program.states), program.coupled.inputs),
         *_functions(program),
         "",
+        *refused(program),
         *group_tables(program),
         *(straight_rates(program, fast) if fast else plain_rates()),
     ]

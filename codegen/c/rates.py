@@ -65,7 +65,10 @@ def _rates(
     found = _rate_places(program, fast, first)
     # s has room for one where nothing is integrated, and whoever asks reads all of its rate.
     code = body(fast.code, found, "rate") if fast.code.results else ["    rate[0] = 0.0;"]
-    used = {re.split(r"\W", found[name])[0] for name in fast.code.arguments}
+    looks = any("v->tables" in line for line in code)
+    code = ["    const bg_values *const v = &m->now;", *code] if looks else code
+    used = {"m"} if looks else set()
+    used |= {re.split(r"\W", found[name])[0] for name in fast.code.arguments}
     names = ("m", "time", "s", "w", "signs")
     unused = [f"    (void){name};" for name in names if name not in used and not turn]
     head = ["", *comment(f"{what}: {fast.code.operations} operations."), *signature]

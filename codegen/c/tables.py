@@ -6,7 +6,7 @@ import sympy as sp
 
 from bondgraph.equations import StateEquations
 from codegen.c.counting import StepCost, step_cost
-from codegen.c.lookups import lookup_names
+from codegen.c.lookups import lookup_names, lookup_sizes
 from codegen.c.rhs import Straight
 from codegen.c.text import array, comment, doubles, integers, quoted, strings
 from codegen.c.turnings import turning_names
@@ -130,6 +130,7 @@ def _sizes(program: Program, fast: Sequence[Straight]) -> dict[str, int]:
         "STRAIGHT": int(bool(fast)),
         "CORNERS": len(program.sides),
         "CORNERS_TOLD": int(program.corners_told),
+        **lookup_sizes(program),
     }
 
 

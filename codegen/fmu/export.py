@@ -84,8 +84,9 @@ def write_fmu(
     chosen = chosen_platforms(platforms)
     official, equations = headers(version), supplied(equations, laws, parameters)
     model = _model(
-        name or target.stem, equations, parameters, laws, initial or {}, inputs or {}, initially_on
-    )
+        name or target.stem, equations, parameters, laws, initial or {}, inputs or {}, initially_on,
+        version,
+    )  # fmt: skip
     start, code = exported(equations, parameters, laws, name=model.name, integrator=integrator)
     warn_of_doubts(start.closed.program, equations, start.closed.parameters)
     own = [name for name in runtime_names("fmu") if not name.startswith(OTHERS[version])]
@@ -112,6 +113,7 @@ def _model(
     initial: Mapping[str, float],
     inputs: Mapping[str, object],
     initially_on: Iterable[Hashable],
+    version: str,
 ) -> FmuModel:
     """Everything about the unit but its sources."""
     ready = bare_simulator(equations, parameters, laws, timed=False)
@@ -142,7 +144,7 @@ def _model(
         _identifier(name),
         program,
         equations,
-        variables(program, equations, starts, _indicators(program) + len(switches)),
+        variables(program, equations, starts, _indicators(program) + len(switches), version),
         starts,
         tuple(sorted(inside.items())),
         program.before(on),

@@ -10,7 +10,8 @@ from codegen.c.blocks import function, places
 from codegen.c.scenario import signal_lines, signals_record
 from codegen.c.text import array, comment, doubles, integers, quoted
 from codegen.fmu.resolution import resolution_text
-from codegen.fmu.variables import Starts, Variable
+from codegen.fmu.variable import Variable
+from codegen.fmu.variables import Starts
 from codegen.inputs.signal import Signal
 from codegen.inputs.tables import known_span, signal_table
 from codegen.program.records import Program, block

@@ -12,7 +12,8 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.lookups import Look
 from codegen.c.blocks import names_for, places, text_of
 from codegen.c.text import statement
-from codegen.numbers.cells import cells, steepest
+from codegen.numbers.cells import cells
+from codegen.program.printing import table_name
 from codegen.program.records import Program
 
 TURNING = (sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc, sp.sinh, sp.cosh, sp.atan, sp.asin, sp.acos,
@@ -113,7 +114,8 @@ class _Writer:
             middle = self._called(expr.func, parts[0])
             return f"fmu_sloped({middle}, 1.0, {parts[0]})"
         if isinstance(expr, Look) and len(parts) == 1:
-            return f"fmu_sloped({self._looked_up(expr, parts[0])}, {steepest(expr)!r}, {parts[0]})"
+            slope = f"v->tables[bg_{table_name(expr.handle.table)}].steepest"
+            return f"fmu_sloped({self._looked_up(expr, parts[0])}, {slope}, {parts[0]})"
         # What has corners, and functions that are seldom inside another: the sum of all that they read.
         text = parts[0]
         for part in parts[1:]:

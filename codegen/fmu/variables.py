@@ -2,41 +2,19 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import sympy as sp
 
 from bondgraph.equations import StateEquations
+from codegen.fmu.tabled import arrays_of, scalars_of
+from codegen.fmu.variable import Variable
 from codegen.model.commands import conditions_told
 from codegen.program.records import Program
 from codegen.program.units import units
 
 STEP = "fixed_internal_step"
 """The parameter that is the length of co-simulation's fixed steps [s]; 0: events are located."""
-
-
-@dataclass(frozen=True)
-class Variable:
-    """One variable; its place in the list is its value reference.
-
-    ``kind`` and ``index``: what it is to the C glue (`enum fmu_kind`). ``derivative``: the value
-    reference of the state that it is the rate of. ``description``: for people.
-    """
-
-    name: str
-    kind: str
-    index: int = 0
-    causality: str = "local"
-    variability: str = "continuous"
-    initial: str | None = "calculated"
-    start: float | None = None
-    unit: str = ""
-    derivative: int | None = None
-    description: str = ""
-
-    @property
-    def integer(self) -> bool:
-        """Friction modes and switches are whole numbers."""
-        return self.kind in ("FMU_MODE", "FMU_SWITCH", "FMU_SLIDES")
 
 
 @dataclass(frozen=True)
@@ -60,11 +38,15 @@ def moved(program: Program) -> bool:
 
 
 def variables(
-    program: Program, equations: StateEquations, starts: Starts, indicators: int
+    program: Program, equations: StateEquations, starts: Starts, indicators: int, version: str
 ) -> tuple[Variable, ...]:
-    """All variables, names made unique; those of the model come before those that are made up."""
+    """All variables, names made unique; those of the model come before those that are made up.
+
+    ``version``: of FMI; 2.0 has no arrays, so there a table is a parameter for each of its values, and
+    one of more than `TUNING.most_scalars` is a constant.
+    """
     listing = _Listing(program, units(equations), starts)
-    listing.known()
+    listing.known(arrays=version != "2.0")
     listing.unknown()
     listing.made_up(indicators)
     return tuple(_described(one, program, equations) for one in listing.found)
@@ -103,8 +85,8 @@ class _Listing:
         self._reserved = {plain(symbol.name) for symbol in symbols}
         self._used: set[str] = set()
 
-    def known(self) -> None:
-        """Time, parameters, inputs and where states start."""
+    def known(self, arrays: bool) -> None:
+        """Time, parameters, tables, inputs and where states start."""
         program, starts = self._program, self._starts
         self._made("time", "FMU_TIME", causality="independent", initial=None, unit="s")
         kept = "fixed" if self._moved else "tunable"
@@ -115,6 +97,7 @@ class _Listing:
                 symbol, "FMU_PARAMETER", at, "parameter", variability=kept, initial="exact",
                 start=value,
             )  # fmt: skip
+        self._tables(kept, arrays)
         self._made(
             STEP, "FMU_INTERNAL_STEP", causality="parameter", variability="fixed", initial="exact",
             start=0.0, unit="s",
@@ -130,6 +113,14 @@ class _Listing:
             self._made(name, "FMU_SLOPE", at, causality="input", initial=None, start=0.0)
         for at, symbol in enumerate((*program.states, *program.law_states)):
             self._named(symbol, "FMU_STATE", at, initial="exact", start=starts.states[at])
+
+    def _tables(self, kept: str, arrays: bool) -> None:
+        """The values of tables, and their axes, under names that the model leaves free."""
+        tables = self._program.tables
+        for one in arrays_of(tables) if arrays else scalars_of(tables):
+            name = self._free(plain(one.name), self._used | self._reserved)
+            tuned = kept if one.causality == "parameter" else "constant"
+            self.found.append(replace(one, name=name, variability=tuned))
 
     def unknown(self) -> None:
         """Readings, outputs among them, and what laws and sources give."""
@@ -191,13 +182,11 @@ class _Listing:
     def _made(
         self, name: str, kind: str, index: int = 0, causality: str = "local",
         variability: str = "continuous", initial: str | None = "calculated",
-        start: float | None = None, unit: str = "", derivative: int | None = None,
+        **more: Any,
     ) -> None:  # fmt: skip
         """A variable under a name that the model leaves free."""
         name = self._free(plain(name), self._used | self._reserved)
-        self.found.append(
-            Variable(name, kind, index, causality, variability, initial, start, unit, derivative)
-        )
+        self.found.append(Variable(name, kind, index, causality, variability, initial, **more))
 
     def _free(self, name: str, taken: set[str]) -> str:
         while name in taken:

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 from codegen.fmu.dependencies import dependencies
 from codegen.fmu.model import FmuModel
-from codegen.fmu.variables import Variable
+from codegen.fmu.variable import Variable
 
 Element = ElementTree.Element
 
@@ -103,7 +103,8 @@ def _about(at: int, variable: Variable) -> dict[str, str]:
 
 
 def _typed(variable: Variable, derivative: int) -> dict[str, str]:
-    found = {} if variable.start is None else {"start": repr(float(variable.start))}
+    starts = variable.array or (() if variable.start is None else (variable.start,))
+    found = {"start": " ".join(repr(float(one)) for one in starts)} if starts else {}
     if variable.unit:
         found["unit"] = variable.unit
     if variable.derivative is not None:
@@ -119,7 +120,9 @@ def _variable_2(parent: Element, at: int, variable: Variable) -> None:
 
 def _variable_3(parent: Element, at: int, variable: Variable) -> None:
     kind = "Int32" if variable.integer else "Float64"
-    _child(parent, kind, _about(at, variable) | _typed(variable, 0))
+    one = _child(parent, kind, _about(at, variable) | _typed(variable, 0))
+    for size in variable.sizes:
+        _child(one, "Dimension", {"start": str(size)})
 
 
 def _structure(root: Element, model: FmuModel, second: bool) -> None:

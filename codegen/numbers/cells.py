@@ -9,7 +9,7 @@ import sympy as sp
 from bondgraph.algebra.lookups import Look
 from bondgraph.errors import SimulationError
 from bondgraph.tables.looking import FREE, placed
-from bondgraph.tables.pieces import pieces
+from bondgraph.tables.pieces import Points, pieces
 from codegen.numbers.arrays import Array
 
 ASIDE = (3 - 5**0.5) / 2
@@ -76,9 +76,9 @@ def cells(look: Look) -> list[float]:
     return [min(b - a for a, b in pairwise(axis)) for axis in pieces(look.handle.table)[0]]
 
 
-def steepest(look: Look) -> float:
+def steepest(table: Points) -> float:
     """A bound on the slope of a table over one axis between its ends."""
-    (knots,), degree, _, factors = pieces(look.handle.table)
+    (knots,), degree, _, factors = pieces(table)
     size, found = degree + 1, 0.0
     for at, (a, b) in enumerate(pairwise(knots)):
         powers = factors[at * size : (at + 1) * size]

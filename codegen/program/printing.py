@@ -78,7 +78,7 @@ class _C(C99CodePrinter):  # type: ignore[misc]
             raise PrintMethodNotImplementedError(f"the integral of table {handle.table.name!r}")
         call = "bg_interpolate" if len(places) == 1 else "bg_interpolate_over"
         given = [*map(str, handle.orders), *map(self._print, (*places, *regions))]
-        return f"{call}(&bg_{table_name(handle.table)}, {', '.join(given)})"
+        return f"{call}({table_place(handle)}, {', '.join(given)})"
 
     def _print_Inverse(self, expr: Any) -> str:
         value, *given = map(self._print, expr.places)
@@ -88,7 +88,7 @@ class _C(C99CodePrinter):  # type: ignore[misc]
     def _print_Edge(self, expr: Any) -> str:
         handle, axis, bit, x, *region = expr.args
         given = ", ".join(map(self._print, (x, *(region or [sp.Integer(FREE)]))))
-        return f"bg_edge(&bg_{table_name(handle.table)}, {int(axis)}, {int(bit)}, {given})"
+        return f"bg_edge({table_place(handle)}, {int(axis)}, {int(bit)}, {given})"
 
     _print_EdgeOn = _print_Edge
 
@@ -106,6 +106,11 @@ class _C(C99CodePrinter):  # type: ignore[misc]
 
     def _print_BooleanFalse(self, expr: sp.Expr) -> str:
         return "0"
+
+
+def table_place(handle: Handle) -> str:
+    """Where a table is among those of an instant ``v``."""
+    return f"v->tables + bg_{table_name(handle.table)}"
 
 
 class _CheckedC(_C):
@@ -152,7 +157,7 @@ class _Python(PythonCodePrinter):  # type: ignore[misc]
     def _print_Look(self, expr: Any) -> str:
         handle, *places = expr.args
         given = ", ".join(map(self._print, places))
-        return f"looked_up(_{table_name(handle.table)}, {handle.orders}, ({given},))"
+        return f"looked_up(tables[{handle.table.name!r}], {handle.orders}, ({given},))"
 
     def _print_Inverse(self, expr: Any) -> str:
         return str(expr._numpycode(self))

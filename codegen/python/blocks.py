@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from bondgraph.algebra.lookups import Look
 from bondgraph.errors import ExpressionError
 from codegen.program.identifiers import identifiers
 from codegen.program.layout import readable
@@ -14,11 +15,17 @@ from codegen.program.printing import printed
 from codegen.program.records import Block, Group, Pattern, Program
 from codegen.python.text import WIDTH, assignment, plain, quoted
 
-TAKEN = ("parameters", "now", "matrix", "log_of", "looked_up", "place_where", "l", "O", "I")
+TAKEN = (
+    "parameters", "now", "tables", "matrix", "log_of", "looked_up", "place_where", "l", "O", "I",
+)  # fmt: skip
 """Names that the functions use themselves, and letters that look like digits."""
 
 _HUGGED = re.compile(r"(\b[\w.]+) \*\* (-?[\w.]+\b(?![(\[]))")
 """Powers of plain names and numbers, which are written without spaces."""
+
+
+_TABLE = re.compile(r"\btables\['(\w+)'\]")
+"""Tables by name, in the quotes that all else has."""
 
 
 @dataclass(frozen=True)
@@ -58,18 +65,30 @@ def text_of(expr: sp.Expr, names: Names) -> str:
     if "Not supported" in text:
         raise ExpressionError(f"{expr} uses a function that Python's math module does not have")
     try:
-        return _HUGGED.sub(r"\1**\2", ast.unparse(ast.parse(text, mode="eval")))
+        plain = _HUGGED.sub(r"\1**\2", ast.unparse(ast.parse(text, mode="eval")))
+        return _TABLE.sub(r'tables["\1"]', plain)
     except RecursionError:
         return text
 
 
 def function(name: str, doc: str, code: Block, results: Sequence[str], names: Names) -> list[str]:
     """A block as a function: names in, temporaries, and the lines that return the results."""
-    lines = ["", "", f"def {name}(parameters, now):", f'    """{doc}"""']
+    given = "parameters, now, tables=TABLES" if looks(code) else "parameters, now"
+    lines = ["", "", f"def {name}({given}):", f'    """{doc}"""']
     lines += unpacked([symbol.name for symbol in code.arguments], names)
     for temporary, value in code.assignments:
         lines += assignment(names.identifiers[temporary.name], text_of(value, names))
     return [*lines, *results]
+
+
+def looks(code: Block) -> bool:
+    """Whether a block looks into a table."""
+    return any(value.has(Look) for value in code.values)
+
+
+def bound(name: str, code: Block) -> str:
+    """A block's function as one of parameters and an instant."""
+    return f"looking({name}, tables)" if looks(code) else name
 
 
 def unpacked(used: Sequence[str], names: Names) -> list[str]:

@@ -1,23 +1,25 @@
 """The end of generated Python: the formulas put together with what is the same for every model."""
 
+from codegen.corners.refusing import refusals
 from codegen.program.records import Group, Program
-from codegen.python.blocks import law_names
+from codegen.python.blocks import bound, law_names
+from codegen.python.looking import model_words, table_shapes
 from codegen.python.tables import slip_rows
 from codegen.python.text import RULE, listing, quoted
 from codegen.standalone.ranks import SlipRows
 from codegen.standalone.switchings import Switching
 
-_FORM = '''def form(parameters):
+_FORM = '''def form({given}):
     """The formulas with these parameters, and where everything stands."""
     return Form(
         states=len(X),
         inputs=U,
         readings=Y,
         given=GIVEN,
-        known=Laws(BlockFormula(known_laws, parameters, len(KNOWN)), KNOWN, [], []),
+        known=Laws(BlockFormula({known}, parameters, len(KNOWN)), KNOWN, [], []),
         known_rates={rates},
         beyond=BEYOND,
-        matrices=matrices(coefficients, parameters, varying={varying}),
+        matrices=matrices({coefficients}, parameters, varying={varying}),
         laws={laws},
         early={early},
         law_rates=LAW_RATES,
@@ -26,7 +28,7 @@ _FORM = '''def form(parameters):
 
 _FRICTION = '''
 
-def friction(parameters):
+def friction({given}):
     """The friction ports."""
     ports = Ports(
         names=FRICTION,
@@ -36,15 +38,15 @@ def friction(parameters):
         moving=FRICTION_MOVING,
         beside=BESIDE,
         held=lambda stuck: {held},
-        values=BlockFormula(friction_values, parameters, 4 * len(FRICTION)),
+        values=BlockFormula({values}, parameters, 4 * len(FRICTION)),
         exact=parameters == PARAMETERS,
     )'''
 
 _SWITCHES = '''
 
-def switches(parameters):
+def switches({given}):
     """When the ports change over that are ideal switches."""
-    guards = BlockFormula(switch_conditions, parameters, {count})
+    guards = BlockFormula({conditions}, parameters, {count})
     return {record}(SWITCHING, FRICTION, guards, {count}{hung})'''
 
 _MODEL = '''
@@ -55,22 +57,22 @@ class Model({base}):
     ``rhs`` and ``outputs`` take x in the order of STATES and u in that of INPUTS.
     """
 {resets}
-    def __init__(self, parameters=None):
-        self.parameters = named(parameters or {{}}, PARAMETERS, "parameter")
+    def __init__(self, parameters=None{tables}):
+        self.parameters = named(parameters or {{}}, PARAMETERS, "parameter"){own}
         super().__init__({arguments})
 
 
-def simulate(time, initial, inputs, parameters=None, step=STEP, dead_band=1e-6{also}):
+def simulate(time, initial, inputs, parameters=None, step=STEP, dead_band=1e-6{also}{tables}):
     """Integrate with steps of at most ``step`` [s] and sample at the times given.
 
     ``initial``: states by name, the rest start at {rest}. ``inputs``: a number or a function of time for
     each of INPUTS. ``dead_band``: slips below it may stick. {told}The work of a step is bounded: nothing
-    is located inside it. Returns arrays by name: t, states, inputs, outputs, {what}.
+    is located inside it. Returns arrays by name: t, states, inputs, outputs, {what}.{values}
 
     Raises `UnstableStep` for a step beyond the stability of its method, with the longest that is
     stable; LONGEST_STEP is that of the start.
     """
-    return run(Model(parameters), time, {initial}, inputs, step, dead_band{given})'''
+    return run(Model(parameters{other}), time, {initial}, inputs, step, dead_band{given})'''
 
 
 _FROM_ZERO = {"rest": "0", "initial": "initial"}
@@ -111,7 +113,7 @@ def needed(program: Program, slips: SlipRows | None, implicit: bool) -> list[str
     names = [f"codegen.{folders[name]}.{name}" for name, wanted in also.items() if wanted]
     events = {"stopping": program.stopped, "resetting": program.resets, "hanging": program.hanging}
     names += [f"codegen.stops.{name}" for name, wanted in events.items() if wanted]
-    names += ["bondgraph.tables.looking"] if program.tables else []
+    names += ["codegen.fixed.tabled"] if program.tables else []
     names += ["bondgraph.inverses.searching"] if program.turnings else []
     return ["codegen.standalone.formulas", "codegen.standalone.running", *names]
 
@@ -126,23 +128,33 @@ def closing(
     """
     names = "STATES, INPUTS, SHOWN, SWITCHES" if program.guarded else "STATES, INPUTS, SHOWN"
     lines = [RULE, "# How this model is put together.", "", f"NAMES = Names({names})"]
-    base, arguments = "FixedSteps", "form(self.parameters), NAMES"
+    taken = "self.parameters, self.tables" if program.tables else "self.parameters"
+    base, arguments = "FixedSteps", f"form({taken}), NAMES"
     if program.friction:
-        base, arguments = "PortSteps", "NAMES, friction(self.parameters)"
+        base, arguments = "PortSteps", f"NAMES, friction({taken})"
         lines += [] if slips is None else slip_rows(slips)
     if program.guarded:
         base = _base(program)
-        arguments = f"{arguments}, switches(self.parameters)"
+        arguments = f"{arguments}, switches({taken})"
         lines += _switching(program)
     base = f"Rosenbrock, {base}" if implicit else base
+    if program.tables:
+        lines += ["", *table_shapes(program)]
+    base = f"InsideTables, {base}" if refusals(program) else base
     lines += ["", "", *_form(program)]
     lines += _friction(program, slips) if program.friction else []
     if program.guarded:
         lines += _switches(program)
     words = (_SWITCHED if program.guarded else _PLAIN) | (_TOLD if told else _FROM_ZERO)
     resets = "\n    resets = RESETS\n" if program.resets else ""
+    resets += "\n    refusing = REFUSING\n" if refusals(program) else ""
+    words |= model_words(program)
     model = _MODEL.format(base=base, arguments=arguments, resets=resets, **words)
     return [*lines, *model.splitlines()]
+
+
+def _given(program: Program) -> str:
+    return "parameters, tables" if program.tables else "parameters"
 
 
 def _base(program: Program) -> str:
@@ -155,8 +167,10 @@ def _base(program: Program) -> str:
 
 def _switches(program: Program) -> list[str]:
     words = {"record": "Switches", "hung": ""}
+    words["given"] = _given(program)
+    words["conditions"] = bound("switch_conditions", program.guards)
     if program.hanging:
-        words = {"record": "Hanging", "hung": f", {program.hanging}"}
+        words |= {"record": "Hanging", "hung": f", {program.hanging}"}
     return _SWITCHES.format(count=len(program.guards.results), **words).splitlines()
 
 
@@ -187,26 +201,31 @@ def _told(one: Switching) -> str:
 
 
 def _form(program: Program) -> list[str]:
-    rates = "BlockFormula(known_law_rates, parameters, len(KNOWN))" if program.rated else None
+    slopes = bound("known_law_rates", program.known_rates)
+    rates = f"BlockFormula({slopes}, parameters, len(KNOWN))" if program.rated else None
     laws: list[str] = []
     for name, group in zip(law_names(program), program.groups, strict=True):
         laws += _group("Loop(" if group.loop else "Laws(", name, group, "),", 12)
     listed = "\n".join(["(", *laws, "        )"]) if laws else "()"
     return _FORM.format(
-        rates=rates, varying=program.varying, laws=listed, early=program.early
-    ).splitlines()
+        rates=rates, varying=program.varying, laws=listed, early=program.early, given=_given(program),
+        known=bound("known_laws", program.known.values),
+        coefficients=bound("coefficients", program.coefficients),
+    ).splitlines()  # fmt: skip
 
 
 def _group(opening: str, name: str, group: Group, closing: str, indent: int) -> list[str]:
     ports = ", ".join(quoted(str(port)) for port in group.ports)
-    parts = [f"BlockFormula({name}, parameters, {len(group.inputs)})", f"{list(group.inputs)}"]
+    named = bound(name, group.values)
+    parts = [f"BlockFormula({named}, parameters, {len(group.inputs)})", f"{list(group.inputs)}"]
     return listing(opening, [*parts, f"{list(group.readings)}", f"[{ports}]"], closing, indent)
 
 
 def _friction(program: Program, slips: SlipRows | None) -> list[str]:
     held = "plain_set(len(stuck))" if slips is None else "held_set(SLIPS, stuck)"
-    lines = _FRICTION.format(held=held).splitlines()
+    given, values = _given(program), bound("friction_values", program.friction_values)
+    lines = _FRICTION.format(held=held, given=given, values=values).splitlines()
     if not program.joint:
-        return [*lines, "    return Friction(ports, form(parameters))"]
+        return [*lines, f"    return Friction(ports, form({given}))"]
     coupled = _group("coupled = Laws(", "coupled_laws", program.coupled, ")", 4)
-    return [*lines, *coupled, "    return JointFriction(ports, form(parameters), coupled)"]
+    return [*lines, *coupled, f"    return JointFriction(ports, form({given}), coupled)"]

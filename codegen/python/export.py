@@ -6,6 +6,7 @@ from importlib.metadata import version
 from typing import Any
 
 from bondgraph.equations import StateEquations
+from codegen.corners.refusing import arguments, refusals
 from codegen.model.commands import conditions_told
 from codegen.model.doubts import warn_of_doubts
 from codegen.model.starts import told_starts
@@ -22,8 +23,9 @@ from codegen.python.blocks import (
     values_function,
 )
 from codegen.python.closing import closing, needed
+from codegen.python.looking import lookup_tables
 from codegen.python.modules import written_out
-from codegen.python.tables import friction_tables, lookup_tables, places, public, step_settings
+from codegen.python.tables import friction_tables, places, public, step_settings
 from codegen.python.text import RULE, filled, plain, table
 from codegen.python.turnings import turned_laws
 from codegen.runs.start import start_of
@@ -161,4 +163,8 @@ def _functions(program: Program, names: Names) -> list[str]:
         lines += values_function("switch_conditions", doc, program.guards, rows, names)
     if program.joint:
         lines += group_function("coupled_laws", program.coupled, program, names)
+    if found := refusals(program):
+        rows = [plain(f"{one.argument} of {one.table.name}") for one in found]
+        doc = "Arguments of tables that refuse what is outside."
+        lines += values_function("table_places", doc, arguments(program), rows, names)
     return lines

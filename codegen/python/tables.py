@@ -3,27 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from bondgraph.tables.pieces import pieces
 from codegen.modes.stability import modes_told
 from codegen.modes.steps import round_step, told_step
-from codegen.program.printing import table_name
 from codegen.program.records import Program
 from codegen.python.text import listing, names_tuple
 from codegen.standalone.ranks import SlipRows
 from codegen.tuning import TUNING
-
-
-def lookup_tables(program: Program) -> list[str]:
-    """What is looked into: breaks along each axis, degree, what is beyond the ends, factors of cells."""
-    lines = []
-    for table in program.tables:
-        breaks, degree, outside, factors = pieces(table)
-        lines += ["", f"_{table_name(table)} = (", "    ("]
-        for knots in breaks:
-            lines += listing("(", map(repr, knots), "),", indent=8)
-        lines += ["    ),", f"    {degree},", f'    "{outside}",']
-        lines += [*listing("(", map(repr, factors), "),", indent=4), ")"]
-    return lines
 
 
 def public(program: Program) -> list[str]:

@@ -1,5 +1,6 @@
 /* Runs the model and prints its states, outputs and switches (1 on, 0 off) as CSV:
  *     ./model END SAMPLE [name=value ...]    names of parameters, initial states, inputs
+ * A table has as many values as points, name=value,value,...; over two axes row by row of x.
  * A row every SAMPLE seconds, by fixed steps of SAMPLE or, with `step=H`, of a part of it that is
  * about H; `band=B` is the dead band of every friction port. With the word `located` steps are
  * adaptive and events located; they are told on the error stream, with the impulses of impacts. An
@@ -23,7 +24,8 @@ typedef struct {
     double parameters[BG_ROOM(BG_PARAMETERS)], states[BG_ROOM(STATES)];
     int named[BG_ROOM(STATES)];
     bg_term terms[SCENARIO_TERMS];
-    double coefficients[SCENARIO_COEFFICIENTS][2];
+    double coefficients[SCENARIO_COEFFICIENTS][2], values[BG_ROOM(BG_TABLE_VALUES)];
+    bg_own_tables tables;
 } command;
 
 static int find(int count, const char *const *names, const char *text, size_t length)
@@ -43,7 +45,26 @@ static void hold_input(command *asked, int input, double value)
             asked->terms[k].count = 0;
 }
 
-/* One name=value of the command line; 0 if nothing has that name. */
+/* Values for a table, one for each of its points; -1 where they are none. */
+static int fill_table(command *asked, int table, const char *text)
+{
+    const bg_table *const of = asked->tables.tables + table;
+    const int count = of->counts[0] * of->counts[1];
+    char *end = NULL;
+    int read = 0;
+    for (; read < count; read++, text = end + 1) {
+        asked->values[read] = strtod(text, &end);
+        if (end == text || *end != (read + 1 < count ? ',' : '\0'))
+            break;
+    }
+    if (read == count && bg_tables_set(&asked->tables, table, asked->values) == BG_OK)
+        return 1;
+    fprintf(stderr, "%s: table %s: give %d finite numbers\n", bg_model_name, bg_lookup_names[table],
+            count);
+    return -1;
+}
+
+/* One name=value of the command line; 0 if nothing has that name, -1 if what is wrong is told. */
 static int assign(command *asked, const char *text)
 {
     const char *const equals = strchr(text, '=');
@@ -53,6 +74,8 @@ static int assign(command *asked, const char *text)
     int at;
     if (!equals)
         return asked->located = strcmp(text, "located") == 0;
+    if ((at = find(BG_TABLES, bg_lookup_names, text, length)) >= 0)
+        return fill_table(asked, at, equals + 1);
     if (end == equals + 1 || *end != '\0')
         return 0;
     if ((at = find(BG_PARAMETERS, bg_parameter_names, text, length)) >= 0)
@@ -100,16 +123,22 @@ static void print_head(void)
     printf("\n");
 }
 
-/* Whether a call failed, which is told; of a stop that begins beyond its bound, which one. */
+/* Whether a call failed, which is told; of a table that was left, which one; of a stop that begins beyond its bound, which one. */
 static int failed(const bg_model *m, int status)
 {
+    char text[256];
+    if (status == BG_OK)
+        return 0;
+    if (bg_model_left(m, status, text, sizeof text)) {
+        fprintf(stderr, "%s: %s\n", bg_model_name, text);
+        return 1;
+    }
     if (status == BG_BEYOND)
         fprintf(stderr, "%s: stop %s: ", bg_model_name, bg_friction_names[m->where]);
-    else if (status != BG_OK)
+    else
         fprintf(stderr, "%s: ", bg_model_name);
-    if (status != BG_OK)
-        fprintf(stderr, "%s\n", bg_model_message(status));
-    return status != BG_OK;
+    fprintf(stderr, "%s\n", bg_model_message(status));
+    return 1;
 }
 
 /* Told of a step that was taken nevertheless, once of each kind; whether it was not taken. */
@@ -211,15 +240,18 @@ static int read_command(int count, char **words, command *asked)
     asked->sample = count > 2 ? strtod(words[2], NULL) : 0.0;
     asked->band = BG_BAND;
     bg_model_parameters(asked->parameters);
+    bg_tables_init(&asked->tables);
     memcpy(asked->states, scenario_states, sizeof asked->states);
     memcpy(asked->named, scenario_named, sizeof asked->named);
     memcpy(asked->terms, scenario_terms, sizeof asked->terms);
     memcpy(asked->coefficients, scenario_coefficients, sizeof asked->coefficients);
-    for (int i = 3; i < count; i++)
-        if (!assign(asked, words[i])) {
+    for (int i = 3; i < count; i++) {
+        const int done = assign(asked, words[i]);
+        if (done == 0)
             fprintf(stderr, "%s: nothing is called as in %s\n", bg_model_name, words[i]);
+        if (done <= 0)
             return 0;
-        }
+    }
     if (!(asked->end > 0) || !(asked->sample > 0))
         fprintf(stderr, "usage: %s END SAMPLE [located] [name=value ...]\n", bg_model_name);
     if (!(asked->step > 0))
@@ -239,7 +271,7 @@ int main(int count, char **words)
         (const double(*)[2])asked.coefficients, scenario_fastest,
         SCENARIO_WAVES, scenario_wave, scenario_parts, SCENARIO_DUTIES,
     };
-    if (failed(&model, bg_model_init(&model, asked.parameters)))
+    if (failed(&model, bg_model_init_with(&model, asked.parameters, &asked.tables)))
         return 1;
     for (int i = 0; i < BG_FRICTION; i++)
         model.band[i] = asked.band;

@@ -106,13 +106,13 @@ fmi2Status fmi2Reset(fmi2Component c)
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[])
 {
-    return fmu2_tell(c, fmu_get_all(CORE(c), vr, nvr, value));
+    return fmu2_tell(c, fmu_get_all(CORE(c), vr, nvr, value, nvr));
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                        const fmi2Real value[])
 {
-    return fmu2_tell(c, fmu_set_all(CORE(c), vr, nvr, value));
+    return fmu2_tell(c, fmu_set_all(CORE(c), vr, nvr, value, nvr));
 }
 
 /* The only integers are friction modes and switches. */

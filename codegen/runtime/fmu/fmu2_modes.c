@@ -91,21 +91,28 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     return status;
 }
 
+static void room2(const fmu2 *f, fmi2FMUstate *state)
+{
+    if (!*state)
+        *state = f->call.allocateMemory(1, sizeof(fmu_saved));
+}
+
 static fmi2Status save2(fmu2 *f, const void *from, size_t size, fmi2FMUstate *state)
 {
-    if (!*state && size == sizeof(fmu_memory))
-        *state = f->call.allocateMemory(1, size);
+    if (size == sizeof(fmu_saved))
+        room2(f, state);
     return fmu2_tell(f, fmu_copy(*state, from, size));
 }
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state)
 {
-    return save2(c, &CORE(c)->at, sizeof(fmu_memory), state);
+    room2(c, state);
+    return fmu2_tell(c, fmu_save(CORE(c), *state));
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state)
 {
-    fmu_restore(CORE(c), state);
+    fmu_load(CORE(c), state);
     return fmi2OK;
 }
 
@@ -121,7 +128,7 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state)
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size)
 {
     (void)c, (void)state;
-    *size = sizeof(fmu_memory);
+    *size = sizeof(fmu_saved);
     return fmi2OK;
 }
 

@@ -5,7 +5,7 @@
 #include "fmi3Functions.h"
 #include "fmu3.h"
 
-static const fmu_error SCALARS = "all variables are scalars";
+static const fmu_error SCALARS = "all of these variables are scalars";
 
 fmi3Status fmu3_tell(fmu3 *f, fmu_error failed)
 {
@@ -117,17 +117,13 @@ fmi3Status fmi3Reset(fmi3Instance c)
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr,
                           fmi3Float64 values[], size_t count)
 {
-    if (count != nvr)
-        return fmu3_tell(c, SCALARS);
-    return fmu3_tell(c, fmu_get_all(CORE(c), vr, nvr, values));
+    return fmu3_tell(c, fmu_get_all(CORE(c), vr, nvr, values, count));
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr,
                           const fmi3Float64 values[], size_t count)
 {
-    if (count != nvr)
-        return fmu3_tell(c, SCALARS);
-    return fmu3_tell(c, fmu_set_all(CORE(c), vr, nvr, values));
+    return fmu3_tell(c, fmu_set_all(CORE(c), vr, nvr, values, count));
 }
 
 /* The only integers are friction modes and switches. */

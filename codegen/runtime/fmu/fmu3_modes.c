@@ -100,21 +100,28 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Bo
     return fmu3_tell(c, failed);
 }
 
+static void room3(fmi3FMUState *state)
+{
+    if (!*state)
+        *state = malloc(sizeof(fmu_saved));
+}
+
 static fmi3Status save3(fmu3 *f, const void *from, size_t size, fmi3FMUState *state)
 {
-    if (!*state && size == sizeof(fmu_memory))
-        *state = malloc(size);
+    if (size == sizeof(fmu_saved))
+        room3(state);
     return fmu3_tell(f, fmu_copy(*state, from, size));
 }
 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state)
 {
-    return save3(c, &CORE(c)->at, sizeof(fmu_memory), state);
+    room3(state);
+    return fmu3_tell(c, fmu_save(CORE(c), *state));
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state)
 {
-    fmu_restore(CORE(c), state);
+    fmu_load(CORE(c), state);
     return fmi3OK;
 }
 
@@ -131,7 +138,7 @@ fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *state)
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t *size)
 {
     (void)c, (void)state;
-    *size = sizeof(fmu_memory);
+    *size = sizeof(fmu_saved);
     return fmi3OK;
 }
 

@@ -63,20 +63,37 @@ void fmu_end(fmu_instance *f)
     f->at.phase = FMU_ENDED;
 }
 
-fmu_error fmu_get_all(fmu_instance *f, const unsigned *references, size_t count, double *values)
+static const char *const as_many = "there must be as many values as the variables have";
+
+/* Whether a variable is an array: it is got and set whole. */
+static int is_array(unsigned reference)
 {
-    fmu_error failed = NULL;
-    for (size_t i = 0; i < count && !failed; i++)
-        failed = fmu_get(f, references[i], &values[i]);
+    return reference < FMU_VARIABLES && fmu_size(reference) > 1;
+}
+
+fmu_error fmu_get_all(fmu_instance *f, const unsigned *references, size_t count, double *values,
+                      size_t room)
+{
+    fmu_error failed = room == fmu_sizes(references, count) ? NULL : as_many;
+    for (size_t i = 0; i < count && !failed; i++) {
+        if (is_array(references[i]))
+            fmu_get_table(f, references[i], values);
+        else
+            failed = fmu_get(f, references[i], values);
+        values += is_array(references[i]) ? fmu_size(references[i]) : 1;
+    }
     return failed;
 }
 
 fmu_error fmu_set_all(fmu_instance *f, const unsigned *references, size_t count,
-                      const double *values)
+                      const double *values, size_t given)
 {
-    fmu_error failed = NULL;
-    for (size_t i = 0; i < count && !failed; i++)
-        failed = fmu_set(f, references[i], values[i]);
+    fmu_error failed = given == fmu_sizes(references, count) ? NULL : as_many;
+    for (size_t i = 0; i < count && !failed; i++) {
+        failed = is_array(references[i]) ? fmu_set_table(f, references[i], values)
+                                         : fmu_set(f, references[i], *values);
+        values += is_array(references[i]) ? fmu_size(references[i]) : 1;
+    }
     return failed;
 }
 
@@ -123,7 +140,7 @@ void fmu_get_nominals(double *nominals, size_t count)
 
 fmu_error fmu_copy(void *to, const void *from, size_t size)
 {
-    if (size != sizeof(fmu_memory))
+    if (size != sizeof(fmu_saved))
         return "this is no state of the unit: its size is another";
     if (!to)
         return "no memory for the state";

@@ -5,9 +5,12 @@
 
 #include "fmu_common.h"
 
-static fmu_error message(int status)
+fmu_error fmu_message(fmu_instance *f, int status)
 {
-    return status == BG_OK ? NULL : bg_model_message(status);
+    if (status == BG_OK)
+        return NULL;
+    return bg_model_left(&f->model, status, f->text, sizeof f->text) ? f->text
+                                                                     : bg_model_message(status);
 }
 
 /* Sources inside and what the importer gives, for the view. An importer's integrator looks past a
@@ -37,6 +40,7 @@ void fmu_reset(fmu_instance *f, int exchange)
     f->at.exchange = exchange;
     f->at.span = bg_signals_span(&fmu_signals, f->at.time);
     bg_model_parameters(f->at.parameters);
+    bg_tables_init(&f->own);
     memcpy(f->at.start, fmu_starts, sizeof(double) * FMU_STATES);
     memcpy(f->at.given, fmu_inputs, sizeof(double) * BG_EXTERNAL);
     memcpy(f->at.named, fmu_named, sizeof(int) * FMU_STATES);
@@ -57,25 +61,29 @@ static void look_here(fmu_instance *f)
 /* Parameters that were set take effect. */
 fmu_error fmu_apply(fmu_instance *f)
 {
+    fmu_error failed;
     int status;
     look_here(f);
     if (!f->changed)
         return NULL;
-    status = bg_model_init(&f->model, f->at.parameters);
+    failed = fmu_fit_tables(f);
+    if (failed)
+        return failed;
+    status = bg_model_init_with(&f->model, f->at.parameters, &f->own);
     memcpy(f->model.mode, f->at.mode, sizeof f->model.mode);
     memcpy(f->model.seen, f->at.seen, sizeof f->model.seen);
     f->model.started = f->at.stepped;
     f->model.fastest = f->at.fastest;
     f->changed = status != BG_OK;
     f->located.view.measured = 0;
-    return message(status);
+    return fmu_message(f, status);
 }
 
 /* The same of a start; of a stop that begins beyond its bound, which one. */
 static fmu_error message_of_start(fmu_instance *f, int status)
 {
     if (status != BG_BEYOND)
-        return message(status);
+        return fmu_message(f, status);
     snprintf(f->text, sizeof f->text, "stop %.120s: %s", bg_friction_names[f->model.where],
              bg_model_message(status));
     return f->text;
@@ -122,7 +130,7 @@ fmu_error fmu_refresh(fmu_instance *f)
 
 fmu_error fmu_look(fmu_instance *f)
 {
-    return message(bg_view_look(&f->located.view, f->at.time, f->at.s, f->at.mode));
+    return fmu_message(f, bg_view_look(&f->located.view, f->at.time, f->at.s, f->at.mode));
 }
 
 static double state_of(const fmu_instance *f, int at)
@@ -137,6 +145,8 @@ fmu_error fmu_get(fmu_instance *f, unsigned reference, double *value)
     fmu_error failed = NULL;
     if (reference >= FMU_VARIABLES)
         return "unknown value reference";
+    if (fmu_size(reference) > 1)
+        return "this variable is an array";
     if (v->kind > FMU_SLOPE)
         failed = fmu_refresh(f);
     if (failed)
@@ -144,6 +154,7 @@ fmu_error fmu_get(fmu_instance *f, unsigned reference, double *value)
     switch (v->kind) {
     case FMU_TIME: *value = f->at.time; break;
     case FMU_PARAMETER: *value = f->at.parameters[v->index]; break;
+    case FMU_TABLE_VALUE: fmu_get_table(f, reference, value); break;
     case FMU_INTERNAL_STEP: *value = f->at.step; break;
     case FMU_INPUT: *value = f->at.given[v->index]; break;
     case FMU_SLOPE: *value = f->at.slopes[v->index]; break;
@@ -164,11 +175,18 @@ fmu_error fmu_get(fmu_instance *f, unsigned reference, double *value)
     return NULL;
 }
 
+fmu_error fmu_tunable(const fmu_instance *f)
+{
+    const int tuning = f->at.phase == FMU_EVENT || f->at.phase == FMU_STEPPING;
+    return f->at.phase <= FMU_INITIALIZING || (tuning && !FMU_MOVED)
+        ? NULL : "this parameter cannot be changed now";
+}
+
 static fmu_error set_parameter(fmu_instance *f, int index, double value)
 {
-    if (f->at.phase > FMU_INITIALIZING
-        && (FMU_MOVED || (f->at.phase != FMU_EVENT && f->at.phase != FMU_STEPPING)))
-        return "this parameter cannot be changed now";
+    const fmu_error failed = fmu_tunable(f);
+    if (failed)
+        return failed;
     f->changed |= f->at.parameters[index] != value;
     f->at.parameters[index] = value;
     return NULL;
@@ -179,6 +197,10 @@ fmu_error fmu_set(fmu_instance *f, unsigned reference, double value)
     const fmu_variable *v = &fmu_variables[reference];
     if (reference >= FMU_VARIABLES)
         return "unknown value reference";
+    if (fmu_size(reference) > 1)
+        return "this variable is an array";
+    if (v->kind == FMU_TABLE_VALUE)
+        return fmu_set_table(f, reference, &value);
     if (!isfinite(value))
         return "a value is not finite";
     f->stale = 1;

@@ -4,6 +4,7 @@
 #define FMU_COMMON_H
 
 #include "fmu_config.h"
+#include "model_internal.h"
 #include "model_located.h"
 
 enum {
@@ -15,7 +16,7 @@ enum {
 typedef const char *fmu_error;
 
 enum fmu_kind {
-    FMU_TIME, FMU_PARAMETER, FMU_INTERNAL_STEP, FMU_INPUT, FMU_SLOPE, FMU_STATE, FMU_VECTOR, FMU_RATE,
+    FMU_TIME, FMU_PARAMETER, FMU_TABLE, FMU_AXIS, FMU_TABLE_VALUE, FMU_INTERNAL_STEP, FMU_INPUT, FMU_SLOPE, FMU_STATE, FMU_VECTOR, FMU_RATE,
     FMU_READING, FMU_GIVEN, FMU_SOURCE, FMU_INDICATOR, FMU_MODE, FMU_SWITCH, FMU_SLIDES
 };
 
@@ -42,10 +43,18 @@ typedef struct {
     bg_fastest fastest;
 } fmu_memory;
 
+/* The same with the values of all tables, one after the other. */
+typedef struct {
+    fmu_memory at;
+    double tables[BG_ROOM(BG_TABLE_VALUES)];
+} fmu_saved;
+
 typedef struct fmu_instance {
     fmu_memory at;
     int stale, changed, frozen; /* values, parameters; frozen: the mode is not to be decided */
+    int retabled[BG_ROOM(BG_TABLES)]; /* tables with new values */
     bg_model model;
+    bg_own_tables own;
     bg_located located; /* its view is the instance's */
     double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)], point[BG_SIZE];
     double switches[BG_ROOM(FMU_SWITCHES)], steps[3 * BG_ROOM(BG_EXTERNAL)];
@@ -65,10 +74,13 @@ void fmu_switch_values(const bg_values *v, double *out);
 void fmu_timed_values(const bg_values *v, double *out);
 int fmu_resolved(const bg_values *v, double t, double h); /* known sources do little in h */
 
-/* fmu_common.c: everything at the time and states of the instance in its mode. */
+/* fmu_common.c: what a status of the model means, and of a table that was left which; everything at
+ * the time and states of the instance in its mode. */
+fmu_error fmu_message(fmu_instance *f, int status);
 fmu_error fmu_look(fmu_instance *f);
 void fmu_reset(fmu_instance *f, int exchange);
 fmu_error fmu_apply(fmu_instance *f);
+fmu_error fmu_tunable(const fmu_instance *f); /* whether parameters may be set now */
 fmu_error fmu_refresh(fmu_instance *f);
 fmu_error fmu_get(fmu_instance *f, unsigned reference, double *value);
 fmu_error fmu_set(fmu_instance *f, unsigned reference, double value);
@@ -88,15 +100,32 @@ fmu_error fmu_enter(fmu_instance *f, int phase);
 fmu_error fmu_update(fmu_instance *f, int *states_changed);
 fmu_error fmu_step(fmu_instance *f, double time, double step);
 void fmu_end(fmu_instance *f);
-fmu_error fmu_get_all(fmu_instance *f, const unsigned *references, size_t count, double *values);
+fmu_error fmu_get_all(fmu_instance *f, const unsigned *references, size_t count, double *values,
+                      size_t room);
 fmu_error fmu_set_all(fmu_instance *f, const unsigned *references, size_t count,
-                      const double *values);
+                      const double *values, size_t given);
 fmu_error fmu_get_modes(fmu_instance *f, const unsigned *references, size_t count, int *values);
 fmu_error fmu_get_states(fmu_instance *f, double *states, size_t count);
 fmu_error fmu_get_rates(fmu_instance *f, double *rates, size_t count);
 fmu_error fmu_get_indicators(fmu_instance *f, double *indicators, size_t count);
 void fmu_get_nominals(double *nominals, size_t count);
 fmu_error fmu_copy(void *to, const void *from, size_t size);
+
+/* fmu_tables.c: how many values a variable has, and several have together; those of tables and axes;
+ * what is between new ones. A state with the values of tables, saved and gone back to. */
+size_t fmu_size(unsigned reference);
+size_t fmu_sizes(const unsigned *references, size_t count);
+void fmu_get_table(const fmu_instance *f, unsigned reference, double *values);
+fmu_error fmu_set_table(fmu_instance *f, unsigned reference, const double *values);
+fmu_error fmu_fit_tables(fmu_instance *f);
+fmu_error fmu_save(const fmu_instance *f, fmu_saved *to);
+void fmu_load(fmu_instance *f, const fmu_saved *from);
+
+/* Whether a variable is a table's: its values, one of them, or an axis. */
+static inline int fmu_is_table(int kind)
+{
+    return kind == FMU_TABLE || kind == FMU_AXIS || kind == FMU_TABLE_VALUE;
+}
 
 /* fmu_sources.c: external inputs at a time in a span; breakpoints that are passed; the next one. The
  * time of the next event: of a breakpoint, or of a look. That after t: where known sources have done

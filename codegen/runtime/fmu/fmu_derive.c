@@ -116,6 +116,9 @@ fmu_error fmu_derive(fmu_instance *f, const unsigned *unknowns, size_t rows, con
     for (size_t j = 0; j < columns; j++)
         if (knowns[j] >= FMU_VARIABLES)
             return "unknown value reference";
+    for (size_t j = 0; j < columns; j++)
+        if (fmu_is_table(fmu_variables[knowns[j]].kind))
+            return "there are no derivatives by the values of tables";
     failed = difference_step(f, knowns, columns, seed, &step);
     if (failed || step == 0)
         return failed;

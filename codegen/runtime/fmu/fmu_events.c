@@ -97,7 +97,7 @@ static fmu_error remove_slips(fmu_instance *f)
     const int status = bg_remove_slips(&f->model, f->at.mode, &f->located.view.shot, f->at.s);
     if (memcmp(f->point, f->at.s, sizeof f->at.s) != 0)
         f->stale = 1;
-    return status == BG_OK ? NULL : bg_model_message(status);
+    return fmu_message(f, status);
 }
 
 /* Whether a jump of second order has come to rest: what was left of its leap is gone then, and what

@@ -10,7 +10,7 @@
 static fmu_error told(fmu_instance *f, int status, double t, double h)
 {
     if (status != BG_UNSTABLE)
-        return bg_model_message(status);
+        return fmu_message(f, status);
     snprintf(f->text, sizeof f->text,
              "at t = %.9g an internal step of %.6g s is beyond the stability of its method at the "
              "model's fastest rates; the longest stable one is %.4g s there: set "
@@ -86,7 +86,7 @@ fmu_error fmu_fixed(fmu_instance *f, double t, double end)
     fmu_pass(f, end);
     if (!failed) {
         const int status = settle_end(f, end, f->at.step);
-        failed = bg_is_taken(status) ? NULL : bg_model_message(status);
+        failed = bg_is_taken(status) ? NULL : fmu_message(f, status);
     }
     memcpy(f->at.mode, f->model.mode, sizeof f->at.mode);
     f->at.stepped = f->model.started;

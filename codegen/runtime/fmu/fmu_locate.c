@@ -34,6 +34,8 @@ static void ask_for(const fmu_instance *f, bg_request *asked)
 
 static fmu_error told_at(fmu_instance *f, int status)
 {
+    if (bg_model_left(&f->model, status, f->text, sizeof f->text))
+        return f->text;
     snprintf(f->text, sizeof f->text, "at t = %.9g: %s", f->located.run.at.t,
              bg_model_message(status));
     return f->text;

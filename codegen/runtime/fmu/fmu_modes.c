@@ -92,5 +92,5 @@ fmu_error fmu_decide(fmu_instance *f)
         status = bg_choose(&sight, &at, f->at.mode);
     }
     f->at.decided |= status == BG_OK;
-    return status == BG_OK ? NULL : bg_model_message(status);
+    return fmu_message(f, status);
 }

@@ -9,11 +9,16 @@
 
 enum { MOST = BG_CHECKS + 2 + BG_DIP_LOOKS };
 
-/* The points that are known. */
+/* The points that are known, and room for those of a search. */
+typedef struct {
+    int count;
+    const double *t, *f;
+} polygon;
+
 typedef struct {
     int count;
     double t[MOST], f[MOST];
-} polygon;
+} searched;
 
 /* The least that chords leave between points k and k + 1, and where to look between them. */
 typedef struct {
@@ -87,7 +92,7 @@ static place lowest_between(const polygon *p, int k, int end)
     return found;
 }
 
-static void insert_after(polygon *p, int k, double t, double f)
+static void insert_after(searched *p, int k, double t, double f)
 {
     const size_t beyond = sizeof(double) * (size_t)(p->count - k - 1);
     memmove(p->t + k + 2, p->t + k + 1, beyond);
@@ -101,11 +106,17 @@ int bg_dip(double (*above)(void *self, double at), void *self, int count, const 
            const double *values, int k, double *found)
 {
     const double width = BG_DIP * (times[count - 1] - times[0]);
-    polygon p = {count, {0}, {0}};
+    const polygon given = {count, times, values};
+    place next = place_between(&given, k);
+    searched p;
+    if (!(next.least <= 0))
+        return 0; /* as a rule */
+    p.count = count;
     memcpy(p.t, times, sizeof(double) * (size_t)count);
     memcpy(p.f, values, sizeof(double) * (size_t)count);
     for (int end = k + 1; p.count < count + BG_DIP_LOOKS; end++) {
-        const place next = lowest_between(&p, k, end);
+        const polygon known = {p.count, p.t, p.f};
+        next = lowest_between(&known, k, end);
         if (!(next.least <= 0) || p.t[next.k + 1] - p.t[next.k] <= width)
             return 0;
         *found = next.t;

@@ -83,6 +83,19 @@ static int dip(root_search *asked, const double *times, const double *values, in
     return 1;
 }
 
+/* Whether chords could leave zero or less anywhere between points at equal distances: one drawn on
+ * falls by no more than the largest change between two points, and twice that as it bends. */
+static int may_dip(const double *values)
+{
+    double least = values[0], most = 0.0;
+    for (int k = 1; k < POINTS; k++) {
+        const double change = fabs(values[k] - values[k - 1]);
+        least = values[k] < least ? values[k] : least;
+        most = change > most ? change : most;
+    }
+    return least <= 3 * most;
+}
+
 /* The first time in a step at which a trigger falls through zero, seen or hidden in a dip. What is
  * rising from zero, after its own event, has not come from above. */
 static int first_fall(root_search *asked, const double *times, double values[POINTS][BG_WATCHED],
@@ -93,10 +106,11 @@ static int first_fall(root_search *asked, const double *times, double values[POI
     double own[POINTS];
     for (int k = 0; k < POINTS; k++)
         own[k] = values[k][i];
+    const int near = may_dip(own);
     for (int k = 0; k + 1 < POINTS; k++) {
         const int risen = f->armed[i] || own[k] > f->limit[i];
         if (trigger_fall(asked, times[k], times[k + 1], own[k], own[k + 1], root)
-            || (risen && dip(asked, times, own, k, root)))
+            || (near && risen && dip(asked, times, own, k, root)))
             return 1;
     }
     return 0;

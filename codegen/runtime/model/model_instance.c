@@ -11,9 +11,15 @@ void bg_model_parameters(double *parameters)
 
 int bg_model_init(bg_model *m, const double *parameters)
 {
+    return bg_model_init_with(m, parameters, NULL);
+}
+
+int bg_model_init_with(bg_model *m, const double *parameters, const bg_own_tables *own)
+{
     int status;
     memset(m, 0, sizeof *m);
     m->where = -1;
+    m->now.tables = own ? own->tables : bg_tables;
     memcpy(m->now.p, parameters ? parameters : bg_defaults, sizeof(double) * BG_PARAMETERS);
     if (!bg_finite(BG_PARAMETERS, m->now.p))
         return BG_PARAMETER;
@@ -153,6 +159,7 @@ const char *bg_model_message(int status)
         "two ports reset one state to two values at once; let one of them do it",
         "a reset contradicts what a switch holds; reset all that it binds alike, or as it lets go",
         "resets set off one another without end; let what is set be away from where it is set off",
+        "a value of a table, or what comes of it, is not a finite number",
         "which ports hold was not decided in a step's bounded number of pivots; the best way was "
         "taken",
         "the error of a step is beyond 1 % of a state's range; the step was taken: shorten it",

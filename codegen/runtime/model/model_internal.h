@@ -31,14 +31,7 @@ typedef struct {
 } bg_group;
 
 enum { BG_TABLE_HOLDS, BG_TABLE_EXTENDS, BG_TABLE_REFUSES };
-
-/* A table: polynomials of a degree between breaks; `outside` tells what is beyond the ends. Along
- * an axis there are `cells` between breaks. The factors of each cell, those along the last axis in
- * turn, are of (x - x_i)^p (y - y_j)^q, highest powers first. */
-typedef struct {
-    int degree, outside, cells[2];
-    const double *breaks[2], *factors;
-} bg_table;
+enum { BG_TABLE_LINEAR, BG_TABLE_PCHIP, BG_TABLE_AKIMA, BG_TABLE_BILINEAR, BG_TABLE_BICUBIC };
 
 /* A table's value or derivatives; a region of 0 or more: by the polynomials of that stretch between
  * corners. */
@@ -47,6 +40,18 @@ double bg_interpolate_over(const bg_table *of, int order_x, int order_y, double 
                            double region_x, double region_y);
 /* What changes its sign at corners where a bit of the stretch's number in Gray's code does. */
 double bg_edge(const bg_table *of, int axis, int bit, double x, double region);
+/* The same of the lowest `bits` at once. */
+void bg_edges(const bg_table *of, int axis, int bits, double x, double region, double *out);
+
+/* model_fit.c: values of a table's own, to be changed; what is between them, worked out anew. */
+double *bg_tables_values(bg_own_tables *own, int table);
+int bg_tables_fit(bg_own_tables *own, int table);
+
+/* An argument of a table that refuses what is outside, and along which axis it is one. */
+typedef struct {
+    int table, axis;
+    const char *argument;
+} bg_refusing;
 
 /* A law that rises or falls all over its domain, and its slope; no number outside that domain. */
 typedef double (*bg_law)(double x, const double *a, double *slope);
@@ -73,6 +78,8 @@ static inline double bg_sign(double a)
 /* Generated. */
 extern const bg_table bg_tables[]; /* config.h has a name for each */
 extern const bg_law bg_turnings[]; /* and for each of these */
+extern const bg_refusing bg_refusings[];
+void bg_refused(const bg_values *v, double *out); /* the values of those, in the order of laws */
 extern const bg_pattern bg_layout[BG_MATRICES];
 extern const bg_group bg_known, bg_groups[], bg_coupled;
 /* The slips F x + D u of friction ports as residues: port k has those from bg_slip_begins[k] on, at

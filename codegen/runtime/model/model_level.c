@@ -1,13 +1,14 @@
 /* What counts as zero of friction levels: rounding of the terms that make them up. A term is the
  * effect of a small relative change of one number that is read, divided by the change. */
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "port_choose.h"
 #include "model_internal.h"
 
 enum {
-    READ = sizeof(bg_values) / sizeof(double),
+    READ = offsetof(bg_values, tables) / sizeof(double),
     MORE_TERMS = 4 * K > BG_LARGEST ? 4 * K : BG_LARGEST,
     MOST_TERMS = BG_GUARDS > MORE_TERMS ? BG_GUARDS : MORE_TERMS
 };

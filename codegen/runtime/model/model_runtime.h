@@ -36,13 +36,35 @@ enum {
 #define BG_PLACE(part, count) BG_AT_##part, BG_LAST_##part = BG_AT_##part + (count) - 1,
 enum { BG_PARTS(BG_PLACE) BG_MAP_ROWS };
 
+/* A table: polynomials of a degree between breaks; `outside` tells what is beyond the ends. Along
+ * an axis there are `cells` between breaks. The factors of each cell, those along the last axis in
+ * turn, are of (x - x_i)^p (y - y_j)^q, highest powers first. They come of `counts` points along
+ * each axis (over one, of 1 along the other), of values row by row; no slope over one axis is above
+ * `steepest`. */
+typedef struct {
+    int degree, outside, cells[2];
+    const double *breaks[2], *factors;
+    int method, counts[2];
+    const double *points[2], *values;
+    double steepest;
+} bg_table;
+
+/* Tables with values of the caller's; room that the caller provides, and that stays where it is. */
+typedef struct {
+    bg_table tables[BG_ROOM(BG_TABLES)];
+    double values[BG_ROOM(BG_TABLE_VALUES)], factors[BG_ROOM(BG_TABLE_FACTORS)];
+    double work[BG_ROOM(BG_TABLE_WORK)];
+} bg_own_tables;
+
 /* One instant: time, states, law states, readings, inputs, external inputs and their rates. Where
- * `sided`, laws are on a side of each of their corners: 1 above the zero of what it hangs on. */
+ * `sided`, laws are on a side of each of their corners: 1 above the zero of what it hangs on. What
+ * is not made of doubles comes last. */
 typedef struct {
     double t;
     double x[BG_ROOM(BG_STATES)], z[BG_ROOM(BG_LAW_STATES)], y[BG_ROOM(BG_READINGS)];
     double u[BG_ROOM(BG_INPUTS)], w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
     double p[BG_ROOM(BG_PARAMETERS)], side[BG_ROOM(BG_CORNERS)], sided;
+    const bg_table *tables;
 } bg_values;
 
 /* Everything at one instant: states, law states, inputs and their rates, readings, the rate of s,
@@ -172,12 +194,25 @@ extern const char *const bg_input_names[], *const bg_input_units[]; /* external 
 extern const char *const bg_output_names[], *const bg_output_units[];
 extern const char *const bg_parameter_names[];
 extern const char *const bg_friction_names[];
+extern const char *const bg_lookup_names[];
 
 /* The parameters the model was generated at, BG_PARAMETERS of them. */
 void bg_model_parameters(double *parameters);
 
 /* Makes an instance; `parameters` may be NULL for those that the model was generated at. */
 int bg_model_init(bg_model *m, const double *parameters);
+
+/* The same with tables of the caller's, which `bg_tables_init` makes as the model was generated.
+ * `bg_tables_set` gives one new values at its points, row by row of x, and works out what is between
+ * them; BG_TABLE_VALUE where one is not finite. As with a parameter an instance is then made again,
+ * which may go on with its `mode`, `seen` and `started`. */
+int bg_model_init_with(bg_model *m, const double *parameters, const bg_own_tables *own);
+void bg_tables_init(bg_own_tables *own);
+int bg_tables_set(bg_own_tables *own, int table, const double *values);
+
+/* After a call that failed: whether a table that refuses what is outside was left, which is told in
+ * `text`: when, which, and by which argument. */
+int bg_model_left(const bg_model *m, int status, char *text, size_t room);
 
 /* s from the states (law states last) and the external inputs: they differ where inputs drive
  * dependent storages. */

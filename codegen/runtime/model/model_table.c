@@ -27,7 +27,7 @@ static int placed(const bg_table *of, int axis, double x, double region, double 
 {
     const double *const breaks = of->breaks[axis];
     const int cells = of->cells[axis], ends = of->outside != BG_TABLE_EXTENDS;
-    const int free = region < 0.0, top = of->degree == 1 ? cells + 1 : 2;
+    const int free = region < 0.0, top = cells + 1;
     /* On its end a table that refuses what is beyond has a value, on whichever side of it. */
     const int always = of->outside == BG_TABLE_HOLDS && !free;
     const double nothing = of->outside == BG_TABLE_HOLDS ? 0.0 * x : NAN;
@@ -42,7 +42,7 @@ static int placed(const bg_table *of, int axis, double x, double region, double 
         *u = breaks[cells] - breaks[cells - 1] + nothing;
         return cells - 1;
     }
-    if (free || of->degree > 1)
+    if (free)
         at = cell_of(breaks, cells, x);
     else
         at = (int)(region + 0.5) - ends;
@@ -94,15 +94,13 @@ double bg_interpolate_over(const bg_table *of, int order_x, int order_y, double 
 
 static double corner_at(const bg_table *of, int axis, int at)
 {
-    if (of->degree > 1)
-        return of->breaks[axis][at > 0 ? of->cells[axis] : 0];
     return of->breaks[axis][of->outside == BG_TABLE_EXTENDS ? at + 1 : at];
 }
 
 static int corners_of(const bg_table *of, int axis)
 {
     const int ends = of->outside != BG_TABLE_EXTENDS;
-    return of->degree > 1 ? 2 * ends : of->cells[axis] - 1 + 2 * ends;
+    return of->cells[axis] - 1 + 2 * ends;
 }
 
 static int corners_below(const bg_table *of, int axis, double x)
@@ -131,17 +129,57 @@ static double nearest(const bg_table *of, int axis, int step, int below, double 
     return found;
 }
 
+/* The stretch between corners in which x is, or that of a region. */
+static int stretch_of(const bg_table *of, int axis, double x, double region)
+{
+    const int count = corners_of(of, axis);
+    const int at = region < 0.0 ? corners_below(of, axis, x) : (int)(region + 0.5);
+    return at < count ? at : count;
+}
+
+/* 1, or -1 where the bit of this stretch's number is on. */
+static double gray_sign(int at, int bit)
+{
+    return ((at ^ (at >> 1)) >> bit) & 1 ? -1.0 : 1.0;
+}
+
 double bg_edge(const bg_table *of, int axis, int bit, double x, double region)
 {
-    const int count = corners_of(of, axis), step = 1 << bit, free = region < 0.0;
-    int at = free ? corners_below(of, axis, x) : (int)(region + 0.5);
-    at = at < count ? at : count;
-    const double sign = ((at ^ (at >> 1)) & step) ? -1.0 : 1.0;
-    if (free)
+    const int count = corners_of(of, axis), step = 1 << bit;
+    const int at = stretch_of(of, axis, x, region);
+    const double sign = gray_sign(at, bit);
+    if (region < 0.0)
         return sign * nearest(of, axis, step, at, x);
     if (at > 0 && (at & -at) == step)
         return sign * (x - corner_at(of, axis, at - 1));
     if (at < count && ((at + 1) & -(at + 1)) == step)
         return sign * (corner_at(of, axis, at) - x);
     return sign * (of->breaks[axis][of->cells[axis]] - of->breaks[axis][0]) + 0.0 * x;
+}
+
+/* The bit that changes at a corner, by its number from 1 on. */
+static int bit_at(int corner)
+{
+    int bit = 0;
+    for (int half = 0; half < HALVES && !((corner >> bit) & 1); half++)
+        bit++;
+    return bit;
+}
+
+void bg_edges(const bg_table *of, int axis, int bits, double x, double region, double *out)
+{
+    const int count = corners_of(of, axis), at = stretch_of(of, axis, x, region);
+    const double whole = of->breaks[axis][of->cells[axis]] - of->breaks[axis][0];
+    if (region < 0.0) {
+        for (int bit = 0; bit < bits; bit++)
+            out[bit] = gray_sign(at, bit) * nearest(of, axis, 1 << bit, at, x);
+        return;
+    }
+    /* Of a stretch two corners count, which change different bits. */
+    for (int bit = 0; bit < bits; bit++)
+        out[bit] = gray_sign(at, bit) * whole + 0.0 * x;
+    if (at > 0)
+        out[bit_at(at)] = gray_sign(at, bit_at(at)) * (x - corner_at(of, axis, at - 1));
+    if (at < count)
+        out[bit_at(at + 1)] = gray_sign(at, bit_at(at + 1)) * (corner_at(of, axis, at) - x);
 }

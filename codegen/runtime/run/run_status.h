@@ -27,6 +27,7 @@ enum bg_status {
     BG_SET_TWICE,    /* two ports reset one state to two values at once */
     BG_SET_HELD,     /* a reset contradicts what is held */
     BG_SET_ENDLESSLY, /* resets set off one another without end */
+    BG_TABLE_VALUE,  /* a value of a table, or what comes of it, is not finite */
     BG_PIVOTS,       /* a step's ports were not decided in so many pivots; the best was taken */
     BG_INACCURATE,   /* a step's error is beyond 1 % of a state's range; it was taken */
     /* of exact steps alone */

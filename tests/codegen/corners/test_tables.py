@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from references.build import bond_graph
+from scipy.interpolate import Akima1DInterpolator, PchipInterpolator
 
 import bondgraph as bg
 from bondgraph.errors import SimulationError
@@ -66,13 +67,30 @@ def test_corners_of_both_axes_are_located(backend: str) -> None:
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
-def test_ends_of_cubic_tables_are_located(backend: str) -> None:
+def test_ends_and_points_of_cubic_tables_are_located(backend: str) -> None:
     table = bg.LookupTable("f", [0, 1, 2], [0, 1, 4], method="pchip")
     nodes = [bg.Se("push", 1), bg.One("n"), bg.I("m", 1, flow="v"), bg.C("c", law="f(v)*q_c/1e9")]
     graph = bond_graph(nodes, "push>n>m n>c")
     graph.graph["tables"] = [table]
     run = simulator(bg.derive(graph), {}, backend=backend).run([0, 3], {"v": -0.5}, corners=True)
-    assert [event.time for event in run.events] == pytest.approx([0.5, 2.5], abs=1e-8)
+    assert [event.time for event in run.events] == pytest.approx([0.5, 1.5, 2.5], abs=1e-8)
+
+
+@pytest.mark.parametrize("method", ["pchip", "akima"])
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_no_step_goes_over_a_jump_of_second_slopes(backend: str, method: str) -> None:
+    """Between points what is summed up is a cubic of time, which steps of order eight do exactly."""
+    x, rng = np.array([0.0, 0.31, 0.7, 1.13, 1.6, 2.0]), np.random.default_rng(8)
+    z = rng.normal(size=len(x))
+    table = bg.LookupTable("f", x, z, method=method)
+    nodes = [bg.Se("push", 1), bg.One("n"), bg.I("m", 1, flow="v"), bg.One("far"),
+             bg.Se("other", "f(v)"), bg.I("m_2", 1, flow="w")]  # fmt: skip
+    graph = bond_graph(nodes, "push>n>m other>far>m_2")
+    graph.graph["tables"] = [table]
+    times = np.linspace(0, 1.9, 20)
+    run = simulator(bg.derive(graph), {}, backend=backend).run(times, method="DOP853")
+    made = PchipInterpolator(x, z) if method == "pchip" else Akima1DInterpolator(x, z)
+    assert run["w"] == pytest.approx(made.antiderivative()(times), abs=1e-13)
 
 
 @pytest.mark.parametrize("method", ["linear", "pchip"])

@@ -68,4 +68,4 @@ def test_no_slope_is_steeper_than_told(method: str) -> None:
     table, parts = random_table(method, "extend")
     x = np.linspace(parts[0][0], parts[0][-1], 5000)
     slopes = np.abs(interpolated(method, "extend", parts, [x], (1,)))
-    assert slopes.max() <= steepest(table(t)) * (1 + 1e-12)
+    assert slopes.max() <= steepest(table) * (1 + 1e-12)
