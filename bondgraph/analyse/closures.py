@@ -33,8 +33,10 @@ def merged_laws(
             if port.gives == "flow":
                 check_slider(closed, f"law at {name!r}")
         merged[name] = closed
-    matrix_rows = rows_of(equations.E)
-    check_laws(merged, equations.signals, equations.ports, matrix_rows, equations.readings)
+    check_laws(
+        merged, equations.signals, equations.ports, rows_of(equations.E), equations.readings,
+        equations.reduction.structure.states_of_laws,
+    )  # fmt: skip
     return merged
 
 
