@@ -11,6 +11,7 @@ import networkx as nx
 import numpy as np
 
 import bondgraph as bg
+from bondgraph.declare.elements import Element
 
 from ..random_graphs import random_graph
 
@@ -197,7 +198,7 @@ def _tell_driving(made: Drawn, causal: bg.CausalGraph) -> None:
                 made.free.add(str(port.element.integral))
 
 
-def _node(element: bg.Element) -> str:
+def _node(element: Element) -> str:
     return str(element.name if element.owner is None else element.owner)
 
 
@@ -208,7 +209,11 @@ def _tell_signals(made: Drawn) -> None:
         if told.get("integrate"):
             made.signals.append(told["integrate"])
         elif told["kind"] in "IC" and (name in made.integral or made.rng.random() > made.likely):
-            letter = {"I": "fp", "C": "eq"}[told["kind"]][name in made.lawful]
+            # A law that drives a dependent storage is turned round: its state is what it gives.
+            own = name in made.lawful and (
+                name not in made.driving or made.rng.random() > made.likely
+            )
+            letter = {"I": "fp", "C": "eq"}[told["kind"]][own]
             made.signals += [f"{letter}_{name}{port}" for port in
                              [f"_{one}" for one in told.get("ports", ())] or [""]]  # fmt: skip
 
