@@ -27,7 +27,13 @@ RISING = (
 TURNING = ("{a}*sinh({b}*x)", "{a}*(exp({b}*x) - 1)", "{a}*x", "2*x/{a}")
 """Those of storages that go either way."""
 
-FACTORS = ("1 + sin({s})/3", "5/4 + tanh({s})/2", "1/(1 + {s}**2)", "exp({s}/4)", "sqrt(1 + {s}**2/2)")
+FACTORS = (
+    "1 + sin({s})/3",
+    "5/4 + tanh({s})/2",
+    "1/(1 + {s}**2)",
+    "exp({s}/4)",
+    "sqrt(1 + {s}**2/2)",
+)
 """What moves a value with a signal, above zero."""
 
 OUTSIDE = ("load", "cos(2*t)")
@@ -51,6 +57,7 @@ class Drawn:
     integral: set[str] = field(default_factory=set)
     driving: set[str] = field(default_factory=set)
     lawful: set[str] = field(default_factory=set)
+    turned: set[str] = field(default_factory=set)
     free: set[str] = field(default_factory=set)
 
     def number(self) -> str:
@@ -265,7 +272,9 @@ def _give(made: Drawn, name: str) -> None:
             told["value"] = f"{told['value']}*{made.factor(signals)}"
     elif kind == "R":
         if chance < 0.5 and (name not in made.driving or rng.random() > made.likely):
-            gives = made.gives[name] if rng.random() < made.likely else rng.choice(["effort", "flow"])
+            gives = (
+                made.gives[name] if rng.random() < made.likely else rng.choice(["effort", "flow"])
+            )
             told["gives"] = gives
             del told["value"]
             told["law"] = made.law(f"{'f' if gives == 'effort' else 'e'}_{name}")
@@ -282,6 +291,7 @@ def _give_storage(made: Drawn, name: str, chance: float) -> None:
         del told["value"]
         free = name in made.integral - made.driving or made.rng.random() > made.likely
         told["law"] = _own(made, state) if free else made.law(state, TURNING)
+        made.turned |= set() if free else {name}
         return
     told["value"] = made.number() + (f"*{made.factor(made.steady)}" if chance < 0.5 else "")
 
@@ -302,4 +312,6 @@ def _give_field(made: Drawn, name: str) -> None:
         return
     a, b = (f"{'p' if told['kind'] == 'I' else 'q'}_{name}_{port}" for port in "ab")
     del told["value"]
-    told["energy"] = f"{a}**2/2 + ({a} + {b})**2/3 + {made.number()}*{b}**2 + {a}**4/8 + cosh({a} - {b})"
+    told["energy"] = (
+        f"{a}**2/2 + ({a} + {b})**2/3 + {made.number()}*{b}**2 + {a}**4/8 + cosh({a} - {b})"
+    )

@@ -84,9 +84,7 @@ class Judge:
             unit = np.eye(n)
             local = {
                 name: Jet(v, unit[k], np.zeros((n, n)))
-                for k, (name, v) in enumerate(
-                    zip((*one.names, *one.outside), values, strict=True)
-                )
+                for k, (name, v) in enumerate(zip((*one.names, *one.outside), values, strict=True))
             }
             jet = eval(one.code, self.scope, local)
             found.append((one, jet))
@@ -174,9 +172,7 @@ def _whole(judge: Judge, t: float, x: Array, pinned: Array, right: Array) -> tup
     return left / length, slopes / length[:, None]
 
 
-def singular(
-    judge: Judge, t: float, points: Sequence[Array], frequencies: Sequence[float]
-) -> bool:
+def singular(judge: Judge, t: float, points: Sequence[Array], frequencies: Sequence[float]) -> bool:
     """Whether the pencil of all equations and of what is held is singular at all these points."""
     for z in points:
         F = judge.slopes(t, z)

@@ -74,7 +74,10 @@ def _over_two(
             return found
         size = len(jets[0].g)
         zero = Jet(0.0, np.zeros(size), np.zeros((size, size)))
-        u, v = (one if isinstance(one, Jet) and go else zero for one, go in zip((a, b), free, strict=True))
+        u, v = (
+            one if isinstance(one, Jet) and go else zero
+            for one, go in zip((a, b), free, strict=True)
+        )
         p, q = partial(*at, 1, 0), partial(*at, 0, 1)
         cross = np.outer(u.g, v.g)
         H = p * u.H + q * v.H + partial(*at, 1, 1) * (cross + cross.T)

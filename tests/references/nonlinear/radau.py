@@ -30,9 +30,7 @@ class Stuck(Exception):
     """No step, however short, has a solution or the accuracy that is asked for."""
 
 
-def followed(
-    judge: Judge, times: Sequence[float], z: Array, tolerance: float
-) -> Array:
+def followed(judge: Judge, times: Sequence[float], z: Array, tolerance: float) -> Array:
     """All unknowns at these times, from consistent ones at the first; a row for each.
 
     ``tolerance``: what one step may be off, of 1 + the magnitude of each unknown that is held.

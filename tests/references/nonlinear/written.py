@@ -22,6 +22,7 @@ class Written:
     """``names``: what texts may call each unknown, and its number; ``texts``: what vanishes.
 
     ``held``: the unknowns that integrate others, and which. ``sums``: rows of a factor for each unknown.
+    ``two_ports``: the texts of transformers and gyrators, by number.
     """
 
     bonds: list[Bond]
@@ -29,6 +30,7 @@ class Written:
     held: dict[int, int] = field(default_factory=dict)
     texts: list[str] = field(default_factory=list)
     sums: list[dict[int, int]] = field(default_factory=list)
+    two_ports: list[int] = field(default_factory=list)
 
     @property
     def size(self) -> int:
@@ -69,6 +71,7 @@ def _holding(graph: nx.DiGraph[str], node: str) -> Iterator[str]:
 
 def _bonds(graph: nx.DiGraph[str], node: str, found: Written) -> list[tuple[int, int]]:
     """Numbers of a node's bonds, and whether power on the arrow counts into it."""
+
     def inward(tail: str, head: str) -> int:
         if graph.nodes[tail]["kind"] in ABSORB:
             head = tail
@@ -129,13 +132,12 @@ def _write_junction(kind: str, bonds: list[tuple[int, int]], found: Written) -> 
     found.sums += [{first: 1, found.names[f"_{same}{k}"]: -1} for k, _ in bonds[1:]]
 
 
-def _write_two_port(
-    kind: str, value: object, bonds: list[tuple[int, int]], found: Written
-) -> None:
+def _write_two_port(kind: str, value: object, bonds: list[tuple[int, int]], found: Written) -> None:
     """TF: e_in = m e_out, f_out = m f_in. GY: e_in = r f_out, e_out = r f_in."""
     into = next(k for k, sign in bonds if sign > 0)
     out = next(k for k, sign in bonds if sign < 0)
     across, back = ("e", "f") if kind == "TF" else ("f", "e")
+    found.two_ports += [len(found.texts), len(found.texts) + 1]
     found.texts.append(f"_e{into} - ({value})*_{across}{out}")
     found.texts.append(f"_{back}{out} - ({value})*_f{into}")
 
