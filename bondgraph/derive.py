@@ -122,7 +122,7 @@ def _equations(
     imposed = tuple(ports[port] for port in reduction.imposed)
     E = [row.K for row in balances]
     laws = {port.element.name: port.element.law for port in imposed if port.element.law is not None}
-    check_laws(laws, signals, imposed, E, readings)
+    check_laws(laws, signals, imposed, E, readings, structure.states_of_laws)
     check_starts(reduction)
     switches = switch_ports(reduction, signals)
     check_switches(switches, reduction.inputs, E, readings)

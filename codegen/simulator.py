@@ -24,6 +24,7 @@ from codegen.modes.closed import ClosedModel
 from codegen.modes.rates import rates
 from codegen.numbers.arrays import Array, is_finite, is_number, read_only
 from codegen.program.units import told_units
+from codegen.record.beyond import refuse_beyond
 from codegen.record.columns import named_columns, with_switches
 from codegen.record.replay import Run
 from codegen.record.resting import tell_resting
@@ -181,7 +182,7 @@ class Simulator:
         columns = with_switches(columns, self.closed.program, found.modes)
         laws, numbers, start = self.laws, self.closed.parameters, read_only(begun.s)
         run = Run(laws, numbers, times, start, tuple(given), settings, begun.mode)
-        return Result(
+        result = Result(
             times,
             self.states,
             self.inputs,
@@ -194,6 +195,8 @@ class Simulator:
             found.backend,
             begun.completed,
         )
+        refuse_beyond(result)
+        return result
 
     def _ledger(self, run: Run) -> Ledger:
         program = self.closed.program

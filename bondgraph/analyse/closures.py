@@ -42,8 +42,10 @@ def merged_laws(
                 )
             closed = told
         merged[name] = closed
-    matrix_rows = rows_of(equations.E)
-    check_laws(merged, equations.signals, equations.ports, matrix_rows, equations.readings)
+    check_laws(
+        merged, equations.signals, equations.ports, rows_of(equations.E), equations.readings,
+        equations.reduction.structure.states_of_laws,
+    )  # fmt: skip
     return merged
 
 

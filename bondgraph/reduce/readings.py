@@ -1,6 +1,6 @@
 """What laws may close: no port whose effort would have to be differentiated, or is read by itself."""
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Collection, Hashable, Mapping, Sequence
 
 import sympy as sp
 
@@ -17,16 +17,19 @@ def check_laws(
     ports: Sequence[Port],
     E: Sequence[FixedRow],
     readings: Mapping[sp.Symbol, Reading],
+    states: Collection[sp.Symbol],
 ) -> None:
     """Refuse dry friction that reads its own effort, and a law whose slope in time would be needed.
 
     The slope is needed where a port drives a dependent storage.
 
     A law of time, parameters and inputs alone may drive one: it is a known source. ``known``: every
-    signal of the graph, open inputs included, as a row over what ports give.
+    signal of the graph, open inputs included, as a row over what ports give. ``states``: those that laws
+    own and detectors make, which are none of these rows and move as well.
     """
     inputs = list(dict.fromkeys(port.given for port in ports))
-    signals = set(known) - {port.given for port in ports if port.element.name not in laws}
+    outside = {port.given for port in ports if port.element.name not in laws}
+    signals = {*known, *states} - outside
     for port in ports:
         law = laws.get(port.element.name)
         if law is None or not depends_on_signals(law, signals):
@@ -37,6 +40,8 @@ def check_laws(
         if reading.H or reading.K or any(column in row for row in E):
             other = "flow" if port.gives == "effort" else "effort"
             way = f"let it give its {other} (gives={other!r}), by a law of its {port.gives}"
+            if port.element.kind.supplies:
+                way = "let it read the time, parameters and inputs alone"
             if port.element.kind.stores:
                 way = "give the inverse of its law, put a resistance between"
             raise DependentSourceError(

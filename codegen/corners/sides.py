@@ -57,6 +57,7 @@ class Sight:
         n, program = len(model.program.states), model.program
         w, dw = model.given(t, self.pieces)
         u, y = np.zeros(len(program.inputs)), np.zeros(len(program.readings))
+        u[list(program.given)] = w[: len(program.given)]
         return Instant(t, s[:n], s[n : n + len(program.law_states)], u, u, y, w, dw, y[:0])
 
     def values(self, t: float, s: Array) -> Array:

@@ -178,7 +178,7 @@ def _external(
     parameters: set[str],
 ) -> tuple[sp.Symbol, ...]:
     """Inputs nothing in the model gives: open ports and sources first, then what else is asked for."""
-    known = {*equations.signals, *law_states, TIME}
+    known = {*equations.signals, *equations.inputs, *law_states, TIME}
     names = watched.union(*(closed.free_symbols for closed in laws.values()))
     asked = {name for name in names - known if name.name not in parameters}
     return tuple(name for name in equations.inputs if name not in laws) + tuple(

@@ -59,6 +59,19 @@ def family(name: str) -> Family:
 FAMILIES = (
     # Values that read inputs.
     Family("supplied", "codegen/test_supplied_random.py", 8, 500),
+    # Laws, moving values and tables against all bond equations at once.
+    Family(
+        "nonlinear",
+        "codegen/test_nonlinear_random.py::test_all_bond_equations_hold_at_an_instant_and_a_moment_later",
+        40,
+        3_000,
+    ),
+    Family(
+        "nonlinear-runs",
+        "codegen/test_nonlinear_random.py::test_whole_runs_are_those_of_all_bond_equations_integrated_at_once",
+        6,
+        300,
+    ),
     # Derivation.
     Family(
         "graphs",

@@ -21,6 +21,8 @@ static int hung_at(bg_located *c, double t, const double *s, double *values)
         memcpy(now->x, s, sizeof(double) * N);
         memcpy(now->z, s + N, sizeof(double) * OWN);
         c->view.given(c->view.self, t, now->w, now->dw);
+        for (int i = 0; i < BG_OUTSIDE; i++)
+            now->u[bg_outside_inputs[i]] = now->w[i];
     } else {
         const int status = bg_view_look(&c->view, t, s, c->run.mode);
         if (status != BG_OK)
