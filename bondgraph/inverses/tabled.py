@@ -1,5 +1,6 @@
 """Tables turned round: of straight lines that rise or fall all the way, by their points the other way."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 from bondgraph.algebra.lookups import Handle
@@ -28,3 +29,12 @@ def turned_table(handle: Handle) -> Handle | None:
     if not all(a < b for a, b in pairwise(z)):
         return None
     return Handle(Sampled(table.name + TURNED, (z,), x, "linear", table.outside), (0,))
+
+
+def fixed(tables: Sequence[Sampled]) -> frozenset[str]:
+    """The names of tables that keep their values in what is generated: those turned round, either way.
+
+    One of them by itself with other values would no longer be the other turned round.
+    """
+    turned = [table.name for table in tables if table.name.endswith(TURNED)]
+    return frozenset([*turned, *(name.removesuffix(TURNED) for name in turned)])

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
+from bondgraph.inverses.tabled import fixed
 from bondgraph.tables.pieces import pieces
 from bondgraph.tables.record import OUTSIDE, Sampled
 from codegen.c.blocks import function, places
@@ -44,15 +45,16 @@ def lookup_tables(tables: Sequence[Sampled]) -> list[str]:
     """``bg_tables``, in the order of their names, and these."""
     lines: list[str] = []
     rows = []
+    kept = fixed(tables)
     for table in tables:
-        found, row = _lookup_table(table)
+        found, row = _lookup_table(table, table.name in kept)
         lines += found
         rows.append(row)
     lines += array("const bg_table bg_tables[]", rows, "{0}")
     return [*lines, *strings("bg_lookup_names", [table.name for table in tables]), ""]
 
 
-def _lookup_table(table: Sampled) -> tuple[list[str], str]:
+def _lookup_table(table: Sampled, kept: bool) -> tuple[list[str], str]:
     """The constants of a table, and what tells of them."""
     name = table_name(table)
     breaks, degree, outside, factors = pieces(table)
@@ -69,7 +71,7 @@ def _lookup_table(table: Sampled) -> tuple[list[str], str]:
     counts = ", ".join(str(len(axis)) for axis in (*table.axes, (0.0,))[:2])
     found, given = (", ".join((*one, "0")[:2]) for one in (axes, points))
     steep = steepest(table) if len(axes) == 1 else 0.0
-    method = f"BG_TABLE_{table.method.upper()}"
+    method = "BG_TABLE_FIXED" if kept else f"BG_TABLE_{table.method.upper()}"
     return lines, (
         f"{{{degree}, {BEYOND[outside]}, {{{cells}}}, {{{found}}}, {name}_factors, {method}, {{{counts}}}, "
         f"{{{given}}}, {name}_values, {steep!r}}}"

@@ -40,6 +40,8 @@ def with_values(
     """
     if unknown := [name for name in changed if name not in tables]:
         raise ValueError(f"no table is called {unknown[0]!r}; there is {', '.join(tables)}")
+    if kept := [name for name in changed if name not in shapes]:
+        raise ValueError(f"table {kept[0]!r} is turned round in this model: it keeps its values")
     found = {**tables}
     for name, values in changed.items():
         shape, given = shapes[name], np.array(values, dtype=float)

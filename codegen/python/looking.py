@@ -1,5 +1,6 @@
 """Tables of generated Python: their constants, how others come in their place, and where they end."""
 
+from bondgraph.inverses.tabled import fixed
 from bondgraph.tables.pieces import pieces
 from codegen.corners.refusing import arguments, refusals
 from codegen.program.printing import table_name
@@ -28,7 +29,8 @@ def lookup_tables(program: Program) -> list[str]:
 def table_shapes(program: Program) -> list[str]:
     """How other values of tables become polynomials, and what arguments of some are inside of."""
     lines = ["# How values of tables become polynomials, and their points.", "SHAPES = {"]
-    for table in program.tables:
+    kept = fixed(program.tables)
+    for table in (one for one in program.tables if one.name not in kept):
         opening = f'    {quoted(table.name)}: Shape("{table.method}", "{table.outside}", ('
         if pieces(table)[0] == table.axes:
             lines += [f"{opening}*_{table_name(table)}[0],)),"]

@@ -74,6 +74,8 @@ fmu_error fmu_set_table(fmu_instance *f, unsigned reference, const double *value
         return fmu_tunable(f);
     if (v->kind == FMU_TABLE_VALUE)
         table = table_of(v->index, &at);
+    if (bg_tables[table].method == BG_TABLE_FIXED)
+        return "a table that is turned round keeps its values";
     for (size_t i = 0; i < count; i++)
         if (!isfinite(values[i]))
             return no_number(f, table, at + (int)i, values[i]);

@@ -255,7 +255,9 @@ int bg_tables_fit(bg_own_tables *own, int table)
 
 int bg_tables_set(bg_own_tables *own, int table, const double *values)
 {
-    if (table < 0 || table >= BG_TABLES || !bg_finite(cells_of(bg_tables + table), values))
+    if (table < 0 || table >= BG_TABLES || bg_tables[table].method == BG_TABLE_FIXED)
+        return BG_TABLE_VALUE;
+    if (!bg_finite(cells_of(bg_tables + table), values))
         return BG_TABLE_VALUE;
     memcpy(bg_tables_values(own, table), values, sizeof(double) * (size_t)cells_of(bg_tables + table));
     return bg_tables_fit(own, table);

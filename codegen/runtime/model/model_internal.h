@@ -31,7 +31,8 @@ typedef struct {
 } bg_group;
 
 enum { BG_TABLE_HOLDS, BG_TABLE_EXTENDS, BG_TABLE_REFUSES };
-enum { BG_TABLE_LINEAR, BG_TABLE_PCHIP, BG_TABLE_AKIMA, BG_TABLE_BILINEAR, BG_TABLE_BICUBIC };
+enum { BG_TABLE_LINEAR, BG_TABLE_PCHIP, BG_TABLE_AKIMA, BG_TABLE_BILINEAR, BG_TABLE_BICUBIC,
+       BG_TABLE_FIXED };
 
 /* A table's value or derivatives; a region of 0 or more: by the polynomials of that stretch between
  * corners. */
