@@ -17,10 +17,13 @@ from bondgraph.inverses.tabled import turned_table
 BACK: Mapping[type, Callable[[sp.Expr], sp.Expr]] = MappingProxyType(
     {
         sp.exp: sp.log, sp.log: sp.exp, sp.sinh: sp.asinh, sp.asinh: sp.sinh, sp.tanh: sp.atanh,
-        sp.atanh: sp.tanh, sp.atan: sp.tan, sp.tan: sp.atan,
+        sp.atanh: sp.tanh, sp.tan: sp.atan,
     }
 )  # fmt: skip
-"""What undoes a function that rises or falls all the way."""
+"""What undoes a function that rises or falls all the way, and has no value where that one never comes to.
+
+So there is none for ``atan``: a tangent has values beyond a right angle, too.
+"""
 
 
 def with_inverse(element: Element) -> Element | None:
@@ -107,10 +110,10 @@ def _undone(law: sp.Expr, state: sp.Symbol, value: sp.Expr) -> sp.Expr | None:
         elif isinstance(law, sp.Mul):
             value = value / sp.Mul(*rest)
         elif isinstance(law, sp.Pow) and inside is law.base:
-            if law.exp.is_Integer and law.exp not in (1, -1):
-                # A root of it has no slope at zero, or two values.
+            back = _power_back(value, law.exp)
+            if back is None:
                 return None
-            value = value ** (1 / law.exp)
+            value = back
         elif isinstance(law, sp.Pow):
             value = sp.log(value) / sp.log(law.base)
         elif law.func in BACK:
@@ -121,3 +124,10 @@ def _undone(law: sp.Expr, state: sp.Symbol, value: sp.Expr) -> sp.Expr | None:
             return None
         law = inside
     return value
+
+
+def _power_back(value: sp.Expr, exponent: sp.Expr) -> sp.Expr | None:
+    """What has this power, and has no value where the value is below zero, as no broken power is."""
+    # A root of a whole power has no slope at zero, or two values; a square of a root takes either sign.
+    whole = exponent.is_Integer or (1 / exponent).is_Integer
+    return None if whole and exponent not in (1, -1) else value ** (1 / exponent)

@@ -30,7 +30,7 @@ def rising(law: sp.Expr, name: sp.Symbol) -> Rising | None:
     """What shows that a law rises or falls all the way; None where signs do not show it, or it has corners.
 
     The domain lies about zero: a logarithm's argument, the base of a broken power and a denominator keep
-    the sign they have there. Each has to rise or fall itself, so that the domain is in one piece.
+    the sign they have there, and what stands in a tangent is less than a right angle. Each has to rise or fall itself, so that the domain is in one piece.
 
     >>> q, k, c = sp.symbols("q k c")
     >>> rising(k*q + c*q**3, q)
@@ -46,8 +46,10 @@ def rising(law: sp.Expr, name: sp.Symbol) -> Rising | None:
     shown = law.xreplace(real)
     slope = _of_abs(sp.diff(shown, x))
     signs = _Signs(x, _domain(shown, x))
-    cornered = slope.has(*CORNERED) or law.has(Floor)
-    if cornered or signs.facts is None or abs(signs.of(_of_tanh(slope)) or 0) < 2:
+    cornered = slope.has(*CORNERED) or law.has(Floor, sp.atan2)
+    if cornered or signs.facts is None or not {*_before_poles(shown)} <= {*signs.facts}:
+        return None
+    if abs(signs.of(_of_tanh(slope)) or 0) < 2:
         return None
     needed = sorted((plain[one] for one in signs.needed), key=str)
     return Rising(
@@ -77,11 +79,17 @@ def _of_tanh(slope: sp.Expr) -> sp.Expr:
 
 
 def _domain(law: sp.Expr, x: sp.Symbol) -> list[sp.Expr]:
-    """What stands in logarithms, broken powers and denominators."""
+    """What stands in logarithms, broken powers and denominators, and before the poles of tangents."""
     inside = [part.args[0] for part in law.atoms(sp.log)]
     inside += [part.base for part in law.atoms(sp.Pow) if not part.exp.is_nonnegative
                or not part.exp.is_Integer]  # fmt: skip
+    inside += _before_poles(law)
     return sorted({one for one in inside if one.has(x)}, key=sp.default_sort_key)
+
+
+def _before_poles(law: sp.Expr) -> list[sp.Expr]:
+    """How far what stands in tangents is from a right angle, of either sign."""
+    return [sp.pi / 2 + way * part.args[0] for part in law.atoms(sp.tan) for way in (1, -1)]
 
 
 class _Signs:

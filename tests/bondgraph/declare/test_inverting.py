@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from references.build import bond_graph
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import bondgraph as bg
 from bondgraph.declare.declared import elements_of
@@ -113,3 +114,23 @@ def test_accumulators_empty_through_a_valve_that_an_input_opens(backend: str) ->
     )
     held = np.array([q, first.y[0, 0], *last.y[0]])
     assert run["p"] == pytest.approx(2 * (1 - held / 3) ** -1.4, rel=1e-8)
+
+
+@pytest.mark.parametrize("law", ["k*atan(f_r)", "k*(sqrt(1 + f_r) - 1)"])
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_a_value_that_a_law_never_has_is_refused(law: str, backend: str) -> None:
+    """Nothing has an arc of -2, and no root is -1: squares and tangents would have answers."""
+    equations = bg.derive(bond_graph([bg.Se("s", "u"), bg.One("j"), bg.R("r", law=law)], "s>j>r"))
+    model = simulator(equations, {"k": 2.0}, backend=backend)
+    right = {"k*atan(f_r)": np.tan(-0.5), "k*(sqrt(1 + f_r) - 1)": -0.75}[law]
+    assert model.run([0, 1], inputs={"u": -1.0})["f_r"] == pytest.approx(right, rel=1e-12)
+    with pytest.raises(bg.SimulationError, match="f_r has no value"):
+        model.run([0, 1], inputs={"u": -4.0})
+
+
+def test_a_tangent_stays_between_its_poles() -> None:
+    """``f + tan f`` of 4 is at 1.22 by brentq, and at 3.56 behind the pole."""
+    graph = bond_graph([bg.Se("s", "u"), bg.One("j"), bg.R("r", law="f_r + tan(f_r)")], "s>j>r")
+    run = simulator(bg.derive(graph), {}).run([0, 1], inputs={"u": 4.0})
+    right = brentq(lambda f: f + np.tan(f) - 4, 0, 1.57, xtol=1e-14)
+    assert run["f_r"] == pytest.approx(right, rel=1e-12)

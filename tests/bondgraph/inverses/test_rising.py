@@ -22,11 +22,13 @@ ONE_WAY = [
     ("k*q + sqrt(w + q)", (-0.7, 5)),
     ("k*q + c*(w + q)**n", (-0.7, 5)),
     ("atan(q) + sinh(q)**3", (-3, 3)),
+    ("k*q + c*tan(q/w)", (-1.2, 1.2)),
 ]
 
 NOT_SHOWN = [
     "q**3", "k*q - c*q**3", "sin(q) + 2*q", "k*q + abs(q)", "q + max(q, 0)", "k*q + c/q",
     "k*q + log(q**2 + 1)", "q**2", "k", "exp(q) + exp(-q)", "k*q + c*log(1 - q**2)", "k*q + sign(q)",
+    "k*q + tan(2 + q)", "atan2(q, -c) - q",
 ]  # fmt: skip
 
 
