@@ -151,4 +151,7 @@ class Walk:
 def parted(system: Systems, step: float) -> dict[int, Flags]:
     """Runs by how many steps of ``|M| h <= 1`` they take from sample to sample, ``step`` [s] apart."""
     parts = np.maximum(np.ceil(system.norms * step), 1.0)
+    # Of many some more, so that few numbers of steps differ: four digits in binary.
+    digits = 2.0 ** np.maximum(np.floor(np.log2(parts)) - 3, 0)
+    parts = np.ceil(parts / digits) * digits
     return {int(count): parts == count for count in np.unique(parts).tolist()}
