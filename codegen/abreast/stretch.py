@@ -134,6 +134,7 @@ class Walk:
         """Bring the fleet to where its runs are."""
         fleet, at, n, stops = self._fleet, self._at, self._fleet.s.shape[1], self._lookout.stops
         fleet.t[at], fleet.s[at] = self._stop, self._z[:, :n]
+        fleet.alone[at[self._lookout.left]] = True
         found: dict[frozenset[int], list[int]] = {}
         if not stops:
             return {}

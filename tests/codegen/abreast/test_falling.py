@@ -23,6 +23,7 @@ def test_random_triggers_are_told_as_one_by_one() -> None:
     armed, limits = np.ones((300, 2), dtype=bool), np.full((300, 2), 1e-9)
     found = told(_shapes(powers), valid, armed, limits)
     sure = falls = 0
+    assert not found.near.any()
     for run in np.flatnonzero(~found.doubtful).tolist():
         first = [
             (step, {j for j in range(2) if first_fall(powers[run, step, j]) is not None})
@@ -38,14 +39,15 @@ def test_random_triggers_are_told_as_one_by_one() -> None:
 
 def test_what_begins_at_zero_has_to_rise_first() -> None:
     limits, one = np.full((1, 1), 1e-6), np.ones(1, dtype=int)
-    for powers, doubtful in (
+    for powers, near in (
         ([0.0, 0.0, 1.0], False), ([-1e-7, 0.0, 1.0], False), ([-3e-6, 0.0, 1.0], True),
         ([0.0, 1.0, -1.0], True), ([0.0, -1.0, 2.0], True), ([0.0, 1e-8, 0.0], True),
     ):  # fmt: skip
         row = np.zeros(DEGREE + 1)
         row[: len(powers)] = powers
         found = told(_shapes(row[None, None, None]), one, np.zeros((1, 1), dtype=bool), limits)
-        assert bool(found.doubtful[0]) == doubtful, powers
+        assert bool(found.near[0]) == near, powers
+        assert not found.doubtful[0]
         assert found.step[0] == -1
 
 
