@@ -60,7 +60,11 @@ class Lookout:
             return stopped
         own = places[k]
         shapes = shapes[k].reshape(len(k), shapes.shape[1], len(self._ports), -1)
-        found = told(shapes, valid[k], self._armed[own], self._limits[own])
+        # What was looked at closer is, until all has been well above zero.
+        closer = np.isin(own, [*self._falls])
+        armed, noise = self._armed[own] | closer[:, None], strides.noise(states)[k]
+        found = told(shapes, valid[k], armed, self._limits[own], noise)
+        found.doubtful[closer & ~self._ready[own]] = True
         for j in k[found.doubtful].tolist():
             seen = states[j, : valid[j]]
             stopped[j] = self._closer(int(places[j]), strides, j, seen, float(begin[j]), done)
@@ -100,7 +104,8 @@ class Lookout:
         powers = powers.reshape(len(states), *rows.shape[:2]).transpose(0, 2, 1)
         falls = self._falls_of(place)
         found = falls.first(powers, begin + done * step, step)
-        self._ready[place] = falls.ready
+        if falls.ready:
+            self._armed[place] = self._ready[place] = True
         if found is None:
             return False
         whole, tau, ports = found
