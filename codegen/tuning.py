@@ -242,6 +242,9 @@ class Tuning:
     )
     side_by_side: int = _told(8, "runs of a sweep in numpy: fewer are done one by one")
     beside_at_once: int = _told(1_000_000, "numbers at samples of runs done side by side")
+    products_beside: int = _told(
+        500_000, "products of entries of a model whose runs go side by side: dense ones take over"
+    )
     ordinary: float = _told(1e100, "numbers that runs side by side stay below")
     surely: float = _told(4.0, "times what counts as zero: what is beyond is told alike everywhere")
     independent: float = _told(1e-13, "of the largest singular value: smaller ones are none")

@@ -23,6 +23,9 @@ from codegen.runs.methods import EXACT
 from codegen.simulator import Simulator
 from codegen.tuning import TUNING
 
+BLOCK = 512
+"""Fewer samples than these count as so many: a run has its steps between."""
+
 Alone = Callable[[Sequence[float]], Result]
 """A run by itself, of a row of numbers."""
 
@@ -60,7 +63,8 @@ class Abreast:
         ``alone``: a run by itself, for what its record does not hold.
         """
         found: list[Result | None] = []
-        many = max(1, TUNING.beside_at_once // (len(self._asked.times) * self.model.size))
+        each = max(len(self._asked.times), BLOCK) * self.model.size
+        many = max(1, TUNING.beside_at_once // each)
         with np.errstate(all="ignore"):
             for begin in range(0, len(rows), many):
                 part = rows[begin : begin + many]

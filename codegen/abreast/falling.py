@@ -13,24 +13,30 @@ MOST = 100
 
 
 class Told(NamedTuple):
-    """Of runs: which take a closer look; of the others the step of the event, or -1, and whose it may be."""
+    """Of runs: which rest so near an event that rounding decides, and which take a closer look.
 
+    Of the others the step of the event, -1 where there is none, and whose it may be.
+    """
+
+    near: Flags
     doubtful: Flags
     step: Places
     due: Flags
 
 
-def told(shapes: Array, valid: Places, armed: Flags, limits: Array) -> Told:
+def told(shapes: Array, valid: Places, armed: Flags, limits: Array, noise: Array) -> Told:
     """What Bernstein coefficients of triggers tell: runs x steps x triggers x coefficients.
 
     ``valid``: so many steps of each run count. ``armed``, ``limits``: runs x triggers; those that are not
     armed must rise through the first step, beyond their limits, and are armed then: they fall by less in it.
+    ``noise``: by as much as rounding may make of triggers at the end of that step, and far more.
     """
     first, every = shapes[:, 0], np.arange(len(shapes))
     # The slope is the degree times a mean of the differences.
     rises = (shapes.shape[3] - 1) * np.diff(first, axis=2).min(axis=2) > -limits
-    rises &= (first.min(axis=2) > -2 * limits) & (first[:, :, -1] > limits)
-    doubtful = (~armed & ~rises).any(axis=1)
+    rises &= (first[:, :, -1] > limits) & (first.min(axis=2) > -2 * limits)
+    far = np.abs(first[:, :, -1]) > TUNING.surely * np.maximum(limits, noise)
+    near = ~(armed | far).all(axis=1)
     suspects = shapes.min(axis=3) <= 0
     suspects[:, 0] &= armed
     suspects &= (np.arange(shapes.shape[1]) < valid[:, None])[:, :, None]
@@ -39,7 +45,8 @@ def told(shapes: Array, valid: Places, armed: Flags, limits: Array) -> Told:
     due = suspects[every, step] & (step >= 0)[:, None]
     own = shapes[every, step]
     falls = (np.diff(own, axis=2) < 0).all(axis=2) & (own[:, :, 0] > 0) & (own[:, :, -1] <= 0)
-    return Told(doubtful | (due & ~falls).any(axis=1), step, due)
+    doubtful = (~armed & ~rises).any(axis=1) | (due & ~falls).any(axis=1)
+    return Told(near, ~near & doubtful, step, due)
 
 
 def roots(powers: Array) -> Array:

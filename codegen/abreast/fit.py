@@ -16,7 +16,7 @@ from codegen.tuning import TUNING
 
 
 def fits(program: Program, equations: StateEquations, swept: frozenset[str]) -> bool:
-    """Whether many runs of a program can be done side by side: affine, friction its only switching.
+    """Whether many runs of a program can be done side by side: affine, small, friction its only switching.
 
     What is decided exactly for one of them, loops and sources, must not depend on what is ``swept``.
     """
@@ -29,7 +29,8 @@ def fits(program: Program, equations: StateEquations, swept: frozenset[str]) -> 
         port.switch is None and port.moving is None and not port.jumps and not port.slides
         for port in program.friction
     )
-    if not plain or not simple or any(group.loop for group in program.groups):
+    small = (len(program.readings) + program.size) * program.size**2 <= TUNING.products_beside
+    if not (plain and simple and small) or any(group.loop for group in program.groups):
         return False
     return not any(swept_in(entry, swept) for entry in _looped(equations))
 

@@ -38,6 +38,8 @@ class Lookout:
         self._ready: Flags = np.asarray(self._armed.all(axis=1))
         self._falls = dict[int, Falls]()
         self.stops = list[Stop]()
+        #: The runs that have to be done by themselves.
+        self.left = list[int]()
 
     def look(
         self, places: Places, strides: Strides, states: Array, valid: Places, begin: Array,
@@ -45,6 +47,7 @@ class Lookout:
     ) -> Flags:  # fmt: skip
         """Which runs come to an event in steps from these states, of which so many of each are ``valid``.
 
+        Or are left: what rests so near an event that rounding decides is told by the run itself.
         ``begin`` [s]: of the first step; ``done``: so many were taken before.
         """
         stopped = np.zeros(len(places), dtype=bool)
@@ -57,13 +60,19 @@ class Lookout:
             return stopped
         own = places[k]
         shapes = shapes[k].reshape(len(k), shapes.shape[1], len(self._ports), -1)
-        found = told(shapes, valid[k], self._armed[own], self._limits[own])
+        # What was looked at closer is, until all has been well above zero.
+        closer = np.isin(own, [*self._falls])
+        armed, noise = self._armed[own] | closer[:, None], strides.noise(states)[k]
+        found = told(shapes, valid[k], armed, self._limits[own], noise)
+        found.doubtful[closer & ~self._ready[own]] = True
         for j in k[found.doubtful].tolist():
             seen = states[j, : valid[j]]
             stopped[j] = self._closer(int(places[j]), strides, j, seen, float(begin[j]), done)
-        sure = own[~found.doubtful]
-        self._armed[sure] = self._ready[sure] = True
-        ended = ~found.doubtful & (found.step >= 0)
+        stopped[k[found.near]] = True
+        self.left += own[found.near].tolist()
+        sure = ~(found.near | found.doubtful)
+        self._armed[own[sure]] = self._ready[own[sure]] = True
+        ended = sure & (found.step >= 0)
         if ended.any():
             j, whole = k[ended], found.step[ended]
             self._stop(
@@ -95,7 +104,8 @@ class Lookout:
         powers = powers.reshape(len(states), *rows.shape[:2]).transpose(0, 2, 1)
         falls = self._falls_of(place)
         found = falls.first(powers, begin + done * step, step)
-        self._ready[place] = falls.ready
+        if falls.ready:
+            self._armed[place] = self._ready[place] = True
         if found is None:
             return False
         whole, tau, ports = found

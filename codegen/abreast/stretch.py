@@ -134,6 +134,7 @@ class Walk:
         """Bring the fleet to where its runs are."""
         fleet, at, n, stops = self._fleet, self._at, self._fleet.s.shape[1], self._lookout.stops
         fleet.t[at], fleet.s[at] = self._stop, self._z[:, :n]
+        fleet.alone[at[self._lookout.left]] = True
         found: dict[frozenset[int], list[int]] = {}
         if not stops:
             return {}
@@ -151,4 +152,7 @@ class Walk:
 def parted(system: Systems, step: float) -> dict[int, Flags]:
     """Runs by how many steps of ``|M| h <= 1`` they take from sample to sample, ``step`` [s] apart."""
     parts = np.maximum(np.ceil(system.norms * step), 1.0)
+    # Of many some more, so that few numbers of steps differ: four digits in binary.
+    digits = 2.0 ** np.maximum(np.floor(np.log2(parts)) - 3, 0)
+    parts = np.ceil(parts / digits) * digits
     return {int(count): parts == count for count in np.unique(parts).tolist()}

@@ -91,6 +91,12 @@ class Strides:
         """Bernstein coefficients of the triggers over a step from each state: runs, steps, those."""
         return np.asarray(states @ self._shapes)
 
+    def noise(self, states: Array) -> Array:
+        """Below these triggers may be rounding after a first step: of their terms, or of their rows."""
+        sizes = np.abs(states[:, 1])
+        terms, least = dot(np.abs(self._rows), sizes), sizes.max(axis=1, keepdims=True)
+        return np.asarray(np.maximum(TUNING.rounding * terms, np.finfo(float).eps * least))
+
     def change(self, z: Array) -> Array:
         """What a first step changes."""
         return dot(self._gather, dot(self._M, z))

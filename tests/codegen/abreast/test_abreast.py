@@ -51,8 +51,8 @@ def test_random_chains_are_single_runs(first: int) -> None:
         many = many_chains(seed, 6, breakaway=seed % 2 == 1)
         beside, told = _compared(many, seed)
         done, orders = done + beside, orders + len(told)
-    assert done >= 20
-    assert orders >= 12
+    assert done >= 15
+    assert orders >= 10
 
 
 @pytest.mark.parametrize("count", [2, 3, 6, 401])

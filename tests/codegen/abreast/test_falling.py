@@ -21,8 +21,9 @@ def test_random_triggers_are_told_as_one_by_one() -> None:
     powers[..., 0] = rng.uniform(0.2, 2.5, powers.shape[:3])
     valid = rng.integers(1, 5, 300)
     armed, limits = np.ones((300, 2), dtype=bool), np.full((300, 2), 1e-9)
-    found = told(_shapes(powers), valid, armed, limits)
+    found = told(_shapes(powers), valid, armed, limits, limits)
     sure = falls = 0
+    assert not found.near.any()
     for run in np.flatnonzero(~found.doubtful).tolist():
         first = [
             (step, {j for j in range(2) if first_fall(powers[run, step, j]) is not None})
@@ -37,15 +38,20 @@ def test_random_triggers_are_told_as_one_by_one() -> None:
 
 
 def test_what_begins_at_zero_has_to_rise_first() -> None:
+    """Or is looked at by itself: closer where it gets away from zero, as a whole run where it does not."""
     limits, one = np.full((1, 1), 1e-6), np.ones(1, dtype=int)
-    for powers, doubtful in (
-        ([0.0, 0.0, 1.0], False), ([-1e-7, 0.0, 1.0], False), ([-3e-6, 0.0, 1.0], True),
-        ([0.0, 1.0, -1.0], True), ([0.0, -1.0, 2.0], True), ([0.0, 1e-8, 0.0], True),
+    for powers, near, doubtful in (
+        ([0.0, 0.0, 1.0], False, False), ([-1e-7, 0.0, 1.0], False, False),
+        ([-3e-6, 0.0, 1.0], False, True), ([0.0, -1.0, 2.0], False, True),
+        ([0.0, 2.0, -1.5], False, True), ([0.0, 1.0, -1.0], True, False),
+        ([0.0, 1e-8, 0.0], True, False), ([0.0, -1.0, 0.0], False, True),
     ):  # fmt: skip
         row = np.zeros(DEGREE + 1)
         row[: len(powers)] = powers
-        found = told(_shapes(row[None, None, None]), one, np.zeros((1, 1), dtype=bool), limits)
-        assert bool(found.doubtful[0]) == doubtful, powers
+        found = told(
+            _shapes(row[None, None, None]), one, np.zeros((1, 1), dtype=bool), limits, limits
+        )
+        assert (bool(found.near[0]), bool(found.doubtful[0])) == (near, doubtful), powers
         assert found.step[0] == -1
 
 

@@ -15,6 +15,7 @@ from click.testing import CliRunner
 
 import bondgraph as bg
 import codegen
+from codegen.tuning import TUNING
 from differentials.commands.app import app
 from oracles.exported import loaded
 from oracles.routes.bench import (
@@ -162,13 +163,18 @@ def sweep_c(bench: Bench) -> None:
 
 
 def _swept(bench: Bench, backend: str, within: float) -> None:
-    """Two runs: the kind's own, and one with another first number, against that by itself."""
+    """Two runs: the kind's own, and one with another first number, against that by itself.
+
+    As often as it takes for the runs of an affine kind to be done side by side.
+    """
     kind, (name, value) = bench.kind, next(iter(bench.kind.numbers.items()))
     family = codegen.Family(kind.equations, kind.numbers, kind.laws, backend=backend)
     state = next(iter(kind.known(kind.times(), bench.run)))
     measures = {"all": codegen.samples(state), "last": codegen.final(state)}
+    often = TUNING.side_by_side // 2 if family.program.affine and not kind.on else 1
+    rows = codegen.Table(**{name: [value, 1.01 * value] * often})
     found = codegen.sweep(
-        family, {name: [value, 1.01 * value]}, kind.times(), measures, kind.initial, kind.signals,
+        family, rows, kind.times(), measures, kind.initial, kind.signals,
         workers=0, progress=False, initially_on=kind.on,
     )  # fmt: skip
     if found.failed:
@@ -176,7 +182,7 @@ def _swept(bench: Bench, backend: str, within: float) -> None:
     other = codegen.simulator(kind.equations, {**kind.numbers, name: 1.01 * value}, kind.laws).run(
         kind.times(), kind.initial, kind.signals, initially_on=kind.on
     )
-    for row, run in zip(found["all"], (bench.run, other), strict=True):
+    for row, run in zip(found["all"], (bench.run, other) * often, strict=True):
         assert np.abs(row - run[state]).max() <= within * np.ptp(run[state])
     assert found["last"].tolist() == found["all"][:, -1].tolist()
 
