@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model_left.h"
 #include "model_located.h"
 #include "scenario.h"
 #include "tuning.h"
@@ -123,13 +124,14 @@ static void print_head(void)
     printf("\n");
 }
 
-/* Whether a call failed, which is told; of a table that was left, which one; of a stop that begins beyond its bound, which one. */
+/* Whether a call failed, which is told; of a table that was left, and of a stop that begins beyond
+ * its bound, which one. */
 static int failed(const bg_model *m, int status)
 {
     char text[256];
     if (status == BG_OK)
         return 0;
-    if (bg_model_left(m, status, text, sizeof text)) {
+    if (bg_left_text(m, status, text, sizeof text)) {
         fprintf(stderr, "%s: %s\n", bg_model_name, text);
         return 1;
     }

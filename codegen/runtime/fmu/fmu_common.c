@@ -4,12 +4,13 @@
 #include <string.h>
 
 #include "fmu_common.h"
+#include "model_left.h"
 
 fmu_error fmu_message(fmu_instance *f, int status)
 {
     if (status == BG_OK)
         return NULL;
-    return bg_model_left(&f->model, status, f->text, sizeof f->text) ? f->text
+    return bg_left_text(&f->model, status, f->text, sizeof f->text) ? f->text
                                                                      : bg_model_message(status);
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "fmu_common.h"
+#include "model_left.h"
 
 /* External inputs in the segment that the run is in. */
 static int inputs_there(const void *self, double t, double *w, double *dw)
@@ -34,7 +35,7 @@ static void ask_for(const fmu_instance *f, bg_request *asked)
 
 static fmu_error told_at(fmu_instance *f, int status)
 {
-    if (bg_model_left(&f->model, status, f->text, sizeof f->text))
+    if (bg_left_text(&f->model, status, f->text, sizeof f->text))
         return f->text;
     snprintf(f->text, sizeof f->text, "at t = %.9g: %s", f->located.run.at.t,
              bg_model_message(status));

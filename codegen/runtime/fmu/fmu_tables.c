@@ -91,7 +91,8 @@ fmu_error fmu_fit_tables(fmu_instance *f)
     for (int i = 0; i < BG_TABLES; i++)
         if (f->retabled[i]) {
             if (bg_tables_fit(&f->own, i) != BG_OK) {
-                snprintf(f->text, sizeof f->text, "table %.120s: what is between its values is not finite",
+                snprintf(f->text, sizeof f->text,
+                         "table %.120s: what is between its values is not finite",
                          bg_lookup_names[i]);
                 return f->text;
             }

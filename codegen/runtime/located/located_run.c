@@ -233,7 +233,7 @@ int bg_located_go(bg_located *c)
     const bg_engine engine = {bg_view_sight(&c->view), c, pass_on, take_in, fastest_now, NULL,
                               take_away, go_on};
     const int status = bg_run(&engine, &c->run);
-    /* The model is at the instant up to which a run came, where a table ends that it was to leave. */
+    /* The model is where the run came to, at the end of a table that it was to leave. */
     if (status != BG_OK && BG_REFUSING > 0)
         (void)bg_view_look(&c->view, c->run.at.t, c->s, c->run.mode);
     return status;

@@ -102,8 +102,10 @@ static void spline_slopes(int count, const double *x, strided z, double *slopes,
     b = x[last] - x[last - 1];
     both = a + b;
     pivot = a - both * upper[last - 1];
-    slopes[last * step] = ((b * b * chord(x, z, last - 2) + (2 * both + b) * a * chord(x, z, last - 1))
-                           / both - both * slopes[(last - 1) * step]) / pivot;
+    slopes[last * step] = b * b * chord(x, z, last - 2) / both;
+    slopes[last * step] += (2 * both + b) * a * chord(x, z, last - 1) / both;
+    slopes[last * step] -= both * slopes[(last - 1) * step];
+    slopes[last * step] /= pivot;
     for (int i = last - 1; i >= 0; i--)
         slopes[i * step] -= upper[i] * slopes[(i + 1) * step];
 }
@@ -255,10 +257,11 @@ int bg_tables_fit(bg_own_tables *own, int table)
 
 int bg_tables_set(bg_own_tables *own, int table, const double *values)
 {
-    if (table < 0 || table >= BG_TABLES || bg_tables[table].method == BG_TABLE_FIXED)
+    const int known = table >= 0 && table < BG_TABLES;
+    const int fixed = !known || bg_tables[table].method == BG_TABLE_FIXED;
+    const int count = fixed ? 0 : cells_of(bg_tables + table);
+    if (count == 0 || !bg_finite(count, values))
         return BG_TABLE_VALUE;
-    if (!bg_finite(cells_of(bg_tables + table), values))
-        return BG_TABLE_VALUE;
-    memcpy(bg_tables_values(own, table), values, sizeof(double) * (size_t)cells_of(bg_tables + table));
+    memcpy(bg_tables_values(own, table), values, sizeof(double) * (size_t)count);
     return bg_tables_fit(own, table);
 }

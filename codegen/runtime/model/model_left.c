@@ -1,6 +1,5 @@
 /* Which table was left, where a law has no value. */
 #include <math.h>
-#include <stdio.h>
 
 #include "model_internal.h"
 
@@ -34,7 +33,7 @@ static int left(const bg_model *m, const double *values)
     return -1;
 }
 
-int bg_model_left(const bg_model *m, int status, char *text, size_t room)
+int bg_model_left(const bg_model *m, int status, bg_leaving *told)
 {
     double values[BG_ROOM(BG_REFUSING)] = {0};
     int at;
@@ -46,9 +45,11 @@ int bg_model_left(const bg_model *m, int status, char *text, size_t room)
         return 0;
     const bg_refusing *const one = bg_refusings + at;
     const bg_table *const of = m->now.tables + one->table;
-    const double *const breaks = of->breaks[one->axis];
-    snprintf(text, room, "at t = %.9g %.80s leaves table '%.60s', which is from %.9g to %.9g and "
-             "refuses what is outside", m->now.t, one->argument, bg_lookup_names[one->table],
-             breaks[0], breaks[of->cells[one->axis]]);
+    told->time = m->now.t;
+    told->place = values[at];
+    told->low = of->breaks[one->axis][0];
+    told->high = of->breaks[one->axis][of->cells[one->axis]];
+    told->table = bg_lookup_names[one->table];
+    told->argument = one->argument;
     return 1;
 }

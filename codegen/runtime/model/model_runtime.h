@@ -203,16 +203,20 @@ void bg_model_parameters(double *parameters);
 int bg_model_init(bg_model *m, const double *parameters);
 
 /* The same with tables of the caller's, which `bg_tables_init` makes as the model was generated.
- * `bg_tables_set` gives one new values at its points, row by row of x, and works out what is between
- * them; BG_TABLE_VALUE where one is not finite. As with a parameter an instance is then made again,
- * which may go on with its `mode`, `seen` and `started`. */
+ * `bg_tables_set` gives one new values at its points, row by row of x, and works out what is
+ * between them; BG_TABLE_VALUE where one is not finite. As with a parameter an instance is then
+ * made again, which may go on with its `mode`, `seen` and `started`. */
 int bg_model_init_with(bg_model *m, const double *parameters, const bg_own_tables *own);
 void bg_tables_init(bg_own_tables *own);
 int bg_tables_set(bg_own_tables *own, int table, const double *values);
 
-/* After a call that failed: whether a table that refuses what is outside was left, which is told in
- * `text`: when, which, and by which argument. */
-int bg_model_left(const bg_model *m, int status, char *text, size_t room);
+/* A table that refuses what is outside, its ends along an axis, and when which argument left it, to
+ * this place. After a call that failed: whether one was left; model_left.h has it in words. */
+typedef struct {
+    double time, place, low, high;
+    const char *table, *argument;
+} bg_leaving;
+int bg_model_left(const bg_model *m, int status, bg_leaving *told);
 
 /* s from the states (law states last) and the external inputs: they differ where inputs drive
  * dependent storages. */

@@ -193,3 +193,16 @@ def test_wrong_values_are_refused_by_name(told: str, pushed: dict[str, Path]) ->
     )
     assert (done.returncode, done.stdout) == (1, "")
     assert "table drag: give 4 finite numbers" in done.stderr
+
+
+def test_what_is_worked_out_once_is_of_the_values_that_are_given(tmp_path: Path) -> None:
+    """A resistance that a table tells at a parameter: v falls by exp(-map(2) t/m)."""
+    graph = nx.DiGraph(tables=[bg.LookupTable("map", [0, 1, 3], [1, 1, 1])])
+    graph.add_nodes_from([bg.One("n"), bg.I("m", 2, flow="v"), bg.R("r", "map(k)")])
+    graph.add_edges_from([("n", "m"), ("n", "r")])
+    files = codegen.to_c(bg.derive(graph), {"k": 2}, main=True, initial={"v": 1.0})
+    program = compiled(tmp_path, written(tmp_path, files), "-O1")
+    t, v = _printed(program, "map=5,0,8", "located")
+    assert v == pytest.approx(np.exp(-2 * t), abs=1e-9)
+    t, v = _printed(program, "map=5,0,8", "k=0")
+    assert v == pytest.approx(np.exp(-2.5 * t), abs=1e-8)

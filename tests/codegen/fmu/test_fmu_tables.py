@@ -102,6 +102,17 @@ def test_corners_that_values_make_are_located(pushed: Unit) -> None:
     pushed.free(made)
 
 
+def test_values_may_be_tuned_between_steps(pushed: Unit) -> None:
+    """From rest at 1/4 on as under the other table."""
+    made = pushed.started("CoSimulation", **PUSH)
+    assert _walked(pushed, made, 0.0, 0.25)[-1] == pytest.approx(0.0, abs=1e-12)
+    _put(pushed, made, "drag", np.array(VALUES))
+    times = np.linspace(0.25, 1.25, 11)[1:]
+    right = -PUSH["P"] * np.expm1(-(times - 0.25))
+    assert _walked(pushed, made, 0.25, 1.25) == pytest.approx(right, abs=1e-9)
+    pushed.free(made)
+
+
 def test_values_are_saved_and_an_instances_own(pushed: Unit) -> None:
     save, load, pack, unpack = (
         ("getFMUstate", "setFMUstate", "serializeFMUstate", "deSerializeFMUstate")

@@ -42,6 +42,11 @@
 #define BG_STRAIGHT 1
 #define BG_CORNERS 0
 #define BG_CORNERS_TOLD 0
+#define BG_TABLES 0
+#define BG_TABLE_VALUES 0
+#define BG_TABLE_FACTORS 0
+#define BG_TABLE_WORK 0
+#define BG_REFUSING 0
 #define BG_ROSENBROCK 0
 
 /* The longest step [s] that is stable at the default start, parameters and inputs, in every

@@ -45,6 +45,9 @@ const char *const bg_parameter_names[] = {
     "I_1", "I_2", "I_i", "I_w", "b", "i", "k", "k_t", "omega_t1_0", "omega_t2_0", "r"
 };
 const char *const bg_friction_names[] = {"clutch"};
+const bg_table bg_tables[] = {{0}};
+const char *const bg_lookup_names[] = {""};
+
 
 const double bg_defaults[] = {
     0.008, 0.008, 0.1604, 0.8, 0.0, 2.8, 8600.0, 200000.0, 80.0, 80.0, 0.3
@@ -219,6 +222,14 @@ static void coupled_values(const bg_values *v, double *out)
     (void)out;
 }
 
+const bg_refusing bg_refusings[] = {{0, 0, 0}};
+
+/* Arguments of tables that refuse what is outside: 0 operations. */
+void bg_refused(const bg_values *v, double *out)
+{
+    (void)v;
+    (void)out;
+}
 static const int group_0_inputs[] = {2};
 static const int group_0_readings[] = {2};
 static const int group_1_inputs[] = {3};
