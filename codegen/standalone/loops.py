@@ -68,8 +68,8 @@ def searched(
     """The solution that is found, the latest that was asked for; and what is left of the laws.
 
     ``open_y``: what the ports receive if the laws give nothing, ``D`` what they receive of each
-    more. ``rescue``: a search to try where Newton's finds nothing; ``partial``: with what the last way is
-    gone, by parts.
+    more. ``rescue``: a search to try where Newton's finds nothing; ``partial``: for the
+    last way, by parts.
     """
     worst = np.inf
     for amounts in _attempts(residual, D, open_y, rescue):
@@ -87,10 +87,11 @@ def _solves(worst: float, amounts: Array) -> bool:
 
 
 def _by_parts(partial: Partial, size: int) -> Array | None:
-    """From ports that receive nothing from outside to those that receive all, one part after another.
+    """From ports that receive nothing from outside to those that receive all, part by part.
 
-    Laws that rise have one solution for each part, which moves with it without a leap: along the line through
-    the last two it is near enough to the next, where parts are small enough. None where no part that counts is.
+    Laws that rise have one solution for each part, which moves with it without a leap: along
+    the line through the last two it is near enough to the next, where parts are small enough.
+    None where no part that counts is.
     """
     amounts, way = np.zeros(size), np.zeros(size)
     part, more, to = 0.0, 1.0, 0.0

@@ -33,13 +33,16 @@ def _servo() -> nx.DiGraph:
     orifice = "K*Max({way}s, 0)*sign({e})*sqrt(abs({e}))"
     nodes = [bg.Se("supply", "P_s"), bg.Zero("high"), bg.Zero("a"), bg.Zero("b_side"), bg.Se("tank", 0),
              bg.Zero("low"), bg.C("c_a", "c", effort="p_a"), bg.C("c_b", "c", effort="p_b"),
-             bg.TF("piston_a", "1/A"), bg.TF("piston_b", "1/A"), bg.One("rod", flow="v"), bg.I("m", "m", flow="v_m"),
+             bg.TF("piston_a", "1/A"), bg.TF("piston_b", "1/A"), bg.One("rod", flow="v"),
+             bg.I("m", "m", flow="v_m"),
              bg.R("b", "b"), bg.Df("place", integrate="x"), bg.R("leak", "1000"), bg.One("leaking"),
-             bg.Se("command", "gain*(want - x)"), bg.One("coil"), bg.R("coil_r", 1), bg.C("spool", "lag", effort="s")]  # fmt: skip
+             bg.Se("command", "gain*(want - x)"), bg.One("coil"), bg.R("coil_r", 1),
+             bg.C("spool", "lag", effort="s")]  # fmt: skip
     bonds = "supply>high tank>low a>c_a b_side>c_b a>piston_a>rod rod>piston_b>b_side rod>m rod>b rod>place"
     bonds += " a>leaking>b_side leaking>leak command>coil>coil_r coil>spool"
-    for name, begin, end, way in (("sa", "high", "a", ""), ("at", "a", "low", "-"), ("sb", "high", "b_side", "-"),
-                                  ("bt", "b_side", "low", "")):  # fmt: skip
+    ways = ["sa high a", "bt b_side low", "at a low -", "sb high b_side -"]
+    for name, begin, end, *sign in (way.split() for way in ways):
+        way = "".join(sign)
         nodes += [
             bg.One(f"w_{name}"),
             bg.R(name, law=orifice.format(way=way, e=f"e_{name}"), gives="flow"),
