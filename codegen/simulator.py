@@ -195,7 +195,7 @@ class Simulator:
             found.backend,
             begun.completed,
         )
-        refuse_beyond(result)
+        refuse_beyond(self.closed, result)
         return result
 
     def _ledger(self, run: Run) -> Ledger:

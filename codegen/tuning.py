@@ -79,6 +79,8 @@ class Tuning:
     root_turns: int = _told(
         1000, "steps of a root's search: four times as many as halve to nothing"
     )
+    portions: int = _told(2000, "so often a part of what laws receive is solved for, at most")
+    least_portion: float = _told(1e-15, "a smaller part more is none")
     huge: float = _told(1e300, "stands for what is no number")
     least_interval: float = _told(
         1e-30, "of the first interval of a root's search, where it is at 0"

@@ -15,6 +15,9 @@ ITERATIONS = 60
 
 Residual = Callable[[Array], Array]
 
+Partial = Callable[[Array, float], Array]
+"""The same where ports receive only a part of what comes to them from outside the laws."""
+
 Search = Callable[[Residual, Array], Array]
 """From a function and a start to where the function may vanish."""
 
@@ -36,8 +39,9 @@ class Loop(Laws):
         """
         u, y = now.u.copy(), now.y.copy()
 
-        def residual(amounts: Array) -> Array:
+        def residual(amounts: Array, part: float = 1.0) -> Array:
             now.u[:], now.y[:] = u, y
+            now.y[self.readings] *= part
             now.give(self.inputs, amounts)
             found = left()
             if np.isfinite(found).all():
@@ -45,7 +49,7 @@ class Loop(Laws):
             return np.nan_to_num(found, nan=1e300, posinf=1e300, neginf=-1e300)
 
         D = now.numbers.D[np.ix_(self.readings, self.inputs)]
-        found, worst = searched(residual, D, y[self.readings], self.rescue)
+        found, worst = searched(residual, D, y[self.readings], self.rescue, residual)
         if found is None:
             listed = ", ".join(repr(name) for name in self.names)
             raise EvaluationError(
@@ -55,21 +59,60 @@ class Loop(Laws):
 
 
 def searched(
-    residual: Residual, D: Array, open_y: Array, rescue: Search | None = None
+    residual: Residual,
+    D: Array,
+    open_y: Array,
+    rescue: Search | None = None,
+    partial: Partial | None = None,
 ) -> tuple[Array | None, float]:
     """The solution that is found, the latest that was asked for; and what is left of the laws.
 
     ``open_y``: what the ports receive if the laws give nothing, ``D`` what they receive of each
-    more. ``rescue``: a search to try where Newton's finds nothing.
+    more. ``rescue``: a search to try where Newton's finds nothing; ``partial``: for the
+    last way, by parts.
     """
     worst = np.inf
     for amounts in _attempts(residual, D, open_y, rescue):
         worst = float(np.abs(residual(amounts)).max(initial=0.0))
-        if worst <= TUNING.residual * (
-            TUNING.residual_floor + float(np.abs(amounts).max(initial=0.0))
-        ):
+        if _solves(worst, amounts):
             return amounts, worst
-    return None, worst
+    found = None if partial is None else _by_parts(partial, len(open_y))
+    return found, worst
+
+
+def _solves(worst: float, amounts: Array) -> bool:
+    return worst <= TUNING.residual * (
+        TUNING.residual_floor + float(np.abs(amounts).max(initial=0.0))
+    )
+
+
+def _by_parts(partial: Partial, size: int) -> Array | None:
+    """From ports that receive nothing from outside to those that receive all, part by part.
+
+    Laws that rise have one solution for each part, which moves with it without a leap: along
+    the line through the last two it is near enough to the next, where parts are small enough.
+    None where no part that counts is.
+    """
+    amounts, way = np.zeros(size), np.zeros(size)
+    part, more, to = 0.0, 1.0, 0.0
+    for _ in range(TUNING.portions):
+
+        def left(tried: Array, to: float = to) -> Array:
+            return partial(tried, to)
+
+        tried = _newton(left, amounts + (to - part) * way)
+        if _solves(float(np.abs(left(tried)).max(initial=0.0)), tried):
+            if to == 1.0:
+                return tried
+            if to > part:
+                way, more = (tried - amounts) / (to - part), 2 * more
+            amounts, part = tried, to
+        else:
+            more /= 4
+        to = min(part + more, 1.0)
+        if more < TUNING.least_portion:
+            break
+    return None
 
 
 def _attempts(

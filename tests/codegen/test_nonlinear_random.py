@@ -23,6 +23,8 @@ import bondgraph as bg
 from codegen import Result, Signal, Simulator, Sine, simulator, to_python
 
 CLOSE, CLOSE_RUN, STEP = 1e-9, 1e-6, 1e-10
+SLOPES = 1e-7
+"""Of what a known source drives by its slope: sources are polynomials to 1e-10, piece by piece."""
 LAST, SAMPLES = 1.0, 6
 
 
@@ -34,7 +36,7 @@ def _ready(made: Drawn, backend: str = "numpy") -> Simulator | None:
             warnings.simplefilter("ignore", bg.ModelWarning)
             return simulator(equations, made.parameters, backend=backend)
     except bg.BondGraphError as error:
-        assert reason(made, error)
+        assert reason(made, error)  # noqa: PT017
         return None
 
 
@@ -68,8 +70,14 @@ def test_all_bond_equations_hold_at_an_instant_and_a_moment_later(seed: int) -> 
     assert found.left < CLOSE
     assert found.told.all()
     size = 1 + np.abs(z[judge.held :]).max()
-    assert np.abs(found.z - z)[judge.held :].max() < CLOSE * size
+    told = SLOPES if _driven(made) else CLOSE
+    assert np.abs(found.z - z)[judge.held :].max() < told * size
     _check_rates(made, ready, signals, states, t, found.z)
+
+
+def _driven(made: Drawn) -> bool:
+    """Whether a known source drives a dependent storage."""
+    return any(made.graph.nodes[node]["kind"] in ("Se", "Sf") for node in made.driving)
 
 
 def _check_rates(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import count
@@ -18,7 +19,8 @@ from ..random_graphs import random_graph
 METHODS = ("linear", "pchip", "akima", "bilinear", "bicubic")
 
 RISING = (
-    "{a}*x + {b}*x**3", "{a}*tanh({b}*x)", "{a}*sinh(x*{b}/2)", "{a}*(exp(x*{b}/3) - 1)", "{a}*x + {b}*abs(x)*x",
+    "{a}*x + {b}*x**3", "{a}*tanh({b}*x)", "{a}*sinh(x*{b}/2)", "{a}*(exp(x*{b}/3) - 1)",
+    "{a}*x + {b}*abs(x)*x",
     "{a}*x + {b}*sign(x)*abs(x)**1.5", "{a}*atan({b}*x) + x/5", "{a}*x*sqrt(1 + {b}*x**2)",
     "{a}*x + {b}*max(x, 0)**2", "Piecewise(({a}*x, x > 0), ({b}*x, True))", "{a}*x/hypot(1, {b}*x)",
 )  # fmt: skip
@@ -71,9 +73,7 @@ class Drawn:
 
     def filled(self, text: str, x: str) -> str:
         """A law of x with numbers in it."""
-        return text.replace("x", f"({x})").replace("ma(" + x + ")", "max").replace(
-            "e(" + x + ")p", "exp"
-        ).format(a=self.number(), b=self.number())  # fmt: skip
+        return re.sub(r"\bx\b", f"({x})", text).format(a=self.number(), b=self.number())
 
     def factor(self, signals: list[str] | None = None) -> str:
         """A factor above zero that moves with a signal or two."""

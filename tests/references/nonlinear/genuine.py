@@ -86,7 +86,7 @@ def _dependent(made: Drawn) -> bool:
 
 
 def _read(made: Drawn) -> bool:
-    """Whether the value of a storage or a two-port reads what a law gives, whose slope then would be needed."""
+    """Whether the value of a storage or a two-port reads what a law gives: its slope would be needed."""
     given = {f"{letter}_{node}" for node, letter in fixed(made)}
     texts = [
         str(told.get("value"))

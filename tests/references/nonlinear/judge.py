@@ -138,7 +138,7 @@ class Instant:
 def solved(
     judge: Judge, t: float, states: Mapping[int, float], z: Array, turns: int = 12
 ) -> Instant:
-    """The instant with these unknowns given, by number, from ``z`` on; ``left``: what is left of equations."""
+    """The instant with these unknowns given, by number, from ``z`` on."""
     pins = sorted(states)
     n = 2 * judge.size - judge.held
     pinned = np.zeros((len(pins), n))
