@@ -37,6 +37,13 @@ class Floor(Below):
     """
 
     @property
+    def moves(self) -> bool:
+        """Whether its argument moves by itself: that of ``floor(floor(x)/2)`` jumps where x does."""
+        inside = self.args[0]
+        still = {part: sp.Integer(0) for part in inside.atoms(Floor)}
+        return bool(inside.xreplace(still).free_symbols)
+
+    @property
     def crossing(self) -> sp.Expr:
         """What is zero where it jumps: above after an even number, below after an odd one."""
         return sp.sin(sp.pi * self.args[0])

@@ -9,7 +9,7 @@ from bondgraph.algebra.atoms import normal
 from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.algebra.residues import is_zero
 from bondgraph.algebra.table_corners import check_tables
-from bondgraph.algebra.whole import Floor
+from bondgraph.algebra.whole import Below, Floor
 from bondgraph.analyse.unknowns import still
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.errors import SignalError
@@ -126,7 +126,7 @@ def _switches(expressions: Iterable[sp.Expr]) -> list[sp.Expr]:
     for expr in expressions:
         found |= {part.args[0] for part in expr.atoms(sp.Heaviside, sp.DiracDelta, sp.sign, sp.Abs)}
         found |= {part.lhs - part.rhs for part in expr.atoms(sp.core.relational.Relational)}
-        found |= {part.crossing for part in expr.atoms(Floor)}
+        found |= {part.crossing for part in expr.atoms(Floor) if part.moves}
         for part in expr.atoms(sp.Max, sp.Min):
             found |= {a - b for a in part.args for b in part.args if str(a) < str(b)}
     return sorted(found, key=str)
@@ -137,7 +137,10 @@ def _at(expr: sp.Expr, port: Hashable, signals: set[sp.Symbol], point: Point, wh
     _check_given(expr, port, signals, point, what)
     sides = {switch: _sides(switch, port, point) for switch in _switches([expr])}
     away = [part for part in expr.atoms(sp.DiracDelta) if len(sides[part.args[0]]) == 1]
-    expr = expr.xreplace(dict.fromkeys(away, sp.Integer(0)))
+    # Away from its jumps a floor is what it is, and jumps with what it holds.
+    plain = {part: Below(part.args[0]) for part in expr.atoms(Floor)
+             if len(sides.get(part.crossing, (0,))) == 1}  # fmt: skip
+    expr = expr.xreplace({**plain, **dict.fromkeys(away, sp.Integer(0))})
     there = {name: value for name, value in point.items() if name in signals | {TIME}}
     values = [
         _on_sides(expr, dict(zip(sides, chosen, strict=True))).subs(there).doit()
@@ -207,4 +210,7 @@ def _on_sides(expr: sp.Expr, sides: Mapping[sp.Expr, int]) -> sp.Expr:
         for part in expr.atoms(sp.core.relational.Relational):
             if part.lhs - part.rhs == switch:
                 chosen[part] = sp.true if part.func(sp.Integer(side), 0) else sp.false
-    return expr.xreplace(chosen)
+    while (inside := expr.xreplace(chosen)) != expr:
+        # What was chosen may hold others.
+        expr = inside
+    return expr

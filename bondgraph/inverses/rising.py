@@ -30,7 +30,8 @@ def rising(law: sp.Expr, name: sp.Symbol) -> Rising | None:
     """What shows that a law rises or falls all the way; None where signs do not show it, or it has corners.
 
     The domain lies about zero: a logarithm's argument, the base of a broken power and a denominator keep
-    the sign they have there, and what stands in a tangent is less than a right angle. Each has to rise or fall itself, so that the domain is in one piece.
+    the sign they have there, and what stands in a tangent is less than a right angle. Each has to rise or
+    fall itself, so that the domain is in one piece.
 
     >>> q, k, c = sp.symbols("q k c")
     >>> rising(k*q + c*q**3, q)

@@ -64,3 +64,27 @@ def test_a_law_is_linearised_between_its_jumps_only() -> None:
     assert sp.Matrix([[-2]]) == bg.linearize(equations, at={"v": 0.6}).J
     with pytest.raises(bg.SignalError, match="corner at the operating point"):
         bg.linearize(equations, at={"v": 1})
+
+
+@pytest.mark.parametrize(
+    ("law", "at", "slope"),
+    [
+        ("v*floor(floor(v)/2)", "1/2", 0),
+        ("v*floor(floor(v)/2)", "9/2", 2),
+        ("v*floor(floor(v)/2)", "2", None),
+        ("v*mod(floor(v), 3)", "7/2", 0),
+        ("v*mod(floor(v), 3)", "9/2", 1),
+        ("floor(v + floor(2*v))", "1/2", None),
+        ("floor(v + floor(2*v))", "3/4", 0),
+        ("abs(floor(v))", "1", None),
+    ],
+)
+def test_floors_in_floors_jump_where_what_they_hold_does(law: str, at: str, slope: int) -> None:
+    """By hand: ``floor(v + floor(2 v))`` goes from 0 to 1 at 1/2."""
+    nodes = [bg.Se("F", "F"), bg.One("n"), bg.I("m", 1, flow="v"), bg.R("r", law=law)]
+    equations = bg.derive(bond_graph(nodes, "F>n>m n>r"))
+    if slope is not None:
+        assert sp.Matrix([[-slope]]) == bg.linearize(equations, at={"v": at}).J
+        return
+    with pytest.raises(bg.SignalError, match="corner at the operating point"):
+        bg.linearize(equations, at={"v": at})
