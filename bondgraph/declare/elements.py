@@ -58,8 +58,8 @@ class Element:
     state as a function of what the law gives, so that it may have derivative causality. ``switch``: of an
     ideal switch, when it turns on and off. ``whole``: of a stop's part, that stop. ``start``: of what keeps
     or makes a state, the value with which runs begin. ``by_inverse``: whether the law counts by its inverse
-    alone, what it gives being the state. ``turned``: whether it gives what its law, as it was written,
-    receives.
+    alone, what it gives being the state. ``turned``: whether its law is turned round by what is known of
+    it: a resistance then gives what its law, as it was written, receives.
     """
 
     name: Hashable

@@ -47,7 +47,7 @@ def with_inverse(element: Element) -> Element | None:
     if not isinstance(law, ExpressionLaw) or law.state is None or given is None:
         return None
     found = _inverse(law.expression, law.state, given)
-    return None if found is None else replace(element, inverse=found, gives=None)
+    return None if found is None else replace(element, inverse=found, gives=None, turned=True)
 
 
 def flipped(element: Element) -> Element | None:

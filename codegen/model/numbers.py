@@ -1,6 +1,6 @@
 """A program with numbers for its parameters: dense arrays, checked exactly before floats are trusted."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 import sympy as sp
@@ -8,6 +8,7 @@ import sympy as sp
 from bondgraph.algebra.elimination import ResidueRows
 from bondgraph.algebra.exact import FixedRow, rows_of
 from bondgraph.algebra.residues import residues
+from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
@@ -107,6 +108,7 @@ def _check_turned(equations: StateEquations, parameters: Mapping[str, sp.Rationa
     for name, element in equations.elements.items():
         law = element.law.expression if isinstance(element.law, ExpressionLaw) else None
         parts = {part for one in (element.inverse, law) if one for part in one.atoms(Inverse)}
+        _check_powers(element, [one for one in (element.inverse, law) if one], parameters)
         needed = {factor for part in parts for factor in part.needed}
         for factor in sorted(needed, key=str):
             if at_parameters(factor, parameters).is_nonpositive:
@@ -115,6 +117,19 @@ def _check_turned(equations: StateEquations, parameters: Mapping[str, sp.Rationa
                     f"to be positive, and here {_listed(factor, parameters)}; give the inverse of its law, "
                     "or a law in the other causality"
                 )
+
+
+def _check_powers(
+    element: Element, expressions: Iterable[sp.Expr], parameters: Mapping[str, sp.Rational]
+) -> None:
+    """Refuse exponents at which what is undone of a power is a whole one, with values that no root has."""
+    powers = [part for one in expressions for part in one.atoms(sp.Pow)] if element.turned else []
+    for power in sorted(powers, key=str):
+        if not power.exp.is_number and at_parameters(power.exp, parameters).is_integer:
+            raise ParameterError(
+                f"{element.kind} {element.name!r}: its law is turned round, and {power.exp} is whole at "
+                f"{_listed(power.exp, parameters)}; write that exponent into the law as a number"
+            )
 
 
 def _listed(expr: sp.Expr, parameters: Mapping[str, sp.Rational]) -> str:

@@ -107,6 +107,16 @@ def test_parameters_for_which_the_law_turns_back_are_refused_by_name() -> None:
         codegen.to_c(equations, {"k": 1.0, "c": -0.1})
 
 
+def test_an_exponent_whose_undoing_is_whole_is_refused_by_name() -> None:
+    """Undone, ``k f**(1/2)`` is a square, which gives a flow for efforts that the law never has."""
+    equations = _equations("k*f_r**n")
+    assert codegen.to_c(equations, {"k": 2.0, "n": 1.5})
+    with pytest.raises(
+        bg.ParameterError, match="1/n is whole at n = 0.5; write that exponent into the law"
+    ):
+        codegen.simulator(equations, {"k": 2.0, "n": 0.5})
+
+
 @pytest.mark.parametrize("backend", ["numpy", "c"])
 def test_values_that_the_law_never_has_end_a_run_by_name(backend: str) -> None:
     """Of ``tanh f + atan f`` there are none beyond 1 + pi/2."""

@@ -1,4 +1,4 @@
-"""Tables that are turned round keep their values: in exports and units one alone would contradict the other."""
+"""Tables that are turned round keep their values: one by itself would contradict the other."""
 
 from typing import Any
 
