@@ -16,9 +16,9 @@ TIMES = np.linspace(0, END, 51)
 @pytest.mark.parametrize("integrator", ["rk4", "rosenbrock"])
 def test_a_run_takes_other_values(integrator: str) -> None:
     module = loaded(codegen.to_python(dragged(), NUMBERS, integrator=integrator))
-    given = {"initial": START, "inputs": PUSH, "step": 1e-3}
+    given = {"initial": START, "inputs": PUSH, "step": 1e-2}
     run = module.simulate(TIMES, tables={"drag": VALUES}, **given)
-    assert run["v"] == pytest.approx(speed(TIMES), abs=1e-5)
+    assert run["v"] == pytest.approx(speed(TIMES), abs=1e-4)
     assert module.simulate(TIMES, **given)["v"] == pytest.approx(4 * TIMES - 1, abs=1e-9)
 
 
@@ -41,10 +41,10 @@ def test_a_table_that_is_left_is_named(integrator: str) -> None:
         r"at t = (\S+) w leaves table 'drag', which is from -2.0 to 3.0 and refuses what is outside"
     )
     with pytest.raises(ArithmeticError, match=says) as failure:
-        loaded(text).simulate(TIMES, START, PUSH, step=1e-3)
+        loaded(text).simulate(TIMES, START, PUSH, step=1e-2)
     told = re.match(says, str(failure.value))
     assert told is not None
-    assert float(told[1]) == pytest.approx(LEAVES, abs=2e-3)
+    assert float(told[1]) == pytest.approx(LEAVES, abs=2e-2)
 
 
 @pytest.mark.parametrize(
