@@ -36,7 +36,7 @@ def told(shapes: Array, valid: Places, armed: Flags, limits: Array, noise: Array
     rises = (shapes.shape[3] - 1) * np.diff(first, axis=2).min(axis=2) > -limits
     rises &= (first[:, :, -1] > limits) & (first.min(axis=2) > -2 * limits)
     far = np.abs(first[:, :, -1]) > TUNING.surely * np.maximum(limits, noise)
-    near = ~(armed | far).all(axis=1)
+    near: Flags = np.asarray(~(armed | far).all(axis=1))
     suspects = shapes.min(axis=3) <= 0
     suspects[:, 0] &= armed
     suspects &= (np.arange(shapes.shape[1]) < valid[:, None])[:, :, None]

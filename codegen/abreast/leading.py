@@ -179,7 +179,7 @@ def _decided(
     ahead = float(group.ahead[place])
     here = Sight(model, t, s, present.pieces)
     occasion = Occasion(
-        model, t, present.pieces, now.mode, ahead, peaks, now.loose, now.touched, log=log
+        model, t, present.pieces, now.mode, ahead, peaks, now.loose, now.touched, log=log.append
     )
     try:
         found: Decision = decide(occasion, here)

@@ -4,7 +4,7 @@ What a mode tells are signs of combinations that are linear in the integrated ve
 as none of them is near zero: those of all modes that were tried are looked at in one product.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -188,7 +188,7 @@ class Occasion(NamedTuple):
     #: Stops that are apart, or about to throw back what meets them, and so let go.
     barred: frozenset[int] = frozenset()
     #: What takes note of all that decided, in turn, if it is asked for.
-    log: list[Rested | Tried] | None = None
+    log: Callable[[Rested | Tried], object] | None = None
 
     def seen(self, s: Array) -> Sight:
         """The model at this instant with another integrated vector."""

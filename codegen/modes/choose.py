@@ -233,7 +233,7 @@ def _undecided(now: Occasion, here: Sight, mode: Mode, away: Collection[int]) ->
         and (model.coupled_directly(i) or slip <= near[i])
     ]
     if now.log is not None:
-        now.log.append(Rested(mode, tuple(found)))
+        now.log(Rested(mode, tuple(found)))
     return found
 
 
@@ -355,7 +355,7 @@ def _noted(
 ) -> _Finding:  # fmt: skip
     """What was found, once note is taken of it."""
     if now.log is not None:
-        now.log.append(Tried(mode, verdicts, later))
+        now.log(Tried(mode, verdicts, later))
     return found
 
 

@@ -62,6 +62,12 @@ def test_samples_far_apart_and_close(count: int) -> None:
         assert done == 4
 
 
+def test_what_rounding_would_decide_is_done_by_itself() -> None:
+    """A port without level and load slips at once or at the next breakpoint, by rounding alone."""
+    done, _ = _compared(many_chains(358, 8, np.linspace(0.0, 2.0, 21), breakaway=True), 358)
+    assert done == 0
+
+
 def test_random_chains_are_what_c_gives() -> None:
     for seed in (2, 5):
         done, orders = _compared(many_chains(seed, 12), seed, "c")
