@@ -112,7 +112,7 @@ def test_an_exponent_whose_undoing_is_whole_is_refused_by_name() -> None:
     equations = _equations("k*f_r**n")
     assert codegen.to_c(equations, {"k": 2.0, "n": 1.5})
     with pytest.raises(
-        bg.ParameterError, match="1/n is whole at n = 0.5; write that exponent into the law"
+        bg.ParameterError, match=r"1/n is whole at n = 0.5; write that exponent into the law"
     ):
         codegen.simulator(equations, {"k": 2.0, "n": 0.5})
 
