@@ -240,12 +240,12 @@ class Tuning:
     close: float = _told(1e-10, "of its terms: what may be left of a steady state")
     trim_floor: float = _told(1e-9, "added to the terms of a steady state")
     regular: float = _told(
-        1e-8, "of the largest singular value, or of terms: what is smaller takes an exact look"
+        1e-8, "of the largest singular value, or of terms: less takes an exact look"
     )
     side_by_side: int = _told(8, "runs of a sweep in numpy: fewer are done one by one")
     beside_at_once: int = _told(1_000_000, "numbers at samples of runs done side by side")
     products_beside: int = _told(
-        500_000, "products of entries of a model whose runs go side by side: dense ones take over"
+        500_000, "products of entries of a model whose runs go side by side"
     )
     ordinary: float = _told(1e100, "numbers that runs side by side stay below")
     surely: float = _told(4.0, "times what counts as zero: what is beyond is told alike everywhere")
