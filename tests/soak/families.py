@@ -63,13 +63,13 @@ FAMILIES = (
     Family(
         "nonlinear",
         "codegen/test_nonlinear_random.py::test_all_bond_equations_hold_at_an_instant_and_a_moment_later",
-        40,
+        16,
         3_000,
     ),
     Family(
         "nonlinear-runs",
         "codegen/test_nonlinear_random.py::test_whole_runs_are_those_of_all_bond_equations_integrated_at_once",
-        6,
+        3,
         300,
     ),
     # Derivation.
