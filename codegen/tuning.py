@@ -87,8 +87,8 @@ class Tuning:
     )
 
     # Integrators with step control
-    rtol: float = _told(1e-10, "relative tolerance, unless it is told otherwise")
-    atol: float = _told(1e-11, "the same in units of each state")
+    rtol: float = _told(1e-8, "relative tolerance, unless it is told otherwise")
+    atol: float = _told(1e-10, "the same in units of each state")
     stiff_span: float = _told(2e5, "run over time constant from which steps are implicit")
     stiff_step: float = _told(5e3, "the same, over time constant, of a unit's communication step")
     patience: int = _told(

@@ -11,6 +11,7 @@ pytest_plugins = [
     "rig.used",
     "rig.guard",
     "rig.compilers",
+    "rig.closely",
     "rig.summary",
 ]
 

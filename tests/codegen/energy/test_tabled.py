@@ -50,6 +50,7 @@ def _graph(law: str, *tables: bg.LookupTable) -> nx.DiGraph:
     return graph
 
 
+@pytest.mark.usefixtures("closely")
 @pytest.mark.parametrize(
     "law", ["k*f(q_c)", "f(2*q_c + 0.1) + q_c/2 + 3*f(-q_c) - f(1)", "f(k*q_c)*k"]
 )

@@ -23,6 +23,7 @@ def _sliding(samples: list[float], method: str) -> Result:
     return simulator(bg.derive(graph), {}).run(samples, {"v": 5.0}, method=method)
 
 
+@pytest.mark.usefixtures("closely")
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("samples", [[0, 0.6], [0, 0.001, 0.6], [0.006 * k for k in range(101)]])
 def test_a_damper_takes_what_the_mass_had(samples: list[float], method: str) -> None:
@@ -148,6 +149,7 @@ def test_a_value_that_moves_gives_what_its_storage_gains() -> None:
     assert open_part(result) < CLOSED
 
 
+@pytest.mark.usefixtures("closely")
 def test_a_pendulum_turned_by_its_own_angle_closes() -> None:
     """A mass on a crank: its inertia 3 + 2 cos(theta) is a function of a state."""
     nodes = [bg.Se("torque", "T"), bg.One("shaft"), bg.I("J", "3 + 2*cos(theta)", flow="w"),

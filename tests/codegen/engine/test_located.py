@@ -61,6 +61,7 @@ def _agree(found: Recorded, run: Result, near: float, late: float = 1e-6) -> Non
         assert np.abs(column - run[name]).max() <= near * size, name
 
 
+@pytest.mark.usefixtures("closely")
 @pytest.mark.parametrize(("name", "scenario"), CASES)
 def test_the_catalogs_figures_against_exact_steps(name: str, scenario: str) -> None:
     case = prepared(name, scenario)
@@ -78,6 +79,7 @@ def test_the_catalogs_figures_against_exact_steps(name: str, scenario: str) -> N
             assert np.abs(run[signal] - exact[signal]).max() < 1e-6 * size, (method, signal)
 
 
+@pytest.mark.usefixtures("closely")
 @pytest.mark.parametrize(
     "laws",
     [
@@ -303,6 +305,7 @@ def test_located_runs_compile_without_warnings(
     assert runs.run(np.array([0.0, 0.1]), states, signals, settings) is not None
 
 
+@pytest.mark.usefixtures("closely")
 def test_chains_of_two_hundred_states_run() -> None:
     """Waves in a chain of masses and springs that nothing damps: the energy stays."""
     nodes: list = [bg.One("n0"), bg.I("m0", "m", flow="v0")]

@@ -44,6 +44,7 @@ def test_diode_in_series_with_a_resistance(values, amplitude: float) -> None:
     assert result["e_diode"] == pytest.approx(result["V"] - 50 * result["f_s"], abs=1e-9)
 
 
+@pytest.mark.usefixtures("closely")
 def test_rectifier_charges_a_capacitor_through_the_loop() -> None:
     """C v' = i(V - v) - v/R_l with i by Lambert's W, integrated tightly."""
     nodes = [bg.Se("s", "V"), bg.One("n"), bg.R("r", "R"), bg.R("diode", law=SHOCKLEY, gives="flow"),

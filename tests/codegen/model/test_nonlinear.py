@@ -25,6 +25,7 @@ def _mass_with(*ports: tuple, mass: object = "m") -> bg.StateEquations:
     return bg.derive(bond_graph(nodes, f"n>m {bonds}"))
 
 
+@pytest.mark.usefixtures("closely")
 def test_hardening_spring_vibrates_and_keeps_its_energy() -> None:
     """Duffing: m x'' + k x + c x^3 = 0."""
     m, k, c = 1.3, 4.0, 9.0
@@ -75,6 +76,7 @@ def test_drag_with_the_square_of_speed_gives_an_effort() -> None:
         assert result["e_drag"] == pytest.approx(0.5 * expected * np.abs(expected), abs=1e-8)
 
 
+@pytest.mark.usefixtures("closely")
 def test_a_leak_with_the_cube_of_voltage_gives_a_flow() -> None:
     """C v' = -g v^3: v = v_0/sqrt(1 + 2 g v_0^2 t/C)."""
     nodes = [bg.Zero("n"), bg.C("c", "C", effort="v"), bg.R("leak", law="g*v**3", gives="flow")]

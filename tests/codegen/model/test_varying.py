@@ -33,6 +33,7 @@ def crank() -> Result:
     return ready.run(TIMES, {"omega": 2.0, "theta": 0.1}, {"tau": Sine(1.0, 0.5)})
 
 
+@pytest.mark.usefixtures("closely")
 def test_a_scotch_yoke_runs_as_lagrange_says(crank: Result) -> None:
     def rhs(t: float, y: np.ndarray) -> list[float]:
         omega, theta = y

@@ -226,6 +226,7 @@ LINES = {
 }  # fmt: skip
 
 
+@pytest.mark.usefixtures("closely")
 @pytest.mark.parametrize("name", LINES)
 @pytest.mark.parametrize(("backend", "method"), ROUTES)
 def test_motions_are_those_of_the_judge(name: str, backend: str, method: str) -> None:

@@ -87,6 +87,7 @@ def test_the_spring_force_follows_the_closed_form(values) -> None:
     assert np.abs(result["slip"][stuck]).max() < 1e-9
 
 
+@pytest.mark.usefixtures("closely")
 @pytest.mark.parametrize("values", CASES)
 def test_power_is_balanced(values) -> None:
     cycle = Cycle(**values)

@@ -41,6 +41,7 @@ def two_slopes(times: np.ndarray) -> np.ndarray:
     return np.where(u < np.pi / 2, np.cos(2 * u), -np.cos(u - np.pi / 2))
 
 
+@pytest.mark.usefixtures("closely")
 @pytest.mark.parametrize(
     ("spring", "method"),
     [*((spring, "DOP853") for spring in SLOPES), (SLOPES[1], "Radau")],
@@ -211,6 +212,7 @@ def test_the_sides_of_a_model_are_one_for_all_its_runs() -> None:
     assert closed.on_sides((1,)) is above
 
 
+@pytest.mark.usefixtures("closely")
 def test_a_law_without_a_value_beyond_its_corner_is_crossed_all_the_same() -> None:
     """q" = -4 sign(q) sqrt|q|: v^2/2 + 8/3 |q|^(3/2) stays 1/2."""
     law = 4 * sp.sign(q) * sp.sqrt(sp.Abs(q))

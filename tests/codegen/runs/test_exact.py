@@ -156,6 +156,7 @@ def test_an_event_at_the_last_instant_is_one(method: str) -> None:
     assert [(e.kind, round(e.time, 9)) for e in run.events] == [("slip", 1.0)]
 
 
+@pytest.mark.usefixtures("closely")
 def test_numbers_past_the_largest_are_refused_with_their_time() -> None:
     graph = _oscillator()
     graph.remove_nodes_from(["contact", "rub", "belt"])

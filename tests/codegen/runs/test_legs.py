@@ -9,6 +9,7 @@ import bondgraph as bg
 from codegen import Step, simulator
 
 
+@pytest.mark.usefixtures("closely")
 @pytest.mark.parametrize("method", ["DOP853", "Radau"])
 @pytest.mark.parametrize("points", [2, 3, 1001])
 def test_every_point_is_sampled_once_whatever_the_grid(method: str, points: int) -> None:

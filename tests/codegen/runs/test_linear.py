@@ -28,6 +28,7 @@ def _step_response(R: float, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return v.real, i.real
 
 
+@pytest.mark.usefixtures("closely")
 @pytest.mark.parametrize("R", [0.5, 2.0, CRITICAL, 40.0])
 @pytest.mark.parametrize("method", ["auto", "DOP853", "Radau"])
 def test_step_response_of_a_series_circuit(R: float, method: str) -> None:

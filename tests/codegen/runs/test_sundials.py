@@ -30,6 +30,7 @@ def exact(request: pytest.FixtureRequest) -> Exact:
     return case, run, run.run(case.times, case.initial, case.inputs, method="exact")
 
 
+@pytest.mark.usefixtures("closely")
 def test_cvode_agrees_with_the_exact_method(exact: Exact) -> None:
     case, run, expected = exact
     found = run.run(case.times, case.initial, case.inputs, method="CVODE")
@@ -99,6 +100,7 @@ def test_a_stiff_affine_model_takes_few_steps(monkeypatch) -> None:
     assert result["v"] == pytest.approx(expected, abs=1e-9)
 
 
+@pytest.mark.usefixtures("closely")
 def test_a_law_that_owns_a_state() -> None:
     """A hardening spring keeps its energy; its displacement is the law's."""
     nodes = [bg.One("n"), bg.I("m", "m", flow="v"), bg.C("s", law="k*q_s + c*q_s**3")]

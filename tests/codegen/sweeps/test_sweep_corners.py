@@ -13,6 +13,7 @@ q = sp.Symbol("q_s")
 STIFF = (1.0, 4.0, 9.0)
 
 
+@pytest.mark.usefixtures("closely")
 @pytest.mark.parametrize("backend", codegen.simulate.BACKENDS)
 def test_corners_are_located_and_counted_in_every_run(backend: str) -> None:
     """Springs of 1 below zero and k above: half periods of pi and pi/sqrt(k), from v = 1."""
