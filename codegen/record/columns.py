@@ -1,6 +1,6 @@
 """Samples as columns by name."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
@@ -47,6 +47,7 @@ def named_columns(
             name: column if name in told else np.where(infinite, 0.0, column)
             for name, column in columns.items()
         },
+        told,
     )
     dx = found.rate[:, : len(program.states)]
     if not program.varying:
@@ -56,14 +57,15 @@ def named_columns(
     return known, Observer(times, model, known, x, dx, u, du)
 
 
-def _check_finite(times: Array, columns: Mapping[str, Array]) -> None:
+def _check_finite(times: Array, columns: Mapping[str, Array], states: Collection[str]) -> None:
     """Refuse numbers that are not finite, by the first that is none."""
     wrong = {name: ~np.isfinite(column) for name, column in columns.items()}
     first = {name: int(np.argmax(flags)) for name, flags in wrong.items() if flags.any()}
     if first:
         name = min(first, key=lambda one: first[one])
         at = first[name]
-        if np.isnan(columns[name][at]):
+        grown = any(not np.isfinite(columns[one][at]) for one in states if one in columns)
+        if np.isnan(columns[name][at]) and not grown:
             raise SimulationError(
                 f"at t = {times[at]:.9g} {name} has no value: a law that it comes from is asked for one "
                 "where it has none"

@@ -8,7 +8,9 @@ import sympy as sp
 from sympy.core.relational import Relational
 from sympy.logic.boolalg import Boolean
 
-from bondgraph.algebra.lookups import Handle, Tabled
+from bondgraph.algebra.called import Called
+from bondgraph.algebra.lookups import Handle
+from bondgraph.inverses.inverse import Turning
 from codegen.program.printing import printed
 from codegen.program.records import Block
 from codegen.straight.sums import Line, Sum, Value
@@ -18,7 +20,7 @@ PLAIN = (
     sp.Add, sp.Mul, sp.Pow, sp.Symbol, sp.Number, sp.NumberSymbol, Relational, Boolean, sp.Piecewise,
     sp.functions.elementary.piecewise.ExprCondPair, sp.Abs, sp.sign, sp.Min, sp.Max, sp.sin, sp.cos, sp.tan,
     sp.asin, sp.acos, sp.atan, sp.atan2, sp.sinh, sp.cosh, sp.tanh, sp.asinh, sp.acosh, sp.atanh, sp.exp,
-    sp.log, sp.floor, sp.ceiling, sp.erf, Tabled, Handle,
+    sp.log, sp.floor, sp.ceiling, sp.erf, Called, Handle, Turning,
 )  # fmt: skip
 """What is written over floats."""
 
