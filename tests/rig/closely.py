@@ -22,7 +22,9 @@ def closely(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where a test tells no tolerances, they are 1e-10 and 1e-11."""
     for function in RUNS:
         told = signature(function).parameters.values()
-        plain = [one for one in told if one.default is not one.empty and one.kind != one.KEYWORD_ONLY]
+        plain = [
+            one for one in told if one.default is not one.empty and one.kind != one.KEYWORD_ONLY
+        ]
         named = {one.name: one.default for one in told if one.kind == one.KEYWORD_ONLY}
         given = tuple(CLOSE.get(one.name, one.default) for one in plain)
         monkeypatch.setattr(function, "__defaults__", given)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles.c_model import WARNED, compiled, written
+from oracles.c_model import WARNED, closer, compiled, written
 from oracles.exported import loaded
 from oracles.pulsed import coil, half_bridge
 from references.pulsed import current, switchings
@@ -48,13 +48,15 @@ def _rows(program: Path, *words: str) -> tuple[np.ndarray, list[list[str]]]:
 @pytest.mark.parametrize("name", DRIVES)
 def test_the_main_program_runs_on_pulses(name: str, tmp_path: Path) -> None:
     drive = DRIVES[name]
-    files = to_c(coil(), {"L": L, "R": R}, main=True, inputs={"u": drive})
+    files = closer(to_c(coil(), {"L": L, "R": R}, main=True, inputs={"u": drive}))
     assert sum(map(len, files["scenario.h"])) < 6000
     program = compiled(
         tmp_path, written(tmp_path, files), *(WARNED if name == "pulses" else ()), "-O0"
     )
     table, _ = _rows(program, "0.02", "1e-4", "located")
-    run = simulator(coil(), {"L": L, "R": R}).run(table[:, 0], {}, {"u": drive})
+    run = simulator(coil(), {"L": L, "R": R}).run(
+        table[:, 0], {}, {"u": drive}, rtol=1e-10, atol=1e-11
+    )
     assert table[:, 1] == pytest.approx(run["i"], abs=1e-8)
     held, _ = _rows(program, "0.02", "1e-4", "located", "u=3")
     assert held[-1, 1] == pytest.approx(2.0 * -np.expm1(-0.02 * R / L), rel=1e-8)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
-from oracles.c_model import compiled, written
+from oracles.c_model import closer, compiled, written
 from oracles.exported import loaded
 from oracles.many import Many, bridge, chain, gearbox, stack
 
@@ -54,7 +54,7 @@ def run(method: str, backend: str, kind: Callable[..., Many], *size: int) -> Res
     case = made(kind, *size)[0]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        return ready(backend, kind, *size).run(case.times, {}, case.inputs, method)
+        return ready(backend, kind, *size).run(case.times, {}, case.inputs, method, 1e-10, 1e-11)
 
 
 def _agree(case: Many, found: Result, expected: Result, tolerance: float) -> None:
@@ -181,7 +181,7 @@ def test_exports_of_a_gearbox_step_alike_and_locate_its_events(tmp_path: Path) -
     times = np.arange(0, end + step / 2, 10 * step)
     module = loaded(to_python(equations, {}, inputs=case.inputs))
     stepped = module.simulate(times, {}, dict(case.inputs), step=step)
-    sources = written(tmp_path, to_c(equations, {}, main=True, inputs=case.inputs))
+    sources = written(tmp_path, closer(to_c(equations, {}, main=True, inputs=case.inputs)))
     program = str(compiled(tmp_path, sources, "-O1"))
     fixed = _columns([program, repr(end), repr(step)])
     located = _columns([program, "4", "0.05", "located"])
@@ -206,10 +206,11 @@ def test_forty_ports_go_into_exported_c_and_a_unit(tmp_path: Path) -> None:
         output=list(case.shown),
         output_interval=0.05,
     )
-    for found in (located, stepped):
+    # The unit keeps to the tolerances that it was written with.
+    for found, bound in ((located, 1e-8), (stepped, 1e-7)):
         for name in case.shown:
             off = np.abs(found[name] - expected[name]).max()
-            assert off <= 1e-8 * (np.ptp(expected[name]) + 1e-9), name
+            assert off <= bound * (np.ptp(expected[name]) + 1e-9), name
 
 
 def _columns(command: list[str]) -> dict[str, np.ndarray]:

@@ -128,7 +128,7 @@ def test_a_script_that_is_interrupted_keeps_its_finished_runs(tmp_path) -> None:
         ({"measures": {**MEASURES, "force": codegen.peak("F")}}, "measures"),
         ({"initial": {"F": 1.0}}, "initial"),
         ({"inputs": {"P": 1.0}}, "inputs"),
-        ({"rtol": 1e-8}, "settings"),
+        ({"rtol": 1e-9}, "settings"),
     ],
 )
 def test_the_folder_of_another_sweep_is_refused(tmp_path, change, what: str) -> None:
