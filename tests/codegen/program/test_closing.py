@@ -135,8 +135,10 @@ def test_a_law_over_a_dependent_storage_is_refused() -> None:
     nodes = [bg.Zero("n"), bg.R("plate"), bg.C("c", "C"), bg.I("m", "m")]
     equations = bg.derive(bond_graph(nodes, "n>plate n>c n>m"))
     with pytest.raises(bg.DependentSourceError, match=r"'plate'.*dependent storage.*gives='flow'"):
-        lower(equations, {"plate": "b*f_plate"}, ["C", "m", "b"])
-    # Dry friction goes either way: it gives its flow there, and the compliance is a state.
+        lower(equations, {"plate": "b*f_plate**2"}, ["C", "m", "b"])
+    # Turned round, a law gives its flow there, and the compliance is a state; so with dry friction.
+    turned = lower(equations, {"plate": "b*f_plate"}, ["C", "m", "b"])
+    assert [state.name for state in turned.states] == ["e_c", "f_m"]
     program = lower(equations, {"plate": bg.DryFriction("F")}, ["C", "m", "F"])
     assert [state.name for state in program.states] == ["e_c", "f_m"]
     assert [port.slides for port in program.friction] == [True, True]

@@ -17,7 +17,7 @@ PAGE = Path(__file__).parents[3] / "docs" / "limits.md"
 
 LIMITS = {
     r"a value depends on \w+, which depends on that value at once": "follows from that value at once",
-    r"the law at '.*' drives a dependent storage": "cannot close a port that drives a dependent storage",
+    r"the law at '.*' drives a dependent storage": "does not close a port that drives a dependent storage",
     r"a value depends on \w+, which a law gives": "A value whose rate counts",
     r"a value depends on \w+, which shows what": "A value whose rate counts",
     r"has derivative causality and follows the time itself": "that follows a source of the time alone",
