@@ -17,6 +17,7 @@ def _valve(value: str) -> nx.DiGraph:
     return bond_graph(nodes, "force>mass>m mass>b")
 
 
+@pytest.mark.usefixtures("closely")
 def test_a_name_beside_a_parameter_is_an_input() -> None:
     """A drag that doubles at 20 s: 3 (1 - exp(-t/2)), then on to 1.5."""
     simulator = codegen.simulator(bg.derive(_valve("b*(1 + opening)")), {"m": 2, "b": 1})

@@ -84,6 +84,7 @@ def _cases() -> list[tuple[str, str, str]]:
     ]
 
 
+@pytest.mark.usefixtures("closely")
 @pytest.mark.parametrize(("name", "scenario", "method"), _cases())
 def test_methods_that_locate_events_agree(
     name: str,

@@ -61,6 +61,7 @@ def _ready(damper: float, backend: str) -> codegen.Simulator:
     return codegen.simulator(equations, numbers, {"tire_1": "0*omega_t1"}, backend)
 
 
+@pytest.mark.usefixtures("closely")
 @pytest.mark.parametrize("damper", [0.0, 3.0])
 def test_no_corner_slips_through_an_explicit_step(damper: float) -> None:
     """Wherever in a step a corner is: one start in ten was off by more, one in a hundred a hundredfold."""
@@ -71,6 +72,7 @@ def test_no_corner_slips_through_an_explicit_step(damper: float) -> None:
         assert run["q_link_spring"] == pytest.approx(twist, abs=2e-8 * np.ptp(twist))
 
 
+@pytest.mark.usefixtures("closely")
 @pytest.mark.parametrize("backend", ["numpy", "c"])
 @pytest.mark.parametrize("method", ["DOP853", "Radau"])
 @pytest.mark.parametrize("damper", [0.0, 3.0])
