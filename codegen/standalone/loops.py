@@ -76,8 +76,10 @@ def searched(
         worst = float(np.abs(residual(amounts)).max(initial=0.0))
         if _solves(worst, amounts):
             return amounts, worst
-    found = None if partial is None else _by_parts(partial, len(open_y))
-    return found, worst
+    # A single law that rises is bracketed, or has no solution.
+    if partial is None or len(open_y) == 1:
+        return None, worst
+    return _by_parts(partial, len(open_y)), worst
 
 
 def _solves(worst: float, amounts: Array) -> bool:

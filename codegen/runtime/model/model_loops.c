@@ -169,7 +169,8 @@ int bg_solve_loop(bg_model *m, const bg_loop *loop)
         return s.status;
     memset(values, 0, sizeof values);
     newton(&s, values);
-    if (solves(&s, values) || by_parts(&s, values))
+    /* A single law that rises is bracketed, or has no solution. */
+    if (solves(&s, values) || (s.loop->count > 1 && by_parts(&s, values)))
         return s.status;
     return s.status != BG_OK ? s.status : BG_NO_SOLUTION;
 }

@@ -181,7 +181,7 @@ def test_exports_of_a_gearbox_step_alike_and_locate_its_events(tmp_path: Path) -
     times = np.arange(0, end + step / 2, 10 * step)
     module = loaded(to_python(equations, {}, inputs=case.inputs))
     stepped = module.simulate(times, {}, dict(case.inputs), step=step)
-    sources = written(tmp_path, closer(to_c(equations, {}, main=True, inputs=case.inputs)))
+    sources = written(tmp_path, to_c(equations, {}, main=True, inputs=case.inputs))
     program = str(compiled(tmp_path, sources, "-O1"))
     fixed = _columns([program, repr(end), repr(step)])
     located = _columns([program, "4", "0.05", "located"])
@@ -196,7 +196,8 @@ def test_exports_of_a_gearbox_step_alike_and_locate_its_events(tmp_path: Path) -
 def test_forty_ports_go_into_exported_c_and_a_unit(tmp_path: Path) -> None:
     """Both locate the chain's events as the simulator does."""
     (case, equations), expected = made(chain, 40), run("auto", "numpy", chain, 40)
-    sources = written(tmp_path, to_c(equations, {}, main=True, inputs=case.inputs))
+    files = closer(to_c(equations, {}, main=True, inputs=case.inputs))
+    sources = written(tmp_path, files)
     located = _columns([str(compiled(tmp_path, sources, "-O0")), "3", "0.05", "located"])
     unit = write_fmu(tmp_path / "chain.fmu", equations, {}, version="3.0", inputs=case.inputs)
     stepped = simulate_fmu(
