@@ -58,6 +58,7 @@ class Turning(sp.AtomicExpr):  # type: ignore[misc]
         """What a step of the search needs: law and slope, then all that is positive in the domain."""
         return [self.law, self.shown.slope, *self.shown.positive, *self.shown.domain]
 
+    @cached_property
     def solver(self) -> Callable[..., float]:
         """The place where the law has a value, of that and its parameters; no number where nowhere."""
         law = sp.lambdify([PLACE, *self.parameters], self.evaluated(), modules="math", cse=True)
@@ -93,7 +94,7 @@ class Inverse(Called):
     @property
     def numeric(self) -> Callable[..., float]:
         """Of the value and the parameters."""
-        return self.turning.solver()
+        return self.turning.solver
 
     @property
     def is_number(self) -> bool:

@@ -40,10 +40,12 @@ def place_where(law: Sloped, value: float) -> float:
     >>> place_where(lambda x: (math.tanh(x), 1 - math.tanh(x)**2), 2.0)
     nan
     """
-    x = near = beginning(law)
-    off, slope = off_at(law, near, value)
+    if not math.isfinite(value):
+        return math.nan
+    near, off, slope = beginning(law, value)
     if not math.isfinite(off):
         return math.nan
+    x = near
     below, rises, there = off < 0.0, slope > 0.0, False
     far = math.copysign(math.inf, 1.0 if rises == below else -1.0)
     last = math.inf
@@ -72,15 +74,17 @@ def place_where(law: Sloped, value: float) -> float:
     return math.nan
 
 
-def beginning(law: Sloped) -> float:
-    """A place at which the law has a value."""
-    if not math.isnan(off_at(law, 0.0, 0.0)[0]):
-        return 0.0
+def beginning(law: Sloped, value: float) -> tuple[float, float, float]:
+    """A place at which the law has a value, how far it is beyond the one that is sought, and its slope."""
+    off, slope = off_at(law, 0.0, value)
+    if not math.isnan(off):
+        return 0.0, off, slope
     for power in range(POWERS):
         for place in (2.0**-power, 2.0**power, -(2.0**-power), -(2.0**power)):
-            if not math.isnan(off_at(law, place, 0.0)[0]):
-                return place
-    return math.nan
+            off, slope = off_at(law, place, value)
+            if not math.isnan(off):
+                return place, off, slope
+    return math.nan, math.nan, math.nan
 
 
 def off_at(law: Sloped, x: float, value: float) -> tuple[float, float]:

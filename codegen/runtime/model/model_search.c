@@ -31,18 +31,18 @@ static double off_at(const bg_sought *of, double x, double *slope)
     return NAN;
 }
 
-/* A place at which the law has a value. */
-static double beginning(const bg_sought *of)
+/* A place at which the law has a value, how far that is beyond the one sought, and the slope. */
+static double beginning(const bg_sought *of, double *off, double *slope)
 {
-    double slope = NAN, off = off_at(of, 0.0, &slope);
-    if (off == off)
+    *off = off_at(of, 0.0, slope);
+    if (*off == *off)
         return 0.0;
     for (int power = 0; power < POWERS; power++) {
         const double small = ldexp(1.0, -power), large = ldexp(1.0, power);
         const double places[] = {small, large, -small, -large};
         for (int at = 0; at < 4; at++) {
-            off = off_at(of, places[at], &slope);
-            if (off == off)
+            *off = off_at(of, places[at], slope);
+            if (*off == *off)
                 return places[at];
         }
     }
@@ -71,7 +71,10 @@ static double middle(double a, double b)
 double bg_searched(bg_law law, double value, const double *a)
 {
     const bg_sought of = {law, a, value};
-    double near = beginning(&of), x = near, slope = NAN, off = off_at(&of, near, &slope);
+    if (value - value != 0.0)
+        return NAN;
+    double off = NAN, slope = NAN;
+    double near = beginning(&of, &off, &slope), x = near;
     const int below = off < 0.0, rises = slope > 0.0;
     double far = rises == below ? HUGE_VAL : -HUGE_VAL, last = HUGE_VAL;
     int there = 0;
