@@ -1,14 +1,18 @@
 """How many real roots an expression of one name has: exactly where it is rational, else by bounds."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
+import mpmath
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.errors import SimulationError
 from codegen.inputs.branches import crossings, known, smooth_parts
 from codegen.tuning import TUNING
+
+Exact = Callable[[mpmath.mpf], mpmath.mpf]
 
 DIGITS = 40
 """Of coefficients that are no rationals; roots closer than the rounding of half as many count as one."""
@@ -46,8 +50,21 @@ def roots_of(expr: sp.Expr, name: sp.Symbol) -> Roots | None:
         return None
     if expr.is_rational_function(name):
         return _of_fraction(expr, name)
-    expr = expr.xreplace({name: TIME})
+    expr = _numbers_told(expr.xreplace({name: TIME}))
     return _of_parts(expr) if known(expr) else None
+
+
+def _numbers_told(expr: sp.Expr) -> sp.Expr:
+    """With what is a number, but no rational one, by its digits: terms that differ in it alone become one."""
+    told: dict[sp.Basic, sp.Basic] = {}
+    left = [expr]
+    while left:
+        part = left.pop()
+        if not isinstance(part, sp.Expr) or not part.is_number:
+            left += part.args
+        elif not part.is_Rational:
+            told[part] = sp.N(part, DIGITS)
+    return expr.xreplace(told)
 
 
 def _of_fraction(expr: sp.Expr, name: sp.Symbol) -> Roots | None:
@@ -75,13 +92,14 @@ def _of_parts(expr: sp.Expr) -> Roots:
     parts = [part for a, b in pairwise(ENDS) for part in _parts(expr, a, b)]
     if any(part == 0 for _, _, part in parts):
         return Roots(2, (), (ENDS[0], ENDS[-1]))
-    for a, b, part in parts:
-        found += [place for place in _crossings(part, a, b) if _changes(part, part, place)]
-    for (_, end, left), (begin, _, right) in pairwise(parts):
-        if begin == end and _changes(left, right, end):
+    values = [_with_digits(part) for _, _, part in parts]
+    for (a, b, part), value in zip(parts, values, strict=True):
+        found += [place for place in _crossings(part, a, b) if _changes(value, value, place)]
+    for k, ((_, end, _), (begin, _, _)) in enumerate(pairwise(parts)):
+        if begin == end and _changes(values[k], values[k + 1], end):
             found.append(end)
-    values = [b for a, b in pairwise([2 * ENDS[0], *sorted(found)]) if b - a > 10 * TUNING.beside]
-    return Roots(len(values), tuple(values), (ENDS[0], ENDS[-1]))
+    roots = [b for a, b in pairwise([2 * ENDS[0], *sorted(found)]) if b - a > 10 * TUNING.beside]
+    return Roots(len(roots), tuple(roots), (ENDS[0], ENDS[-1]))
 
 
 def _parts(expr: sp.Expr, begin: float, end: float) -> list[tuple[float, float, sp.Expr]]:
@@ -101,11 +119,21 @@ def _crossings(expr: sp.Expr, begin: float, end: float) -> list[float]:
         return []
 
 
-def _changes(left: sp.Expr, right: sp.Expr, place: float) -> bool:
+def _with_digits(part: sp.Expr) -> Exact:
+    """The function of an expression of ``t`` in numbers of `DIGITS` digits."""
+    found: Exact = sp.lambdify(TIME, part, "mpmath", cse=True)
+    return found
+
+
+def _changes(left: Exact, right: Exact, place: float) -> bool:
     """Whether the sign changes across a place by way of zero, not by a jump or a pole: with many digits."""
-    at, off = sp.Rational(place), sp.Rational(TUNING.beside)
-    pairs = ((left, at - off), (right, at + off), (left, at), (right, at))
-    a, b, *middle = (sp.N(part.subs(TIME, where), DIGITS) for part, where in pairs)
-    if not (a.is_real and b.is_real and all(value.is_real for value in middle)):
-        return False
-    return bool(a * b < 0 and max(map(abs, middle)) <= TUNING.pole * (abs(a) + abs(b)))
+    with mpmath.workdps(DIGITS):
+        at, off = mpmath.mpf(place), mpmath.mpf(TUNING.beside)
+        try:
+            sides = a, b = left(at - off), right(at + off)
+            middle = left(at), right(at)
+        except NONE:
+            return False
+        if any(mpmath.im(one) or not mpmath.isfinite(one) for one in (*sides, *middle)):
+            return False
+        return bool(a * b < 0 and max(map(abs, middle)) <= TUNING.pole * (abs(a) + abs(b)))
