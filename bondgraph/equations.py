@@ -14,8 +14,6 @@ from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.structure import Port, PortRow
 from bondgraph.reduce.switch_port import SwitchPort
-from bondgraph.show.display import equations_text
-from bondgraph.show.latex import notebook_latex
 from bondgraph.tables.record import Sampled
 
 LARGEST_REPR = 100
@@ -60,8 +58,13 @@ class StateEquations:
     reduction: Reduction = field(repr=False)
 
     def __str__(self) -> str:
-        """Matrices side by side, else row by row; of large systems names, sizes and places of entries."""
-        return equations_text(self)
+        """The whole equations: matrices, else row by row; laws and sources; and these put in.
+
+        Of large systems names, sizes and places of entries.
+        """
+        from bondgraph.show.whole import whole_text
+
+        return whole_text(self)
 
     def __repr__(self) -> str:
         """Names and matrices; of a large system how many there are."""
@@ -72,6 +75,8 @@ class StateEquations:
         return f"StateEquations({', '.join(f'{part}={getattr(self, part)}' for part in parts)})"
 
     def _repr_latex_(self) -> str:
+        from bondgraph.show.latex import notebook_latex
+
         return notebook_latex(self)
 
     @property
@@ -93,6 +98,11 @@ class StateEquations:
             if start is not None and state is not None:
                 told[state] = start
         return told
+
+    @property
+    def further_states(self) -> tuple[sp.Symbol, ...]:
+        """States that no row of A has, in declaration order: those of laws, and integrals."""
+        return self.reduction.structure.states_of_laws
 
     @property
     def tables(self) -> tuple[Sampled, ...]:

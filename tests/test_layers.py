@@ -15,8 +15,8 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 ORDER = {
-    "bondgraph": "errors writing tables algebra inverses declare causality reduce show equations derive "
-    "analyse explaining drawing files",
+    "bondgraph": "errors writing tables algebra inverses declare causality reduce equations derive "
+    "analyse show explaining drawing files",
     "codegen": "tuning standalone fixed stops numbers inputs targets supplied program model ports straight "
     "modes corners instants energy runs pictures record plots analysis c engine simulator simulate trim "
     "packing family batch abreast sweeps python switched sparse fmu exports",
@@ -27,8 +27,8 @@ ORDER = {
 
 FOLDERS = [f"{package}.{name}" for package, names in ORDER.items() for name in names.split()]
 
-DISPLAY = re.compile(r"_repr_[a-z]+_")
-"""What a notebook calls: these methods of a record may import the drawing of it."""
+DISPLAY = re.compile(r"_repr_[a-z]+_|__str__")
+"""What `print` and a notebook call: these methods of a record may import the showing of it."""
 
 MOST_FILES = 20
 """In one folder."""

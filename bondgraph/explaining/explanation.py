@@ -16,13 +16,13 @@ from bondgraph.explaining.inertias import inertia_step
 from bondgraph.explaining.layout import MOST_LINES
 from bondgraph.explaining.momenta import momenta
 from bondgraph.explaining.primitives import junctions_step, laws_step, storages_step
-from bondgraph.explaining.records import Step, equation, numbered
+from bondgraph.explaining.records import Step, numbered
 from bondgraph.explaining.strokes_told import causality_step
 from bondgraph.explaining.text import text_of
 from bondgraph.explaining.typesetting import latex_of, markdown_of
+from bondgraph.explaining.whole import whole_steps
 from bondgraph.reduce.junction import junction_structure
 from bondgraph.reduce.opened import opened
-from bondgraph.show.display import rows_of_terms
 
 
 @dataclass(frozen=True)
@@ -94,5 +94,4 @@ def _steps(causal: CausalGraph, result: StateEquations) -> Iterator[Step]:
     yield dependent_step(reduction, held)
     yield balances_step(reduction, held, shown)
     yield inertia_step(result)
-    rows = (equation(*row) for row in rows_of_terms(result))
-    yield Step("result", "Collected", (), tuple(rows))
+    yield from whole_steps(result)

@@ -61,17 +61,26 @@ def heading(equations: StateEquations) -> tuple[str, ...]:
     """What is derived, and the names that the derivation is about."""
     structure = equations.reduction.structure
     dependent = [structure.ports[port].element.name for port in equations.reduction.dependent]
-    goal = formula(equations) or "no equations: there is neither a state nor an output"
+    further = equations.further_states
+    goal = formula(equations) or _rates_of(len(further))
     lines = [
         f"From a bond graph of {counted(len(structure.elements), 'node')} and "
         f"{counted(len(structure.bonds), 'bond')} to {goal}"
     ]
     for count, what, names in (
         (len(equations.states), "state", equations.states),
+        (len(further), "state of laws and detectors", further),
         (len(equations.inputs), "input", equations.inputs),
         (len(equations.outputs), "output", equations.outputs),
         (len(dependent), "dependent storage", dependent),
     ):
         if count:
-            lines.append(f"{counted(count, what)}: {listed(list(names))}")
+            many = what.replace("state", "states", 1) if "state of" in what else None
+            lines.append(f"{counted(count, what, many)}: {listed(list(names))}")
     return tuple(lines)
+
+
+def _rates_of(count: int) -> str:
+    if not count:
+        return "no equations: there is neither a state nor an output"
+    return f"the {'rate' if count == 1 else 'rates'} of {counted(count, 'state')}"

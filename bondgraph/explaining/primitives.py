@@ -7,15 +7,14 @@ import sympy as sp
 from bondgraph.causality.assignments import Assignment
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations
-from bondgraph.declare.elements import OTHER, Reset
+from bondgraph.declare.elements import OTHER
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.explaining.momenta import Momenta
 from bondgraph.explaining.records import Equation, Step, equation
 from bondgraph.reduce.sorting import Reduction, detects
-from bondgraph.reduce.structure import Port
-from bondgraph.reduce.switch_port import SwitchPort
-from bondgraph.show.sums import plain, rate, split
+from bondgraph.show.sums import rate, split
+from bondgraph.show.ways import rubbing, switching
 
 
 def storages_step(reduction: Reduction, momenta: Momenta) -> Step:
@@ -59,23 +58,9 @@ def laws_step(equations: StateEquations, signals: Sequence[Assignment]) -> Step:
         if isinstance(law, ExpressionLaw):
             lines.append(equation(port.given, law.expression, node=port.element.name))
         elif isinstance(law, DryFriction):
-            sentences.append(f"{port.element.name}: dry friction, {_rubbing(port, law)}")
-    sentences += map(_switch, equations.switches)
+            sentences.append(rubbing(port, law))
+    sentences += map(switching, equations.switches)
     return Step("laws", _title_of_laws(equations), tuple(sentences), tuple(lines))
-
-
-def _rubbing(port: Port, law: DryFriction) -> str:
-    """What dry friction does, by what it gives."""
-    if port.gives == "flow":
-        level = law.level * law.curve
-        return (
-            f"{port.given} = 0 while {port.received} stays within {level} either way; slipping it keeps "
-            f"{port.received} there"
-        )
-    return (
-        f"{port.given} opposes the slip {port.received} with at most {law.level} times its curve "
-        f"{law.curve}"
-    )
 
 
 def _title_of_laws(equations: StateEquations) -> str:
@@ -87,43 +72,6 @@ def _title_of_laws(equations: StateEquations) -> str:
     return (
         f"{listed} and {what[-1]}; what {' and '.join(what)} give stays an input of the equations"
     )
-
-
-def _switch(one: SwitchPort) -> str:
-    """Both ways of a switch: what it gives, what it keeps at zero, and what changes it over."""
-    given, received = one.port.given, one.port.received
-    free = f"it gives {given} = 0"
-    holds = f"it keeps {received} = 0 by what {given} that takes"
-    on, off = (holds, free) if one.held == "on" else (free, holds)
-    what = "an ideal switch" if one.gap is None else "a stop"
-    text = (
-        f"{one.name}: {what}; on, {on}, and turns off as {plain(one.off)} rises above zero; "
-        f"off, {off}, and turns on as {plain(one.on)} rises above zero"
-    )
-    text += "".join(map(_reset, one.switch.resets))
-    if not one.side:
-        return text
-    least, most = ("negative", "positive") if one.side > 0 else ("positive", "negative")
-    if one.gap is not None:
-        return f"{text}; {_bound(one)}"
-    return f"{text}; so {received} is never {least} and {given} never {most}"
-
-
-def _reset(one: Reset) -> str:
-    """What a state becomes."""
-    when = "at each impact" if one.event == "hit" else f"as it turns {one.event}"
-    return f"; {when} {one.state} becomes {plain(one.value)}"
-
-
-def _bound(one: SwitchPort) -> str:
-    """What a stop sees to."""
-    pushes = one.side if one.gives == "effort" else -one.side
-    never = "positive" if pushes > 0 else "negative"
-    text = f"so {plain(one.gap)} is never negative and {one.port.element.effort} never {never}"
-    bounce = one.switch.restitution
-    if not bounce:
-        return text
-    return f"{text}, and what meets it is thrown back with {plain(bounce)} times its speed"
 
 
 def junctions_step(

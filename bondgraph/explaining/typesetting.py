@@ -9,7 +9,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.explaining.layout import first_few, fits, heading, shortened
 from bondgraph.explaining.records import Equation, Formula, Step
 from bondgraph.show.display import MOST_STATES
-from bondgraph.show.latex import latex, notebook_latex
+from bondgraph.show.latex_matrices import matrices_latex, notebook_matrices
 from bondgraph.show.sums import Sum, latex_pieces, typeset
 
 LONGEST_LINE = 6
@@ -78,7 +78,7 @@ def markdown_of(steps: Sequence[Step], result: StateEquations, limit: int | None
         for formula in step.formulas:
             text = _formula(formula, fits(result, limit))
             lines += [rf"$${text} \qquad \text{{({formula.number})}}$$", ""]
-    return "\n".join([*lines, notebook_latex(result), ""])
+    return "\n".join([*lines, notebook_matrices(result), ""])
 
 
 def escaped(text: str) -> str:
@@ -160,6 +160,5 @@ def _formula(formula: Formula, matrices: bool) -> str:
 
 def _ending(result: StateEquations) -> list[str]:
     """The equations in matrices, while these can be read."""
-    if len(result.states) > MOST_STATES:
-        return []
-    return [r"\begin{gather*}", latex(result), r"\end{gather*}", ""]
+    text = matrices_latex(result) if len(result.states) <= MOST_STATES else ""
+    return [r"\begin{gather*}", text, r"\end{gather*}", ""] if text else []

@@ -1,17 +1,23 @@
-"""Equations as LaTeX."""
+"""The whole equations as LaTeX: the matrices, what stands beside them, and everything put in."""
 
-import sympy as sp
+from collections.abc import Iterable, Iterator
 
-from bondgraph.show.display import MOST_SIGNS, MOST_STATES, Matrices, structure
-from bondgraph.show.sums import typeset
+from bondgraph.equations import StateEquations
+from bondgraph.show.display import MOST_SIGNS
+from bondgraph.show.latex_matrices import is_readable, matrices_latex, notebook_matrices
+from bondgraph.show.statements import Statement, statements
+from bondgraph.show.sums import latex_pieces
+from bondgraph.show.ways_latex import ways_latex
+from bondgraph.show.whole import PUT_IN, TOO_LONG, put_in
 
-RATE = r"\frac{d}{dt}"
+LONGEST_LINE = 6
+"""Terms on one line of a right side."""
 
 
-def latex(equations: Matrices) -> str:
-    r"""``A dx/dt = J x + B u + E du/dt`` and ``y = F x + D u + G du/dt``, zero matrices left out.
+def latex(equations: StateEquations) -> str:
+    r"""The matrices, then laws, sources and further states, and every equation with these put in.
 
-    Names are Greek where they are called so: ``omega_1`` is \omega_{1}.
+    Lines of amsmath's ``gathered``. Names are Greek where they are called so: ``omega_1`` is \omega_{1}.
 
     >>> import bondgraph as bg, networkx as nx
     >>> g = nx.DiGraph()
@@ -21,42 +27,41 @@ def latex(equations: Matrices) -> str:
     >>> print(left.replace("begin{matrix}", "").replace("end{matrix}", ""))
     \left[\J\\right]\frac{d}{dt}\left[\\omega\\right]
     """
-    x, u, y = (
-        typeset(sp.Matrix(names))
-        for names in (equations.states, equations.inputs, equations.outputs)
+    return " \\\\\n".join(part for part in (matrices_latex(equations), *beside(equations)) if part)
+
+
+def beside(equations: StateEquations) -> list[str]:
+    """What stands beside the matrices, as lines of LaTeX; none where these say all."""
+    found = statements(equations)
+    stated = _aligned((*found.given, *found.rates))
+    closed = _aligned(put_in(equations, found))
+    lines = [*([stated] if stated else []), *ways_latex(equations)]
+    if lines and (equations.states or equations.outputs):
+        lines.insert(0, r"\text{where}")
+    if len(closed) > MOST_SIGNS:
+        return [*lines, rf"\text{{{TOO_LONG}}}"]
+    return [*lines, rf"\text{{{PUT_IN}}}", closed] if closed else lines
+
+
+def _aligned(stated: Iterable[Statement]) -> str:
+    rows = [row for one in stated for row in _rows(one)]
+    body = " \\\\\n".join(rows)
+    return rf"\begin{{aligned}} {body} \end{{aligned}}" if rows else ""
+
+
+def _rows(one: Statement) -> Iterator[str]:
+    pieces = latex_pieces(one.right)
+    first, *more = (
+        " ".join(pieces[at : at + LONGEST_LINE]) for at in range(0, len(pieces), LONGEST_LINE)
     )
-    lines = []
-    if equations.states:
-        left = typeset(sp.Matrix(equations.A)) + RATE + x
-        lines.append(f"{left} = {_sum(equations, ('J', x), ('B', u), ('E', RATE + u))}")
-    if equations.outputs:
-        lines.append(f"{y} = {_sum(equations, ('F', x), ('D', u), ('G', RATE + u))}")
-    return " \\\\\n".join(lines)
+    yield f"{' '.join(latex_pieces(one.left_terms))} &= {first}"
+    yield from (rf"&\quad {line}" for line in more)
 
 
-def _sum(equations: Matrices, *terms: tuple[str, str]) -> str:
-    """The products of those matrices that are not zero."""
-    shown = [(getattr(equations, name), vector) for name, vector in terms]
-    products = [typeset(sp.Matrix(matrix)) + vector for matrix, vector in shown if matrix.todok()]
-    return " + ".join(products) or "0"
-
-
-def notebook_latex(equations: Matrices) -> str:
+def notebook_latex(equations: StateEquations) -> str:
     """The equations for a notebook's display; of large systems the sizes alone."""
-    if len(equations.states) <= MOST_STATES and len(equations.outputs) <= 2 * MOST_STATES:
+    if is_readable(equations):
         text = latex(equations)
-        if len(text) <= MOST_SIGNS:
-            return rf"$$\begin{{gathered}} {text} \end{{gathered}}$$"
-    counts = {name: len(getattr(equations, name).todok()) for name in "AJBEFDG"}
-    sizes = r",\; ".join(
-        rf"{name} \in \mathbb{{R}}^{{{m.rows} \times {m.cols}}}\ (\text{{{counts[name]} entries}})"
-        for name in counts
-        if counts[name]
-        for m in [getattr(equations, name)]
-    )
-    return rf"$$\begin{{gathered}} {_structure(equations)} \\ {sizes} \end{{gathered}}$$"
-
-
-def _structure(equations: Matrices) -> str:
-    names = {"x'": r"\dot{x}", "u'": r"\dot{u}"}
-    return " ".join(names.get(word, word) for word in structure(equations).split())
+        if len(text) <= 4 * MOST_SIGNS:
+            return rf"$$\begin{{gathered}} {text} \end{{gathered}}$$" if text else ""
+    return notebook_matrices(equations)

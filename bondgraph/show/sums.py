@@ -1,5 +1,6 @@
 r"""Sums of factors times signals, written as a person would: as text for a terminal, and as LaTeX."""
 
+import decimal
 from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import Any
 
@@ -9,6 +10,9 @@ Term = tuple[sp.Expr, sp.Expr]
 """A factor and the signal it stands at; the signal is 1 where there is none."""
 
 Sum = tuple[Term, ...]
+
+LONG = 1000
+"""Fractions with denominators from here on are read more easily as decimals."""
 
 
 def rate(name: sp.Symbol) -> sp.Symbol:
@@ -39,13 +43,49 @@ def split(expr: sp.Expr, signals: Collection[sp.Symbol]) -> Sum:
     return tuple(sorted(terms, key=lambda term: _sign_and_size(term[0])[0]))
 
 
-def plain(expr: sp.Expr) -> str:
-    """An expression as text, powers with ``^``.
+def signed_terms(expr: sp.Expr) -> Sum:
+    """A sum's terms behind signs, positive ones first.
 
-    >>> plain(sp.Symbol("i")**2/4)
-    'i^2/4'
+    >>> x, y = sp.symbols("x y")
+    >>> signed_terms(3*y - x**2)
+    ((1, 3*y), (-1, x**2))
     """
-    return str(sp.sstr(expr)).replace("**", "^")
+    one = sp.Integer(1)
+    terms = expr.as_ordered_terms() if expr != 0 else []
+    signed = [(-one, -term) if term.could_extract_minus_sign() else (one, term) for term in terms]
+    return tuple(sorted(signed, key=lambda term: bool(term[0] < 0)))
+
+
+def plain(expr: sp.Expr) -> str:
+    """An expression as text, powers with ``^``; numbers that were told as decimals are shown so.
+
+    >>> plain(sp.Symbol("i")**2/4), plain(sp.Rational("0.12345")*sp.Symbol("i"))
+    ('i^2/4', '0.12345*i')
+    """
+    return str(sp.sstr(_decimal(expr), full_prec=False)).replace("**", "^")
+
+
+def _decimal(expr: Any) -> Any:
+    """With exact decimals for fractions of long denominators that have them."""
+    fractions = {one for one in expr.atoms(sp.Rational) if one.q >= LONG and _is_decimal(one.q)}
+    told = {
+        one: sp.Symbol(_digits(one)) if one > 0 else -sp.Symbol(_digits(-one)) for one in fractions
+    }
+    return expr.xreplace(told) if told else expr
+
+
+def _is_decimal(number: int) -> bool:
+    for factor in (2, 5):
+        while number % factor == 0:
+            number //= factor
+    return number == 1
+
+
+def _digits(value: sp.Rational) -> str:
+    """All its digits, by a power of ten where they would begin far off."""
+    with decimal.localcontext(prec=400):
+        told = (decimal.Decimal(value.p) / decimal.Decimal(value.q)).normalize()
+    return str(told)
 
 
 def typeset(expr: Any) -> str:
@@ -55,7 +95,7 @@ def typeset(expr: Any) -> str:
     \dot{\omega}_{1} e_{left,J}
     """
     names = {name: _typeset_name(name.name) for name in expr.free_symbols}
-    return str(sp.latex(expr, symbol_names=names))
+    return str(sp.latex(_decimal(expr), symbol_names=names))
 
 
 def _typeset_name(name: str) -> str:

@@ -101,7 +101,7 @@ def vanishes(expr: sp.Expr, seed: int = 1) -> bool:
 
 
 def result_rows(equations: bg.StateEquations) -> list[sp.Expr]:
-    """``A x' - J x - B u - E u'`` and ``y - F x - D u - G u'``, row by row."""
+    """``A x' - J x - B u - E u'``, integrals, and ``y - F x - D u - G u'``, row by row."""
     x, u = sp.Matrix(equations.states), sp.Matrix(equations.inputs)
     dx, du = (
         sp.Matrix([sp.Symbol(f"{name}'") for name in names])
@@ -112,7 +112,12 @@ def result_rows(equations: bg.StateEquations) -> list[sp.Expr]:
     upper = equations.A * dx - equations.J * x - equations.B * u - equations.E * du
     lower = sp.Matrix(k, 1, list(equations.outputs))
     lower -= equations.F * x + equations.D * u + equations.G * du
-    return [*upper, *lower]
+    integrals = [sp.Symbol(f"{name}'") - signal for name, signal in equations.integrals.items()]
+    named = equations.with_readings(equations.integrals.values()).readings
+    read = {
+        name: sp.Matrix([[row.F.get(j, 0) for j in range(n)]]).dot(x) for name, row in named.items()
+    }
+    return [*upper, *(row.xreplace(read) for row in integrals), *lower]
 
 
 def solved_rates(equations: bg.StateEquations) -> Mapping[sp.Symbol, sp.Expr]:

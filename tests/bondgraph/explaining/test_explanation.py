@@ -190,7 +190,9 @@ def _check_outputs(reader: Reader) -> set[sp.Symbol]:
     result = reader.result
     rates = {sp.Symbol(f"{name}'") for name in result.states}
     used: set[sp.Symbol] = set()
-    for name, row in zip(result.outputs, result_rows(result)[len(result.states) :], strict=True):
+    rows = result_rows(result)
+    lower = rows[len(rows) - len(result.outputs) :]
+    for name, row in zip(result.outputs, lower, strict=True):
         value = reader.value(name)
         if value.free_symbols & rates:
             used |= value.free_symbols & rates

@@ -1,0 +1,62 @@
+"""What has two ways, in words: switches and stops, on and off; dry friction, sticking and slipping."""
+
+import sympy as sp
+
+from bondgraph.declare.elements import Reset
+from bondgraph.declare.laws import SLIP, DryFriction
+from bondgraph.reduce.structure import Port
+from bondgraph.reduce.switch_port import SwitchPort
+from bondgraph.show.sums import plain
+
+
+def rubbing(port: Port, law: DryFriction) -> str:
+    """What dry friction does, by what it gives."""
+    curve = law.curve.xreplace({SLIP: sp.Symbol(f"|{port.received}|")})
+    text, level = f"{port.element.name}: dry friction; ", plain(law.level * curve)
+    if port.gives == "flow":
+        return (
+            f"{text}{port.given} = 0 while {port.received} stays within {level} either way; slipping it "
+            f"keeps {port.received} there"
+        )
+    at_rest = plain(law.level * law.breakaway)
+    return (
+        f"{text}{port.given} = sign({port.received})*{level} slipping; sticking, {port.received} = 0 by "
+        f"what {port.given} that takes, while |{port.given}| <= {at_rest}"
+    )
+
+
+def switching(one: SwitchPort) -> str:
+    """Both ways of a switch: what it gives, what it keeps at zero, and what changes it over."""
+    given, received = one.port.given, one.port.received
+    free = f"it gives {given} = 0"
+    holds = f"it keeps {received} = 0 by what {given} that takes"
+    on, off = (holds, free) if one.held == "on" else (free, holds)
+    what = "an ideal switch" if one.gap is None else "a stop"
+    text = (
+        f"{one.name}: {what}; on, {on}, and turns off as {plain(one.off)} rises above zero; "
+        f"off, {off}, and turns on as {plain(one.on)} rises above zero"
+    )
+    text += "".join(map(_reset, one.switch.resets))
+    if not one.side:
+        return text
+    least, most = ("negative", "positive") if one.side > 0 else ("positive", "negative")
+    if one.gap is not None:
+        return f"{text}; {_bound(one)}"
+    return f"{text}; so {received} is never {least} and {given} never {most}"
+
+
+def _reset(one: Reset) -> str:
+    """What a state becomes."""
+    when = "at each impact" if one.event == "hit" else f"as it turns {one.event}"
+    return f"; {when} {one.state} becomes {plain(one.value)}"
+
+
+def _bound(one: SwitchPort) -> str:
+    """What a stop sees to."""
+    pushes = one.side if one.gives == "effort" else -one.side
+    never = "positive" if pushes > 0 else "negative"
+    text = f"so {plain(one.gap)} is never negative and {one.port.element.effort} never {never}"
+    bounce = one.switch.restitution
+    if not bounce:
+        return text
+    return f"{text}, and what meets it is thrown back with {plain(bounce)} times its speed"

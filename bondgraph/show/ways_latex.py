@@ -1,0 +1,51 @@
+"""What has two ways as LaTeX: what holds in each of them, and until when."""
+
+from collections.abc import Iterator
+
+import sympy as sp
+
+from bondgraph.declare.laws import SLIP, DryFriction
+from bondgraph.equations import StateEquations
+from bondgraph.reduce.structure import Port
+from bondgraph.reduce.switch_port import SwitchPort
+from bondgraph.show.sums import typeset
+
+
+def ways_latex(model: StateEquations) -> Iterator[str]:
+    """A formula for each dry friction and each switch."""
+    for port in model.ports:
+        law = model.laws.get(port.element.name)
+        if isinstance(law, DryFriction):
+            yield _cases(_friction(port, law))
+    for one in model.switches:
+        yield _cases(_switch(one))
+        for reset in one.switch.resets:
+            when = "at each impact" if reset.event == "hit" else f"as it turns {reset.event}"
+            yield rf"{typeset(reset.state)} := {typeset(reset.value)} \quad \text{{{when}}}"
+
+
+def _cases(rows: Iterator[tuple[str, str]]) -> str:
+    body = r" \\ ".join(f"{left} & {when}" for left, when in rows)
+    return rf"\begin{{cases}} {body} \end{{cases}}"
+
+
+def _friction(port: Port, law: DryFriction) -> Iterator[tuple[str, str]]:
+    given, received = typeset(port.given), typeset(port.received)
+    if port.gives == "flow":
+        level = typeset(law.level * law.curve)
+        yield f"{given} = 0", rf"\text{{sticking, while }} |{received}| \leq {level}"
+        sign = rf"\operatorname{{sign}}\left({given}\right)"
+        yield f"{received} = {sign} {level}", r"\text{slipping}"
+        return
+    curve = law.curve.xreplace({SLIP: sp.Abs(port.received)})
+    level, at_rest = typeset(law.level * curve), typeset(law.level * law.breakaway)
+    yield f"{received} = 0", rf"\text{{sticking, while }} |{given}| \leq {at_rest}"
+    sign = rf"\operatorname{{sign}}\left({received}\right)"
+    yield f"{given} = {sign} {level}", r"\text{slipping}"
+
+
+def _switch(one: SwitchPort) -> Iterator[tuple[str, str]]:
+    given, received = f"{typeset(one.port.given)} = 0", f"{typeset(one.port.received)} = 0"
+    on, off = (received, given) if one.held == "on" else (given, received)
+    yield on, rf"\text{{on, until }} {typeset(one.off)} > 0"
+    yield off, rf"\text{{off, until }} {typeset(one.on)} > 0"

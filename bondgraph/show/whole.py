@@ -1,0 +1,107 @@
+"""The whole equations as text: the matrices, what stands beside them, and everything put in."""
+
+from collections.abc import Iterator, Sequence
+
+import sympy as sp
+
+from bondgraph.declare.laws import DryFriction
+from bondgraph.equations import StateEquations
+from bondgraph.show.display import (
+    MOST_SIGNS,
+    WIDTH,
+    counted,
+    equations_text,
+    listed,
+    wrapped,
+    written,
+)
+from bondgraph.show.putting_in import closed
+from bondgraph.show.statements import Statement, Statements, statements
+from bondgraph.show.ways import rubbing, switching
+
+PUT_IN = "with laws and sources put in"
+
+TOO_LONG = "put into one another, laws and sources are too long to be read here"
+
+
+def whole_text(model: StateEquations) -> str:
+    """Never empty where there is a state, an output, a law or a switch.
+
+    >>> import bondgraph as bg, networkx as nx
+    >>> g = nx.DiGraph()
+    >>> g.add_nodes_from([bg.One("j"), bg.I("m", "m", flow="v"), bg.C("k", law="k*q_k**3")])
+    >>> g.add_edges_from([("j", "m"), ("j", "k")])
+    >>> print(whole_text(bg.derive(g)))
+    [ m ] [v'] = [ -1 ] [e_k]
+    <BLANKLINE>
+    where
+      e_k = k*q_k^3
+      q_k' = v
+    <BLANKLINE>
+    with laws and sources put in
+      m*v' = -k*q_k^3
+      q_k' = v
+    """
+    found = statements(model)
+    parts = (equations_text(model), *map("\n".join, (_beside(model, found), _put_in(model, found))))
+    return "\n\n".join(part for part in parts if part)
+
+
+def ways(model: StateEquations) -> list[str]:
+    """A sentence for each dry friction and each switch: both of its ways."""
+    frictions = [
+        rubbing(port, law)
+        for port in model.ports
+        if isinstance(law := model.laws.get(port.element.name), DryFriction)
+    ]
+    return [*frictions, *map(switching, model.switches)]
+
+
+def together(loop: Sequence[sp.Symbol]) -> str:
+    """What is told of names that determine one another.
+
+    >>> together(sp.symbols("e f"))
+    'e and f follow from one another: they are solved together'
+    """
+    *first, last = map(str, loop)
+    if not first:
+        return f"{last} follows from itself: it is solved for"
+    return f"{', '.join(first)} and {last} follow from one another: they are solved together"
+
+
+def put_in(model: StateEquations, found: Statements) -> tuple[Statement, ...]:
+    """Every state's and output's equation with laws and sources put in; none where that changes none."""
+    rows, bare = closed(model, found), closed(model, Statements((), found.rates, ()))
+    return () if rows == bare else rows
+
+
+def _beside(model: StateEquations, found: Statements) -> Iterator[str]:
+    lines = [line for one in (*found.given, *found.rates) for line in _lines(one)]
+    sentences = [*map(together, found.loops), *ways(model)]
+    for text in sentences:
+        first, *rest = text.split()
+        lines += wrapped([f"  {first}", *rest], WIDTH, "    ")
+    if lines and (model.states or model.outputs):
+        yield "where"
+    if sum(map(len, lines)) <= MOST_SIGNS:
+        yield from lines
+        return
+    for what, names in (
+        ("law or signal", [one.left for one in found.given]),
+        ("further state", [one.left for one in found.rates]),
+    ):
+        yield f"  {counted(len(names), what, f'{what}s')}: {listed(names)}"
+    yield f"  {counted(len(sentences), 'switch or friction', 'switches and frictions')}"
+
+
+def _put_in(model: StateEquations, found: Statements) -> Iterator[str]:
+    lines = [line for one in put_in(model, found) for line in _lines(one)]
+    if sum(map(len, lines)) > MOST_SIGNS:
+        yield TOO_LONG
+    elif lines:
+        yield PUT_IN
+        yield from lines
+
+
+def _lines(one: Statement) -> list[str]:
+    return [f"  {line}" for line in written(one.left_terms, one.right)]
