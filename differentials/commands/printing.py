@@ -12,6 +12,9 @@ import numpy as np
 import sympy as sp
 
 import bondgraph as bg
+from bondgraph.show.putting_in import closed
+from bondgraph.show.statements import statements
+from bondgraph.show.whole import ways
 from bondgraph.writing import made_folder
 
 MATRICES = "AJBEFDG"
@@ -58,7 +61,19 @@ def equations_data(equations: bg.StateEquations) -> dict[str, object]:
         name: [[str(entry) for entry in row] for row in getattr(equations, name).tolist()]
         for name in MATRICES
     }
-    return {**names, **matrices}
+    return {**names, **matrices, **_beside(equations)}
+
+
+def _beside(equations: bg.StateEquations) -> dict[str, object]:
+    """What stands beside the matrices, and all equations with laws and sources put in."""
+    found = statements(equations)
+    return {
+        "given": {str(one.left): str(one.value) for one in found.given},
+        "rates": {str(one.left): str(one.value) for one in found.rates},
+        "together": [list(map(str, loop)) for loop in found.loops],
+        "ways": ways(equations),
+        "put_in": {str(one.left): str(one.value) for one in closed(equations, found)},
+    }
 
 
 def causality_data(causal: bg.CausalGraph) -> dict[str, object]:

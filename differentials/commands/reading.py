@@ -110,12 +110,13 @@ def _open_text(subject: Subject, derived: bg.StateEquations) -> str:
     given = [f"{port.given} from {port.element.name}" for port in derived.ports
              if port.element.name not in derived.laws and port.element.switch is None]  # fmt: skip
     given += [f"{name} in values" for name in derived.reduction.structure.opened]
+    begun = (*derived.states, *derived.further_states)
     return "\n".join(
         [
             headed("To run it"),
             f"numbers (--set NAME=NUMBER):              {needed}",
             f"signals or laws (--input, --law):         {', '.join(given) or 'none'}",
-            f"starts (--initial STATE=NUMBER, else 0):  {', '.join(map(str, derived.states))}",
+            f"starts (--initial STATE=NUMBER, else 0):  {', '.join(map(str, begun))}",
         ]
     )
 

@@ -15,6 +15,9 @@ from click.testing import CliRunner
 
 import bondgraph as bg
 import codegen
+from bondgraph.show.putting_in import closed
+from bondgraph.show.statements import statements
+from codegen.numbers.lambdified import lambdified
 from codegen.tuning import TUNING
 from differentials.commands.app import app
 from oracles.exported import loaded
@@ -68,6 +71,36 @@ def _value(run: codegen.Result, name: str, source: str, h: float) -> float:
     """A signal in the middle, or of ``d_...`` its slope."""
     values = run[source]
     return float(values[4] if name == source else (values[5] - values[3]) / (2 * h))
+
+
+def whole(bench: Bench) -> None:
+    """All states are shown, of many how many; what is stated holds at one instant, rates by differences."""
+    equations = bench.kind.equations
+    states, found = [*equations.states, *equations.further_states], statements(equations)
+    text = str(equations)
+    if "entries that are not zero" in text:
+        assert f"{len(equations.states)} states" in text
+    else:
+        assert [name for name in states if f"{name}'" not in text] == []
+    for one in (*found.given, *found.rates, *closed(equations, found)):
+        sizes = [
+            abs(_number(bench, factor * part)) for factor, part in (*one.left_terms, *one.right)
+        ]
+        off = abs(_number(bench, one.left) - _number(bench, one.value))
+        assert off <= 1e-3 * max(sizes), f"{one.left} = {one.value}"
+
+
+def _number(bench: Bench, expr: sp.Expr) -> float:
+    """An expression at the instant; a name with a stroke is a rate."""
+    kind, h = bench.kind, CLOSE * bench.kind.end
+    names = sorted(expr.free_symbols, key=str)
+    known = {**kind.numbers, "t": kind.at}
+    values = [
+        known[name.name] if name.name in known
+        else _value(bench.about, name.name, name.name.removesuffix("'"), h)
+        for name in names
+    ]  # fmt: skip
+    return float(lambdified(names, expr)(*values))
 
 
 def latex(bench: Bench) -> None:
@@ -270,10 +303,11 @@ def trim(bench: Bench) -> None:
 
 ROUTES: Mapping[str, Route] = MappingProxyType(
     {
-        "explain": explain, "explicit": explicit, "latex": latex, "drawing": drawing, "JSON": json,
-        "GraphML": graphml, "numpy": numpy, "linearize": linearize, "trim": trim,
-        "sweep": sweep_numpy, "command line": commands, "to_python": to_python, "C, exact": c_exact,
-        "C, located": c_located, "sweep in C": sweep_c, "to_c, fixed steps": to_c_stepped,
+        "print": whole, "explain": explain, "explicit": explicit, "latex": latex,
+        "drawing": drawing, "JSON": json, "GraphML": graphml, "numpy": numpy,
+        "linearize": linearize, "trim": trim, "sweep": sweep_numpy, "command line": commands,
+        "to_python": to_python, "C, exact": c_exact, "C, located": c_located,
+        "sweep in C": sweep_c, "to_c, fixed steps": to_c_stepped,
         "to_c, located": to_c_located, "FMI 2 ME": _fmu("2.0", "ModelExchange"),
         "FMI 2 CS": _fmu("2.0", "CoSimulation"), "FMI 3 ME": _fmu("3.0", "ModelExchange"),
         "FMI 3 CS": _fmu("3.0", "CoSimulation"),
