@@ -21,7 +21,7 @@ from bondgraph.declare.validate import graph_of
 from bondgraph.equations import StateEquations
 from bondgraph.reduce.impulses import check_impulses
 from bondgraph.reduce.inertia import check_regular, inertia
-from bondgraph.reduce.inverses import by_inverses
+from bondgraph.reduce.inverses import by_inverses, with_states_told
 from bondgraph.reduce.junction import junction_structure
 from bondgraph.reduce.opened import opened
 from bondgraph.reduce.outputs import named_signals, shown_signals
@@ -109,7 +109,7 @@ def _equations(
     structure: JunctionStructure, show: Callable[[Reduction, Mapping[sp.Symbol, PortRow]], Shown]
 ) -> StateEquations:
     """The equations of a junction structure; ``show``: the outputs, told the named signals."""
-    reduction = reduce_ports(by_inverses(structure))
+    reduction = reduce_ports(with_states_told(by_inverses(structure)))
     structure, ports = reduction.structure, reduction.structure.ports
     A, balances = inertia(reduction)
     states = reduction.names

@@ -1,12 +1,13 @@
 """Text, numbers and sympy expressions become exact sympy expressions; nothing is ever evaluated as Python."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from numbers import Real
 
 import sympy as sp
 
 from bondgraph.algebra.atoms import MAX_DIGITS, MAX_EXPONENT, decimal, number, symbol
+from bondgraph.algebra.called import Called
 from bondgraph.algebra.functions import ALLOWED, FUNCTIONS, PARTS
 from bondgraph.algebra.lookups import Handle, Look
 from bondgraph.algebra.reading import Functions, read
@@ -104,7 +105,7 @@ def _check_parts(expr: sp.Expr, where: str) -> None:
     if isinstance(expr, sp.Symbol) and expr.is_commutative:
         symbol(expr.name, where)
         return
-    for part in sp.preorder_traversal(expr):
+    for part in _declared_parts(expr):
         if not isinstance(part, _PARTS) or part.is_commutative is False:
             raise ExpressionError(f"{where}: {shortened(str(part))} is not allowed; {ALLOWED}")
         if isinstance(part, sp.Symbol):
@@ -123,6 +124,16 @@ def _check_parts(expr: sp.Expr, where: str) -> None:
         raise ExpressionError(
             f"{where}: a denominator of {shortened(str(expr))} vanishes"
         ) from None
+
+
+def _declared_parts(expr: sp.Expr) -> Iterator[sp.Basic]:
+    """All parts but laws that were turned round: what these are made of was checked as it was declared."""
+    walk = sp.preorder_traversal(expr)
+    for part in walk:
+        if isinstance(part, Called) and not isinstance(part, Look):
+            walk.skip()
+        else:
+            yield part
 
 
 def _may_be_real(part: sp.Expr) -> bool:

@@ -108,12 +108,12 @@ def settled(
         return found[name]
 
     exact = {name: over_base(name, ()) for name in sorted(set(names) - base, key=str)}
-    return _replaced(structure, exact) if exact else structure
+    return replaced(structure, exact) if exact else structure
 
 
-def _replaced(
-    structure: JunctionStructure, exact: Mapping[sp.Symbol, sp.Expr]
-) -> JunctionStructure:
+def replaced(structure: JunctionStructure, exact: Mapping[sp.Symbol, sp.Expr]) -> JunctionStructure:
+    """The structure with expressions for names in all its values: of ports, of fields, in every row."""
+
     def row(entries: FixedRow) -> FixedRow:
         return fixed({j: entry.xreplace(exact) for j, entry in entries.items()})
 

@@ -7,7 +7,7 @@ import sympy as sp
 from references.build import bond_graph
 
 import bondgraph as bg
-from codegen import Sine, simulator
+from codegen import Ramp, Sine, simulator
 
 C1, q0, E0, e = sp.symbols("C1 q0 E0 e")
 JUNCTION = {"law": "E0*log(1 + q_diode/q0)", "inverse": "q0*(exp(e_diode/E0) - 1)"}
@@ -75,3 +75,32 @@ def test_what_is_no_inverse_is_refused(attributes: dict, message: str) -> None:
     nodes = [bg.Sf("i", "i"), bg.Zero("n"), bg.C("c", **attributes)]
     with pytest.raises(bg.StructureError, match=message):
         bg.derive(bond_graph(nodes, "i>n>c"))
+
+
+def test_what_a_law_holds_is_read_whatever_the_causality() -> None:
+    """A value, a law, friction's level and a switch that read a dependent storage's displacement.
+
+    At u = 2 the compliance ``e = q + q**3`` holds q = 1, at u = 10 it holds 2.
+    """
+    nodes = [bg.Se("u", "u"), bg.Zero("n"), bg.C("c", law="q_c + q_c**3"), bg.One("w"),
+             bg.R("R", "1 + q_c"), bg.R("by_law", law="(1 + q_c)*f_law", flow="f_law", effort="e_law"),
+             bg.One("v"), bg.TF("gear", "q_c"), bg.R("load", "1"),
+             bg.One("moved"), bg.I("m", "1", flow="y"), bg.R("rub", law=bg.DryFriction("3*q_c"))]  # fmt: skip
+    graph = bond_graph(nodes, "u>n>c n>w>R n>v>by_law n>gear>load n>moved>m moved>rub")
+    ready = simulator(bg.derive(graph), {})
+    for u, q in ((2.0, 1.0), (10.0, 2.0)):
+        run = ready.run([0.0, 0.1], inputs={"u": u})
+        assert run["f_R"][0] == pytest.approx(u / (1 + q))
+        assert run["f_law"][0] == pytest.approx(u / (1 + q))
+        assert run["e_load"][0] == pytest.approx(u / q)
+        # Held up to 3 q: at u = 2, not at 10.
+        assert run["y"][-1] == pytest.approx(max(0.0, 0.1 * (u - 3 * q)), abs=1e-9)
+
+
+def test_a_switch_may_read_what_a_dependent_law_holds() -> None:
+    """Off until q passes 1, where ``q + q**3`` is 2: at t = 2 of a ramp."""
+    nodes = [bg.Se("u", "u"), bg.Zero("n"), bg.C("c", law="q_c + q_c**3"), bg.One("w"),
+             bg.R("R", "1"), bg.Sw("s", on="q_c - 1", off="0.5 - q_c")]  # fmt: skip
+    ready = simulator(bg.derive(bond_graph(nodes, "u>n>c n>w>R w>s")), {})
+    run = ready.run(np.linspace(0, 3, 31), inputs={"u": Ramp(0.0, 1.0)})
+    assert [event.time for event in run.events] == pytest.approx([2.0], abs=1e-9)
