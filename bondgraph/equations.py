@@ -11,7 +11,7 @@ from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.errors import StructureError
 from bondgraph.reduce.record import Reading
-from bondgraph.reduce.sorting import Reduction
+from bondgraph.reduce.sorting import Reduction, held
 from bondgraph.reduce.structure import Port, PortRow
 from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.tables.record import Sampled
@@ -103,6 +103,12 @@ class StateEquations:
     def further_states(self) -> tuple[sp.Symbol, ...]:
         """States that no row of A has, in declaration order: those of laws, and integrals."""
         return self.reduction.structure.states_of_laws
+
+    @property
+    def held(self) -> Mapping[sp.Symbol, sp.Expr]:
+        """What storages hold that are no states: ``p_m``, ``q_C``, over their flows and efforts."""
+        taken = {*self.signals, *self.states, *self.inputs, *self.further_states, *self.parameters}
+        return MappingProxyType(held(self.reduction, taken))
 
     @property
     def tables(self) -> tuple[Sampled, ...]:

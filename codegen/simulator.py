@@ -19,7 +19,7 @@ from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
 from codegen.instants.equilibrium import equilibrium
 from codegen.model.sources import source_signals
-from codegen.model.starts import told_starts
+from codegen.model.starts import by_states, told_starts
 from codegen.modes.closed import ClosedModel
 from codegen.modes.rates import rates
 from codegen.numbers.arrays import Array, is_finite, is_number, read_only
@@ -222,10 +222,12 @@ class Simulator:
         return dict(zip(self.states, [*found.x.tolist(), *found.z.tolist()], strict=True))
 
     def starting(self, initial: Any) -> Any:
-        """These initial values, with declared ones where nothing else is told."""
-        if not self.closed.equations.starts or not isinstance(initial, Mapping):
+        """These initial values by states, with declared ones where nothing else is told."""
+        if not isinstance(initial, Mapping):
             return initial
-        return {**told_starts(self.closed.equations, self.closed.parameters), **initial}
+        equations, parameters = self.closed.equations, self.closed.parameters
+        told = by_states(equations, parameters, initial)
+        return {**told_starts(equations, parameters), **told} if equations.starts else told
 
     def sources(self, begin: float, end: float) -> list[Signal]:
         """What known sources do from ``begin`` to ``end`` [s]; their pieces follow those of the inputs."""

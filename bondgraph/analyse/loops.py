@@ -17,8 +17,7 @@ from bondgraph.reduce.inertia import inertia
 from bondgraph.reduce.junction import junction_structure
 from bondgraph.reduce.ports import reduce_ports
 from bondgraph.reduce.resistances import resistive_groups
-from bondgraph.reduce.sorting import Reduction
-from bondgraph.reduce.storages import field_row
+from bondgraph.reduce.sorting import Reduction, field_row
 
 
 @dataclass(frozen=True)

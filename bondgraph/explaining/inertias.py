@@ -8,8 +8,8 @@ from bondgraph.algebra.exact import Row, combined, matrix_of
 from bondgraph.algebra.residues import is_zero
 from bondgraph.equations import StateEquations
 from bondgraph.explaining.records import Factor, Formula, Step
-from bondgraph.reduce.sorting import Reduction
-from bondgraph.reduce.storages import field_row, stored_rate
+from bondgraph.reduce.sorting import Reduction, field_row
+from bondgraph.reduce.storages import stored_rate
 
 
 def inertia_step(equations: StateEquations) -> Step:

@@ -9,8 +9,7 @@ from bondgraph.algebra.exact import Row
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.names import energy_name
-from bondgraph.reduce.sorting import Reduction
-from bondgraph.reduce.storages import field_row
+from bondgraph.reduce.sorting import Reduction, field_row
 from bondgraph.show.sums import Sum
 
 

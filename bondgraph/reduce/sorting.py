@@ -1,6 +1,6 @@
 """`Reduction`: the ports of a junction structure, sorted into states, inputs and what follows from them."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -8,6 +8,8 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.exact import combined
+from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.declare.names import energy_name
 from bondgraph.reduce.motion import Motion
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import JunctionStructure, Port
@@ -95,3 +97,36 @@ def imposes(port: Port) -> bool:
     """Whether what the port gives is an input: of fixed causality, a switch's, or a law's if integral."""
     law = port.element.law is not None and port.integral and not port.element.by_inverse
     return _is_fixed(port) or port.element.lets_go or law
+
+
+def field_row(reduction: Reduction, port: int) -> list[tuple[int, sp.Expr]]:
+    """The ports of a storage's field with its matrix's entries; of a one-port itself and its value."""
+    element = reduction.structure.ports[port].element
+    if not element.row:
+        return [(port, element.constant)]
+    places = reduction.structure.places
+    return [(places[name], value) for name, value in element.row if value != 0]
+
+
+def held(reduction: Reduction, taken: Iterable[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:
+    """Momenta and displacements that are no states, over the flows and efforts of their storages.
+
+    Named as laws name theirs, ``p_m`` and ``q_C``, less what is ``taken``; of what is a state itself none.
+    """
+    names, found = {name.name for name in taken}, dict[sp.Symbol, sp.Expr]()
+    for at in sorted((*reduction.states, *reduction.dependent)):
+        element = reduction.structure.ports[at].element
+        law = element.law
+        if at in reduction.energies:
+            continue
+        told = law.state if isinstance(law, ExpressionLaw) else None
+        symbol = told or energy_name(element, names)
+        if element.inverse is not None:
+            found[symbol] = element.inverse
+            continue
+        ports = reduction.structure.ports
+        terms = [
+            (value, ports[other].element.co_energy) for other, value in field_row(reduction, at)
+        ]
+        found[symbol] = sp.Add(*(value * variable for value, variable in terms))
+    return found

@@ -5,7 +5,7 @@ import sympy as sp
 from bondgraph.algebra.exact import add_scaled
 from bondgraph.errors import CausalityError
 from bondgraph.reduce.record import Reading, ReadingSum
-from bondgraph.reduce.sorting import Reduction
+from bondgraph.reduce.sorting import Reduction, field_row
 
 
 def stored_rate(reduction: Reduction, port: int) -> Reading:
@@ -51,15 +51,6 @@ def _add_inverse_rate(reduction: Reduction, port: int, result: ReadingSum) -> No
         terms += [entry * reduction.inputs[j] for j, entry in ruled.D.items()]
         inverse = inverse.xreplace({one.received: sp.Add(*terms)})
     motion.add_total_rate(result, inverse, one.element.name)
-
-
-def field_row(reduction: Reduction, port: int) -> list[tuple[int, sp.Expr]]:
-    """The ports of a storage's field with its matrix's entries; of a one-port itself and its value."""
-    element = reduction.structure.ports[port].element
-    if not element.row:
-        return [(port, element.constant)]
-    places = reduction.structure.places
-    return [(places[name], value) for name, value in element.row if value != 0]
 
 
 def _ruled(reduction: Reduction, port: int) -> Reading:

@@ -142,7 +142,7 @@ def exported(
     files = texts(closed, name, defaults, prefix, longest, start.on, implicit)
     if main:
         states = [*closed.program.states, *closed.program.law_states]
-        named = [state.name in {str(one) for one in initial or ()} for state in states]
+        named = [state.name in start.told for state in states]
         scenario = scenario_text(start.signals, start.states.tolist(), named)
         files |= {"main.c": runtime_file("main.c"), "scenario.h": scenario}
     return start, files

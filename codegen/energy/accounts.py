@@ -11,8 +11,7 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
 from bondgraph.reduce.record import Reading, ReadingSum
-from bondgraph.reduce.sorting import is_storage
-from bondgraph.reduce.storages import field_row
+from bondgraph.reduce.sorting import field_row, is_storage
 from bondgraph.reduce.structure import Port
 
 

@@ -5,8 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 import sympy as sp
 
+from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
-from bondgraph.errors import ParameterError
+from bondgraph.errors import ParameterError, SignalError
 from codegen.model.exact_values import exact_parameters
 from codegen.numbers.arrays import Array
 from codegen.numbers.lambdified import lambdified
@@ -24,6 +25,67 @@ def told_starts(equations: StateEquations, parameters: Mapping[str, object]) -> 
             raise ParameterError(f"the start of {state} is {value}, which is not a finite number")
         found[state.name] = float(value)
     return found
+
+
+def by_states(
+    equations: StateEquations, parameters: Mapping[str, object], initial: Mapping[str, float]
+) -> dict[str, float]:
+    """Initial values with what storages hold, ``p_m`` or ``q_C``, turned into the states that hold it.
+
+    Of a field all that is held has to be told, or the other states. Raises `SignalError` for what a
+    dependent storage holds, which the states rule, and for what is told twice.
+    """
+    if not isinstance(initial, Mapping):
+        return initial
+    held = equations.held
+    told = {sp.Symbol(str(n)): v for n, v in initial.items() if sp.Symbol(str(n)) in held}
+    if not told:
+        return dict(initial)
+    rest = {name: value for name, value in initial.items() if sp.Symbol(str(name)) not in told}
+    known = {sp.Symbol(name): value for name, value in exact_parameters(parameters).items()}
+    known |= {sp.Symbol(str(name)): value for name, value in rest.items()}
+    by_law: dict[str, float] = {}
+    linear: dict[sp.Symbol, sp.Expr] = {}
+    laws = _turned_laws(equations)
+    for name, value in told.items():
+        state, law = laws.get(name, (name, held[name].xreplace(known)))
+        if name in laws:
+            by_law[state.name] = float(law.xreplace({**known, name: sp.Float(value)}))
+            continue
+        if not law.free_symbols or not law.free_symbols <= {*equations.states}:
+            raise SignalError(
+                f"initial {name}: it is {held[name]}, which other states rule, or are told; the states are "
+                f"{', '.join(map(str, equations.states))}"
+            )
+        linear[name] = law
+    return rest | by_law | _solved(linear, told)
+
+
+def _turned_laws(equations: StateEquations) -> dict[sp.Symbol, tuple[sp.Symbol, sp.Expr]]:
+    """What a storage whose law counts by its inverse holds, to its state and the law that gives that."""
+    found = {}
+    for port in equations.reduction.structure.ports:
+        law = port.element.law
+        if port.element.by_inverse and isinstance(law, ExpressionLaw) and law.state is not None:
+            found[law.state] = (port.given, law.expression)
+    return found
+
+
+def _solved(held: Mapping[sp.Symbol, sp.Expr], told: Mapping[sp.Symbol, float]) -> dict[str, float]:
+    """The states at which linear storages and fields hold this."""
+    names = sorted({one for expr in held.values() for one in expr.free_symbols}, key=str)
+    if len(names) != len(held):
+        raise SignalError(
+            f"initial {', '.join(map(str, held))}: {', '.join(map(str, names))} hold these together; tell "
+            "all that is held, or the other states"
+        )
+    if not names:
+        return {}
+    matrix = np.array([[float(expr.coeff(one)) for one in names] for expr in held.values()])
+    rest = dict.fromkeys(names, sp.Integer(0))
+    right = [float(told[name] - expr.xreplace(rest)) for name, expr in held.items()]
+    values = np.linalg.solve(matrix, np.array(right))
+    return {one.name: value for one, value in zip(names, values.tolist(), strict=True)}
 
 
 def starts_of_runs(

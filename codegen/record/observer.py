@@ -37,12 +37,15 @@ class Observer:
         return self.model.equations
 
     def signal(self, name: str) -> Array:
-        """A named effort or flow; `KeyError` naming what there is."""
+        """A named effort or flow, or what a storage holds; `KeyError` naming what there is."""
         row = self._equations.signals.get(sp.Symbol(name))
-        if row is None:
-            known = dict.fromkeys([*self.columns, *map(str, self._equations.signals)])
-            raise KeyError(f"no signal {name!r}; there are {', '.join(known)}")
-        return self._values(self._equations.reduction.reading(row))
+        if row is not None:
+            return self._values(self._equations.reduction.reading(row))
+        held = self._equations.held
+        if sp.Symbol(name) in held:
+            return self._at(held[sp.Symbol(name)])
+        known = dict.fromkeys([*self.columns, *map(str, (*self._equations.signals, *held))])
+        raise KeyError(f"no signal {name!r}; there are {', '.join(known)}")
 
     def bond(self, tail: Hashable, head: Hashable) -> tuple[Array, Array]:
         """Effort and flow of a bond; `StructureError` if there is none."""
@@ -68,15 +71,19 @@ class Observer:
     def energy(self, node: Hashable) -> Array:
         """The energy in an I or C or a field of them: of its co-energy variables, or its energy function."""
         energy = stored_energy(self._equations, node, self.model.parameters)
-        names = sorted(energy.free_symbols, key=str)
-        unknown = [name for name in names if not self._knows(name)]
+        unknown = [name for name in sorted(energy.free_symbols, key=str) if not self._knows(name)]
         if unknown:
             raise ParameterError(
                 f"the energy of {node!r} needs a number for {unknown[0]} in parameters, which the run did not"
             )
+        return self._at(energy)
+
+    def _at(self, expr: sp.Expr) -> Array:
+        """An expression over signals and parameters, at every sample."""
+        exact = at_parameters(expr, self.model.parameters)
+        names = sorted(exact.free_symbols, key=str)
         given = [self.time if name == TIME else self._named(name.name) for name in names]
-        values = lambdified(names, energy)(*given)
-        result: Array = np.zeros(len(self.time)) + real_array(values)
+        result: Array = np.zeros(len(self.time)) + real_array(lambdified(names, exact)(*given))
         return result
 
     def _knows(self, name: sp.Symbol) -> bool:

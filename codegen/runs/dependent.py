@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from bondgraph.errors import SignalError
-from bondgraph.reduce.storages import field_row
+from bondgraph.reduce.sorting import field_row
 from codegen.model.exact_values import at_parameters
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array

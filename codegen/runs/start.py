@@ -9,7 +9,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from codegen.corners.located import with_corners
 from codegen.inputs.signal import Signal
-from codegen.model.starts import told_starts
+from codegen.model.starts import by_states, told_starts
 from codegen.modes.closed import ClosedModel
 from codegen.modes.steps import step_at_start
 from codegen.numbers.arrays import Array
@@ -22,7 +22,7 @@ from codegen.supplied import supplied
 class Start:
     """``states`` and ``signals`` in the program's order; ``longest``: the longest stable step there [s].
 
-    ``on``: the switches that are on before.
+    ``on``: the switches that are on before. ``told``: the states that whoever asked gave a value.
     """
 
     closed: ClosedModel
@@ -30,6 +30,7 @@ class Start:
     signals: tuple[Signal, ...]
     longest: float
     on: frozenset[Hashable] = frozenset()
+    told: frozenset[str] = frozenset()
 
 
 def start_of(
@@ -56,8 +57,8 @@ def start_of(
     names = [symbol.name for symbol in (*program.states, *program.law_states)]
     external = [symbol.name for symbol in program.external]
     signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)
-    states = initial_values(
-        {**told_starts(program.equations, parameters), **(initial or {})}, names
-    )
+    told = by_states(program.equations, parameters, initial or {})
+    states = initial_values({**told_starts(program.equations, parameters), **told}, names)
     on = checked_modes([port.name for port in program.switches], initially_on)
-    return Start(closed, states, tuple(signals), step_at_start(closed, states, signals), on)
+    longest = step_at_start(closed, states, signals)
+    return Start(closed, states, tuple(signals), longest, on, frozenset(map(str, told)))

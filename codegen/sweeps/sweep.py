@@ -26,6 +26,7 @@ from codegen.sweeps.crew import Crew
 from codegen.sweeps.crews import Here, Processes, Threads
 from codegen.sweeps.design import Table, design
 from codegen.sweeps.drive import BESIDE, QUICK, STEADY, Pace, Rhythm, Work, drive
+from codegen.sweeps.held import by_states_of
 from codegen.sweeps.job import Job, Model
 from codegen.sweeps.measuring import abreast_of, batch_of, sent
 from codegen.sweeps.resting import tell_all_resting
@@ -110,7 +111,7 @@ def sweep(
     settings = MappingProxyType({"method": method, "rtol": rtol, "atol": atol})
     asked = MappingProxyType(dict(measures))
     on = tuple(initially_on)
-    given = initial, inputs, settings, on, events, len(runs)
+    given = by_states_of(model, initial), inputs, settings, on, events, len(runs)
     job = Job(model, runs.names, checked_times(time), asked, *given)
     _check(job)
     _check_count(workers, "workers", 0)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from bondgraph.derive import derive
 from bondgraph.errors import StructureError
 from codegen.engine.fallback import tell
+from codegen.model.starts import by_states
 from codegen.record.resting import tell_resting
 from codegen.record.result import Result
 from codegen.runs.arguments import named_numbers
@@ -58,8 +59,10 @@ class SwitchedSimulator:
     ) -> Result:
         """Integrate over the given times [s]; see `Simulator.run`."""
         # Not by its `run`, so that warnings are told of who calls this.
-        given = named_numbers({} if initial is None else initial, self.states)
-        told = over_states(self.simulator.closed, given)
+        closed = self.simulator.closed
+        begun = {} if initial is None else by_states(closed.equations, closed.parameters, initial)
+        given = named_numbers(begun, self.states)
+        told = over_states(closed, given)
         done = self.simulator.run_telling(
             tell, time, told, inputs, method, rtol, atol, initially_on, events
         )
