@@ -9,8 +9,9 @@ roots of small integers, and functions keep their identities: with ``u = exp(i x
 """
 
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property, lru_cache
+from typing import Any
 
 import sympy as sp
 from sympy.ntheory import factorint, sqrt_mod
@@ -172,15 +173,32 @@ def _vanishes(expr: sp.Expr) -> bool:
 
 def _differs(expr: sp.Expr) -> bool:
     """Whether an expression has a value that is plainly not zero at some numbers: then it is not zero."""
-    names = sorted(expr.free_symbols, key=str)
+    found = at_some_numbers([expr])
+    return found is not None and is_plainly_some(found[0])
+
+
+def at_some_numbers(exprs: Sequence[sp.Expr]) -> list[sp.Float] | None:
+    """Values of expressions at the same numbers, all digits right; None where one has no real value there.
+
+    >>> a = sp.Symbol("a")
+    >>> one, other = at_some_numbers([sp.sqrt(a), sp.sqrt(a) - 1])
+    >>> is_plainly_some(one - other - 1)
+    False
+    """
+    names = sorted({name for expr in exprs for name in expr.free_symbols}, key=str)
     rng = random.Random(len(names))
     point = {name: sp.Rational(rng.randrange(1, 1_000), 1_009) for name in names}
     try:
         # As many digits as told are right; what cancels comes out far smaller.
-        value = abs(expr.xreplace(point).evalf(DIGITS))
+        values = [sp.Float(expr.xreplace(point).evalf(DIGITS), DIGITS) for expr in exprs]
     except (ArithmeticError, TypeError, ValueError):
-        return False
-    return bool(value.is_Float and value > sp.Rational(1, 10 ** (DIGITS // 2)))
+        return None
+    return values if all(value.is_finite for value in values) else None
+
+
+def is_plainly_some(value: Any) -> bool:
+    """Whether a number in so many digits is more than what is left where all cancels."""
+    return bool(abs(value) > sp.Rational(1, 10 ** (DIGITS // 2)))
 
 
 def is_rational_function(expr: sp.Expr) -> bool:

@@ -3,11 +3,19 @@
 from dataclasses import replace
 from types import MappingProxyType
 
+import mpmath
 import sympy as sp
 
 from bondgraph.algebra.elimination import ResidueRows
 from bondgraph.algebra.exact import Row
-from bondgraph.algebra.residues import decided_by_residues, is_zero, residues
+from bondgraph.algebra.residues import (
+    DIGITS,
+    at_some_numbers,
+    decided_by_residues,
+    is_plainly_some,
+    is_zero,
+    residues,
+)
 from bondgraph.causality.vanishing import generic, told
 from bondgraph.errors import SingularStorageError
 from bondgraph.reduce.ports import reduce_ports
@@ -63,8 +71,15 @@ def _vanishes_by_roots(A: list[Row], state: int) -> bool:
     entries = [entry for i in block for entry in A[i].values()]
     if state != block[0] or len(block) > LARGEST_ROOTED or all(map(decided_by_residues, entries)):
         return False
-    determinant = sp.Matrix(len(block), len(block), lambda i, j: A[block[i]].get(block[j], 0)).det()
-    return is_zero(determinant)
+    n, zero = len(block), sp.Integer(0)
+    rows = [[A[i].get(j, zero) for j in block] for i in block]
+    numbers = at_some_numbers([entry for row in rows for entry in row])
+    if numbers is not None:
+        with mpmath.workdps(DIGITS):
+            value = mpmath.det(mpmath.matrix([numbers[i * n : i * n + n] for i in range(n)]))
+        if is_plainly_some(value):
+            return False
+    return is_zero(sp.Matrix(rows).det())
 
 
 def _told(reduction: Reduction, state: int) -> str:
