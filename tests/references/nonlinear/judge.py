@@ -126,7 +126,10 @@ class Judge:
 
 @dataclass(frozen=True)
 class Instant:
-    """All unknowns and their rates where all equations hold, and which of both follow from the states."""
+    """All unknowns and their rates where all equations hold, and which of both follow from the states.
+
+    ``left``: the most that is left of an equation, over one and the sizes of its terms.
+    """
 
     z: Array
     rates: Array
@@ -138,13 +141,19 @@ class Instant:
 def solved(
     judge: Judge, t: float, states: Mapping[int, float], z: Array, turns: int = 12
 ) -> Instant:
-    """The instant with these unknowns given, by number, from ``z`` on."""
+    """The instant with these unknowns given, by number, from ``z`` on.
+
+    First the unknowns alone, then their rates, in which all is linear, then both at once.
+    """
     pins = sorted(states)
     n = 2 * judge.size - judge.held
     pinned = np.zeros((len(pins), n))
     pinned[np.arange(len(pins)), pins] = 1.0
-    x = np.append(z, np.zeros(judge.size - judge.held))
     right = np.array([states[k] for k in pins])
+    z = _still(judge, t, z, pinned[:, : judge.size], right, turns)
+    x = np.append(z, np.zeros(judge.size - judge.held))
+    left, slopes = _whole(judge, t, x, pinned, right)
+    x[judge.size :] = np.linalg.lstsq(slopes[:, judge.size :], -left, rcond=NOTHING)[0]
     for _ in range(turns):
         left, slopes = _whole(judge, t, x, pinned, right)
         change = np.linalg.lstsq(slopes, -left, rcond=NOTHING)[0]
@@ -152,7 +161,10 @@ def solved(
         if np.abs(change).max() <= 1e-13 * (1 + np.abs(x).max()):
             break
     left, slopes = _whole(judge, t, x, pinned, right)
-    _, values, right_vectors = np.linalg.svd(slopes)
+    # Rows are of length one: what their terms come to is what rounding goes with.
+    left = left / (1.0 + np.abs(slopes) @ np.abs(x))
+    sized = slopes * (1.0 + np.abs(x))
+    _, values, right_vectors = np.linalg.svd(sized / np.linalg.norm(sized, axis=1)[:, None])
     rank = int((values > NOTHING * values[0]).sum())
     loose = np.abs(right_vectors[rank:]).max(axis=0, initial=0.0) > 1e-6
     z, free = x[: judge.size], x[judge.size :]
@@ -160,6 +172,18 @@ def solved(
         z, judge.rates(z, free), ~loose[: judge.size],
         ~np.append(loose[judge.flows], loose[judge.size :]), float(np.abs(left).max()),
     )  # fmt: skip
+
+
+def _still(judge: Judge, t: float, z: Array, pinned: Array, right: Array, turns: int) -> Array:
+    """Unknowns at which all equations hold, whatever their rates."""
+    for _ in range(turns):
+        left = np.append(judge.left(t, z), pinned @ z - right)
+        slopes = np.vstack([judge.slopes(t, z), pinned])
+        change = np.linalg.lstsq(slopes, -left, rcond=NOTHING)[0]
+        z = z + change
+        if np.abs(change).max() <= 1e-13 * (1 + np.abs(z).max()):
+            break
+    return z
 
 
 def _whole(judge: Judge, t: float, x: Array, pinned: Array, right: Array) -> tuple[Array, Array]:
