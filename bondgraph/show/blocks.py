@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import sympy as sp
 
-from bondgraph.show.sums import plain
+from bondgraph.show.plain import plain
 
 Block = tuple[str, ...]
 """Lines of equal length."""

@@ -1,18 +1,16 @@
 r"""Sums of factors times signals, written as a person would: as text for a terminal, and as LaTeX."""
 
-import decimal
 from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import Any
 
 import sympy as sp
 
+from bondgraph.show.plain import decimals, plain
+
 Term = tuple[sp.Expr, sp.Expr]
 """A factor and the signal it stands at; the signal is 1 where there is none."""
 
 Sum = tuple[Term, ...]
-
-LONG = 1000
-"""Fractions with denominators from here on are read more easily as decimals."""
 
 
 def rate(name: sp.Symbol) -> sp.Symbol:
@@ -56,38 +54,6 @@ def signed_terms(expr: sp.Expr) -> Sum:
     return tuple(sorted(signed, key=lambda term: bool(term[0] < 0)))
 
 
-def plain(expr: sp.Expr) -> str:
-    """An expression as text, powers with ``^``; numbers that were told as decimals are shown so.
-
-    >>> plain(sp.Symbol("i")**2/4), plain(sp.Rational("0.12345")*sp.Symbol("i"))
-    ('i^2/4', '0.12345*i')
-    """
-    return str(sp.sstr(_decimal(expr), full_prec=False)).replace("**", "^")
-
-
-def _decimal(expr: Any) -> Any:
-    """With exact decimals for fractions of long denominators that have them."""
-    fractions = {one for one in expr.atoms(sp.Rational) if one.q >= LONG and _is_decimal(one.q)}
-    told = {
-        one: sp.Symbol(_digits(one)) if one > 0 else -sp.Symbol(_digits(-one)) for one in fractions
-    }
-    return expr.xreplace(told) if told else expr
-
-
-def _is_decimal(number: int) -> bool:
-    for factor in (2, 5):
-        while number % factor == 0:
-            number //= factor
-    return number == 1
-
-
-def _digits(value: sp.Rational) -> str:
-    """All its digits, by a power of ten where they would begin far off."""
-    with decimal.localcontext(prec=400):
-        told = (decimal.Decimal(value.p) / decimal.Decimal(value.q)).normalize()
-    return str(told)
-
-
 def typeset(expr: Any) -> str:
     r"""An expression or a matrix as LaTeX; names that are Greek letters become these, rates have a dot.
 
@@ -95,7 +61,7 @@ def typeset(expr: Any) -> str:
     \dot{\omega}_{1} e_{left,J}
     """
     names = {name: _typeset_name(name.name) for name in expr.free_symbols}
-    return str(sp.latex(_decimal(expr), symbol_names=names))
+    return str(sp.latex(decimals(expr), symbol_names=names))
 
 
 def _typeset_name(name: str) -> str:

@@ -6,7 +6,7 @@ from bondgraph.declare.elements import Reset
 from bondgraph.declare.laws import SLIP, DryFriction
 from bondgraph.reduce.structure import Port
 from bondgraph.reduce.switch_port import SwitchPort
-from bondgraph.show.sums import plain
+from bondgraph.show.plain import plain
 
 
 def rubbing(port: Port, law: DryFriction) -> str:

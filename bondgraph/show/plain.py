@@ -1,0 +1,60 @@
+"""Expressions as one line of text, as a person would write them."""
+
+import decimal
+from typing import Any
+
+import sympy as sp
+from sympy.printing.str import StrPrinter
+
+LONG = 1000
+"""Fractions with denominators from here on are read more easily as decimals."""
+
+
+def plain(expr: sp.Expr) -> str:
+    """An expression as text: powers with ``^``, magnitudes between bars, pieces with their conditions.
+
+    Numbers that were told as decimals are shown so.
+
+    >>> x = sp.Symbol("x")
+    >>> plain(x**2/4), plain(sp.Rational("0.12345")*x), plain(3*x*sp.Abs(x))
+    ('x^2/4', '0.12345*x', '3*x*|x|')
+    >>> plain(sp.Piecewise((2*x, x < 0), (x, x < 1), (0, True)))
+    '{2*x if x < 0, x if x < 1, else 0}'
+    """
+    return str(_Plain().doprint(decimals(expr))).replace("**", "^")
+
+
+class _Plain(StrPrinter):  # type: ignore[misc]
+    def _print_Abs(self, expr: sp.Abs) -> str:
+        return f"|{self._print(expr.args[0])}|"
+
+    def _print_Piecewise(self, expr: sp.Piecewise) -> str:
+        pieces = []
+        for value, held in expr.args:
+            told = self._print(value)
+            last = f"else {told}" if pieces else told
+            pieces.append(last if held == sp.true else f"{told} if {self._print(held)}")
+        return f"{{{', '.join(pieces)}}}"
+
+
+def decimals(expr: Any) -> Any:
+    """With exact decimals for fractions of long denominators that have them."""
+    fractions = {one for one in expr.atoms(sp.Rational) if one.q >= LONG and _is_decimal(one.q)}
+    told = {
+        one: sp.Symbol(_digits(one)) if one > 0 else -sp.Symbol(_digits(-one)) for one in fractions
+    }
+    return expr.xreplace(told) if told else expr
+
+
+def _is_decimal(number: int) -> bool:
+    for factor in (2, 5):
+        while number % factor == 0:
+            number //= factor
+    return number == 1
+
+
+def _digits(value: sp.Rational) -> str:
+    """All its digits, by a power of ten where they would begin far off."""
+    with decimal.localcontext(prec=400):
+        told = (decimal.Decimal(value.p) / decimal.Decimal(value.q)).normalize()
+    return str(told)
