@@ -26,6 +26,7 @@ than the toolkit does.
 WHAT = """
 | route | what is asked of it |
 |---|---|
+| print | what laws, sources and rates are said to be holds at an instant of the run, everything put in too |
 | explain, latex | every state, switch and law is told; of hundreds of states, how many there are |
 | explicit | its rates are the slopes of the run |
 | drawing | every node, every bond with its stroke, a switch as one |
