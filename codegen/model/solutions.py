@@ -121,8 +121,8 @@ def _reduced(left: list[sp.Expr], unknowns: list[sp.Symbol]) -> tuple[sp.Expr, s
     By a factor that is a number, so that nothing is divided by zero; None where that does not do.
     """
     while len(unknowns) > 1:
-        pairs = ((at, u, sp.diff(left[at], u)) for at in range(len(left)) for u in unknowns)
-        found = next((one for one in pairs if one[2].is_number and one[2] != 0), None)
+        pairs = ((at, u, _slope(left[at], u)) for at in range(len(left)) for u in unknowns)
+        found = next(((at, u, slope) for at, u, slope in pairs if slope), None)
         if found is None or sum(int(sp.count_ops(law)) for law in left) > MOST_OPERATIONS:
             return None
         at, u, slope = found
@@ -130,6 +130,21 @@ def _reduced(left: list[sp.Expr], unknowns: list[sp.Symbol]) -> tuple[sp.Expr, s
         left = [sp.expand(law.xreplace({u: value})) for law in left[:at] + left[at + 1 :]]
         unknowns = [name for name in unknowns if name != u]
     return left[0], unknowns[0]
+
+
+def _slope(expr: sp.Expr, name: sp.Symbol) -> sp.Expr | None:
+    """The slope in a name, as it is written: where that is a number, else None.
+
+    Read off: slopes of laws with many signs and magnitudes are long to derive, and are no numbers.
+    """
+    if expr == name or name not in expr.free_symbols:
+        return sp.Integer(expr == name)
+    if expr.is_Mul:
+        factor, rest = expr.as_independent(name, as_Add=False)
+        inner = _slope(rest, name) if factor.is_number and not rest.is_Mul else None
+        return None if inner is None else factor * inner
+    slopes = [_slope(term, name) for term in expr.args] if expr.is_Add else [None]
+    return None if None in slopes else sp.Add(*slopes)
 
 
 def _told(loop: Loop, point: Point, unknown: sp.Symbol, roots: Roots) -> str:

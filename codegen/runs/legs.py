@@ -212,18 +212,18 @@ class Trials:
 
     def __call__(self, t: float, s: Array) -> Array:
         """The rates at t and s; no numbers where there are none."""
+        if not np.isfinite(s).all():
+            # A stage after one without rates has no state: the first tells why.
+            return np.full(len(s), np.nan)
         try:
             rate = self._rates(t, s)
         except SimulationError as error:
-            if np.isfinite(s).all():
-                self._refused, self._at = error, None
+            self._refused, self._at = error, None
             return np.full(len(s), np.nan)
         if math.isfinite(sum(rate.tolist())) or np.isfinite(rate).all():
             self._refused, self._at = None, None
             return rate
-        # A stage after one without rates has no state: the first tells why.
-        if np.isfinite(s).all():
-            self._refused, self._at = None, (t, s.copy())
+        self._refused, self._at = None, (t, s.copy())
         return np.full(len(s), np.nan)
 
     @property

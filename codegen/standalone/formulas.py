@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Mapping
-from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -55,10 +54,13 @@ class BlockFormula(Formula):
 
     def of_pool(self, pool: Array, like: Instant) -> Array:
         """What it gives, of a pool laid out like that of an instant."""
-        ends = np.cumsum([1, *(len(getattr(like, part)) for part in PARTS), len(self.parameters)])
-        parts = [pool[a:b].tolist() for a, b in pairwise(ends)]
-        parameters = dict(zip(self.parameters, parts.pop(), strict=True))
-        now = SimpleNamespace(t=float(pool[0]), **dict(zip(PARTS, parts, strict=True)))
+        values, parts, begin = pool.tolist(), {}, 1
+        for part in PARTS:
+            end = begin + len(getattr(like, part))
+            parts[part], begin = values[begin:end], end
+        told = values[begin : begin + len(self.parameters)]
+        parameters = dict(zip(self.parameters, told, strict=True))
+        now = SimpleNamespace(t=values[0], **parts)
         return self._values(parameters, now)
 
     def _values(self, parameters: Mapping[str, float], now: Plain | SimpleNamespace) -> Array:

@@ -51,11 +51,13 @@ def terms_of(
     values = function(at)
     terms: Array = np.abs(values)
     for j in places:
+        if sizes[j] == 0:
+            continue
         moved = at.copy()
         moved[j] += np.copysign(TUNING.term * sizes[j], at[j])
         try:
             change = np.abs(function(moved) - values) / TUNING.term
         except (ArithmeticError, ValueError):
             continue
-        terms += np.nan_to_num(change, nan=0.0, posinf=0.0)
+        terms += np.where(np.isfinite(change), change, 0.0)
     return terms

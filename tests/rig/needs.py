@@ -46,8 +46,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Mark tests, and leave out those that are not asked for."""
+    compiling = {path for path in {item.path for item in items} if needs_compiler(path)}
     for item in items:
-        if needs_compiler(item.path):
+        if item.path in compiling:
             item.add_marker("needs_compiler")
     if config.getoption("--quick"):
         slow = set(SLOW.read_text("utf-8").splitlines())

@@ -158,10 +158,10 @@ def _printed(program: Path, *words: str) -> Array:
 def pushed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """Programs over a table of zeros, that holds its ends or refuses what is beyond."""
     found = {}
-    for outside in ("hold", "refuse"):
+    for outside, flags in (("hold", (*WARNED, "-O1")), ("refuse", ("-O0",))):
         folder = tmp_path_factory.mktemp(outside)
         files = codegen.to_c(dragged(outside), NUMBERS, main=True, initial=START, inputs=PUSH)
-        found[outside] = compiled(folder, written(folder, files), *WARNED, "-O1")
+        found[outside] = compiled(folder, written(folder, files), *flags)
     return found
 
 
@@ -201,7 +201,7 @@ def test_what_is_worked_out_once_is_of_the_values_that_are_given(tmp_path: Path)
     graph.add_nodes_from([bg.One("n"), bg.I("m", 2, flow="v"), bg.R("r", "map(k)")])
     graph.add_edges_from([("n", "m"), ("n", "r")])
     files = codegen.to_c(bg.derive(graph), {"k": 2}, main=True, initial={"v": 1.0})
-    program = compiled(tmp_path, written(tmp_path, files), "-O1")
+    program = compiled(tmp_path, written(tmp_path, files), "-O0")
     t, v = _printed(program, "map=5,0,8", "located")
     assert v == pytest.approx(np.exp(-2 * t), abs=1e-9)
     t, v = _printed(program, "map=5,0,8", "k=0")

@@ -71,7 +71,7 @@ def test_the_main_program_switches_at_the_very_instants(tmp_path: Path) -> None:
         half_bridge(), {"L": L, "R": R}, main=True, initial={"i": current(0.0, *told)},
         inputs={"V": V, "gate": gate}, initially_on=["low"],
     )  # fmt: skip
-    program = compiled(tmp_path, written(tmp_path, files), "-O1")
+    program = compiled(tmp_path, written(tmp_path, files), "-O0")
     table, events = _rows(program, "0.01", "1e-3", "located")
     assert table[-1, 1] == pytest.approx(current(0.01, *told), abs=1e-8)
     assert len(events) == 2 * switchings(0.0, 0.01, f, duty, phase)

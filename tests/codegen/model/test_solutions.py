@@ -22,6 +22,7 @@ from codegen import (
     write_fmu,
 )
 from codegen.model.real_roots import roots_of
+from codegen.model.solutions import _slope
 
 
 def _graph() -> object:
@@ -213,3 +214,23 @@ def test_laws_of_which_little_can_be_told_are_no_obstacle(law: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", bg.ModelWarning)
         assert simulator(_mass(), NUMBERS, {"F": law}).states == ("v", "F_k")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "3",
+        "u",
+        "v",
+        "2*u + v/3 - sin(v)",
+        "-(2*u - 3*(v + u/5))/7",
+        "pi*u + u*v",
+        "u**2 + u",
+        "abs(u) - u",
+    ],
+)
+def test_a_slope_that_is_a_number_is_read_off(text: str) -> None:
+    names = {name: sp.Symbol(name, real=True) for name in "uv"}
+    law = sp.sympify(text, names)
+    right = sp.diff(law, names["u"])
+    assert _slope(law, names["u"]) == (right if right.is_number else None)

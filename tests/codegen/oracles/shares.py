@@ -18,7 +18,7 @@ Numbers = ctypes.POINTER(ctypes.c_double)
 class SharesInC:
     """``fair_share`` of C, for so many ports at the most: those of one shaft with as many brakes."""
 
-    def __init__(self, folder: Path, ports: int, level: str = "-O1") -> None:
+    def __init__(self, folder: Path, ports: int, level: str = "-O0") -> None:
         nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", 2, flow="v"),
                  *(bg.R(f"b{i}", law=bg.DryFriction(1)) for i in range(ports))]  # fmt: skip
         brakes = " ".join(f"n>b{i}" for i in range(ports))

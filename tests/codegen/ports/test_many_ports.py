@@ -182,7 +182,7 @@ def test_exports_of_a_gearbox_step_alike_and_locate_its_events(tmp_path: Path) -
     module = loaded(to_python(equations, {}, inputs=case.inputs))
     stepped = module.simulate(times, {}, dict(case.inputs), step=step)
     sources = written(tmp_path, to_c(equations, {}, main=True, inputs=case.inputs))
-    program = str(compiled(tmp_path, sources, "-O1"))
+    program = str(compiled(tmp_path, sources, "-O0"))
     fixed = _columns([program, repr(end), repr(step)])
     located = _columns([program, "4", "0.05", "located"])
     for name in case.shown:

@@ -253,7 +253,7 @@ def solve(tmp_path_factory: pytest.TempPathFactory):
     files = gearbox().export()
     (folder / "box.c").write_text(HARNESS)
     sources = [*written(folder, files), str(folder / "box.c")]
-    library = ctypes.CDLL(str(compiled(folder, sources, "-O1", "-shared", "-fPIC", to="box.so")))
+    library = ctypes.CDLL(str(compiled(folder, sources, "-O0", "-shared", "-fPIC", to="box.so")))
 
     def solved(yields: np.ndarray, slip: np.ndarray, least: np.ndarray, most: np.ndarray):
         ports, zeros = len(slip), np.zeros(len(slip))

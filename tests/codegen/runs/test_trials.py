@@ -8,6 +8,7 @@ from references.build import bond_graph
 
 import bondgraph as bg
 import codegen
+from codegen.runs.legs import Trials
 
 METHODS = ("auto", "DOP853", "Radau")
 
@@ -78,3 +79,17 @@ def test_levels_that_meet_at_an_infinite_slope_stay_met(backend: str) -> None:
     times = np.linspace(0, 3, 31)
     run = model.run(times, {"p_1": 4, "p_2": 0})
     assert run["p_1"] == pytest.approx(2 + np.maximum(2 - times, 0) ** 2 / 2, abs=1e-8)
+
+
+def test_a_stage_without_a_state_asks_for_no_rates() -> None:
+    """It follows one without rates, which is what is told."""
+    asked = []
+
+    def rates(t: float, s: np.ndarray) -> np.ndarray:
+        asked.append(t)
+        raise bg.SimulationError("no value")
+
+    trials = Trials(rates, lambda t, s: bg.SimulationError("lost"))
+    assert np.isnan(trials(0.0, np.array([1.0]))).all()
+    assert np.isnan(trials(0.1, np.array([np.nan]))).all()
+    assert (asked, str(trials.refused)) == ([0.0], "no value")

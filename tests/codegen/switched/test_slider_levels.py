@@ -1,5 +1,6 @@
 """Levels of friction that gives a flow: any law of states, inputs and the time, and down to zero."""
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -45,22 +46,23 @@ def _by_hand(name: str) -> np.ndarray:
     inputs = LEVELS[name][1]
 
     def level(t: float, F: float) -> float:
-        p, w = 1 - t, 0.5 * np.sin(0.6 * np.pi * t)
+        p, w = 1 - t, 0.5 * math.sin(0.6 * math.pi * t)
         return {
-            "square": 1 + p**2, "input": 1 + w * p**2 + w**2, "time": 2 + np.sin(3 * t) * np.exp(-p),
+            "square": 1 + p**2, "input": 1 + w * p**2 + w**2, "time": 2 + math.sin(3 * t) * math.exp(-p),
             "own force": 1 + F**2 / 50 + p / 5, "corner": 1 + abs(p), "largest": max(0.5, p),
         }[name]  # fmt: skip
 
     def speed(t: float) -> float:
-        return 1.0 if inputs["v"] == 1.0 else 2 * np.sin(np.pi * t)
+        return 1.0 if inputs["v"] == 1.0 else 2 * math.sin(math.pi * t)
 
     # Steps so short that the force is kept within its level as an operator of play: error of order h.
     fine = np.linspace(0.0, 2.0, 80 * 200 + 1)
     h, F, found = fine[1] - fine[0], 0.0, [0.0]
-    for at, t in enumerate(fine[1:], start=1):
+    for at, t in enumerate(fine[1:].tolist(), start=1):
         F += K * h * speed(t - h / 2)
         for _ in range(3):
-            F = float(np.clip(F, -level(t, F), level(t, F)))
+            most = level(t, F)
+            F = min(max(F, -most), most)
         if at % 200 == 0:
             found.append(F)
     return np.array(found)
