@@ -9,7 +9,7 @@ import sympy as sp
 
 from bondgraph.algebra.called import Called
 from bondgraph.inverses.rising import Rising, rising
-from bondgraph.inverses.searching import place_where
+from bondgraph.searching import place_where
 
 PLACE = sp.Symbol("x")
 """The argument of a law that is turned round, inside it."""

@@ -2,7 +2,7 @@
 
 A table is ``(breaks, degree, outside, coefficients)``: its breaks along each axis, and for each cell, those
 along the last axis in turn, the factors of ``(x - x_i)**p * (y - y_j)**q``, highest powers first. C has the
-same in model_table.c.
+same in model_table.c. What is turned round is looked into by `backward`.
 """
 
 import math

@@ -79,9 +79,24 @@ def cells(look: Look) -> list[float]:
 def steepest(table: Points) -> float:
     """A bound on the slope of a table over one axis between its ends."""
     (knots,), degree, _, factors = pieces(table)
+    if degree < 0:
+        return 1.0 / min(_flattest(*factors[at : at + 3], b - a)
+                         for at, (a, b) in zip(range(0, len(factors), 4), _places(table), strict=True))  # fmt: skip
     size, found = degree + 1, 0.0
     for at, (a, b) in enumerate(pairwise(knots)):
         powers = factors[at * size : (at + 1) * size]
         terms = zip(range(degree, 0, -1), powers, strict=False)
         found = max(found, sum(p * abs(factor) * (b - a) ** (p - 1) for p, factor in terms))
     return found
+
+
+def _places(table: Points) -> list[tuple[float, float]]:
+    """Between what places each cell of a table lies that is turned round, the lower value's first."""
+    return list(pairwise(table.values))
+
+
+def _flattest(c3: float, c2: float, c1: float, width: float) -> float:
+    """The least slope, of either sign, that a cubic without turns has over a width from zero on."""
+    bottom = -c2 / (3 * c3) if c3 else 0.0
+    inside = [bottom] if min(0.0, width) < bottom < max(0.0, width) else []
+    return min(abs((3 * c3 * u + 2 * c2) * u + c1) for u in (0.0, width, *inside))

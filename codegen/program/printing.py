@@ -157,7 +157,8 @@ class _Python(PythonCodePrinter):  # type: ignore[misc]
     def _print_Look(self, expr: Any) -> str:
         handle, *places = expr.args
         given = ", ".join(map(self._print, places))
-        return f"looked_up(tables[{handle.table.name!r}], {handle.orders}, ({given},))"
+        look = "looked_back" if handle.table.turned else "looked_up"
+        return f"{look}(tables[{handle.table.name!r}], {handle.orders}, ({given},))"
 
     def _print_Inverse(self, expr: Any) -> str:
         return str(expr._numpycode(self))

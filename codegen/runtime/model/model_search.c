@@ -1,5 +1,5 @@
 /* Laws turned round: Newton's method between two places that hold the answer. As
- * bondgraph/inverses/searching.py: equal steps, equal numbers. */
+ * bondgraph/searching.py: equal steps, equal numbers. */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>

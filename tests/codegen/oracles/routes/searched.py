@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 from references.build import bond_graph
+from scipy.interpolate import Akima1DInterpolator, PchipInterpolator
 from scipy.optimize import brentq
 
 import bondgraph as bg
@@ -66,6 +67,33 @@ def cells() -> Kind:
                 at=0.4, rest={"inputs": {"i": 0.0}, "initial": {"u": u0}})  # fmt: skip
 
 
+def curved_cells() -> Kind:
+    """The same of two curves by points, of which one falls: what is charged is the sum of what they hold."""
+    held, rests = [0.0, 1.0, 3.0, 6.0], [1.0, 2.0, 2.5, 5.0]
+    left, levels = [-7.0, -4.0, -1.5, 0.0], [6.0, 3.5, 1.5, 0.5]
+    graph = bond_graph([bg.Sf("charger", "i"), bg.Zero("n"), bg.C("a", law="rest(q_a)", effort="u"),
+                        bg.C("b", law="k*level(-q_b)")], "charger>n>a n>b")  # fmt: skip
+    graph.graph["tables"] = [bg.LookupTable("rest", held, rests, method="pchip"),
+                             bg.LookupTable("level", left, levels, method="akima", outside="extend")]  # fmt: skip
+    k, u0 = 0.8, 1.2
+    curves = (PchipInterpolator(held, rests), lambda q: k * Akima1DInterpolator(left, levels)(-q))
+
+    def both(u: float) -> float:
+        return sum(
+            brentq(lambda q, law=law: law(q) - u, 0, end, xtol=1e-14)
+            for law, end in zip(curves, (6.0, 7.0), strict=True)
+        )
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        filled = both(u0) + 5.0 * t
+        return {
+            "u": np.array([brentq(lambda u, q=q: both(u) - q, 1, 4.8, xtol=1e-14) for q in filled])
+        }
+
+    return Kind("two cells by curves through points", graph, {"k": k}, {"i": "5"}, known, 1.0, {"u": u0},
+                at=0.4, rest={"inputs": {"i": 0.0}, "initial": {"u": u0}})  # fmt: skip
+
+
 def rubbing_nonlinear() -> Kind:
     """Friction of 3 on a mass whose law bends: p' = 3 t - 3 from 1, at rest from 1 - 1/sqrt(3) to 1."""
     m, c, p0 = 0.5, 0.4, 1.0
@@ -82,4 +110,4 @@ def rubbing_nonlinear() -> Kind:
                 at=0.8, mode={"rub": "stick"}, rest={"inputs": {"P": 2.0}})  # fmt: skip
 
 
-SEARCHED = (unlike_springs, hardening_inertia, cells, rubbing_nonlinear)
+SEARCHED = (unlike_springs, hardening_inertia, cells, curved_cells, rubbing_nonlinear)
