@@ -81,9 +81,9 @@ class _C(C99CodePrinter):  # type: ignore[misc]
         return f"{call}({table_place(handle)}, {', '.join(given)})"
 
     def _print_Inverse(self, expr: Any) -> str:
-        value, *given = map(self._print, expr.places)
+        begin, value, *given = map(self._print, (sp.sympify(expr.begin), *expr.places))
         told = ", ".join(given or ["0.0"])
-        return f"bg_searched(bg_{expr.turning.code}, {value}, (const double[]){{{told}}})"
+        return f"bg_searched(bg_{expr.turning.code}, {begin}, {value}, (const double[]){{{told}}})"
 
     def _print_Edge(self, expr: Any) -> str:
         handle, axis, bit, x, *region = expr.args

@@ -76,7 +76,7 @@ static double cubic_above(double w, const double *factors, double *slope)
  * bondgraph/tables/backward.py. */
 static double solved_back(const double *factors, int order, double above)
 {
-    const double w = bg_searched(cubic_above, above, factors);
+    const double w = bg_searched(cubic_above, 0.0, above, factors);
     const double cubic[] = {factors[0], factors[1], factors[2], 0.0};
     const double slope = polynomial(cubic, 3, 1, w), bend = polynomial(cubic, 3, 2, w);
     if (order == 0)

@@ -35,7 +35,7 @@ int main(void)
     const double a[] = {2.5, 0.7};
     double value;
     while (fread(&value, sizeof value, 1, stdin) == 1) {
-        value = bg_searched(bg_turnings[0], value, a);
+        value = bg_searched(bg_turnings[0], 0.0, value, a);
         fwrite(&value, sizeof value, 1, stdout);
     }
     return 0;

@@ -23,7 +23,7 @@ REFUSALS = (
          "energy_field", "piecewise", "table", "play", "soft_stop", "bent_level", "ruled_flow",
          "reset_bent", "one_way_damper", "warmed", "valve", "filled", "filled_behind", "braked_while_filled",
          "shifted", "gyrated", "heated", "reaction", "accumulators", "unlike_springs",
-         "hardening_inertia", "cells", "curved_cells", "rubbing_nonlinear", "staircase", "per_turn",
+         "hardening_inertia", "cells", "curved_cells", "gapped_springs", "orifice", "rubbing_nonlinear", "staircase", "per_turn",
          "tabled_resistance", "tabled_storage", "engine_map", "tabled_ratio", "tabled_curve",
          "tabled_level"),
         ("C, exact",), True,
