@@ -30,10 +30,10 @@ OVER = 8.0
 def place_where(law: Sloped, value: float, begin: float = 0.0) -> float:
     """The place where the law has this value; not a number where it has it nowhere.
 
-    The search begins where it is told or, where the law has no value there, at the first power of two that it has
-    one at. From there to the end of all numbers, what is outside the law's domain counts as past the answer:
-    Newton's steps lead there, and where a step would leave what holds the answer, or after the first few is
-    more than a quarter of the last, the doubles in between are halved.
+    The search begins where it is told or, where the law has no value there, at the first power of two that
+    it has one at. From there to the end of all numbers, what is outside the law's domain counts as past the
+    answer: Newton's steps lead there, and where a step would leave what holds the answer, or after the first
+    few is more than a quarter of the last, the doubles in between are halved.
 
     >>> place_where(lambda x: (x + x**3, 1 + 3*x**2), 10.0)
     2.0

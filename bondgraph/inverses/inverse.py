@@ -18,7 +18,7 @@ PLACE = sp.Symbol("x")
 class Turning(sp.AtomicExpr):  # type: ignore[misc]
     """A law that goes one way, its parameters ``a0``, ``a1``, ...: which function an `Inverse` is.
 
-    ``shown``: what shows that it goes one way. ``begin``: the place that searches begin at, of the parameters.
+    ``shown``: what shows that it goes one way. ``begin``: where searches begin, of the parameters.
     """
 
     __slots__ = ("__dict__", "begin", "count", "law", "shown")

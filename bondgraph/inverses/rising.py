@@ -59,7 +59,9 @@ def rising(law: sp.Expr, name: sp.Symbol, onward: bool = False) -> Rising | None
     )
 
 
-def sign_of(expr: sp.Expr, name: sp.Symbol | None = None) -> tuple[int | None, frozenset[sp.Symbol]]:
+def sign_of(
+    expr: sp.Expr, name: sp.Symbol | None = None
+) -> tuple[int | None, frozenset[sp.Symbol]]:
     """The sign of an expression, as `_Signs` has it, and which names have to be positive for that.
 
     Of ``name`` nothing is known; names that are known not to be negative may be zero.

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from bondgraph.algebra.lookups import Handle
+from bondgraph.tables.looking import BACK
 from bondgraph.tables.one_way import one_way
-from bondgraph.tables.pieces import BACK
 from bondgraph.tables.record import Sampled
 
 

@@ -12,6 +12,9 @@ from collections.abc import Sequence
 Patches = tuple[tuple[tuple[float, ...], ...], int, str, tuple[float, ...]]
 """Breaks along each axis, degree, what is beyond the ends, factors."""
 
+BACK = "⁻¹"
+"""How the method and the name of a table that is turned round end, which no declared one's do."""
+
 FREE = -1
 """In place of a region: an argument is wherever it is."""
 

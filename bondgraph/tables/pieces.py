@@ -5,14 +5,10 @@ from collections.abc import Hashable
 from functools import lru_cache
 from typing import Any, Protocol
 
-from bondgraph.tables.looking import Patches
-
+from bondgraph.tables.looking import BACK, Patches
 
 TURNED = -3
 """In place of a degree: the cubic of a cell is solved, `backward` tells how."""
-
-BACK = "⁻¹"
-"""How the method and the name of a table that is turned round end, which no declared one's do."""
 
 
 class Points(Hashable, Protocol):
@@ -40,8 +36,9 @@ def pieces(table: Points) -> Patches:
     """Breaks, degree and coefficients as `looked_up` takes them; the last ones are kept.
 
     A method that ends with `BACK` is that of the table which this one is turned round of, as `looked_back`
-    takes it. "linear" has numpy's slopes, "pchip" (Fritsch and Butland 1984) and "akima" (Akima 1970) scipy's cubics,
-    "bicubic" the cubic spline without knots beside the ends that `RectBivariateSpline` finds with ``s=0``.
+    takes it. "linear" has numpy's slopes, "pchip" (Fritsch and Butland 1984) and "akima" (Akima 1970)
+    scipy's cubics, "bicubic" the cubic spline without knots beside the ends that `RectBivariateSpline` finds
+    with ``s=0``.
     """
     # numpy and scipy are loaded only when numbers are asked for.
     import numpy as np

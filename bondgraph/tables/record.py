@@ -7,7 +7,7 @@ from functools import cached_property
 from itertools import pairwise
 
 from bondgraph.errors import TableError, nearest
-from bondgraph.tables.pieces import BACK
+from bondgraph.tables.looking import BACK
 
 METHODS = ("linear", "pchip", "akima", "bilinear", "bicubic")
 """Between points: the first three over one axis, the last two over two."""

@@ -113,7 +113,7 @@ def _check_turned(equations: StateEquations, parameters: Mapping[str, sp.Rationa
         for factor in sorted(needed, key=str):
             if at_parameters(factor, parameters).is_nonpositive:
                 raise ParameterError(
-                    f"{element.kind} {name!r}: its law is turned round, for which {factor} has "
+                    f"{element.kind} {name!r}: its law is turned round here, for which {factor} has "
                     f"to be positive, and here {_listed(factor, parameters)}; give the inverse of its law, "
                     "or a law in the other causality"
                 )

@@ -80,8 +80,9 @@ def steepest(table: Points) -> float:
     """A bound on the slope of a table over one axis between its ends."""
     (knots,), degree, _, factors = pieces(table)
     if degree < 0:
-        return 1.0 / min(_flattest(*factors[at : at + 3], b - a)
-                         for at, (a, b) in zip(range(0, len(factors), 4), _places(table), strict=True))  # fmt: skip
+        widths = [b - a for a, b in pairwise(table.values)]
+        slopes = [factors[4 * at : 4 * at + 3] for at in range(len(widths))]
+        return 1.0 / min(map(_flattest, slopes, widths))
     size, found = degree + 1, 0.0
     for at, (a, b) in enumerate(pairwise(knots)):
         powers = factors[at * size : (at + 1) * size]
@@ -90,13 +91,9 @@ def steepest(table: Points) -> float:
     return found
 
 
-def _places(table: Points) -> list[tuple[float, float]]:
-    """Between what places each cell of a table lies that is turned round, the lower value's first."""
-    return list(pairwise(table.values))
-
-
-def _flattest(c3: float, c2: float, c1: float, width: float) -> float:
+def _flattest(powers: Sequence[float], width: float) -> float:
     """The least slope, of either sign, that a cubic without turns has over a width from zero on."""
+    c3, c2, c1 = powers
     bottom = -c2 / (3 * c3) if c3 else 0.0
     inside = [bottom] if min(0.0, width) < bottom < max(0.0, width) else []
     return min(abs((3 * c3 * u + 2 * c2) * u + c1) for u in (0.0, width, *inside))

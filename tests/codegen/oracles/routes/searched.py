@@ -74,8 +74,10 @@ def curved_cells() -> Kind:
     left, levels = [-7.0, -4.0, -1.5, 0.0], [6.0, 3.5, 1.5, 0.5]
     graph = bond_graph([bg.Sf("charger", "i"), bg.Zero("n"), bg.C("a", law="rest(q_a)", effort="u"),
                         bg.C("b", law="k*level(-q_b)")], "charger>n>a n>b")  # fmt: skip
-    graph.graph["tables"] = [bg.LookupTable("rest", held, rests, method="pchip"),
-                             bg.LookupTable("level", left, levels, method="akima", outside="extend")]  # fmt: skip
+    graph.graph["tables"] = [
+        bg.LookupTable("rest", held, rests, method="pchip"),
+        bg.LookupTable("level", left, levels, method="akima", outside="extend"),
+    ]
     k, u0 = 0.8, 1.2
     curves = (PchipInterpolator(held, rests), lambda q: k * Akima1DInterpolator(left, levels)(-q))
 
@@ -110,7 +112,9 @@ def gapped_springs() -> Kind:
 
     def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
         filled = both(u0) + 5.0 * t
-        return {"u": np.array([brentq(lambda u, q=q: both(u) - q, -9, 9, xtol=1e-14) for q in filled])}
+        return {
+            "u": np.array([brentq(lambda u, q=q: both(u) - q, -9, 9, xtol=1e-14) for q in filled])
+        }
 
     return Kind("two storages whose laws have corners", bond_graph(nodes, "pump>n>a n>b"),
                 {"k": k, "c": c, "g": g, "m": m}, {"Q": "5"}, known, 0.8, {"u": u0}, at=0.5,
@@ -120,9 +124,9 @@ def gapped_springs() -> Kind:
 def orifice() -> Kind:
     """A tank that empties through a pipe and a check plate: u' = (Q - f)/C, f where the pressure is u."""
     C, b, d, r, f0, u0 = 0.5, 0.6, 1.1, 2.0, 0.3, 2.0
+    law = "b*f_pipe + d*f_pipe*abs(f_pipe) + Piecewise((r*(f_pipe - f_0), f_pipe > f_0), (0, True))"
     nodes = [bg.Sf("pump", "Q"), bg.Zero("n"), bg.C("tank", "C", effort="u"),
-             bg.R("pipe", law="b*f_pipe + d*f_pipe*abs(f_pipe) + Piecewise((r*(f_pipe - f_0), f_pipe > f_0), (0, True))",
-                  gives="effort", flow="f_pipe")]  # fmt: skip
+             bg.R("pipe", law=law, flow="f_pipe")]  # fmt: skip
 
     def flow(u: float) -> float:
         def law(f: float) -> float:
@@ -157,4 +161,6 @@ def rubbing_nonlinear() -> Kind:
                 at=0.8, mode={"rub": "stick"}, rest={"inputs": {"P": 2.0}})  # fmt: skip
 
 
-SEARCHED = (unlike_springs, hardening_inertia, cells, curved_cells, gapped_springs, orifice, rubbing_nonlinear)
+SEARCHED = (
+    unlike_springs, hardening_inertia, cells, curved_cells, gapped_springs, orifice, rubbing_nonlinear,
+)  # fmt: skip
