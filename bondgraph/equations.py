@@ -95,6 +95,22 @@ class StateEquations:
         return told
 
     @property
+    def starts_back(self) -> dict[sp.Symbol, tuple[Element, sp.Expr]]:
+        """Of states that laws give at starts, the storage, and what the law's inverse makes of that again.
+
+        It is the start, unless that lies where the law is on another branch than its inverse.
+        """
+        found = {}
+        starts = self.starts
+        for port in self.reduction.structure.ports:
+            element = port.element
+            given, inverse = element.co_energy, element.inverse
+            turned = element.by_inverse and inverse is not None and given in starts
+            if turned and given is not None and inverse is not None:
+                found[given] = (element, inverse.subs(given, starts[given]))
+        return found
+
+    @property
     def tables(self) -> tuple[Sampled, ...]:
         """The tables that the graph was given, which texts of laws may call."""
         return self.reduction.structure.tables
