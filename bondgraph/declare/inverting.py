@@ -11,6 +11,7 @@ from bondgraph.declare.fields import inverts
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.inverses.cornered import cornered_inverse
 from bondgraph.inverses.inverse import inverse_of
+from bondgraph.inverses.reasons import why_not
 from bondgraph.inverses.undoing import undone
 
 Turned = tuple[sp.Expr, frozenset[sp.Symbol]]
@@ -77,6 +78,24 @@ def as_received(element: Element, law: ExpressionLaw) -> ExpressionLaw | None:
         return law
     found = _inverse(law.expression, given, received)
     return None if found is None else ExpressionLaw(found[0])
+
+
+def why_unturned(element: Element) -> str:
+    """A sentence that tells why the law of a storage or a resistance is not turned round; none of others.
+
+    >>> from bondgraph.declare.elements import C
+    >>> from bondgraph.declare.declared import elements_of
+    >>> why_unturned(*elements_of(*C("buffer", law="k*q_buffer + sign(q_buffer)")).values())
+    '. It is not turned round: it jumps at q_buffer = 0'
+    """
+    law = element.law
+    if not isinstance(law, ExpressionLaw) or element.turned or element.inverse is not None:
+        return ""
+    name = law.state if element.kind.stores else element.received
+    alone = element.owner is None and element.energy is None
+    if name is None or name not in law.expression.free_symbols or not alone:
+        return ""
+    return f". It is not turned round: {why_not(law.expression, name)}"
 
 
 def _inverse(law: sp.Expr, name: sp.Symbol, value: sp.Expr) -> Turned | None:

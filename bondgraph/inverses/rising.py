@@ -42,6 +42,12 @@ def rising(law: sp.Expr, name: sp.Symbol, onward: bool = False) -> Rising | None
     >>> rising(k*q + c/(2 - q), q)
     Rising(slope=c/(2 - q)**2 + k, positive=(c, k), domain=(2 - q,))
     """
+    found = sloped(law, name, onward)
+    return found[0] if found is not None and abs(found[1]) == 2 else None
+
+
+def sloped(law: sp.Expr, name: sp.Symbol, onward: bool = False) -> tuple[Rising, int] | None:
+    """The same with the sign of the slope, 1 or -1 where it may be zero, 0 where it is; None if not told."""
     real = {one: sp.Dummy(one.name, real=True) for one in law.free_symbols}
     plain = {dummy: one for one, dummy in real.items()}
     x = real.get(name, sp.Dummy(real=True))
@@ -51,12 +57,12 @@ def rising(law: sp.Expr, name: sp.Symbol, onward: bool = False) -> Rising | None
     cornered = slope.has(*CORNERED) or law.has(Floor, sp.atan2)
     if cornered or signs.facts is None or not {*_before_poles(shown)} <= {*signs.facts}:
         return None
-    if abs(signs.of(_of_tanh(slope)) or 0) < 2:
+    sign = signs.of(_of_tanh(slope))
+    if sign is None:
         return None
     needed = sorted((plain[one] for one in signs.needed), key=str)
-    return Rising(
-        slope.xreplace(plain), tuple(needed), tuple(one.xreplace(plain) for one in signs.facts)
-    )
+    domain = tuple(one.xreplace(plain) for one in signs.facts)
+    return Rising(slope.xreplace(plain), tuple(needed), domain), sign
 
 
 def sign_of(
