@@ -10,6 +10,7 @@ from bondgraph.algebra.expressions import TIME, callable_in_text
 from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.errors import StructureError
+from bondgraph.inverses.guarding import unguarded
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.structure import Port, PortRow
@@ -107,7 +108,7 @@ class StateEquations:
             given, inverse = element.co_energy, element.inverse
             turned = element.by_inverse and inverse is not None and given in starts
             if turned and given is not None and inverse is not None:
-                found[given] = (element, inverse.subs(given, starts[given]))
+                found[given] = (element, unguarded(inverse).subs(given, starts[given]))
         return found
 
     @property

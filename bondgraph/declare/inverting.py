@@ -10,6 +10,7 @@ from bondgraph.declare.elements import OTHER, Element
 from bondgraph.declare.fields import inverts
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.inverses.cornered import cornered_inverse
+from bondgraph.inverses.guarding import guarded
 from bondgraph.inverses.inverse import inverse_of
 from bondgraph.inverses.reasons import why_not
 from bondgraph.inverses.undoing import undone
@@ -41,7 +42,7 @@ def with_inverse(element: Element) -> Element | None:
     found = _inverse(law.expression, law.state, given)
     if found is None:
         return None
-    inverse, needed = found
+    inverse, needed = guarded(found[0], given, element.name), found[1]
     return replace(element, inverse=inverse, gives=None, turned=True, needed=needed)
 
 
@@ -62,7 +63,7 @@ def flipped(element: Element) -> Element | None:
     found = _inverse(law.expression, received, given)
     if found is None or TIME in found[0].free_symbols:
         return None
-    back, needed = ExpressionLaw(found[0]), found[1]
+    back, needed = ExpressionLaw(guarded(found[0], given, element.name)), found[1]
     return replace(element, law=back, gives=OTHER[element.gives], turned=True, needed=needed)
 
 
@@ -77,7 +78,7 @@ def as_received(element: Element, law: ExpressionLaw) -> ExpressionLaw | None:
     if given not in law.free_symbols or received in law.free_symbols:
         return law
     found = _inverse(law.expression, given, received)
-    return None if found is None else ExpressionLaw(found[0])
+    return None if found is None else ExpressionLaw(guarded(found[0], given, element.name))
 
 
 def why_unturned(element: Element) -> str:

@@ -59,7 +59,7 @@ def test_runs_of_a_sweep_that_start_there_are_refused(backend: str) -> None:
     [
         ("k*tan(q_a)", 1.0, np.tan),
         ("1/(k - q_a)", 2.0, lambda q: 1 / (1 - q)),
-        ("tanh(k*q_a)", 9.0, np.tanh),
+        ("tanh(k*q_a)", 5.0, np.tanh),
         ("k*q_a + Max(q_a - 1, 0)", 3.0, lambda q: q + max(q - 1, 0)),
     ],
 )
