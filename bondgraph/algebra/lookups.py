@@ -93,6 +93,9 @@ class Look(Tabled):
     those of `looked_up`.
     """
 
+    GUARDS = False
+    """Whether it is there for its ends alone."""
+
     @property
     def numeric(self) -> Callable[..., float]:
         """Of its arguments."""

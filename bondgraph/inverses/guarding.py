@@ -13,12 +13,14 @@ FAR = 1e300
 """Where a guard ends that is open: no number of a run comes near."""
 
 UPWARDS = (0.0, FAR)
-BETWEEN = (-1.0, 0.0, 1.0)
+BETWEEN = (-1.0, 1.0)
 """Where logarithms and broken powers have values, and where the area tangent has."""
 
 
 class Guard(Look):
     """An argument itself, by a table that refuses what is outside: there runs end, by the law's name."""
+
+    GUARDS = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         """One: what it stands in has no value outside, nor have that one's derivatives."""

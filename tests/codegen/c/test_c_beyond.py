@@ -1,6 +1,6 @@
 """What a law that is turned round never gives ends runs on every route, by the law's name and in time.
 
-A mass whose speed is ``exp(p) - 1`` is driven at ``v = -3 t``, which it never has from t = 1/3 on.
+A mass has the speed ``exp(p) - 1``: it is driven at ``v = -3 t``, to -1 at t = 1/3, or begins at -2.
 """
 
 import re
@@ -20,9 +20,9 @@ LEFT = r"at t = (\S+) (?:v|w) \+ 1 leaves table 'm\.law⁻¹', which is from 0"
 
 
 def _equations() -> bg.StateEquations:
-    """A spring draws the speed down that the mass, which is dependent, shares with a flywheel."""
-    nodes = [bg.Se("T", "T"), bg.One("n"), bg.I("J", "J", flow="w"),
-             bg.I("m", law="exp(p_m) - 1", priority=-1)]  # fmt: skip
+    """A flywheel shares the speed of the mass, which is dependent."""
+    nodes = [bg.Se("T", "T"), bg.One("n"), bg.I("J", "J"),
+             bg.I("m", law="exp(p_m) - 1", flow="w", priority=-1)]  # fmt: skip
     return bg.derive(bond_graph(nodes, "T>n>J n>m"))
 
 
