@@ -10,6 +10,7 @@ from bondgraph.algebra.expressions import TIME, callable_in_text
 from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.errors import StructureError
+from bondgraph.inverses.guarding import unguarded
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction, held
 from bondgraph.reduce.structure import Port, PortRow
@@ -109,6 +110,22 @@ class StateEquations:
         """What storages hold that are no states: ``p_m``, ``q_C``, over their flows and efforts."""
         taken = {*self.signals, *self.states, *self.inputs, *self.further_states, *self.parameters}
         return MappingProxyType(held(self.reduction, taken))
+
+    @property
+    def starts_back(self) -> dict[sp.Symbol, tuple[Element, sp.Expr]]:
+        """Of states that laws give at starts, the storage, and what the law's inverse makes of that again.
+
+        It is the start, unless that lies where the law is on another branch than its inverse.
+        """
+        found = {}
+        starts = self.starts
+        for port in self.reduction.structure.ports:
+            element = port.element
+            given, inverse = element.co_energy, element.inverse
+            turned = element.by_inverse and inverse is not None and given in starts
+            if turned and given is not None and inverse is not None:
+                found[given] = (element, unguarded(inverse).subs(given, starts[given]))
+        return found
 
     @property
     def tables(self) -> tuple[Sampled, ...]:

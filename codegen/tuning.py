@@ -39,6 +39,7 @@ class Tuning:
     breakaway: float = _told(1e-12, "part by which a limit may fall short: its own rounding")
     nothing_held: float = _told(1e-12, "entries of a holding equation that are none")
     consistent: float = _told(1e-9, "part of a combination's terms that may be left of it")
+    same_branch: float = _told(1e-6, "a start and what its law, turned round, makes of it are one")
     akima_level: float = _told(1e-9, "of the largest turn of Akima's chords: none, as scipy has it")
     nothing: float = _told(1e-11, "entries below this part of the largest are rounding")
     least_cap: float = _told(

@@ -8,6 +8,7 @@ from typing import Any, Self
 import sympy as sp
 
 from bondgraph.algebra.called import Called
+from bondgraph.tables.backward import looked_back
 from bondgraph.tables.integral import integrated
 from bondgraph.tables.looking import Patches, looked_up
 from bondgraph.tables.pieces import pieces
@@ -56,7 +57,8 @@ class Handle(sp.AtomicExpr):  # type: ignore[misc]
         """The value at numbers."""
         if self.orders == INTEGRAL:
             return looked_up(_integral(self.table), (0,), places)
-        return looked_up(pieces(self.table), self.orders, places)
+        look = looked_back if self.table.turned else looked_up
+        return look(pieces(self.table), self.orders, places)
 
 
 @lru_cache(maxsize=64)
@@ -91,6 +93,9 @@ class Look(Tabled):
     those of `looked_up`.
     """
 
+    GUARDS = False
+    """Whether it is there for its ends alone."""
+
     @property
     def numeric(self) -> Callable[..., float]:
         """Of its arguments."""
@@ -108,6 +113,10 @@ class Look(Tabled):
         """The derivative by one argument: the same table, one order higher along that."""
         axis, handle = argindex - 2, self.handle
         orders = tuple(one + (at == axis) for at, one in enumerate(handle.orders))
+        if handle.table.turned and orders == (4,):
+            x1, x2, x3 = (Look(Handle(handle.table, (one,)), *self.places) for one in (1, 2, 3))
+            # The derivatives of a cubic's inverse follow from the first three.
+            return 10 * x2 * x3 / x1 - 15 * x2**3 / x1**2
         if orders[axis] > (3 if handle.table.smooth else 1):
             return sp.Integer(0)
         return Look(Handle(handle.table, orders), *self.places)

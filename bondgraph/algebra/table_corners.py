@@ -20,7 +20,7 @@ def check_tables(expr: sp.Expr, what: str, there: Callable[[sp.Expr], sp.Expr]) 
         places = [there(place) for place in look.places]
         cornered = any(_jumps(look, axis) for axis in range(len(places)))
         open_ = sorted({str(one) for place in places for one in place.free_symbols})
-        if open_ and (cornered or look.handle.table.outside == "refuse"):
+        if open_ and not look.GUARDS and (cornered or look.handle.table.outside == "refuse"):
             raise SignalError(
                 f"{what}: where in table {look.handle.table.name!r} the operating point lies depends on "
                 f"{', '.join(open_)}: give numbers for them in at, too"

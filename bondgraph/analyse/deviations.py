@@ -10,6 +10,7 @@ from bondgraph.analyse.slopes import Point
 from bondgraph.analyse.unknowns import Moment, Unknowns
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError
+from bondgraph.inverses.guarding import unguarded
 from bondgraph.reduce.motion import slope_of
 from bondgraph.reduce.record import Reading, ReadingSum
 
@@ -39,7 +40,7 @@ class Deviations:
             raise SignalError(
                 f"values of the graph change with {', '.join(map(str, missing))}: give a value in at"
             )
-        return expr.subs({name: self.value(name) for name in names})
+        return unguarded(expr).subs({name: self.value(name) for name in names})
 
     def value(self, name: sp.Symbol) -> sp.Expr:
         """A state or an input at the point; `SignalError` for one that nothing tells."""

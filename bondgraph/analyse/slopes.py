@@ -13,6 +13,7 @@ from bondgraph.algebra.whole import Below, Floor
 from bondgraph.analyse.unknowns import still
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.errors import SignalError
+from bondgraph.inverses.guarding import unguarded
 
 Point = Mapping[sp.Symbol, sp.Expr]
 """Values of signals, and of parameters where they decide on which side of a corner it lies."""
@@ -84,7 +85,7 @@ def slopes(
             given, f"the law at {port!r}", lambda place: _there(place, port, signals, point)
         )
     found = {
-        name: _at(slope, port, signals, point, "slope")
+        name: _at(unguarded(slope), port, signals, point, "slope")
         for name, slope in zip(read, derivatives, strict=True)
     }
     return {name: slope for name, slope in found.items() if slope != 0}

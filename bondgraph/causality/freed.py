@@ -9,7 +9,7 @@ import sympy as sp
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.vanishing import elements_in
 from bondgraph.declare.elements import Element
-from bondgraph.declare.inverting import flipped, with_inverse
+from bondgraph.declare.inverting import flipped, why_unturned, with_inverse
 from bondgraph.declare.validate import with_elements
 
 Tried = Callable[["nx.DiGraph[Hashable]"], CausalGraph | None]
@@ -68,5 +68,6 @@ def wanting(checked: "nx.DiGraph[Hashable]", story: str, turned: Mapping[Hashabl
     for name, element in elements_in(checked).items():
         nonlinear = element.kind.stores and element.law is not None and element.gives is not None
         if nonlinear and name not in turned and repr(name) in story:
-            return f"; or give {name!r} the inverse of its law, with which it goes either way"
+            way = f"; or give {name!r} the inverse of its law, with which it goes either way"
+            return way + why_unturned(element)
     return ""

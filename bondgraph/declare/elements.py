@@ -59,7 +59,8 @@ class Element:
     ideal switch, when it turns on and off. ``whole``: of a stop's part, that stop. ``start``: of what keeps
     or makes a state, the value with which runs begin. ``by_inverse``: whether the law counts by its inverse
     alone, what it gives being the state. ``turned``: whether its law is turned round by what is known of
-    it: a resistance then gives what its law, as it was written, receives.
+    it: a resistance then gives what its law, as it was written, receives. ``needed``: names that have to be
+    positive for that.
     """
 
     name: Hashable
@@ -81,6 +82,7 @@ class Element:
     start: sp.Expr | None = None
     by_inverse: bool = False
     turned: bool = False
+    needed: frozenset[sp.Symbol] = frozenset()
 
     @property
     def absorbs(self) -> bool:

@@ -1,8 +1,6 @@
 """Laws turned round: a storage's state, or what a resistance receives, as a function of what it gives."""
 
-from collections.abc import Callable, Mapping
 from dataclasses import replace
-from types import MappingProxyType
 
 import sympy as sp
 
@@ -11,19 +9,14 @@ from bondgraph.algebra.lookups import Look
 from bondgraph.declare.elements import OTHER, Element
 from bondgraph.declare.fields import inverts
 from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.inverses.cornered import cornered_inverse
+from bondgraph.inverses.guarding import guarded
 from bondgraph.inverses.inverse import inverse_of
-from bondgraph.inverses.tabled import turned_table
+from bondgraph.inverses.reasons import why_not
+from bondgraph.inverses.undoing import undone
 
-BACK: Mapping[type, Callable[[sp.Expr], sp.Expr]] = MappingProxyType(
-    {
-        sp.exp: sp.log, sp.log: sp.exp, sp.sinh: sp.asinh, sp.asinh: sp.sinh, sp.tanh: sp.atanh,
-        sp.atanh: sp.tanh, sp.tan: sp.atan,
-    }
-)  # fmt: skip
-"""What undoes a function that rises or falls all the way, and has no value where that one never comes to.
-
-So there is none for ``atan``: a tangent has values beyond a right angle, too.
-"""
+Turned = tuple[sp.Expr, frozenset[sp.Symbol]]
+"""An inverse, and the names that have to be positive for it beside those that it tells itself."""
 
 
 def with_inverse(element: Element) -> Element | None:
@@ -31,7 +24,7 @@ def with_inverse(element: Element) -> Element | None:
 
     It is found where the law holds its own state once, in functions that are undone one after the other, and
     constants: what is found is put in and tried. Else it is an `Inverse`, which searches, where signs show
-    that the law rises or falls all the way.
+    that the law rises or falls all the way. Of a law with corners it is one of these for each stretch.
 
     >>> from bondgraph.declare.elements import C
     >>> from bondgraph.declare.declared import elements_of
@@ -47,7 +40,10 @@ def with_inverse(element: Element) -> Element | None:
     if not isinstance(law, ExpressionLaw) or law.state is None or given is None:
         return None
     found = _inverse(law.expression, law.state, given)
-    return None if found is None else replace(element, inverse=found, gives=None, turned=True)
+    if found is None:
+        return None
+    inverse, needed = guarded(found[0], given, element.name), found[1]
+    return replace(element, inverse=inverse, gives=None, turned=True, needed=needed)
 
 
 def flipped(element: Element) -> Element | None:
@@ -65,9 +61,10 @@ def flipped(element: Element) -> Element | None:
     if element.gives is None or given is None or received is None:
         return None
     found = _inverse(law.expression, received, given)
-    if found is None or TIME in found.free_symbols:
+    if found is None or TIME in found[0].free_symbols:
         return None
-    return replace(element, law=ExpressionLaw(found), gives=OTHER[element.gives], turned=True)
+    back, needed = ExpressionLaw(guarded(found[0], given, element.name)), found[1]
+    return replace(element, law=back, gives=OTHER[element.gives], turned=True, needed=needed)
 
 
 def as_received(element: Element, law: ExpressionLaw) -> ExpressionLaw | None:
@@ -81,53 +78,37 @@ def as_received(element: Element, law: ExpressionLaw) -> ExpressionLaw | None:
     if given not in law.free_symbols or received in law.free_symbols:
         return law
     found = _inverse(law.expression, given, received)
-    return None if found is None else ExpressionLaw(found)
+    return None if found is None else ExpressionLaw(guarded(found[0], given, element.name))
 
 
-def _inverse(law: sp.Expr, name: sp.Symbol, value: sp.Expr) -> sp.Expr | None:
-    """What is undone step by step, or else searched."""
+def why_unturned(element: Element) -> str:
+    """A sentence that tells why the law of a storage or a resistance is not turned round; none of others.
+
+    >>> from bondgraph.declare.elements import C
+    >>> from bondgraph.declare.declared import elements_of
+    >>> why_unturned(*elements_of(*C("buffer", law="k*q_buffer + sign(q_buffer)")).values())
+    '. It is not turned round: it jumps at q_buffer = 0'
+    """
+    law = element.law
+    if not isinstance(law, ExpressionLaw) or element.turned or element.inverse is not None:
+        return ""
+    name = law.state if element.kind.stores else element.received
+    alone = element.owner is None and element.energy is None
+    if name is None or name not in law.expression.free_symbols or not alone:
+        return ""
+    return f". It is not turned round: {why_not(law.expression, name)}"
+
+
+def _inverse(law: sp.Expr, name: sp.Symbol, value: sp.Expr) -> Turned | None:
+    """What is undone step by step, or stretch by stretch between corners, or else searched."""
     if name not in law.free_symbols:
         return None
-    found = _undone(law, name, value)
+    if (cornered := cornered_inverse(law, name, value)) is not None:
+        return cornered
+    found = undone(law, name, value)
     if found is not None and law.has(Look):
         # Its points, which the other is made of, may lie far from those that are tried.
-        return found
+        return found, frozenset()
     if found is None or not inverts(law.xreplace({name: found}), value):
         found = inverse_of(law, name, value)
-    return found
-
-
-def _undone(law: sp.Expr, state: sp.Symbol, value: sp.Expr) -> sp.Expr | None:
-    """The state where the law has this value, its outermost function undone first."""
-    while law != state:
-        inner = [part for part in law.args if part.has(state)]
-        if len(inner) != 1:
-            return None
-        (inside,) = inner
-        rest = [part for part in law.args if part is not inside]
-        if isinstance(law, sp.Add):
-            value = value - sp.Add(*rest)
-        elif isinstance(law, sp.Mul):
-            value = value / sp.Mul(*rest)
-        elif isinstance(law, sp.Pow) and inside is law.base:
-            back = _power_back(value, law.exp)
-            if back is None:
-                return None
-            value = back
-        elif isinstance(law, sp.Pow):
-            value = sp.log(value) / sp.log(law.base)
-        elif law.func in BACK:
-            value = BACK[law.func](value)
-        elif isinstance(law, Look) and (back := turned_table(law.handle)) is not None:
-            value = Look(back, value)
-        else:
-            return None
-        law = inside
-    return value
-
-
-def _power_back(value: sp.Expr, exponent: sp.Expr) -> sp.Expr | None:
-    """What has this power, and has no value where the value is below zero, as no broken power is."""
-    # A root of a whole power has no slope at zero, or two values; a square of a root takes either sign.
-    whole = exponent.is_Integer or (1 / exponent).is_Integer
-    return None if whole and exponent not in (1, -1) else value ** (1 / exponent)
+    return None if found is None else (found, frozenset())

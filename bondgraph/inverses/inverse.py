@@ -9,33 +9,38 @@ import sympy as sp
 
 from bondgraph.algebra.called import Called
 from bondgraph.inverses.rising import Rising, rising
-from bondgraph.inverses.searching import place_where
+from bondgraph.searching import place_where
 
 PLACE = sp.Symbol("x")
 """The argument of a law that is turned round, inside it."""
 
 
 class Turning(sp.AtomicExpr):  # type: ignore[misc]
-    """A law that goes one way, its parameters ``a0``, ``a1``, ...: which function an `Inverse` is."""
+    """A law that goes one way, its parameters ``a0``, ``a1``, ...: which function an `Inverse` is.
 
-    __slots__ = ("__dict__", "count", "law")
+    ``shown``: what shows that it goes one way. ``begin``: where searches begin, of the parameters.
+    """
+
+    __slots__ = ("__dict__", "begin", "count", "law", "shown")
     is_commutative = True
     is_number = False
 
     law: sp.Expr
     count: int
+    shown: Rising
+    begin: sp.Expr
 
-    def __new__(cls, law: sp.Expr, count: int) -> Self:
+    def __new__(cls, law: sp.Expr, count: int, shown: Rising, begin: sp.Expr) -> Self:
         """The same object to sympy where laws are equal."""
         made: Self = sp.AtomicExpr.__new__(cls)
-        made.law, made.count = law, count
+        made.law, made.count, made.shown, made.begin = law, count, shown, begin
         return made
 
-    def __getnewargs__(self) -> tuple[sp.Expr, int]:
-        return self.law, self.count
+    def __getnewargs__(self) -> tuple[sp.Expr, int, Rising, sp.Expr]:
+        return self.law, self.count, self.shown, self.begin
 
-    def _hashable_content(self) -> tuple[sp.Expr, int]:
-        return self.law, self.count
+    def _hashable_content(self) -> tuple[sp.Expr, int, Rising, sp.Expr]:
+        return self.law, self.count, self.shown, self.begin
 
     @property
     def parameters(self) -> tuple[sp.Symbol, ...]:
@@ -43,16 +48,11 @@ class Turning(sp.AtomicExpr):  # type: ignore[misc]
         return tuple(sp.Symbol(f"a{at}") for at in range(self.count))
 
     @cached_property
-    def shown(self) -> Rising:
-        """What shows that it goes one way."""
-        found = rising(self.law, PLACE)
-        assert found is not None
-        return found
-
-    @cached_property
     def code(self) -> str:
         """A name that no other law has."""
-        return f"inverse_{hashlib.sha256(sp.srepr(self.law).encode()).hexdigest()[:12]}"
+        parts = (self.law,) if self.begin == 0 else (self.law, self.begin)
+        told = " from ".join(map(sp.srepr, parts))
+        return f"inverse_{hashlib.sha256(told.encode()).hexdigest()[:12]}"
 
     def evaluated(self) -> list[sp.Expr]:
         """What a step of the search needs: law and slope, then all that is positive in the domain."""
@@ -62,9 +62,10 @@ class Turning(sp.AtomicExpr):  # type: ignore[misc]
     def solver(self) -> Callable[..., float]:
         """The place where the law has a value, of that and its parameters; no number where nowhere."""
         law = sp.lambdify([PLACE, *self.parameters], self.evaluated(), modules="math", cse=True)
+        begin = sp.lambdify(self.parameters, self.begin, modules="math")
 
         def solved(value: float, *given: float) -> float:
-            return place_where(lambda x: law(x, *given), value)
+            return place_where(lambda x: law(x, *given), value, float(begin(*given)))
 
         return solved
 
@@ -106,6 +107,12 @@ class Inverse(Called):
         return None if found is sp.nan else found
 
     @property
+    def begin(self) -> sp.Expr:
+        """Where searches begin."""
+        names = self.turning.parameters
+        return self.turning.begin.xreplace(dict(zip(names, self.places[1:], strict=True)))
+
+    @property
     def needed(self) -> tuple[sp.Expr, ...]:
         """What has to be positive for the law to go one way."""
         return tuple(map(self._there, self.turning.shown.positive))
@@ -145,7 +152,19 @@ def inverse_of(law: sp.Expr, state: sp.Symbol, value: sp.Expr) -> sp.Expr | None
     >>> found, found.diff(e).subs({k: 1, e: 10}).evalf(5)
     (root(-e + k*x + x**3, x), 0.076923)
     """
-    names = sorted(law.free_symbols - {state}, key=str)
+    shown = rising(law, state)
+    return None if shown is None else inverse_from(law, state, value, shown, sp.Integer(0))
+
+
+def inverse_from(
+    law: sp.Expr, state: sp.Symbol, value: sp.Expr, shown: Rising, begin: sp.Expr
+) -> sp.Expr:
+    """The state where a law has a value, found by search from a place on; ``shown``: that it goes one way."""
+    names = sorted((law.free_symbols | begin.free_symbols) - {state}, key=str)
     put = {state: PLACE, **{name: sp.Symbol(f"a{at}") for at, name in enumerate(names)}}
-    turning = Turning(law.xreplace(put), len(names))
-    return Inverse(turning, value, *names) if rising(turning.law, PLACE) is not None else None
+    told = Rising(
+        shown.slope.xreplace(put),
+        tuple(one.xreplace(put) for one in shown.positive),
+        tuple(one.xreplace(put) for one in shown.domain),
+    )
+    return Inverse(Turning(law.xreplace(put), len(names), told, begin.xreplace(put)), value, *names)

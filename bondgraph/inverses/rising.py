@@ -26,12 +26,13 @@ class Rising:
     domain: tuple[sp.Expr, ...]
 
 
-def rising(law: sp.Expr, name: sp.Symbol) -> Rising | None:
+def rising(law: sp.Expr, name: sp.Symbol, onward: bool = False) -> Rising | None:
     """What shows that a law rises or falls all the way; None where signs do not show it, or it has corners.
 
     The domain lies about zero: a logarithm's argument, the base of a broken power and a denominator keep
     the sign they have there, and what stands in a tangent is less than a right angle. Each has to rise or
-    fall itself, so that the domain is in one piece.
+    fall itself, so that the domain is in one piece. ``onward``: only from zero on, where the name is no
+    less than that.
 
     >>> q, k, c = sp.symbols("q k c")
     >>> rising(k*q + c*q**3, q)
@@ -41,21 +42,39 @@ def rising(law: sp.Expr, name: sp.Symbol) -> Rising | None:
     >>> rising(k*q + c/(2 - q), q)
     Rising(slope=c/(2 - q)**2 + k, positive=(c, k), domain=(2 - q,))
     """
+    found = sloped(law, name, onward)
+    return found[0] if found is not None and abs(found[1]) == 2 else None
+
+
+def sloped(law: sp.Expr, name: sp.Symbol, onward: bool = False) -> tuple[Rising, int] | None:
+    """The same with the sign of the slope, 1 or -1 where it may be zero, 0 where it is; None if not told."""
     real = {one: sp.Dummy(one.name, real=True) for one in law.free_symbols}
     plain = {dummy: one for one, dummy in real.items()}
     x = real.get(name, sp.Dummy(real=True))
     shown = law.xreplace(real)
     slope = _of_abs(sp.diff(shown, x))
-    signs = _Signs(x, _domain(shown, x))
+    signs = _Signs(x, _domain(shown, x), onward)
     cornered = slope.has(*CORNERED) or law.has(Floor, sp.atan2)
     if cornered or signs.facts is None or not {*_before_poles(shown)} <= {*signs.facts}:
         return None
-    if abs(signs.of(_of_tanh(slope)) or 0) < 2:
+    sign = signs.of(_of_tanh(slope))
+    if sign is None:
         return None
     needed = sorted((plain[one] for one in signs.needed), key=str)
-    return Rising(
-        slope.xreplace(plain), tuple(needed), tuple(one.xreplace(plain) for one in signs.facts)
-    )
+    domain = tuple(one.xreplace(plain) for one in signs.facts)
+    return Rising(slope.xreplace(plain), tuple(needed), domain), sign
+
+
+def sign_of(
+    expr: sp.Expr, name: sp.Symbol | None = None
+) -> tuple[int | None, frozenset[sp.Symbol]]:
+    """The sign of an expression, as `_Signs` has it, and which names have to be positive for that.
+
+    Of ``name`` nothing is known; names that are known not to be negative may be zero.
+    """
+    signs = _Signs(name or sp.Dummy(), [])
+    found = signs.of(expr)
+    return found, frozenset(signs.needed)
 
 
 def _of_abs(slope: sp.Expr) -> sp.Expr:
@@ -96,8 +115,8 @@ def _before_poles(law: sp.Expr) -> list[sp.Expr]:
 class _Signs:
     """Signs of expressions: 2 and -2 never zero, 1 and -1 perhaps, 0 always; None not told."""
 
-    def __init__(self, x: sp.Symbol, inside: list[sp.Expr]) -> None:
-        self._x, self.needed = x, set[sp.Symbol]()
+    def __init__(self, x: sp.Symbol, inside: list[sp.Expr], onward: bool = False) -> None:
+        self._x, self._onward, self.needed = x, onward, set[sp.Symbol]()
         self.facts: tuple[sp.Expr, ...] | None = ()
         found = []
         for one in inside:
@@ -116,7 +135,9 @@ class _Signs:
             return None if expr.is_zero is None else 0 if expr.is_zero else 2 * _sign(expr)
         if expr.is_Symbol:
             if expr == self._x:
-                return None
+                return 1 if self._onward else None
+            if expr.is_nonnegative:
+                return 1
             self.needed.add(expr)
             return 2
         if expr.is_Add:

@@ -1,19 +1,18 @@
-"""Tables turned round: of straight lines that rise or fall all the way, by their points the other way."""
+"""Tables turned round: of straight lines by their points the other way, of cubics by solving these."""
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 from bondgraph.algebra.lookups import Handle
+from bondgraph.tables.looking import BACK
+from bondgraph.tables.one_way import one_way
 from bondgraph.tables.record import Sampled
-
-TURNED = "⁻¹"
-"""How the name of a table that is turned round ends, which no declared one does."""
 
 
 def turned_table(handle: Handle) -> Handle | None:
-    """The table that gives back what this one was given; None where that is none, or no straight lines.
+    """The table that gives back what this one was given; None where that is none.
 
-    Beyond its ends it goes on, or refuses, as this one does.
+    Beyond its ends it goes on where this one goes on the same way; else it refuses what is outside, which
+    this one gives nowhere, or as it turns back.
 
     >>> of = Sampled("charge", ((0.0, 1.0, 3.0),), (5.0, 4.0, 0.0), "linear", "extend")
     >>> back = turned_table(Handle(of, (0,))).table
@@ -21,14 +20,15 @@ def turned_table(handle: Handle) -> Handle | None:
     ('charge⁻¹', ((0.0, 4.0, 5.0),), (3.0, 1.0, 0.0))
     """
     table = handle.table
-    if table.method != "linear" or table.outside == "hold" or handle.orders != (0,):
+    if len(table.axes) != 1 or handle.orders != (0,) or table.turned:
         return None
-    (x,), z = table.axes, table.values
-    if all(a > b for a, b in pairwise(z)):
-        x, z = x[::-1], z[::-1]
-    if not all(a < b for a, b in pairwise(z)):
+    told = one_way(table)
+    if not told.way:
         return None
-    return Handle(Sampled(table.name + TURNED, (z,), x, "linear", table.outside), (0,))
+    x, z = table.axes[0][:: told.way], table.values[:: told.way]
+    method = table.method + (BACK if table.smooth else "")
+    outside = "extend" if table.outside == "extend" and told.beyond else "refuse"
+    return Handle(Sampled(table.name + BACK, (z,), x, method, outside), (0,))
 
 
 def fixed(tables: Sequence[Sampled]) -> frozenset[str]:
@@ -36,5 +36,5 @@ def fixed(tables: Sequence[Sampled]) -> frozenset[str]:
 
     One of them by itself with other values would no longer be the other turned round.
     """
-    turned = [table.name for table in tables if table.name.endswith(TURNED)]
-    return frozenset([*turned, *(name.removesuffix(TURNED) for name in turned)])
+    turned = [table.name for table in tables if table.name.endswith(BACK)]
+    return frozenset([*turned, *(name.removesuffix(BACK) for name in turned)])

@@ -1,10 +1,12 @@
 """What laws may close: no port whose effort would have to be differentiated, or is read by itself."""
 
 from collections.abc import Collection, Hashable, Mapping, Sequence
+from dataclasses import replace
 
 import sympy as sp
 
 from bondgraph.algebra.exact import FixedRow
+from bondgraph.declare.inverting import why_unturned
 from bondgraph.declare.laws import DryFriction, Law, check_slider
 from bondgraph.errors import DependentSourceError, StructureError
 from bondgraph.reduce.record import Reading
@@ -47,6 +49,7 @@ def check_laws(
             raise DependentSourceError(
                 f"the law at {port.element.name!r} drives a dependent storage, so its slope in time "
                 f"would be needed; {way}, or put a storage that can be independent beside it"
+                f"{why_unturned(replace(port.element, law=law))}"
             )
 
 

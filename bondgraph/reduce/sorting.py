@@ -10,6 +10,7 @@ import sympy as sp
 from bondgraph.algebra.exact import combined
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.names import energy_name
+from bondgraph.inverses.guarding import unguarded
 from bondgraph.reduce.motion import Motion
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import JunctionStructure, Port
@@ -122,7 +123,7 @@ def held(reduction: Reduction, taken: Iterable[sp.Symbol]) -> dict[sp.Symbol, sp
         told = law.state if isinstance(law, ExpressionLaw) else None
         symbol = told or energy_name(element, names)
         if element.inverse is not None:
-            found[symbol] = element.inverse
+            found[symbol] = unguarded(element.inverse)
             continue
         ports = reduction.structure.ports
         terms = [

@@ -29,7 +29,7 @@ class _Plain(StrPrinter):  # type: ignore[misc]
         return f"|{self._print(expr.args[0])}|"
 
     def _print_Piecewise(self, expr: sp.Piecewise) -> str:
-        pieces = []
+        pieces: list[str] = []
         for value, held in expr.args:
             told = self._print(value)
             last = f"else {told}" if pieces else told

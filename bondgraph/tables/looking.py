@@ -2,7 +2,7 @@
 
 A table is ``(breaks, degree, outside, coefficients)``: its breaks along each axis, and for each cell, those
 along the last axis in turn, the factors of ``(x - x_i)**p * (y - y_j)**q``, highest powers first. C has the
-same in model_table.c.
+same in model_table.c. What is turned round is looked into by `backward`.
 """
 
 import math
@@ -11,6 +11,9 @@ from collections.abc import Sequence
 
 Patches = tuple[tuple[tuple[float, ...], ...], int, str, tuple[float, ...]]
 """Breaks along each axis, degree, what is beyond the ends, factors."""
+
+BACK = "⁻¹"
+"""How the method and the name of a table that is turned round end, which no declared one's do."""
 
 FREE = -1
 """In place of a region: an argument is wherever it is."""

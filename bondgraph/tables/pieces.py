@@ -5,7 +5,10 @@ from collections.abc import Hashable
 from functools import lru_cache
 from typing import Any, Protocol
 
-from bondgraph.tables.looking import Patches
+from bondgraph.tables.looking import BACK, Patches
+
+TURNED = -3
+"""In place of a degree: the cubic of a cell is solved, `backward` tells how."""
 
 
 class Points(Hashable, Protocol):
@@ -32,14 +35,19 @@ class Points(Hashable, Protocol):
 def pieces(table: Points) -> Patches:
     """Breaks, degree and coefficients as `looked_up` takes them; the last ones are kept.
 
-    "linear" has numpy's slopes, "pchip" (Fritsch and Butland 1984) and "akima" (Akima 1970) scipy's cubics,
-    "bicubic" the cubic spline without knots beside the ends that `RectBivariateSpline` finds with ``s=0``.
+    A method that ends with `BACK` is that of the table which this one is turned round of, as `looked_back`
+    takes it. "linear" has numpy's slopes, "pchip" (Fritsch and Butland 1984) and "akima" (Akima 1970)
+    scipy's cubics, "bicubic" the cubic spline without knots beside the ends that `RectBivariateSpline` finds
+    with ``s=0``.
     """
     # numpy and scipy are loaded only when numbers are asked for.
     import numpy as np
 
     z = np.array(table.values).reshape([len(axis) for axis in table.axes])
     axes = [np.array(axis) for axis in table.axes]
+    if table.method.endswith(BACK):
+        found = _turned(table.method.removesuffix(BACK), axes[0], z)
+        return table.axes, TURNED, table.outside, tuple(found.ravel().tolist())
     make = {"linear": _linear, "bilinear": _bilinear, "bicubic": _bicubic}.get(table.method, _cubic)
     breaks, factors = make(table.method, axes, z)
     told = tuple(tuple(one.tolist()) for one in breaks)
@@ -58,6 +66,21 @@ def _cubic(method: str, axes: list[Any], z: Any) -> tuple[list[Any], Any]:
 
     made = (PchipInterpolator if method == "pchip" else Akima1DInterpolator)(axes[0], z)
     return axes, made.c.T
+
+
+def _turned(method: str, z: Any, x: Any) -> Any:
+    """Of each cell of the table that has these values z at places x, from the lower value on."""
+    import numpy as np
+
+    falls = bool(x[0] > x[-1])
+    way = -1 if falls else 1
+    _, factors = _cubic(method, [x[::way]], z[::way])
+    if falls:
+        # Those about the other end of each cell.
+        c3, c2, c1, _ = factors[::-1].T
+        h = x[:-1] - x[1:]
+        factors = np.stack([c3, c2 + 3 * c3 * h, c1 + (2 * c2 + 3 * c3 * h) * h, h], axis=1)
+    return np.concatenate([factors[:, :3], x[:-1, None]], axis=1)
 
 
 def _bilinear(method: str, axes: list[Any], z: Any) -> tuple[list[Any], Any]:

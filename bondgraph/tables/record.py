@@ -7,6 +7,7 @@ from functools import cached_property
 from itertools import pairwise
 
 from bondgraph.errors import TableError, nearest
+from bondgraph.tables.looking import BACK
 
 METHODS = ("linear", "pchip", "akima", "bilinear", "bicubic")
 """Between points: the first three over one axis, the last two over two."""
@@ -39,6 +40,11 @@ class Sampled:
         """Tells the table from others, whatever they are called."""
         parts = (self.name, self.axes, self.values, self.method, self.outside)
         return hashlib.sha256(repr(parts).encode()).hexdigest()[:16]
+
+    @property
+    def turned(self) -> bool:
+        """Whether it is one of cubics that is turned round."""
+        return self.method.endswith(BACK)
 
     @property
     def smooth(self) -> bool:

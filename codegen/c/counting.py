@@ -7,7 +7,7 @@ import sympy as sp
 
 from bondgraph.algebra.lookups import Tabled
 from bondgraph.inverses.inverse import Inverse
-from bondgraph.inverses.searching import MOST
+from bondgraph.searching import MOST
 from bondgraph.tables.pieces import pieces
 from codegen.program.records import Block, Program
 from codegen.tuning import TUNING
@@ -111,9 +111,11 @@ def counted(expressions: Iterable[sp.Expr]) -> Count:
 def _looked_up(look: Tabled) -> Count:
     """What looking into a table takes beside its call: halving along each axis, and polynomials."""
     breaks, degree, _, _ = pieces(look.handle.table)
+    searched = Count(8 * (MOST + 1), 7 * (MOST + 1), MOST + 1) if degree < 0 else Count()
     halves = sum((len(knots) + 1).bit_length() for knots in breaks)
-    lines = 1 if len(breaks) == 1 else degree + 2
-    return Count(2 * lines * (degree + 1), lines * (degree + 1) + halves)
+    size = abs(degree) + 1
+    lines = 1 if len(breaks) == 1 else size + 1
+    return Count(2 * lines * size, lines * size + halves) + searched
 
 
 def _searched(inverse: Inverse) -> Count:

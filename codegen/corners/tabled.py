@@ -10,6 +10,7 @@ from functools import partial
 import sympy as sp
 
 from bondgraph.algebra.lookups import Handle, Look, Tabled
+from bondgraph.tables.backward import looked_back
 from bondgraph.tables.edges import bits, edge, edges
 from bondgraph.tables.looking import FREE, looked_up
 from bondgraph.tables.pieces import pieces
@@ -27,7 +28,8 @@ class LookOn(Tabled):
         """Of arguments and regions."""
         handle = self.handle
         table, count = pieces(handle.table), len(handle.orders)
-        return lambda *told: looked_up(table, handle.orders, told[:count], told[count:])
+        look = looked_back if handle.table.turned else looked_up
+        return lambda *told: look(table, handle.orders, told[:count], told[count:])
 
 
 class Edge(Tabled):

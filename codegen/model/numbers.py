@@ -109,11 +109,11 @@ def _check_turned(equations: StateEquations, parameters: Mapping[str, sp.Rationa
         law = element.law.expression if isinstance(element.law, ExpressionLaw) else None
         parts = {part for one in (element.inverse, law) if one for part in one.atoms(Inverse)}
         _check_powers(element, [one for one in (element.inverse, law) if one], parameters)
-        needed = {factor for part in parts for factor in part.needed}
+        needed = {factor for part in parts for factor in part.needed} | element.needed
         for factor in sorted(needed, key=str):
             if at_parameters(factor, parameters).is_nonpositive:
                 raise ParameterError(
-                    f"{element.kind} {name!r}: its law is turned round by a search, for which {factor} has "
+                    f"{element.kind} {name!r}: its law is turned round here, for which {factor} has "
                     f"to be positive, and here {_listed(factor, parameters)}; give the inverse of its law, "
                     "or a law in the other causality"
                 )

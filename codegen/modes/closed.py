@@ -186,8 +186,16 @@ class ClosedModel:
                 pass
         raise SimulationError(
             f"at t = {now.t:.9g} a value is not finite, or A has no inverse; state {now.x.tolist()} "
-            f"{now.z.tolist()}"
+            f"{now.z.tolist()}{self._turned}"
         )
+
+    @property
+    def _turned(self) -> str:
+        """Which laws are turned round, and so may have no value for what they receive."""
+        elements = self.equations.elements.values()
+        names = ", ".join(repr(one.name) for one in elements if one.turned)
+        told = f"; the law of {names} is turned round: it may have no value for what it never gives"
+        return told if names else ""
 
     def at(self, t: float, s: Array, pieces: Sequence[Piece], mode: Mode) -> Snapshot:
         """Every variable at one time, with the inputs' pieces and the friction mode given.

@@ -79,9 +79,21 @@ def cells(look: Look) -> list[float]:
 def steepest(table: Points) -> float:
     """A bound on the slope of a table over one axis between its ends."""
     (knots,), degree, _, factors = pieces(table)
+    if degree < 0:
+        widths = [b - a for a, b in pairwise(table.values)]
+        slopes = [factors[4 * at : 4 * at + 3] for at in range(len(widths))]
+        return 1.0 / min(map(_flattest, slopes, widths))
     size, found = degree + 1, 0.0
     for at, (a, b) in enumerate(pairwise(knots)):
         powers = factors[at * size : (at + 1) * size]
         terms = zip(range(degree, 0, -1), powers, strict=False)
         found = max(found, sum(p * abs(factor) * (b - a) ** (p - 1) for p, factor in terms))
     return found
+
+
+def _flattest(powers: Sequence[float], width: float) -> float:
+    """The least slope, of either sign, that a cubic without turns has over a width from zero on."""
+    c3, c2, c1 = powers
+    bottom = -c2 / (3 * c3) if c3 else 0.0
+    inside = [bottom] if min(0.0, width) < bottom < max(0.0, width) else []
+    return min(abs((3 * c3 * u + 2 * c2) * u + c1) for u in (0.0, width, *inside))

@@ -68,6 +68,9 @@ class _C(C99CodePrinter):  # type: ignore[misc]
         handle, *places = expr.args
         return self._looked_up(handle, places, [sp.Integer(FREE)] * len(places))
 
+    def _print_Guard(self, expr: Any) -> str:
+        return self._print_Look(expr)
+
     def _print_LookOn(self, expr: Any) -> str:
         handle, *told = expr.args
         count = len(handle.orders)
@@ -81,9 +84,9 @@ class _C(C99CodePrinter):  # type: ignore[misc]
         return f"{call}({table_place(handle)}, {', '.join(given)})"
 
     def _print_Inverse(self, expr: Any) -> str:
-        value, *given = map(self._print, expr.places)
+        begin, value, *given = map(self._print, (sp.sympify(expr.begin), *expr.places))
         told = ", ".join(given or ["0.0"])
-        return f"bg_searched(bg_{expr.turning.code}, {value}, (const double[]){{{told}}})"
+        return f"bg_searched(bg_{expr.turning.code}, {begin}, {value}, (const double[]){{{told}}})"
 
     def _print_Edge(self, expr: Any) -> str:
         handle, axis, bit, x, *region = expr.args
@@ -157,7 +160,11 @@ class _Python(PythonCodePrinter):  # type: ignore[misc]
     def _print_Look(self, expr: Any) -> str:
         handle, *places = expr.args
         given = ", ".join(map(self._print, places))
-        return f"looked_up(tables[{handle.table.name!r}], {handle.orders}, ({given},))"
+        look = "looked_back" if handle.table.turned else "looked_up"
+        return f"{look}(tables[{handle.table.name!r}], {handle.orders}, ({given},))"
+
+    def _print_Guard(self, expr: Any) -> str:
+        return self._print_Look(expr)
 
     def _print_Inverse(self, expr: Any) -> str:
         return str(expr._numpycode(self))
@@ -179,7 +186,7 @@ class _Floats(_Python):
     def _looked(self, expr: Any) -> str:
         return str(expr._numpycode(self))
 
-    _print_Look = _print_LookOn = _print_Edge = _print_EdgeOn = _looked
+    _print_Look = _print_Guard = _print_LookOn = _print_Edge = _print_EdgeOn = _looked
 
     def _print_log(self, expr: sp.Expr) -> str:
         return f"math.log({self._print(expr.args[0])})"

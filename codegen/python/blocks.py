@@ -16,7 +16,8 @@ from codegen.program.records import Block, Group, Pattern, Program
 from codegen.python.text import WIDTH, assignment, plain, quoted
 
 TAKEN = (
-    "parameters", "now", "tables", "matrix", "log_of", "looked_up", "place_where", "l", "O", "I",
+    "parameters", "now", "tables", "matrix", "log_of", "looked_up", "looked_back", "place_where",
+    "l", "O", "I",
 )  # fmt: skip
 """Names that the functions use themselves, and letters that look like digits."""
 

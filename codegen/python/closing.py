@@ -114,7 +114,9 @@ def needed(program: Program, slips: SlipRows | None, implicit: bool) -> list[str
     events = {"stopping": program.stopped, "resetting": program.resets, "hanging": program.hanging}
     names += [f"codegen.stops.{name}" for name, wanted in events.items() if wanted]
     names += ["codegen.fixed.tabled"] if program.tables else []
-    names += ["bondgraph.inverses.searching"] if program.turnings else []
+    back = any(table.turned for table in program.tables)
+    names += ["bondgraph.tables.backward"] if back else []
+    names += ["bondgraph.searching"] if program.turnings else []
     return ["codegen.standalone.formulas", "codegen.standalone.running", *names]
 
 

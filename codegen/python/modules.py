@@ -9,7 +9,7 @@ from importlib.resources import files
 from codegen.python.text import RULE
 from codegen.tuning import TUNING
 
-PROJECT = ("codegen.", "bondgraph.inverses.", "bondgraph.tables.")
+PROJECT = ("codegen.", "bondgraph.searching", "bondgraph.tables.")
 """Modules of these packages are written out; all others are imported."""
 
 TOLERANCES = "codegen.tuning"

@@ -21,5 +21,6 @@ def turned_laws(turnings: Sequence[Turning]) -> list[str]:
         ]
         for one in turning.evaluated():
             lines += assignment("", text_of(one, Names({}, {})), indent=12, end=",", sign="")
-        lines += ["        )", "", "    return place_where(law, value)"]
+        begin = "" if turning.begin == 0 else f", {text_of(turning.begin, Names({}, {}))}"
+        lines += ["        )", "", f"    return place_where(law, value{begin})"]
     return lines

@@ -58,7 +58,7 @@ typedef struct {
 typedef double (*bg_law)(double x, const double *a, double *slope);
 
 /* Where a law has a value, with its parameters a; no number where it has it nowhere. */
-double bg_searched(bg_law law, double value, const double *a);
+double bg_searched(bg_law law, double begin, double value, const double *a);
 
 /* As fmin, fmax and the sign, but no number where an argument is none. */
 static inline double bg_min(double a, double b)

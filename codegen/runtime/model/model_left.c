@@ -3,6 +3,8 @@
 
 #include "model_internal.h"
 
+static const double ENDLESS = 1e299;
+
 /* Whether a failure is of what no table may have been left for. */
 static int is_other(int status)
 {
@@ -26,7 +28,9 @@ static int left(const bg_model *m, const double *values)
             const bg_refusing *const one = bg_refusings + i;
             const bg_table *const of = m->now.tables + one->table;
             const double *const breaks = of->breaks[one->axis];
-            const double span = breaks[of->cells[one->axis]] - breaks[0];
+            const double whole = breaks[of->cells[one->axis]] - breaks[0];
+            /* What guards a law that is turned round may have no end. */
+            const double span = whole < ENDLESS ? whole : 1.0;
             if (beyond(of, one->axis, values[i]) > (near ? -BG_ROUNDING * span : 0.0))
                 return i;
         }

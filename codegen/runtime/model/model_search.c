@@ -1,5 +1,5 @@
 /* Laws turned round: Newton's method between two places that hold the answer. As
- * bondgraph/inverses/searching.py: equal steps, equal numbers. */
+ * bondgraph/searching.py: equal steps, equal numbers. */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -32,11 +32,11 @@ static double off_at(const bg_sought *of, double x, double *slope)
 }
 
 /* A place at which the law has a value, how far that is beyond the one sought, and the slope. */
-static double beginning(const bg_sought *of, double *off, double *slope)
+static double beginning(const bg_sought *of, double begin, double *off, double *slope)
 {
-    *off = off_at(of, 0.0, slope);
+    *off = off_at(of, begin, slope);
     if (*off == *off)
-        return 0.0;
+        return begin;
     for (int power = 0; power < POWERS; power++) {
         const double small = ldexp(1.0, -power), large = ldexp(1.0, power);
         const double places[] = {small, large, -small, -large};
@@ -68,13 +68,13 @@ static double middle(double a, double b)
     return order < 0 ? -size : size;
 }
 
-double bg_searched(bg_law law, double value, const double *a)
+double bg_searched(bg_law law, double begin, double value, const double *a)
 {
     const bg_sought of = {law, a, value};
     if (value - value != 0.0)
         return NAN;
     double off = NAN, slope = NAN;
-    double near = beginning(&of, &off, &slope), x = near;
+    double near = beginning(&of, begin, &off, &slope), x = near;
     const int below = off < 0.0, rises = slope > 0.0;
     double far = rises == below ? HUGE_VAL : -HUGE_VAL, last = HUGE_VAL;
     int there = 0;

@@ -64,6 +64,30 @@ static double polynomial(const double *factors, int degree, int order, double u)
     return total;
 }
 
+/* What a cubic is above where a cell begins, and its slope; no number where that has turned. */
+static double cubic_above(double w, const double *factors, double *slope)
+{
+    const double above[] = {factors[0], factors[1], factors[2], 0.0};
+    *slope = polynomial(above, 3, 1, w);
+    return *slope * factors[2] > 0.0 ? polynomial(above, 3, 0, w) : NAN;
+}
+
+/* The place where a cubic is so far above where its cell begins, or a derivative of that place. As
+ * bondgraph/tables/backward.py. */
+static double solved_back(const double *factors, int order, double above)
+{
+    const double w = bg_searched(cubic_above, 0.0, above, factors);
+    const double cubic[] = {factors[0], factors[1], factors[2], 0.0};
+    const double slope = polynomial(cubic, 3, 1, w), bend = polynomial(cubic, 3, 2, w);
+    if (order == 0)
+        return factors[3] + w;
+    if (order == 1)
+        return 1.0 / slope;
+    if (order == 2)
+        return -bend / slope / slope / slope;
+    return (3.0 * bend * bend / slope - polynomial(cubic, 3, 3, w)) / slope / slope / slope / slope;
+}
+
 double bg_interpolate(const bg_table *of, int order, double x, double region)
 {
     double u = 0.0;
@@ -71,6 +95,8 @@ double bg_interpolate(const bg_table *of, int order, double x, double region)
     const int at = placed(of, 0, x, region, &u, &held);
     if (held && order > 0 && u == u)
         return 0.0;
+    if (of->degree < 0)
+        return solved_back(of->factors + 4 * at, order, u);
     return polynomial(of->factors + at * (of->degree + 1), of->degree, order, u);
 }
 

@@ -76,7 +76,7 @@ def _program(table: bg.LookupTable, folder: Path) -> Path:
     """A program that looks into a table; the whole model would want all of its runtime."""
     files = codegen.to_c(_equations(table), {}) | {"main.c": MAIN}
     kept = {name: files[name] for name in files if name.endswith(".h")}
-    kept |= {name: files[name] for name in ("main.c", "model_table.c")}
+    kept |= {name: files[name] for name in ("main.c", "model_table.c", "model_search.c")}
     kept["model.c"] = _tables_alone(files["model.c"])
     return compiled(folder, written(folder, kept), *WARNED, "-Wno-unused-const-variable")
 

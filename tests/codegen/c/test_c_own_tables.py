@@ -66,7 +66,7 @@ def _program(axes: list[Array], method: str, outside: str, folder: Path) -> Path
     graph.add_nodes_from([bg.Se("s", call), bg.One("n"), bg.I("m", 1, flow="v")])
     graph.add_edges_from([("s", "n"), ("n", "m")])
     files = codegen.to_c(bg.derive(graph), {}) | {"main.c": MAIN}
-    needs = ("main.c", "model_table.c", "model_fit.c", "model_linear.c")
+    needs = ("main.c", "model_table.c", "model_search.c", "model_fit.c", "model_linear.c")
     kept = {name: text for name, text in files.items() if name.endswith(".h") or name in needs}
     text = files["model.c"]
     begin, end = text.index("/* The table map"), text.index("const char *const bg_lookup_names")

@@ -20,7 +20,11 @@ from codegen.c.counting import counted
 LAWS: list[tuple[str, Callable, tuple[float, float]]] = [
     ("k*f_r + c*f_r**3", lambda x, k, c: k * x + c * x**3, (-1e3, 1e3)),
     ("-k*f_r - c*sinh(f_r)", lambda x, k, c: -k * x - c * np.sinh(x), (-30.0, 30.0)),
-    ("k*f_r + c*f_r*abs(f_r)", lambda x, k, c: k * x + c * x * abs(x), (-1e3, 1e3)),
+    (
+        "k*f_r + c*f_r*exp(-k) + f_r**5",
+        lambda x, k, c: (k + c * np.exp(-k)) * x + x**5,
+        (-1e3, 1e3),
+    ),
     ("k*f_r + c*log(1 + f_r)", lambda x, k, c: k * x + c * np.log1p(x), (-0.999, 1e3)),
     ("k*f_r + c/(1 - f_r)**1.5", lambda x, k, c: k * x + c / (1 - x) ** 1.5, (-1e3, 0.99)),
     ("f_r + tanh(f_r)", lambda x, k, c: x + np.tanh(x), (-1e3, 1e3)),
@@ -35,7 +39,7 @@ int main(void)
     const double a[] = {2.5, 0.7};
     double value;
     while (fread(&value, sizeof value, 1, stdin) == 1) {
-        value = bg_searched(bg_turnings[0], value, a);
+        value = bg_searched(bg_turnings[0], 0.0, value, a);
         fwrite(&value, sizeof value, 1, stdout);
     }
     return 0;

@@ -6,7 +6,7 @@ import pytest
 from oracles.routes.searched import cells
 
 import codegen
-from bondgraph.inverses.tabled import TURNED
+from bondgraph.tables.looking import BACK
 from codegen.fmu.tabled import arrays_of, scalars_of
 from codegen.program.lower import lower
 
@@ -16,7 +16,7 @@ def test_python_refuses_other_values_of_one_by_name() -> None:
     module: dict[str, Any] = {}
     exec(codegen.to_python(kind.equations, kind.numbers), module)
     (name,) = module["TABLES"]
-    assert name == f"rest{TURNED}"
+    assert name == f"rest{BACK}"
     with pytest.raises(ValueError, match="is turned round in this model: it keeps its values"):
         module["simulate"](
             [0.0, 1.0], kind.initial, {"i": 3.0}, step=0.1, tables={name: [0, 1, 2, 3]}

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import codegen
-from bondgraph.inverses import searching
+from bondgraph import searching
 from bondgraph.tables import looking
 from codegen.python.modules import written_out
 

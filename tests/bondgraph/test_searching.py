@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from bondgraph.inverses.searching import MOST, place_where
+from bondgraph.searching import MOST, place_where
 
 LAWS: dict[str, tuple[Callable, tuple[float, float]]] = {
     "cubic": (lambda x: (x + x**3, 1 + 3 * x**2), (-1e5, 1e5)),

@@ -27,13 +27,13 @@ OVER = 8.0
 """So many times that far a step goes that is to pass the answer."""
 
 
-def place_where(law: Sloped, value: float) -> float:
+def place_where(law: Sloped, value: float, begin: float = 0.0) -> float:
     """The place where the law has this value; not a number where it has it nowhere.
 
-    The search begins at zero or, where the law has no value there, at the first power of two that it has
-    one at. From there to the end of all numbers, what is outside the law's domain counts as past the answer:
-    Newton's steps lead there, and where a step would leave what holds the answer, or after the first few is
-    more than a quarter of the last, the doubles in between are halved.
+    The search begins where it is told or, where the law has no value there, at the first power of two that
+    it has one at. From there to the end of all numbers, what is outside the law's domain counts as past the
+    answer: Newton's steps lead there, and where a step would leave what holds the answer, or after the first
+    few is more than a quarter of the last, the doubles in between are halved.
 
     >>> place_where(lambda x: (x + x**3, 1 + 3*x**2), 10.0)
     2.0
@@ -42,7 +42,7 @@ def place_where(law: Sloped, value: float) -> float:
     """
     if not math.isfinite(value):
         return math.nan
-    near, off, slope = beginning(law, value)
+    near, off, slope = beginning(law, value, begin)
     if not math.isfinite(off):
         return math.nan
     x = near
@@ -74,11 +74,11 @@ def place_where(law: Sloped, value: float) -> float:
     return math.nan
 
 
-def beginning(law: Sloped, value: float) -> tuple[float, float, float]:
+def beginning(law: Sloped, value: float, begin: float) -> tuple[float, float, float]:
     """A place at which the law has a value, how far it is beyond the one that is sought, and its slope."""
-    off, slope = off_at(law, 0.0, value)
+    off, slope = off_at(law, begin, value)
     if not math.isnan(off):
-        return 0.0, off, slope
+        return begin, off, slope
     for power in range(POWERS):
         for place in (2.0**-power, 2.0**power, -(2.0**-power), -(2.0**power)):
             off, slope = off_at(law, place, value)
