@@ -39,6 +39,9 @@ def rising(law: sp.Expr, name: sp.Symbol, onward: bool = False) -> Rising | None
     Rising(slope=3*c*q**2 + k, positive=(c, k), domain=())
     >>> rising(k*q - c*q**3, q), rising(q**3, q)
     (None, None)
+    >>> f = sp.Symbol("f")
+    >>> rising(q/(1 + f**2), q).positive, rising(f**2*q, q).positive
+    ((), (f,))
     >>> rising(k*q + c/(2 - q), q)
     Rising(slope=c/(2 - q)**2 + k, positive=(c, k), domain=(2 - q,))
     """
@@ -47,13 +50,26 @@ def rising(law: sp.Expr, name: sp.Symbol, onward: bool = False) -> Rising | None
 
 
 def sloped(law: sp.Expr, name: sp.Symbol, onward: bool = False) -> tuple[Rising, int] | None:
-    """The same with the sign of the slope, 1 or -1 where it may be zero, 0 where it is; None if not told."""
+    """The same with the sign of the slope, 1 or -1 where it may be zero, 0 where it is; None if not told.
+
+    Squares are taken as no less than zero, whatever sign their names have; where that does not tell it, as
+    those of positive names.
+    """
+    found = _sloped(law, name, onward, squared=False)
+    if found is not None and abs(found[1]) == 2:
+        return found
+    return _sloped(law, name, onward, squared=True) or found
+
+
+def _sloped(
+    law: sp.Expr, name: sp.Symbol, onward: bool, squared: bool
+) -> tuple[Rising, int] | None:
     real = {one: sp.Dummy(one.name, real=True) for one in law.free_symbols}
     plain = {dummy: one for one, dummy in real.items()}
     x = real.get(name, sp.Dummy(real=True))
     shown = law.xreplace(real)
     slope = _of_abs(sp.diff(shown, x))
-    signs = _Signs(x, _domain(shown, x), onward)
+    signs = _Signs(x, _domain(shown, x), onward, squared)
     cornered = slope.has(*CORNERED) or law.has(Floor, sp.atan2)
     if cornered or signs.facts is None or not {*_before_poles(shown)} <= {*signs.facts}:
         return None
@@ -113,10 +129,15 @@ def _before_poles(law: sp.Expr) -> list[sp.Expr]:
 
 
 class _Signs:
-    """Signs of expressions: 2 and -2 never zero, 1 and -1 perhaps, 0 always; None not told."""
+    """Signs of expressions: 2 and -2 never zero, 1 and -1 perhaps, 0 always; None not told.
 
-    def __init__(self, x: sp.Symbol, inside: list[sp.Expr], onward: bool = False) -> None:
-        self._x, self._onward, self.needed = x, onward, set[sp.Symbol]()
+    ``squared``: whether names under even powers, too, are taken as positive, so that these are never zero.
+    """
+
+    def __init__(
+        self, x: sp.Symbol, inside: list[sp.Expr], onward: bool = False, squared: bool = True
+    ) -> None:
+        self._x, self._onward, self._squared, self.needed = x, onward, squared, set[sp.Symbol]()
         self.facts: tuple[sp.Expr, ...] | None = ()
         found = []
         for one in inside:
@@ -149,6 +170,8 @@ class _Signs:
         return self._function(expr)
 
     def _power(self, base: sp.Expr, exponent: sp.Expr) -> int | None:
+        if exponent.is_even and not self._squared and not base.is_number:
+            return 2 if exponent.is_negative else 1
         below = self.of(base)
         if exponent.is_even:
             return 2 if exponent.is_negative or abs(below or 0) == 2 else 1
