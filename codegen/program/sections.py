@@ -5,9 +5,11 @@ from types import MappingProxyType
 
 import sympy as sp
 
+from bondgraph.algebra.exact import rows_of
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
+from bondgraph.reduce.impulses import Momenta, momenta
 from codegen.program.closing import Closing
 from codegen.program.records import FrictionPort, Group, Pattern, block
 from codegen.program.sliding import Slider, halves_of
@@ -36,6 +38,13 @@ def coefficients(
         expressions += [entry for *_, entry in found]
         layout[name] = _pattern((len(rows), width), [(i, j) for i, j, _ in found])
     return expressions, MappingProxyType(layout)
+
+
+def exchanges(equations: StateEquations) -> Momenta:
+    """What impulses exchange, of states and of readings; nothing where slopes in A stay as they are."""
+    reduction, A = equations.reduction, rows_of(equations.A)
+    found = momenta(equations.switches, reduction, A, equations.readings, equations.signals)
+    return Momenta((), {}) if found is None else found
 
 
 def _pattern(shape: tuple[int, int], places: Sequence[tuple[int, int]]) -> Pattern:
