@@ -14,11 +14,12 @@ import sympy as sp
 from bondgraph.algebra.elimination import ResidueRows
 from bondgraph.algebra.exact import FixedRow
 from bondgraph.algebra.residues import residues
+from bondgraph.declare.names import read_in
 from bondgraph.errors import StructureError
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.storages import stored, stored_behind
-from bondgraph.reduce.structure import PortRow
+from bondgraph.reduce.structure import JunctionStructure, PortRow
 from bondgraph.reduce.switch_port import SwitchPort
 
 TOGETHER = 2
@@ -40,13 +41,14 @@ class Momenta:
 def bound_by_switches(reduction: Reduction) -> set[int]:
     """The ports of nonlinear storages, with states of their own, that switches bind as they hold.
 
-    What laws of resistances beside them give follows at once, so that these bind nothing.
+    What laws of resistances beside them give follows at once, so that these bind nothing. Storages whose
+    states others read keep them.
     """
     structure = reduction.structure
     ports = [structure.ports[at] for at in reduction.imposed]
     place = {port.given: reduction.inputs.index(port.given) for port in ports}
     stores = {
-        place[structure.ports[at].given]: at for at in reduction.imposed if _is_own(reduction, at)
+        place[structure.ports[at].given]: at for at in reduction.imposed if _is_own(structure, at)
     }
     switches = [at for at in reduction.imposed if structure.ports[at].element.switch is not None]
     if not stores or not switches:
@@ -151,10 +153,13 @@ def _turns(reduction: Reduction, row: FixedRow, names: set[sp.Symbol]) -> bool:
     return any(row[d].free_symbols & names for d in reduction.dependent if d in row)
 
 
-def _is_own(reduction: Reduction, at: int) -> bool:
-    """Whether a port is a nonlinear storage's whose momentum or displacement is the state."""
-    port = reduction.structure.ports[at]
-    return port.integral and port.own_state is not None
+def _is_own(structure: JunctionStructure, at: int) -> bool:
+    """Whether a port is a nonlinear storage's whose own momentum or displacement it alone reads."""
+    port = structure.ports[at]
+    others = (one for one in structure.elements.values() if one.name != port.element.name)
+    return port.integral and port.own_state is not None and not any(
+        port.own_state in part.free_symbols for one in others for part in read_in(one)
+    )  # fmt: skip
 
 
 def _sets(rows: Sequence[tuple[int, Reading]]) -> Iterator[Sequence[tuple[int, Reading]]]:

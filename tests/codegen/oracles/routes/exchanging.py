@@ -73,7 +73,7 @@ def joined_cells() -> Kind:
 
     return Kind(
         "key between two nonlinear capacitors, one by a table", graph, {"k": k, "c": c},
-        {"i": f"{i}", "gate": "step(0.4, 1, 0)"}, known, 0.99, {"u": u0, "v": v0}, at=0.2,
+        {"i": f"{i}", "gate": "step(0.4, 1, 0)"}, known, 0.99, {"u": u0, "v": v0}, at=0.3,
         mode={"key": "off"}, rest={"inputs": {"i": 0.0, "gate": 0.0}, "initial": {"u": u0, "v": v0}},
     )  # fmt: skip
 
@@ -81,8 +81,8 @@ def joined_cells() -> Kind:
 def geared_behind() -> Kind:
     """A dog onto a shaft that drives an inertia by a gear, both nonlinear: p_1 + p_2/i + p_3 stays."""
     J, J3, c, i, T = 1.0, 2.0, 0.3, 0.5, 4.0
-    nodes = [bg.Se("T", "T"), bg.One("a"), bg.I("J_1", law="sinh(p_J_1)", flow="w"), bg.TF("g", "1/i"), bg.One("b"),
-             bg.I("J_2", law="p_J_2/J + c*p_J_2**3", flow="w_2", priority=-1), bg.Zero("gap"),
+    nodes = [bg.Se("T", "T"), bg.One("a"), bg.I("J_1", law="sinh(p_J_1)", flow="w"), bg.TF("g", "1/i"),
+             bg.One("b"), bg.I("J_2", law="p_J_2/J + c*p_J_2**3", flow="w_2", priority=-1), bg.Zero("gap"),
              bg.Sw("dog", on="0.5 - gate"), bg.One("c"), bg.I("J_3", "J_3", flow="w_3")]  # fmt: skip
 
     def own(w: float) -> float:
