@@ -12,9 +12,8 @@ import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.model.snapshot import Impact, Mode
-from codegen.modes.impact import taken
 from codegen.modes.rounding import Peaks, guard_rounding, scales, slip_rates
-from codegen.modes.trials import Sight
+from codegen.modes.trials import Sight, taken
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import refusals
 from codegen.standalone.striking import Strike
@@ -219,7 +218,7 @@ def _impact(here: Sight, mode: Mode, strike: Strike, thrown: tuple[int, ...]) ->
     slipping, now = here.evaluated((1,) * len(mode))
     after = here.s + strike.gained(len(here.s), model.law_rates)
     later = model.at(here.t, after, here.pieces, slipping)
-    return Impact(after, strike, taken(model, here.t, now, later, strike), thrown)
+    return Impact(after, strike, taken(here, now, later, strike), thrown)
 
 
 def closed_up(here: Sight, mode: Mode, stops: Collection[int]) -> Array:

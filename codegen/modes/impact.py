@@ -5,15 +5,11 @@ combinations N with ``N^T D_SS = 0``, rules the states: ``x+ = x- + A^-1 B_S p``
 and ``D_SS p = 0``. Friction takes no part: what it gives is finite.
 """
 
-from dataclasses import replace
-
 import numpy as np
-from scipy.integrate import quad
 
 from codegen.model.snapshot import Impact, Mode, Snapshot
-from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks, scales
-from codegen.modes.trials import Sight
+from codegen.modes.trials import Sight, taken
 from codegen.modes.verdicts import Look
 from codegen.standalone.striking import Strike, shocks
 from codegen.tuning import TUNING
@@ -41,27 +37,7 @@ def impact(here: Sight, mode: Mode, peaks: Peaks | None = None) -> Impact | None
         after = after + more[2].gained(len(after), model.law_rates)
         strike = strike.followed(more[2])
     later = model.at(here.t, after, here.pieces, slipping)
-    return Impact(after, strike, taken(model, here.t, now, later, strike))
-
-
-def taken(model: ClosedModel, t: float, before: Snapshot, after: Snapshot, strike: Strike) -> float:
-    """What ports take of energy as they give these impulses [J]: what storages then hold less.
-
-    An impulse works on the mean of what its port receives before and after, where momenta are linear;
-    else what a chord leaves out of their integral is beside that.
-    """
-    mean = 0.5 * (before.y + after.y)[model.friction_readings]
-    work = float(strike.given[model.friction_inputs] @ mean)
-    now, way = before.instant(t), after.x - before.x
-
-    def along(part: float) -> float:
-        held = model.momenta(replace(now, x=before.x + part * way))
-        return 0.0 if held is None else float(way @ held)
-
-    if model.momenta(now) is None:
-        return work
-    whole, _ = quad(along, 0.0, 1.0, epsabs=0.0, epsrel=TUNING.bent)
-    return work + float(whole) - 0.5 * (along(0.0) + along(1.0))
+    return Impact(after, strike, taken(here, now, later, strike))
 
 
 def _struck(here: Sight, held: Mode, peaks: Peaks | None) -> tuple[Mode, Snapshot, Strike] | None:
