@@ -87,11 +87,11 @@ def check_impulses(
 
 def momenta(
     switches: Sequence[SwitchPort], reduction: Reduction, A: Sequence[FixedRow],
-    readings: Mapping[sp.Symbol, Reading], signals: Mapping[sp.Symbol, PortRow],
+    readings: Mapping[sp.Symbol, Reading], shown: Mapping[sp.Symbol, tuple[Reading, PortRow]],
 ) -> Momenta | None:  # fmt: skip
     """What impulses exchange where the slopes in A move with the states that jump; None where they stay.
 
-    ``signals``: every named signal as a row over the ports.
+    ``shown``: signals as readings, and as rows over the ports; those that show rates are told.
     """
     bent = False
     for chosen, moved in _moved(switches, reduction, A, readings):
@@ -105,12 +105,12 @@ def momenta(
         if at in every else sp.Integer(0)
         for at, port in enumerate(reduction.states)
     ]  # fmt: skip
-    shown = {
-        name: stored_behind(reduction, signals[name])
-        for name, one in readings.items()
-        if every & set(one.H) and name in signals and not _turns(reduction, signals[name], names)
+    behind = {
+        name: stored_behind(reduction, row)
+        for name, (one, row) in shown.items()
+        if every & set(one.H) and not _turns(reduction, row, names)
     }
-    return Momenta(tuple(states), MappingProxyType(shown))
+    return Momenta(tuple(states), MappingProxyType(behind))
 
 
 def _moved(

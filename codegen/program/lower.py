@@ -49,7 +49,7 @@ def lower(
     if a law would have to be differentiated.
     """
     given = set(parameters)
-    equations = supplied(equations, laws, given)
+    declared = equations = supplied(equations, laws, given)
     watched = _watched(equations)
     closing = close_ports(equations, {} if laws is None else laws, given, watched)
     closing, tangents = with_tangents(closing)
@@ -70,7 +70,7 @@ def lower(
     varying = any(name.name not in given for entry in expressions for name in entry.free_symbols)
     rubbing, values = friction(closing, moving, tangents.along, tangents.shapes)
     readings = tuple(equations.readings)
-    exchanged = exchanges(equations)
+    exchanged = exchanges(declared, equations.readings)
     external_rates = _rate_names(closing.external, taken)
     program = Program(
         parameters=tuple(sorted((n for n in taken if n.name in given), key=str)),

@@ -18,8 +18,9 @@ BONDS = "n>a n>b n>j j>s j>m m>c"
 
 def held(equations: bg.StateEquations) -> Momenta | None:
     """What impulses of a graph exchange."""
-    known = equations.readings, equations.signals
-    return momenta(equations.switches, equations.reduction, rows_of(equations.A), *known)
+    shown = {name: (one, equations.signals[name]) for name, one in equations.readings.items()}
+    known = equations.reduction, rows_of(equations.A), equations.readings
+    return momenta(equations.switches, *known, shown)
 
 
 def test_what_states_hold_has_the_slopes_of_A() -> None:
