@@ -90,7 +90,7 @@ class _Search:
     def nearer(self, here: _Place, way: Array) -> tuple[Array, Array]:
         """So far along a way that what is left shrinks: the state, and what storages hold there."""
         part, before = 1.0, here.length(way)
-        while part > TUNING.bent:
+        for _ in range(TUNING.bent_halves):
             x = here.x + part * way
             pi = self.held(x)
             if np.isfinite(pi).all():

@@ -98,7 +98,8 @@ static double size_of(const bg_bend *b)
 static int come_nearer(bg_bend *b, const double *way, double before)
 {
     double x[JUMPS], pi[BENT], left[JUMPS];
-    for (double part = 1.0; part > BG_BENT; part /= 2.0) {
+    double part = 1.0;
+    for (int halves = 0; halves < BG_BENT_HALVES; halves++, part /= 2.0) {
         for (int i = 0; i < N; i++)
             x[i] = b->x[i] + part * way[i];
         hold_at(b, x, pi);
