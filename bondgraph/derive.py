@@ -19,9 +19,9 @@ from bondgraph.causality.assign import assign_causality
 from bondgraph.declare.elements import Element
 from bondgraph.declare.validate import graph_of
 from bondgraph.equations import StateEquations
-from bondgraph.reduce.impulses import check_impulses
+from bondgraph.reduce.impulses import bound_by_switches, check_impulses
 from bondgraph.reduce.inertia import check_regular, inertia
-from bondgraph.reduce.inverses import by_inverses, with_states_told
+from bondgraph.reduce.inverses import by_inverses, with_inverses, with_states_told
 from bondgraph.reduce.junction import junction_structure
 from bondgraph.reduce.opened import opened
 from bondgraph.reduce.outputs import named_signals, shown_signals
@@ -101,6 +101,13 @@ def derive_again(
     )
 
 
+def _reduced(structure: JunctionStructure) -> Reduction:
+    """The ports reduced, those states by inverses, too, that switches bind by impulses."""
+    found = reduce_ports(with_states_told(structure))
+    bound = with_inverses(structure, bound_by_switches(found))
+    return found if bound is structure else _reduced(by_inverses(bound))
+
+
 Shown = list[tuple[sp.Symbol, PortRow]]
 """Signals by name, as rows over ports."""
 
@@ -109,7 +116,7 @@ def _equations(
     structure: JunctionStructure, show: Callable[[Reduction, Mapping[sp.Symbol, PortRow]], Shown]
 ) -> StateEquations:
     """The equations of a junction structure; ``show``: the outputs, told the named signals."""
-    reduction = reduce_ports(with_states_told(by_inverses(structure)))
+    reduction = _reduced(by_inverses(structure))
     structure, ports = reduction.structure, reduction.structure.ports
     A, balances = inertia(reduction)
     states = reduction.names

@@ -72,6 +72,11 @@ class Tuning:
     )
     bounces: int = _told(2000, "so often stops are struck in one instant, at most")
 
+    # Impulses through laws that bend
+    bent: float = _told(1e-12, "of states and of what storages hold: what is left is rounding")
+    bends: int = _told(100, "so many of Newton's steps are taken, at most ..")
+    bent_halves: int = _told(40, ".. and each is halved so often, until what is left shrinks")
+
     # Laws that determine one another
     residual: float = _told(1e-9, "part of their magnitude to which laws are solved")
     residual_floor: float = _told(1e-3, "added to that magnitude")

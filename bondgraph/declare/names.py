@@ -88,7 +88,7 @@ def _check_assumptions(elements: Sequence[Element], signals: set[sp.Symbol]) -> 
     seen: dict[str, sp.Symbol] = {name.name: name for name in signals}
     for element in elements:
         used: set[sp.Symbol] = set()
-        for part in _read(element):
+        for part in read_in(element):
             used |= part.free_symbols
         for name in sorted(used, key=str):
             if seen.setdefault(name.name, name) != name:
@@ -98,7 +98,7 @@ def _check_assumptions(elements: Sequence[Element], signals: set[sp.Symbol]) -> 
                 )
 
 
-def _read(element: Element) -> list[Law | sp.Expr]:
+def read_in(element: Element) -> list[Law | sp.Expr]:
     """What an element reads names in."""
     told: list[Law | sp.Expr | None] = [element.value, element.law]
     if element.switch is not None:
@@ -122,7 +122,7 @@ def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:
         element = graph.nodes[name]["element"]
         if element.owner is not None:
             joined.add_edge(("node", name), ("field", element.owner))
-        used = {symbol for part in _read(element) for symbol in part.free_symbols & owned}
+        used = {symbol for part in read_in(element) for symbol in part.free_symbols & owned}
         for _, entry in element.row:
             used |= entry.free_symbols & owned
         joined.add_edges_from((("node", name), ("signal", s)) for s in {*used, *named_by(element)})

@@ -21,11 +21,17 @@ def by_inverses(structure: JunctionStructure) -> JunctionStructure:
     tell. Laws without an inverse stay, and are refused where that is needed.
     """
     ports, rows = structure.ports, structure.rows
-    held = {at for d, port in enumerate(ports) if _holds(port) for at in rows[d]}
+    return with_inverses(
+        structure, {at for d, port in enumerate(ports) if _holds(port) for at in rows[d]}
+    )
+
+
+def with_inverses(structure: JunctionStructure, held: Iterable[int]) -> JunctionStructure:
+    """The structure whose nonlinear states among these ports are what their laws give."""
     made = by_inverse(structure, held)
     if not made:
         return structure
-    new = tuple(replace(p, element=made.get(p.element.name, p.element)) for p in ports)
+    new = tuple(replace(p, element=made.get(p.element.name, p.element)) for p in structure.ports)
     elements = MappingProxyType({**structure.elements, **made})
     return replace(structure, ports=new, elements=elements)
 

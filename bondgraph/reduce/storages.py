@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from bondgraph.algebra.exact import add_scaled
+from bondgraph.algebra.exact import FixedRow, add_scaled
 from bondgraph.errors import CausalityError
 from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.sorting import Reduction, field_row
@@ -40,17 +40,37 @@ def stored_rate(reduction: Reduction, port: int) -> Reading:
 
 def _add_inverse_rate(reduction: Reduction, port: int, result: ReadingSum) -> None:
     """The rate of what a nonlinear storage holds, as a function of what its law gives."""
+    name, motion = reduction.structure.ports[port].element.name, reduction.motion
+    if motion is None:
+        raise CausalityError(f"the law at {name!r} has no inverse")
+    motion.add_total_rate(result, stored(reduction, port), name)
+
+
+def stored(reduction: Reduction, port: int) -> sp.Expr:
+    """The momentum or displacement in a storage, over states and inputs; `stored_rate` is its rate."""
+    if port in reduction.energies:
+        return reduction.energies[port].symbol
     one = reduction.structure.ports[port]
-    inverse, motion = one.element.inverse, reduction.motion
-    if inverse is None or motion is None:
-        raise CausalityError(f"the law at {one.element.name!r} has no inverse")
+    inverse = one.element.inverse
+    if inverse is None:
+        return sp.Add(*(m * _moving(reduction, at) for at, m in field_row(reduction, port)))
     # In integral causality the variable that the inverse is of is the state itself.
-    if not one.integral:
-        ruled = _ruled(reduction, port)
-        terms = [entry * reduction.names[j] for j, entry in ruled.F.items()]
-        terms += [entry * reduction.inputs[j] for j, entry in ruled.D.items()]
-        inverse = inverse.xreplace({one.received: sp.Add(*terms)})
-    motion.add_total_rate(result, inverse, one.element.name)
+    return inverse if one.integral else inverse.xreplace({one.received: _moving(reduction, port)})
+
+
+def stored_behind(reduction: Reduction, row: FixedRow) -> sp.Expr:
+    """What a signal shows of what dependent storages hold, over states and inputs: its rate is part of it."""
+    found = [(entry, d) for d, entry in row.items() if d in reduction.dependent]
+    return sp.Add(*(entry * stored(reduction, d) for entry, d in found))
+
+
+def _moving(reduction: Reduction, port: int) -> sp.Expr:
+    """The flow of an inertia, or the effort of a compliance."""
+    if port in reduction.columns_of_states:
+        return reduction.names[reduction.columns_of_states[port]]
+    ruled = _ruled(reduction, port)
+    terms = [entry * reduction.names[j] for j, entry in ruled.F.items()]
+    return sp.Add(*terms, *(entry * reduction.inputs[j] for j, entry in ruled.D.items()))
 
 
 def _ruled(reduction: Reduction, port: int) -> Reading:

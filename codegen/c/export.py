@@ -231,6 +231,7 @@ def _functions(program: Program) -> list[str]:
         ("bg_friction_values", "Level, breakaway level, curve and curve at rest of each friction port",
          program.friction_values, on.friction_values),
         ("bg_guards", "Conditions of switches, to turn on and to turn off in turn", program.guards, None),
+        ("bg_momenta", "What storages hold that impulses exchange", program.momenta, None),
         ("bg_corners", "What corners hang on, and for each whether it counts", *_hung(program)),
     ]  # fmt: skip
     lines: list[str] = []

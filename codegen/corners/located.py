@@ -53,8 +53,8 @@ def with_corners(program: Program) -> Program:
         return code if put == laws else block(put, own)
 
     count = len(arguments)
-    # Conditions of switches are watched by themselves.
-    blocks = (*map(sided, program.blocks[:-1]), program.guards)
+    # Conditions of switches are watched by themselves, and impulses go over corners.
+    blocks = (*map(sided, program.blocks[:-2]), program.guards)
     corners = Corners(
         tuple(sides.symbols),
         tuple(sides.nodes),

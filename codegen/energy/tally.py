@@ -1,9 +1,10 @@
 """What is accumulated during a run: integrals of products of signals, and what jumps took."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.integrate import quad
 
 from codegen.energy.quadrature import NODES, WEIGHTS, exact_integrals, gauss_sum, rows_over
 from codegen.inputs.generators import generator
@@ -12,6 +13,7 @@ from codegen.model.snapshot import Impact, Mode, Run, Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.layout import RATE
+from codegen.tuning import TUNING
 
 Dense = Callable[[float | Array], Array]
 
@@ -23,8 +25,9 @@ class Tally:
     ``other``: the second signal of each product, None for a product with nothing. ``stored``: which of
     the products are those of storages. ``held``: the energies
     of storages as a function of time and snapshot. ``total``: the integrals so far; ``taken``: what
-    ports that came to rest and impacts took from the storages. ``rows``: both at each sample, at a step or
-    an event just after it. ``renewed``: what resets took from the storages.
+    ports that came to rest and impacts took from the storages. ``bent``: of products of storages whose laws
+    are turned round the place of what rules them, and what they hold by that. ``rows``: both at each sample,
+    at a step or an event just after it. ``renewed``: what resets took from the storages.
     """
 
     model: ClosedModel
@@ -33,6 +36,7 @@ class Tally:
     stored: Array
     held: Callable[[float, Snapshot], float]
     times: Array
+    bent: Mapping[int, tuple[int, Callable[[float], float]]] = field(default_factory=dict)
     total: Array = field(init=False)
     taken: float = 0.0
     renewed: float = 0.0
@@ -112,7 +116,8 @@ class Tally:
         """Switches that come to hold: impulses, and what the impact took.
 
         An impulse works on what there is after it; in storages on the mean of before and after. At ports that
-        give it, it is all of what the impact took, also where they throw back.
+        give it, it is all of what the impact took, also where they throw back. What a nonlinear storage takes
+        is the integral over what it holds.
         """
         slipping = tuple(sign or 1 for sign in mode)
         a = self.model.at(t, before, pieces, slipping)
@@ -130,7 +135,10 @@ class Tally:
             for early, late in zip(self._pair(past), self._pair(now), strict=True)
         )
         pushed, turned = self._pair(jump)
-        self.total = self.total + one * turned * self._double + pushed * other
+        worked = one * turned * self._double + pushed * other
+        for k, (place, holds) in self.bent.items():
+            worked[k] = _worked(holds, float(past[place]), float(now[place]))
+        self.total = self.total + worked
         self.taken += struck.taken
 
     def rest(
@@ -185,6 +193,14 @@ class Tally:
         """The factors of each product; external inputs stand last, from the end."""
         others = [1.0 if p is None else vector[p] for p in self.other]
         return vector[list(self.one)], np.array(others)
+
+
+def _worked(holds: Callable[[float], float], before: float, after: float) -> float:
+    """The integral of what rules a storage over what it holds by that, from one value to another."""
+    if before == after:
+        return 0.0
+    under, _ = quad(holds, before, after, epsabs=0.0, epsrel=TUNING.bent)
+    return after * holds(after) - before * holds(before) - float(under)
 
 
 def vector_of(now: Snapshot) -> Array:

@@ -8,12 +8,13 @@ import numpy as np
 
 from codegen.fixed.settling import PortSteps
 from codegen.standalone.arrays import Array, Mode
+from codegen.standalone.bending import exchanged
 from codegen.standalone.evaluation import Point
 from codegen.standalone.friction import Friction
 from codegen.standalone.instant import Formula, Instant
 from codegen.standalone.levels import level_terms
 from codegen.standalone.stepping import Chosen, Names
-from codegen.standalone.striking import Strike, completing, struck
+from codegen.standalone.striking import Strike, completing
 from codegen.standalone.switchings import Switching, flipped
 from codegen.tuning import TUNING
 
@@ -140,7 +141,11 @@ class SwitchedSteps(PortSteps):
             near += np.where(np.equal(previous, 0), drift, 0.0)
         slips = hold.slips(now.x, now.u)
         still = (np.abs(slips) <= np.abs(hold.mix) @ near[hold.ports]).all()
-        return None if still else struck(hold, now.numbers, slips)
+        return None if still else self.exchange(held, now)
+
+    def exchange(self, held: Mode, now: Instant, aims: Array | None = None) -> Strike:
+        """The impulses of what is held, at an instant with all let go; ``aims``: of slips."""
+        return exchanged(self.form, lambda at: self.friction.hold(held, at), now, aims)
 
     def sent(self, at: Point, now: Instant, mode: Mode, h: float) -> set[int]:
         """The switches whose conditions change them over: above zero, or at zero and rising."""

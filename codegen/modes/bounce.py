@@ -13,7 +13,7 @@ import numpy as np
 from bondgraph.errors import SimulationError
 from codegen.model.snapshot import Impact, Mode
 from codegen.modes.rounding import Peaks, guard_rounding, scales, slip_rates
-from codegen.modes.trials import Sight
+from codegen.modes.trials import Sight, taken
 from codegen.numbers.arrays import Array
 from codegen.ports.refusals import refusals
 from codegen.standalone.striking import Strike
@@ -207,18 +207,18 @@ def _meeting(here: Sight, mode: Mode, wanted: Mapping[int, float]) -> Meeting:
 
     return Meeting(
         now.instant(here.t), mode, model.switching, wanted, np.array(model.friction_inputs),
-        lambda held: model.hold(held, now.numbers), slips, near,
+        lambda held: model.hold(held, now.numbers),
+        lambda held, aims: model.exchange(held, now.instant(here.t), aims), slips, near,
     )  # fmt: skip
 
 
 def _impact(here: Sight, mode: Mode, strike: Strike, thrown: tuple[int, ...]) -> Impact:
-    """What a strike leads to, and what its ports take: impulses times the means of slips."""
+    """What a strike leads to, and what its ports take."""
     model = here.model
     slipping, now = here.evaluated((1,) * len(mode))
     after = here.s + strike.gained(len(here.s), model.law_rates)
     later = model.at(here.t, after, here.pieces, slipping)
-    mean = 0.5 * (now.y + later.y)[model.friction_readings]
-    return Impact(after, strike, float(strike.given[model.friction_inputs] @ mean), thrown)
+    return Impact(after, strike, taken(here, now, later, strike), thrown)
 
 
 def closed_up(here: Sight, mode: Mode, stops: Collection[int]) -> Array:

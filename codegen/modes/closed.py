@@ -38,12 +38,14 @@ from codegen.program.layout import (
     widths,
 )
 from codegen.program.records import Program
+from codegen.standalone.bending import exchanged
 from codegen.standalone.evaluation import Point, evaluated, vector
 from codegen.standalone.friction import Friction
 from codegen.standalone.holding import Hold
 from codegen.standalone.instant import Instant
 from codegen.standalone.levels import without_rounding
 from codegen.standalone.matrices import Numbers
+from codegen.standalone.striking import Strike
 from codegen.straight.modes import Plain, StraightModes
 from codegen.straight.recording import Changing
 
@@ -170,6 +172,18 @@ class ClosedModel:
         """The holding equations of the ports that stick in a mode, with the matrices of an instant."""
         with refusals():
             return self._friction.hold(mode, numbers)
+
+    def exchange(self, mode: Mode, now: Instant, aims: Array | None = None) -> Strike:
+        """The impulses of what a mode holds, at an instant with all let go; ``aims``: of slips."""
+        if self._plain is not None:
+            return self._plain.exchange(mode, now, aims)
+        with refusals():
+            return exchanged(self._form, lambda at: self._friction.hold(mode, at), now, aims)
+
+    def momenta(self, now: Instant) -> Array | None:
+        """What storages hold of each state; None where slopes are the same whatever jumps."""
+        formula = (self._plain or self)._form.momenta
+        return None if formula is None else formula(now)[: len(now.x)]
 
     def numbers(self, now: Instant) -> Numbers:
         """The matrices at an instant, of which the states and the external inputs must be known.

@@ -9,9 +9,9 @@ import numpy as np
 
 from codegen.model.snapshot import Impact, Mode, Snapshot
 from codegen.modes.rounding import Peaks, scales
-from codegen.modes.trials import Sight
+from codegen.modes.trials import Sight, taken
 from codegen.modes.verdicts import Look
-from codegen.standalone.striking import Strike, shocks, struck
+from codegen.standalone.striking import Strike, shocks
 from codegen.tuning import TUNING
 
 
@@ -37,9 +37,7 @@ def impact(here: Sight, mode: Mode, peaks: Peaks | None = None) -> Impact | None
         after = after + more[2].gained(len(after), model.law_rates)
         strike = strike.followed(more[2])
     later = model.at(here.t, after, here.pieces, slipping)
-    # An impulse works on the mean of what its port receives before and after.
-    mean = 0.5 * (now.y + later.y)[model.friction_readings]
-    return Impact(after, strike, float(strike.given[model.friction_inputs] @ mean))
+    return Impact(after, strike, taken(here, now, later, strike))
 
 
 def _struck(here: Sight, held: Mode, peaks: Peaks | None) -> tuple[Mode, Snapshot, Strike] | None:
@@ -53,7 +51,7 @@ def _struck(here: Sight, held: Mode, peaks: Peaks | None) -> tuple[Mode, Snapsho
     near = np.abs(hold.mix) @ scales(model, now, here.t, peaks).slip[hold.ports]
     if (np.abs(slips) <= TUNING.wide * near).all():
         return None
-    return slipping, now, struck(hold, now.numbers, slips)
+    return slipping, now, model.exchange(held, now.instant(here.t))
 
 
 def pushed(look: Look, t: float, jump: Impact) -> list[int]:

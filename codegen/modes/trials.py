@@ -1,9 +1,11 @@
 """Friction modes on trial: a mode in which the laws have no solution is none, and another is looked at."""
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from itertools import chain
 
 import numpy as np
+from scipy.integrate import quad
 
 from bondgraph.errors import SimulationError
 from codegen.inputs.pieces import Piece
@@ -13,6 +15,7 @@ from codegen.numbers.arrays import Array
 from codegen.ports.refusals import SlopeNeededError
 from codegen.program.affine import ONE
 from codegen.standalone.friction import ways
+from codegen.standalone.striking import Strike
 from codegen.tuning import TUNING
 
 
@@ -54,6 +57,27 @@ class Sight:
             except SimulationError as error:
                 refused = refused or error
         raise refused or SimulationError("there is no mode")
+
+
+def taken(here: Sight, before: Snapshot, after: Snapshot, strike: Strike) -> float:
+    """What ports take of energy as they give these impulses [J]: what storages then hold less.
+
+    An impulse works on the mean of what its port receives before and after, where momenta are linear;
+    else what a chord leaves out of their integral is beside that.
+    """
+    model = here.model
+    mean = 0.5 * (before.y + after.y)[model.friction_readings]
+    work = float(strike.given[model.friction_inputs] @ mean)
+    now, way = before.instant(here.t), after.x - before.x
+
+    def along(part: float) -> float:
+        held = model.momenta(replace(now, x=before.x + part * way))
+        return 0.0 if held is None else float(way @ held)
+
+    if model.momenta(now) is None:
+        return work
+    whole, _ = quad(along, 0.0, 1.0, epsabs=0.0, epsrel=TUNING.bent)
+    return work + float(whole) - 0.5 * (along(0.0) + along(1.0))
 
 
 def hung_rounding(here: Sight, now: Snapshot) -> Mapping[int, float]:

@@ -32,6 +32,8 @@ def formed(program: Program, binding: Binding, matrices: Callable[[Instant], Num
         early=program.early,
         law_rates=np.array(program.law_rates, dtype=int),
         varying=program.varying,
+        momenta=binding.function(program.momenta) if program.momenta.results else None,
+        momenta_rows=program.momenta_rows,
     )
 
 

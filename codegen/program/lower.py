@@ -16,6 +16,7 @@ from codegen.program.moving import with_moving_slips
 from codegen.program.records import Program, block
 from codegen.program.sections import (
     coefficients,
+    exchanges,
     friction,
     group,
     hung_on,
@@ -48,7 +49,7 @@ def lower(
     if a law would have to be differentiated.
     """
     given = set(parameters)
-    equations = supplied(equations, laws, given)
+    declared = equations = supplied(equations, laws, given)
     watched = _watched(equations)
     closing = close_ports(equations, {} if laws is None else laws, given, watched)
     closing, tangents = with_tangents(closing)
@@ -69,6 +70,7 @@ def lower(
     varying = any(name.name not in given for entry in expressions for name in entry.free_symbols)
     rubbing, values = friction(closing, moving, tangents.along, tangents.shapes)
     readings = tuple(equations.readings)
+    exchanged = exchanges(declared, equations.readings)
     external_rates = _rate_names(closing.external, taken)
     program = Program(
         parameters=tuple(sorted((n for n in taken if n.name in given), key=str)),
@@ -95,6 +97,8 @@ def lower(
         read=_read(closing),
         guards=block(guards, taken),
         resets=resets(closing, rubbing, first),
+        momenta=block([*exchanged.states, *exchanged.readings.values()], taken),
+        momenta_rows=tuple(readings.index(name) for name in exchanged.readings),
         guards_affine=is_affine(guards, given),
         varying=varying,
         affine=not (varying or moving) and _is_affine(closing, values, given),

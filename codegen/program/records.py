@@ -207,7 +207,10 @@ class Program:
     guards: Block
     #: What changes states over with them; these values come after the conditions.
     resets: tuple[Reset, ...]
-    #: Whether all of these are affine, as long as everything else is.
+    #: What impulses exchange where they move slopes in A: of each state, then of these readings.
+    momenta: Block
+    momenta_rows: tuple[int, ...]
+    #: Whether all conditions are affine, as long as everything else is.
     guards_affine: bool
     #: Whether coefficients change in time, with states, external inputs or the time itself.
     varying: bool
@@ -233,7 +236,8 @@ class Program:
     def blocks(self) -> tuple[Block, ...]:
         """Every block that a target evaluates."""
         laws = (group.values for group in (self.known, *self.groups, self.coupled))
-        return (self.coefficients, *laws, self.known_rates, self.friction_values, self.guards)
+        told = (self.known_rates, self.friction_values, self.guards, self.momenta)
+        return (self.coefficients, *laws, *told)
 
     @cached_property
     def tables(self) -> tuple[Sampled, ...]:

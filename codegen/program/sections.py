@@ -5,9 +5,12 @@ from types import MappingProxyType
 
 import sympy as sp
 
+from bondgraph.algebra.exact import rows_of
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
+from bondgraph.reduce.impulses import Momenta, momenta
+from bondgraph.reduce.record import Reading
 from codegen.program.closing import Closing
 from codegen.program.records import FrictionPort, Group, Pattern, block
 from codegen.program.sliding import Slider, halves_of
@@ -36,6 +39,20 @@ def coefficients(
         expressions += [entry for *_, entry in found]
         layout[name] = _pattern((len(rows), width), [(i, j) for i, j, _ in found])
     return expressions, MappingProxyType(layout)
+
+
+def exchanges(equations: StateEquations, told: Mapping[sp.Symbol, Reading]) -> Momenta:
+    """What impulses exchange, of states and of readings; nothing where slopes in A stay as they are.
+
+    ``equations``: before ports are closed; ``told``: the readings then.
+    """
+    if not equations.switches:
+        return Momenta((), {})
+    found = momenta(
+        equations.switches, equations.reduction, rows_of(equations.A), equations.readings,
+        {name: (one, equations.signals[name]) for name, one in told.items() if name in equations.signals},
+    )  # fmt: skip
+    return Momenta((), {}) if found is None else found
 
 
 def _pattern(shape: tuple[int, int], places: Sequence[tuple[int, int]]) -> Pattern:

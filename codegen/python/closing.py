@@ -23,8 +23,13 @@ _FORM = '''def form({given}):
         laws={laws},
         early={early},
         law_rates=LAW_RATES,
-        varying={varying},
+        varying={varying},{exchanged}
     )'''
+
+_EXCHANGED = """
+        momenta=BlockFormula({momenta}, parameters, {count}),
+        momenta_rows={rows},"""
+"""Where impulses move slopes of A."""
 
 _FRICTION = '''
 
@@ -209,8 +214,13 @@ def _form(program: Program) -> list[str]:
     for name, group in zip(law_names(program), program.groups, strict=True):
         laws += _group("Loop(" if group.loop else "Laws(", name, group, "),", 12)
     listed = "\n".join(["(", *laws, "        )"]) if laws else "()"
+    exchanged = _EXCHANGED.format(
+        momenta=bound("momenta", program.momenta), count=len(program.momenta.results),
+        rows=list(program.momenta_rows),
+    ) if program.momenta.results else ""  # fmt: skip
     return _FORM.format(
-        rates=rates, varying=program.varying, laws=listed, early=program.early, given=_given(program),
+        rates=rates, exchanged=exchanged, varying=program.varying, laws=listed,
+        early=program.early, given=_given(program),
         known=bound("known_laws", program.known.values),
         coefficients=bound("coefficients", program.coefficients),
     ).splitlines()  # fmt: skip

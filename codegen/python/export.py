@@ -161,6 +161,11 @@ def _functions(program: Program, names: Names) -> list[str]:
                  for one in program.resets]  # fmt: skip
         doc = "Conditions of switches: to turn on and to turn off in turn, each above zero."
         lines += values_function("switch_conditions", doc, program.guards, rows, names)
+    if program.momenta.results:
+        rows = [f"moving {plain(state.name)}" for state in program.states]
+        rows += [f"behind {plain(program.readings[at].name)}" for at in program.momenta_rows]
+        doc = "What storages hold that impulses exchange; the matrix A has the slopes."
+        lines += values_function("momenta", doc, program.momenta, rows, names)
     if program.joint:
         lines += group_function("coupled_laws", program.coupled, program, names)
     if found := refusals(program):

@@ -15,6 +15,7 @@ from codegen.energy.ledger import Integrated
 from codegen.energy.stored import stored_energy
 from codegen.energy.tally import Tally, vector_of
 from codegen.inputs.signal import Signal
+from codegen.model.exact_values import at_parameters
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.model.sources import source_signals
 from codegen.modes.closed import ClosedModel
@@ -75,7 +76,29 @@ def tally_of(model: ClosedModel, whole: Sequence[Account], times: Array) -> Tall
     products = [product for account in whole for product in account]
     one = [at[product.one] for product in products]
     other = [at[product.other] if product.other else None for product in products]
-    return Tally(model, one, other, _stored(model, products), held_in(model), times)
+    stored, bent = _stored(model, products), _bent(model, products)
+    return Tally(model, one, other, stored, held_in(model), times, bent)
+
+
+def _bent(
+    model: ClosedModel, products: Sequence[Product]
+) -> dict[int, tuple[int, Callable[[float], float]]]:
+    """Of powers of storages whose laws are turned round the place of what rules each, and what it holds."""
+    at, found = places(model.program), dict[int, tuple[int, Callable[[float], float]]]()
+    for port in model.equations.reduction.structure.ports:
+        element, ruling = port.element, port.element.co_energy
+        if (
+            element.inverse is None
+            or ruling is None
+            or not (element.by_inverse or not port.integral)
+        ):
+            continue
+        holds = lambdified([ruling], at_parameters(element.inverse, model.parameters))
+        names = {port.given.name, port.received.name}
+        for k, product in enumerate(products):
+            if {product.one, product.other} == names:
+                found[k] = at[ruling.name], holds
+    return found
 
 
 def _stored(model: ClosedModel, products: Sequence[Product]) -> Array:

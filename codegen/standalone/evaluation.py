@@ -61,7 +61,8 @@ class Form:
     change, None where nothing asks for it. ``beyond``: the places of what laws have beyond their
     tangents, whose rates are with what moves slips. ``laws``: the others, in an order in which each
     can be evaluated, the first ``early`` of them before friction. ``law_rates``: the places in y of
-    the rates of laws' states. ``varying``: whether the matrices change.
+    the rates of laws' states. ``varying``: whether the matrices change. ``momenta``: what storages
+    hold, of each state, then of the readings ``momenta_rows``; None where no impulse bends slopes.
     """
 
     states: int
@@ -76,6 +77,8 @@ class Form:
     early: int
     law_rates: Places
     varying: bool
+    momenta: Formula | None = None
+    momenta_rows: Sequence[int] = ()
 
 
 def begun(form: Form, at: Point) -> Instant:

@@ -9,7 +9,7 @@ import numpy as np
 from codegen.standalone.arrays import Array, Places
 from codegen.standalone.matrices import Numbers, times
 
-NO_NUMBERS = Numbers(*[np.zeros((0, 0))] * 7)
+NO_NUMBERS = Numbers(*[np.zeros((0, 0))] * 8)
 """The matrices of an instant of which they are not known yet."""
 
 

@@ -14,7 +14,7 @@ class Numbers:
     """The equations in numbers, solved for the rates; n states, m inputs, p readings.
 
     x' = P x + Q u + R u'
-     y = F x + D u + G u'
+     y = F x + D u + G u', of which H x' is put in
     """
 
     #: n x n, n x m, n x m: A^-1 J, A^-1 B, A^-1 E
@@ -27,6 +27,8 @@ class Numbers:
     F: Array
     D: Array
     G: Array
+    #: p x n
+    H: Array
 
 
 def solved(
@@ -41,7 +43,7 @@ def solved(
     n, m = J.shape[1], B.shape[1]
     found = (solve or scaled_solve)(A, np.hstack([J, B, E]))
     P, Q, R = found[:, :n], found[:, n : n + m], found[:, n + m :]
-    return Numbers(P, Q, R, A, F=F + H @ P, D=D + H @ Q, G=K + H @ R)
+    return Numbers(P, Q, R, A, F=F + H @ P, D=D + H @ Q, G=K + H @ R, H=H)
 
 
 def scales(A: Array) -> Array:

@@ -15,7 +15,7 @@ import numpy as np
 from codegen.standalone.arrays import Array, EvaluationError, Mode, Places
 from codegen.standalone.holding import Hold
 from codegen.standalone.instant import Instant
-from codegen.standalone.striking import Strike, struck
+from codegen.standalone.striking import Strike
 from codegen.standalone.switchings import Switching
 from codegen.tuning import TUNING
 
@@ -25,8 +25,9 @@ class Meeting:
     """What is struck at an instant in a mode, looked at with all ports let go.
 
     ``wanted``: of stops that close, how fast they are to open after it. ``inputs``: the places of
-    what ports give. ``hold``: the equations of what a mode holds; ``slips``: those after a strike;
-    ``near``: below these they are rounding.
+    what ports give. ``hold``: the equations of what a mode holds; ``strike``: the impulses by which
+    it brings slips to what they are to be; ``slips``: those after a strike; ``near``: below these
+    they are rounding.
     """
 
     now: Instant
@@ -35,6 +36,7 @@ class Meeting:
     wanted: Mapping[int, float]
     inputs: Places
     hold: Callable[[Mode], Hold]
+    strike: Callable[[Mode, Array], Strike]
     slips: Callable[[Strike], Array]
     near: Callable[[Strike], Array]
 
@@ -63,13 +65,11 @@ class Meeting:
         mode = tuple(0 if i in active else sign for i, sign in enumerate(self.held))
         if 0 not in mode:
             return None
-        held = self.hold(mode)
-        if not len(held.mix):
+        if not len(self.hold(mode).mix):
             return None
-        ports: Sequence[int] = np.asarray(held.ports).tolist()
-        after = [self.ways[i] * self.wanted.get(i, 0.0) if i in active else 0.0 for i in ports]
-        slips = held.slips(self.now.x, self.now.u) - held.mix @ np.array(after)
-        return struck(held, self.now.numbers, slips)
+        after = [self.ways[i] * self.wanted.get(i, 0.0) if i in active else 0.0
+                 for i in range(len(mode))]  # fmt: skip
+        return self.strike(mode, np.array(after))
 
     def contrary(self, strike: Strike, active: Set[int]) -> set[int]:
         """Ports that would pull, that open faster than they ought to, or not fast enough."""

@@ -129,7 +129,8 @@ class StoppedSteps(SwitchedSteps):
 
         strike = thrown(Meeting(
             now, mode, self.switching, wanted, np.asarray(self.efforts),
-            lambda tried: self.friction.hold(tried, now.numbers), slips, near,
+            lambda tried: self.friction.hold(tried, now.numbers),
+            lambda tried, aims: self.exchange(tried, now, aims), slips, near,
         ))  # fmt: skip
         return at.s if strike is None else after(strike)
 

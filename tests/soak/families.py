@@ -275,6 +275,7 @@ FAMILIES = (
     ),
     Family("stops", "codegen/modes/test_bounce_random.py::test_random_stops", 8, 1_000),
     Family("stops-everywhere", "codegen/modes/test_bounce_routes.py", 1, 50),
+    Family("exchanged", "codegen/modes/test_exchange.py", 6, 300),
     Family("converters", "codegen/modes/test_choices.py", 4, 300),
     Family(
         "mixed-ports",

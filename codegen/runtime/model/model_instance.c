@@ -163,6 +163,8 @@ const char *bg_model_message(int status)
         "which ports hold was not decided in a step's bounded number of pivots; the best way was "
         "taken",
         "the error of a step is beyond 1 % of a state's range; the step was taken: shorten it",
+        "no impulse is found that keeps what nonlinear storages hold: their laws may have no value "
+        "in common",
     };
     const int count = (int)(sizeof messages / sizeof *messages);
     return status >= 0 && status < count ? messages[status] : "unknown status";

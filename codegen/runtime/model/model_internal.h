@@ -100,6 +100,9 @@ void bg_coefficients(const bg_values *v, double *out);
 void bg_known_rates(const bg_values *v, double *out);
 void bg_friction_values(const bg_values *v, double *out);
 void bg_guards(const bg_values *v, double *out);
+/* What storages hold of each state, then of readings, where impulses move slopes. */
+void bg_momenta(const bg_values *v, double *out);
+extern const int bg_momenta_rows[];
 void bg_corners(const bg_values *v, double *out); /* what they hang on; whether each counts */
 void bg_prepare_rhs(bg_model *m);
 
@@ -166,12 +169,15 @@ void bg_shocks(bg_model *m, const int *mode, const double *given, const double *
                double *ways);
 
 /* Whether slips are more than those `near`, one for each port that is held; what they are beyond
- * those that ports are to have; and what stops them at once, by the impulses per unit of each:
- * `given` and `ways` grow by these and by how far they go. */
+ * those that ports are to have. */
 int bg_have_slips(const bg_hold *held, const double *slips, const double *near);
 void bg_less_speeds(const bg_hold *held, const double *speeds, double *slips);
-void bg_stop(bg_model *m, const int *mode, const bg_hold *held, const double *impulses,
-             const double *slips, double *s, double *given, double *ways);
+
+/* port_bend.c: stops what holds, or brings it to the speeds that ports are to have (NULL: none), by
+ * the impulses per unit of each slip, or, where they move slopes of storages, as momenta tell;
+ * `before`: everything let go. `given` and `ways` grow by the impulses and by how far they go. */
+int bg_stop(bg_model *m, const bg_snapshot *before, const int *mode, const bg_hold *held,
+            const double *impulses, const double *speeds, double *s, double *given, double *ways);
 
 /* port_start.c: all switches off. From how switches are told to be before a run, to how conditions
  * let them; states that are not `named` follow what they hold. */

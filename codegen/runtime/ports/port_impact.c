@@ -197,18 +197,3 @@ void bg_less_speeds(const bg_hold *held, const double *speeds, double *slips)
         for (int c = 0; c < held->count; c++)
             slips[k] -= held->mix[k * held->count + c] * speeds[held->ports[c]];
 }
-
-void bg_stop(bg_model *m, const int *mode, const bg_hold *held, const double *impulses,
-             const double *slips, double *s, double *given, double *ways)
-{
-    double struck[PORTS] = {0}, received[BG_ROOM(ROWS)], gone[PORTS];
-    for (int k = 0; k < held->kept; k++)
-        for (int i = 0; i < K; i++)
-            struck[i] += impulses[k * K + i] * slips[k];
-    bg_pass_on(m, struck, s, received);
-    bg_shocks(m, mode, struck, received, gone);
-    for (int i = 0; i < K; i++) {
-        given[i] += struck[i];
-        ways[i] += gone[i];
-    }
-}

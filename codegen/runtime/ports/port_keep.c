@@ -120,7 +120,9 @@ int bg_view_strike(void *view, const bg_instant *at, const int *mode, const doub
         if (!have_to_jump(held, &v->shot, ports, speeds, slips) && !asked)
             break;
         blow->struck = 1;
-        bg_stop(v->model, mode, held, impulses, slips, s, blow->given, ways);
+        status = bg_stop(v->model, &v->shot, mode, held, impulses, speeds, s, blow->given, ways);
+        if (status)
+            return status;
         now.s = s;
     }
     if (speeds && blow->struck)

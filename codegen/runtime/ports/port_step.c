@@ -40,7 +40,9 @@ int bg_strike_in_step(step_search *c, const int *mode, double *ways)
         if (!is_struck(c, held, slips))
             return BG_OK;
         double given[PORTS] = {0};
-        bg_stop(m, mode, held, impulses, slips, c->s, given, ways);
+        status = bg_stop(m, &m->shot, mode, held, impulses, NULL, c->s, given, ways);
+        if (status)
+            return status;
         for (int i = 0; i < K; i++)
             c->given[i] += given[i];
     }

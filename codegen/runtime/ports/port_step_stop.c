@@ -29,7 +29,7 @@ static int throw_in_step(void *self, const bg_instant *at, const int *mode, cons
                          double *s, bg_blow *blow)
 {
     step_search *const c = self;
-    double impulses[PORTS * PORTS], slips[PORTS], ways[PORTS] = {0};
+    double impulses[PORTS * PORTS], ways[PORTS] = {0};
     bg_hold *held = NULL;
     int loose[BG_MOST_PORTS];
     (void)at;
@@ -42,9 +42,9 @@ static int throw_in_step(void *self, const bg_instant *at, const int *mode, cons
         status = bg_impulses(c->m, mode, &held, impulses);
     if (status || !held || held->kept == 0)
         return status;
-    bg_held_slips(held, &c->m->shot, slips);
-    bg_less_speeds(held, speeds, slips);
-    bg_stop(c->m, mode, held, impulses, slips, s, blow->given, ways);
+    status = bg_stop(c->m, &c->m->shot, mode, held, impulses, speeds, s, blow->given, ways);
+    if (status)
+        return status;
     bg_round_struck(c->m, &c->m->shot, blow->given, BG_STEP_ROUNDING, blow->near);
     blow->struck = 1;
     return BG_OK;

@@ -59,6 +59,7 @@ const int bg_received_readings[] = {1};
 const int bg_moving[] = {-1};
 const int bg_first_modes[] = {1};
 const int bg_beside[] = {0};
+const int bg_momenta_rows[] = {0};
 const int bg_outside_inputs[] = {0};
 const int bg_differentiable[] = {1, 1, 0, 0};
 const int bg_output_readings[] = {1, 4, 5, 6, 7};
@@ -176,6 +177,13 @@ void bg_friction_values(const bg_values *v, double *out)
 
 /* Conditions of switches, to turn on and to turn off in turn: 0 operations. */
 void bg_guards(const bg_values *v, double *out)
+{
+    (void)v;
+    (void)out;
+}
+
+/* What storages hold that impulses exchange: 0 operations. */
+void bg_momenta(const bg_values *v, double *out)
 {
     (void)v;
     (void)out;

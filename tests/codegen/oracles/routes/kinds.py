@@ -1,6 +1,7 @@
 """All kinds, in the order of the table."""
 
 from oracles.routes.cornered import CORNERED
+from oracles.routes.exchanging import EXCHANGING
 from oracles.routes.friction import FRICTION
 from oracles.routes.jumping import JUMPING
 from oracles.routes.lawful import LAWFUL
@@ -15,7 +16,7 @@ from oracles.routes.tabled import TABLED
 
 EVERY = (
     *FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL, *SUPPLIED,
-    *TABLED, *SEARCHED,
+    *TABLED, *SEARCHED, *EXCHANGING,
 )  # fmt: skip
 
 KINDS = {make.__name__: make for make in EVERY}

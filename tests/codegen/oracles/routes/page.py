@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
+from oracles.routes.exchanging import EXCHANGING
 from oracles.routes.friction import FRICTION
 from oracles.routes.going import COMPILED, ROUTES
 from oracles.routes.jumping import JUMPING
@@ -46,7 +47,7 @@ def page() -> str:
     for title, kinds in (
         ("Dry friction", (*FRICTION, *SLOPED)),
         ("Laws that jump", JUMPING),
-        ("Switches", SWITCHES),
+        ("Switches", (*SWITCHES, *EXCHANGING)),
         ("No port that switches", (*PLAIN, *LAWFUL)),
         ("Lookup tables", TABLED),
     ):
