@@ -39,8 +39,12 @@ class Turning(sp.AtomicExpr):  # type: ignore[misc]
     def __getnewargs__(self) -> tuple[sp.Expr, int, Rising, sp.Expr]:
         return self.law, self.count, self.shown, self.begin
 
-    def _hashable_content(self) -> tuple[sp.Expr, int, Rising, sp.Expr]:
-        return self.law, self.count, self.shown, self.begin
+    def _hashable_content(self) -> tuple[sp.Expr, int, sp.Tuple, sp.Expr]:
+        # What sympy puts in order, it compares part by part.
+        shown = sp.Tuple(
+            self.shown.slope, sp.Tuple(*self.shown.positive), sp.Tuple(*self.shown.domain)
+        )
+        return self.law, self.count, shown, self.begin
 
     @property
     def parameters(self) -> tuple[sp.Symbol, ...]:

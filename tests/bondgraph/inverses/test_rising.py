@@ -5,6 +5,7 @@ import pytest
 import sympy as sp
 
 from bondgraph.algebra.expressions import expression
+from bondgraph.inverses.inverse import inverse_of
 from bondgraph.inverses.rising import rising
 
 Q = sp.Symbol("q")
@@ -53,3 +54,22 @@ def test_a_law_that_goes_one_way_has_a_slope_of_one_sign(text: str, ends: tuple)
 @pytest.mark.parametrize("text", NOT_SHOWN)
 def test_what_does_not_go_one_way_or_has_corners_is_not_shown(text: str) -> None:
     assert rising(expression(text, "law"), Q) is None
+
+
+def test_a_square_is_no_less_than_zero_whatever_sign_its_name_has() -> None:
+    """A signal that is read may have either sign; only where its square has to be more is it positive."""
+    free = rising(expression("(atan(q) + q/5)/(1 + f**2)", "law"), Q)
+    bound = rising(expression("f**2*q", "law"), Q)
+    assert free is not None
+    assert bound is not None
+    assert (free.positive, bound.positive) == ((), (sp.Symbol("f"),))
+
+
+def test_inverses_of_one_law_made_twice_are_put_in_order() -> None:
+    """Sympy compares parts of sums, those too that are equal and not the same."""
+    value = sp.Symbol("e")
+    one, other = (inverse_of(expression("q + q**3", "law"), Q, value) for _ in range(2))
+    assert one is not None
+    assert other is not None
+    assert one + 2 * other.subs(value, 3 * value) - other == 2 * other.subs(value, 3 * value)
+    assert one.compare(other) == 0
