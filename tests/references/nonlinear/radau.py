@@ -30,17 +30,21 @@ class Stuck(Exception):
     """No step, however short, has a solution or the accuracy that is asked for."""
 
 
-def followed(judge: Judge, times: Sequence[float], z: Array, tolerance: float) -> Array:
+def followed(
+    judge: Judge, times: Sequence[float], z: Array, tolerance: float, steps: int = 1
+) -> Array:
     """All unknowns at these times, from consistent ones at the first; a row for each.
 
-    ``tolerance``: what one step may be off, of 1 + the magnitude of each unknown that is held.
+    ``tolerance``: what one step may be off, of 1 + the magnitude of each unknown that is held. ``steps``: at
+    least so many are made, so that none goes over what two corners have between them.
 
     Raises `Stuck`.
     """
     rows, t, h = [z], times[0], (times[-1] - times[0]) / 64
+    most = (times[-1] - times[0]) / steps
     for end in times[1:]:
         while t < end:
-            step = min(h, end - t)
+            step = min(h, end - t, most)
             whole, first = stages(judge, t, z, step), stages(judge, t, z, step / 2)
             second = None if first is None else stages(judge, t + step / 2, first, step / 2)
             if whole is None or second is None:
