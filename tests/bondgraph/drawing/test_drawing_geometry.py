@@ -15,7 +15,8 @@ from soak.families import seeds
 
 import bondgraph as bg
 import differentials
-from bondgraph.drawing.shapes import Box, Point, Scene
+from bondgraph.drawing.shapes import Scene
+from bondgraph.layout.boxes import Box, Point
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
