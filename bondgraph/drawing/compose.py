@@ -38,8 +38,9 @@ def scene(subject: Subject, title: str, what: Writing) -> Scene:
     upright = Room(1.0, False, {})
     plain_one = None if what.layout == "horizontal" else arranged(subject, upright)
     across = plain_one is None or (what.layout is None and lies_across(plain_one))
-    beside = _reach(subject) if what.powers and not across else {}
-    along = _along(subject) if what.powers and across else SHORT_BOND
+    numbers = width((Run(str(len(subject.links))),), SIZE) + 4 if what.numbers else 0.0
+    beside = _reach(subject, across, numbers) if what.powers else {}
+    along = _along(subject) + numbers if what.powers and across else SHORT_BOND
     for wide in _ROOMS[1 if what.powers else 0 :]:
         room = Room(wide, across, beside, along)
         found = plain_one if plain_one and room == upright else arranged(subject, room)
@@ -51,10 +52,11 @@ def scene(subject: Subject, title: str, what: Writing) -> Scene:
     return _framed(subject, title, found, bonds, signals)
 
 
-def _reach(subject: Subject) -> dict[int, float]:
-    """How long the bond of every one-port must be for its labels to lie beside it."""
+def _reach(subject: Subject, across: bool, numbers: float) -> dict[int, float]:
+    """How long the bond of every one-port must be for its labels to lie beside it; across it is upright."""
+    upright = SHORT_BOND + (1.5 * SIZE if numbers else 0.0)
     return {
-        end: _long(link)
+        end: upright if across else _long(link) + numbers
         for link in subject.links
         for end in (link.tail, link.head)
         if subject.items[end].one_port

@@ -24,6 +24,10 @@ _CORNER = 7.5
 """From a bond's line to a name that stands beside it."""
 
 
+_APART = 1.5
+"""Between an element and its name above or below it."""
+
+
 def node_shape(item: Item, side: Side, caption: Side = "right", across: bool = False) -> NodeShape:
     """A node with the place where its bonds aim at (0, 0): the centre, or beside its bond the near end.
 
@@ -82,7 +86,9 @@ def _across(item: Item, side: Side) -> tuple[Label, ...]:
     y = {"left": -down, "right": up, "middle": SIZE * _MIDDLE}[side]
     own = Label(text, -wide / 2, y, SIZE)
     x = -width(item.caption, SMALLER) / 2
-    far = own.box.top - DESCENT * SMALLER if side == "left" else own.box.bottom + ASCENT * SMALLER
+    far = own.box.bottom + ASCENT * SMALLER + _APART
+    if side == "left":
+        far = own.box.top - DESCENT * SMALLER - _APART
     return _captioned(own, item, x, far)
 
 
@@ -113,7 +119,7 @@ def _element(item: Item, side: Side) -> tuple[Label, ...]:
     if side == "middle":
         return _beside(own, item, "right")
     x = -width(item.caption, SMALLER) if side == "left" else 0.0
-    return _captioned(own, item, x, own.box.bottom + ASCENT * SMALLER)
+    return _captioned(own, item, x, own.box.bottom + ASCENT * SMALLER + _APART)
 
 
 def _beside(own: Label, item: Item, side: Side) -> tuple[Label, ...]:

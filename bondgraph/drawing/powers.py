@@ -19,6 +19,8 @@ _NEAR_HEAD = (0.78, 0.7, 0.86, 0.62, 0.5, 0.4)
 """Where along a bond its text is tried: of its middle, and of a port at its head."""
 
 _AWAY = (3.0, 5.0)
+_BEYOND = (3.0, 5.0, 14.0, 16.0)
+"""How far from the bond; numbers may stand beyond another text."""
 
 Line = tuple[Point, Point]
 
@@ -30,6 +32,7 @@ class Wish:
     rich: Rich
     sides: tuple[float, ...]
     shares: tuple[float, ...] = _SHARES
+    away: tuple[float, ...] = _AWAY
     colour: str = QUIET
 
 
@@ -104,7 +107,7 @@ def _powers(link: Link, _: int) -> list[Wish]:
 
 
 def _number(_: Link, at: int) -> list[Wish]:
-    return [Wish((Run(str(at + 1)),), (-1.0, 1.0), colour=INK)]
+    return [Wish((Run(str(at + 1)),), (-1.0, 1.0), away=_BEYOND, colour=INK)]
 
 
 def _candidates(wish: Wish, path: Sequence[Point]) -> Iterator[Label]:
@@ -116,7 +119,7 @@ def _candidates(wish: Wish, path: Sequence[Point]) -> Iterator[Label]:
     out = flow_side(first, last)
     wide, high = width(wish.rich, SIZE), (ASCENT + DESCENT) * SIZE
     reach = (abs(out[0]) * wide + abs(out[1]) * high) / 2
-    for away in _AWAY:
+    for away in wish.away:
         for side in wish.sides:
             for share in wish.shares:
                 x = first[0] + share * (last[0] - first[0]) + side * out[0] * (reach + away)
