@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import sqrt
 
 import networkx as nx
 
 from bondgraph.drawing.ends import bond_paths
-from bondgraph.drawing.marks import moved
+from bondgraph.drawing.marks import corners, moved
 from bondgraph.drawing.places import Room, as_reckoned, places
 from bondgraph.drawing.shapes import NodeShape
 from bondgraph.drawing.subject import Subject
@@ -24,6 +25,10 @@ CHAIN = 5
 
 TALL = 2.0
 """What is more than so many times as high as wide is drawn from left to right, too."""
+
+
+_BESIDE = 1.5
+"""The name of a junction is at least so far from bonds."""
 
 
 @dataclass(frozen=True)
@@ -98,13 +103,35 @@ def _part(whole: Subject, part: Sequence[int], room: Room) -> Arranged:
     to = turned if room.across else _same
     nodes = [moved(placed.shapes[at], to(placed.at[at])) for at in items]
     boxes = [as_reckoned(nodes[at], room.across, own.items[at].junction) for at in items]
-    paths = bond_paths(own, placed, boxes)
+    paths = tuple(tuple(map(to, path)) for path in bond_paths(own, placed, boxes))
+    if room.across:
+        nodes = _named_aside(own, nodes, paths)
     return Arranged(
         tuple(nodes),
-        tuple(tuple(map(to, path)) for path in paths),
+        paths,
         tuple(sorted(items, key=lambda at: placed.at[at][::-1])),
         len(placed.layers) >= CHAIN and all(len(layer) == 1 for layer in placed.layers),
     )
+
+
+def _named_aside(
+    subject: Subject, nodes: Sequence[NodeShape], paths: Sequence[tuple[Point, ...]]
+) -> list[NodeShape]:
+    """The nodes with the names of junctions in corners where no bond runs and no label stands."""
+    lines = [line for path in paths for line in pairwise(path)]
+    found = list(nodes)
+    for at, item in enumerate(subject.items):
+        if item.junction and item.beside:
+            others = [label.box for to, one in enumerate(found) if to != at for label in one.labels]
+            tried = list(corners(found[at]))
+            free = (one for one in tried if _free(one.labels[1].box.grown(_BESIDE), lines, others))
+            found[at] = next(free, tried[0])
+    return found
+
+
+def _free(box: Box, lines: Sequence[tuple[Point, Point]], others: Sequence[Box]) -> bool:
+    crossed = any(box.crossed(*line) for line in lines)
+    return not crossed and not any(box.overlaps(other) for other in others)
 
 
 def _within(whole: Subject, number: Mapping[int, int]) -> Subject:

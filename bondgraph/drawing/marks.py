@@ -1,5 +1,6 @@
 """Labels of a node round its centre: symbol, value or name, and the frame of a dependent storage."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Literal
 
@@ -24,6 +25,8 @@ _CORNER = 7.5
 """From a bond's line to a name that stands beside it."""
 
 
+_FARTHER = (0.0, 5.0, 10.0, 16.0, 24.0)
+
 _APART = 1.5
 """Between an element and its name above or below it."""
 
@@ -35,7 +38,7 @@ def node_shape(item: Item, side: Side, caption: Side = "right", across: bool = F
     follow from left to right, so what lies beside a junction lies above or below it.
     """
     if item.junction:
-        labels = _below(item, caption) if across else _junction(item, caption)
+        labels = _below(item) if across else _junction(item, caption)
     elif across:
         labels = _across(item, side)
     elif item.kind.two_port:
@@ -70,13 +73,26 @@ def _junction(item: Item, caption: Side) -> tuple[Label, ...]:
     return own, Label(item.beside, x, SMALLER * _MIDDLE, SMALLER, QUIET)
 
 
-def _below(item: Item, caption: Side) -> tuple[Label, ...]:
-    """A junction between bonds to its left and right: its name stands below, or above, on the right."""
+def _below(item: Item) -> tuple[Label, ...]:
+    """A junction between bonds to its left and right: its name stands below on the right."""
     symbol = (Run(item.symbol),)
     half = width(symbol, SIZE) / 2
     own = Label(symbol, -half, SIZE * _MIDDLE, SIZE)
-    y = -_CORNER - DESCENT * SMALLER if caption == "left" else _CORNER + ASCENT * SMALLER
-    return own, Label(item.beside, half + 4, y, SMALLER, QUIET)
+    return own, Label(item.beside, half + 4, _CORNER + ASCENT * SMALLER, SMALLER, QUIET)
+
+
+def corners(shape: NodeShape) -> Iterator[NodeShape]:
+    """The same junction with its name in every corner between upright and level bonds, then farther off."""
+    symbol, name = shape.labels
+    x, y = (symbol.box.left + symbol.box.right) / 2, symbol.y - SIZE * _MIDDLE
+    right = symbol.box.right + 4
+    for off in _FARTHER:
+        for left in (right, 2 * x - right - name.width):
+            for line in (
+                y + _CORNER + off + ASCENT * SMALLER,
+                y - _CORNER - off - DESCENT * SMALLER,
+            ):
+                yield replace(shape, labels=(symbol, replace(name, x=left, y=line)))
 
 
 def _across(item: Item, side: Side) -> tuple[Label, ...]:

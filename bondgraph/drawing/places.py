@@ -31,6 +31,9 @@ SHORT_BOND, OUTER_GAP = 40.0, 18.0
 _AT_TEXT = 2.0
 """Text ends nearer to its sides than to what is above and below it: so much more room is left there."""
 
+_LEAN = 0.15
+"""How much of its way aside a bond that is led round labels goes in its first layer."""
+
 STEEPEST = 0.34
 """A bond falls at least this much for its width, so that it does not run into its layer."""
 
@@ -113,10 +116,12 @@ def places(subject: Subject, room: Room) -> Places:
         for item, (shape, offset, side) in cell.shapes.items():
             at[item] = (columns[vertex] + offset, rows[vertex])
             shapes[item], sides[item] = shape, side
-    turns = {
-        ends: tuple((columns[one], rows[one] + by) for one in path[1:-1] for by in bands[one])
-        for ends, path in found.paths.items()
-    }
+    turns = {}
+    for ends, path in found.paths.items():
+        passed = [(columns[one], rows[one] + by) for one in path[1:-1] for by in bands[one]]
+        if room.across:
+            passed = _led_out(path, passed, columns, rows, bands)
+        turns[ends] = tuple(passed)
     return Places(
         MappingProxyType(at),
         MappingProxyType(shapes),
@@ -124,6 +129,20 @@ def places(subject: Subject, room: Room) -> Places:
         MappingProxyType(turns),
         tuple(map(tuple, order)),
     )
+
+
+def _led_out(
+    path: tuple[int, ...], passed: list[Point], columns: Mapping[int, float],
+    rows: Mapping[int, float], bands: Mapping[int, tuple[float, float]],
+) -> list[Point]:  # fmt: skip
+    """A bond's points with those at the borders of its first and last layers, past all that lies there.
+
+    They lean to where the bond goes, so that bonds of one node stay apart.
+    """
+    first, last = path[0], path[-1]
+    by = min(max(_LEAN * (columns[last] - columns[first]), -BAND), BAND)
+    begin = (columns[first] + by, rows[first] + bands[first][1])
+    return [begin, *passed, (columns[last] - by, rows[last] + bands[last][0])]
 
 
 def as_reckoned(shape: NodeShape, across: bool, junction: bool) -> Box:

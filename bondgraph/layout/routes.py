@@ -97,28 +97,27 @@ def _route(
     foreign = [line for key, route in others if key != one.key for line in pairwise(route.path)]
     heads = [route.path[-1] for _, route in others]
     lines = [*near.lines, *(line for _, route in others for line in pairwise(route.path))]
-    starts = list(_stubs(one.sources, near, lines))
-    goals = list(_stubs(one.targets, near, lines))
+    starts = list(_stubs(one.sources, one.targets, near, lines))
+    goals = list(_stubs(one.targets, one.sources, near, lines))
     if not goals or not (starts or own):
         return None
     frame = around([*one.sources, *one.targets]).grown(window)
-    stems = [piece for route in own for piece in pairwise(route.path[1:-1])]
+    stems = [piece for route in own for piece in _stem(route.path)]
     channels = _channels(frame, near, [*starts, *goals], foreign, stems)
     _wall_in(channels, frame, near, foreign, heads)
+    for line in (piece for route in own for piece in pairwise(route.path)):
+        channels.keep_off(line, ALONG, 0.0)
     return _search(channels, starts, goals, stems)
 
 
-def _stubs(boxes: Sequence[Box], near: Surroundings, lines: Sequence[Line]) -> Iterator[_Stub]:
+def _stubs(
+    boxes: Sequence[Box], others: Sequence[Box], near: Surroundings, lines: Sequence[Line]
+) -> Iterator[_Stub]:
     """The places round the rectangles where a line can leave, or reach, them."""
     for box in boxes:
-        for edge, way in _edges(box):
-            dx, dy = _SIDES[way]
-            inner = (edge[0] + FREE * dx, edge[1] + FREE * dy)
-            outer = (edge[0] + STUB * dx, edge[1] + STUB * dy)
-            own = Box(
-                min(inner[0], outer[0]), min(inner[1], outer[1]),
-                max(inner[0], outer[0]), max(inner[1], outer[1]),
-            ).grown(FREE)  # fmt: skip
+        for edge, way in _edges(box, others):
+            inner, outer = _off(edge, way, FREE), _off(edge, way, STUB)
+            own = around([Box(*inner, *inner), Box(*outer, *outer)]).grown(FREE)
             wide = own.grown(ALONG - FREE)
             if any(wall is not box and own.overlaps(wall) for wall in near.walls):
                 continue
@@ -127,9 +126,22 @@ def _stubs(boxes: Sequence[Box], near: Surroundings, lines: Sequence[Line]) -> I
             yield _Stub(inner, outer, way)
 
 
-def _edges(box: Box) -> Iterator[tuple[Point, int]]:
-    """Points on the sides of a rectangle, from the middle of each outwards, and the way out."""
+def _off(point: Point, way: int, by: float) -> Point:
+    """The point so far off a side, to a hundredth as the grid has it."""
+    dx, dy = _SIDES[way]
+    return round(point[0] + by * dx, 2), round(point[1] + by * dy, 2)
+
+
+def _edges(box: Box, others: Sequence[Box]) -> Iterator[tuple[Point, int]]:
+    """Points on the sides of a rectangle, from the middle of each outwards, and the way out.
+
+    Those first from which a straight line goes to the middle of another rectangle.
+    """
     x, y = (box.left + box.right) / 2, (box.top + box.bottom) / 2
+    aims = [(other.left + other.right) / 2 for other in others]
+    for level in (aim for aim in aims if box.left + FREE < aim < box.right - FREE):
+        yield (level, box.bottom), 1
+        yield (level, box.top), 3
     yield (box.right, y), 0
     yield (box.left, y), 2
     most = min(int((box.right - box.left) / 2 / _SPACING - 0.25), _MOST)
@@ -250,6 +262,22 @@ def _distance(point: Point, box: Box) -> float:
     return across + max(box.top - point[1], 0.0, point[1] - box.bottom)
 
 
+def _stem(path: Sequence[Point]) -> list[Line]:
+    """The pieces of a line from which others may branch off: not at its ends, nor at its arrow."""
+    begin = _towards(path[0], path[1], STUB)
+    end = _towards(path[-1], path[-2], 2 * STUB)
+    return list(pairwise((begin, *path[1:-1], end)))
+
+
+def _towards(point: Point, other: Point, by: float) -> Point:
+    """The point moved so far towards another, at most to there."""
+    (x, y), (to_x, to_y) = point, other
+    return (
+        x + max(-by, min(by, to_x - x)),
+        y + max(-by, min(by, to_y - y)),
+    )
+
+
 def _branches(stems: Sequence[Line], channels: Grid) -> Iterator[tuple[Point, int]]:
     """Every place of the grid on a stem, and the ways off it."""
     for (x0, y0), (x1, y1) in stems:
@@ -273,11 +301,6 @@ def _traced(search: _Search, state: _State, goal: _Stub) -> Route:
     points = points[::-1]
     kept = [points[0]]
     for before, point, after in zip(points, points[1:], points[2:], strict=False):
-        straight = _same(before[0], point[0], after[0]) or _same(before[1], point[1], after[1])
-        if not straight:
+        if not (before[0] == point[0] == after[0] or before[1] == point[1] == after[1]):
             kept.append(point)
     return Route((*kept, points[-1]), branch=at.way < 0)
-
-
-def _same(*values: float) -> bool:
-    return max(values) - min(values) < 0.02
