@@ -77,11 +77,18 @@ def lines_of(shape: BondShape | SignalShape) -> list[Line]:
     return [*path, *marks, *([shape.stroke] if shape.stroke else [])]
 
 
+def touching(nodes: Sequence[NodeShape], bonds: Sequence[BondShape]) -> bool:
+    """Whether a bond touches a node's text or frame."""
+    crowd = Crowd(nodes, [])
+    lines = [line for bond in bonds for line in lines_of(bond)]
+    return any(box.crossed(*line) for box in crowd.boxes for line in lines)
+
+
 def written(
     links: Sequence[Link], bonds: Sequence[BondShape], nodes: Sequence[NodeShape], powers: bool,
     numbers: bool,
 ) -> tuple[tuple[BondShape, ...], bool]:  # fmt: skip
-    """The bonds with their texts, and whether all of these found a free place.
+    """The bonds with their texts, and whether all of these found a free place and no bond touches a node.
 
     Ports of fields stand at the field, efforts over and flows under the bond, numbers where there is room.
     """
@@ -91,7 +98,7 @@ def written(
         for at, (link, bond) in enumerate(zip(links, bonds, strict=True)):
             labels[at] += crowd.put(bond.path, wishes(link, at))
     own = (replace(bond, labels=made) for bond, made in zip(bonds, labels, strict=True))
-    return tuple(own), crowd.clean
+    return tuple(own), crowd.clean and not touching(nodes, bonds)
 
 
 def _ports(link: Link, _: int) -> list[Wish]:

@@ -119,7 +119,7 @@ def _stubs(
             inner, outer = _off(edge, way, FREE), _off(edge, way, STUB)
             own = around([Box(*inner, *inner), Box(*outer, *outer)]).grown(FREE)
             wide = own.grown(ALONG - FREE)
-            if any(wall is not box and own.overlaps(wall) for wall in near.walls):
+            if any(wall != box and own.overlaps(wall) for wall in near.walls):
                 continue
             if any(wide.crossed(*line) for line in (*lines, *near.posts)):
                 continue
@@ -281,10 +281,10 @@ def _towards(point: Point, other: Point, by: float) -> Point:
 def _branches(stems: Sequence[Line], channels: Grid) -> Iterator[tuple[Point, int]]:
     """Every place of the grid on a stem, and the ways off it."""
     for (x0, y0), (x1, y1) in stems:
-        if y0 == y1:
+        if y0 == y1 and y0 in channels.ys:
             inside = [x for x in channels.xs if min(x0, x1) < x < max(x0, x1)]
             yield from (((x, y0), way) for x in inside for way in (1, 3))
-        else:
+        elif x0 == x1 and x0 in channels.xs:
             inside = [y for y in channels.ys if min(y0, y1) < y < max(y0, y1)]
             yield from (((x0, y), way) for y in inside for way in (0, 2))
 
