@@ -9,7 +9,9 @@ from bondgraph.drawing.powers import Crowd, Wish
 from bondgraph.drawing.shapes import BondShape, Label, NodeShape, SignalShape
 from bondgraph.drawing.subject import Signal, Subject
 from bondgraph.layout.boxes import Box
-from bondgraph.layout.routes import Route, Surroundings, Wanted, routes
+from bondgraph.layout.cheapest import Route
+from bondgraph.layout.routes import Wanted, routes
+from bondgraph.layout.stubs import Surroundings
 
 HEAD_BACK, HEAD_OUT = 7.0, 2.6
 """Length and half the width of a signal's arrow."""

@@ -1,6 +1,7 @@
 """The whole picture: nodes, bonds and labels in their places, with a legend and a remark under them."""
 
 import textwrap
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -13,7 +14,7 @@ from bondgraph.drawing.places import SHORT_BOND, Room
 from bondgraph.drawing.powers import SIZE, lines_of, written
 from bondgraph.drawing.rich import Run, plain
 from bondgraph.drawing.shapes import INK, BondShape, Label, Scene, SignalShape
-from bondgraph.drawing.subject import Link, Subject
+from bondgraph.drawing.subject import Link, Signal, Subject
 from bondgraph.layout.boxes import Box, Point, around
 
 Layout = Literal["horizontal", "vertical"]
@@ -83,7 +84,7 @@ def _framed(
     inner = around(boxes + [Box(x, y, x, y) for x, y in points])
     by = (MARGIN - inner.left, MARGIN - inner.top)
     bottom, right = inner.bottom + by[1], inner.right + by[0]
-    notes, swatch = _notes(subject, bottom, right)
+    notes, swatch = _notes(subject, _remarks(subject, signals), bottom, right)
     taken = [note.box for note in notes]
     return Scene(
         title,
@@ -99,15 +100,30 @@ def _framed(
     )
 
 
-def _notes(subject: Subject, bottom: float, right: float) -> tuple[tuple[Label, ...], Box | None]:
-    """The legend and the remark, line by line under the picture."""
+def _remarks(subject: Subject, signals: Sequence[SignalShape]) -> list[str]:
+    """What is written under the picture: why there are no strokes, and signals that found no way."""
+    drawn = {(one.source, one.reader) for one in signals}
+    items = subject.items
+    lost = [
+        one
+        for one in subject.signals
+        if (items[one.source].name, items[one.reader].name) not in drawn
+    ]
+    left_out = f"Signals without a line: {_told(subject, lost)}." if lost else ""
+    return [line for line in (subject.remark, left_out) if line]
+
+
+def _notes(
+    subject: Subject, remarks: Sequence[str], bottom: float, right: float
+) -> tuple[tuple[Label, ...], Box | None]:
+    """The legend and the remarks, line by line under the picture."""
     y, lines, swatch = bottom + 2 * MARGIN, list[Label](), None
     if any(item.dependent for item in subject.items):
         swatch = Box(MARGIN, y - 8, MARGIN + 18, y + 2)
         lines.append(Label((Run(LEGEND),), MARGIN + 24, y, SMALLER, INK))
         y += 1.5 * SMALLER
     letters = max(round((right - MARGIN) / (0.6 * SMALLER)), 40)
-    for line in textwrap.wrap(subject.remark, letters):
+    for line in (line for one in remarks for line in textwrap.wrap(one, letters)):
         lines.append(Label((Run(line),), MARGIN, y, SMALLER, INK))
         y += 1.5 * SMALLER
     return tuple(lines), swatch
@@ -149,17 +165,16 @@ def description(subject: Subject) -> str:
     counted = ", ".join(f"{count} {symbol}" for symbol, count in sorted(kinds.items()))
     text = f"A bond graph of {len(subject.items)} nodes ({counted}) and {len(subject.links)} bonds."
     if subject.signals:
-        text += f" Signals: {_told(subject)}."
+        text += f" Signals: {_told(subject, subject.signals)}."
     dependent = [plain((Run(str(item.name)),)) for item in subject.items if item.dependent]
     if dependent:
         text += f" In derivative causality: {', '.join(dependent)}."
     return f"{text} {subject.remark}".strip()
 
 
-def _told(subject: Subject) -> str:
+def _told(subject: Subject, signals: Sequence[Signal]) -> str:
     """What reads what of which other, in words."""
     names = [plain((Run(str(item.name)),)) for item in subject.items]
     return "; ".join(
-        f"{names[one.reader]} reads {plain(one.names)} of {names[one.source]}"
-        for one in subject.signals
+        f"{names[one.reader]} reads {plain(one.names)} of {names[one.source]}" for one in signals
     )
