@@ -32,7 +32,7 @@ def pendulum() -> Any:
     """A weight on a rod: transformers that its angle modulates (Karnopp, Margolis, Rosenberg)."""
     return made(
         [bg.One("turn"), bg.I("J", "J", flow="omega"), bg.Df("angle", integrate="theta"),
-         bg.TF("x", "-1/(l*cos(theta))"), bg.TF("y", "1/(l*sin(theta))"), bg.One("vx"), bg.One("vy"),
+         bg.TF("x", "l*cos(theta)"), bg.TF("y", "l*sin(theta)"), bg.One("vx"), bg.One("vy"),
          bg.R("drag", "b"), bg.Se("weight", "-m*g"), bg.I("m_y", "m", priority=-1)],
         [("turn", "J"), ("turn", "angle"), ("turn", "x"), ("turn", "y"), ("x", "vx"), ("vx", "drag"),
          ("y", "vy"), ("weight", "vy"), ("vy", "m_y")],
