@@ -64,6 +64,8 @@ def _route(
     heads = [route.path[-1] for _, route in others]
     lines = [*near.lines, *(line for _, route in others for line in pairwise(route.path))]
     starts = list(stubs(one.sources, one.targets, near, lines))
+    if not (starts or own):
+        starts = list(stubs(one.sources, one.targets, near, lines, close=True))
     goals = list(stubs(one.targets, one.sources, near, lines))
     if not goals or not (starts or own):
         return None

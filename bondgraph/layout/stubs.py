@@ -15,6 +15,9 @@ ALONG = 5.0
 SIDES: tuple[tuple[int, int], ...] = ((1, 0), (0, 1), (-1, 0), (0, -1))
 """The ways right, down, left and up."""
 
+_CLOSE = 1.0
+"""How far it keeps off there where lines crowd round a rectangle."""
+
 _SPACING, _MOST = 14.0, 7
 """How far places on a side are from each other, and how many at most lie on either side of its middle."""
 
@@ -38,14 +41,18 @@ class Stub:
 
 
 def stubs(
-    boxes: Sequence[Box], others: Sequence[Box], near: Surroundings, lines: Sequence[Line]
-) -> Iterator[Stub]:
-    """The places round the rectangles where a line can leave, or reach, them."""
+    boxes: Sequence[Box], others: Sequence[Box], near: Surroundings, lines: Sequence[Line],
+    close: bool = False,
+) -> Iterator[Stub]:  # fmt: skip
+    """The places round the rectangles where a line can leave, or reach, them.
+
+    ``close``: between lines that crowd round the rectangle, as near to them as not to touch.
+    """
     for box in boxes:
         for edge, way in _edges(box, others):
             inner, outer = _off(edge, way, FREE), _off(edge, way, STUB)
             own = around([Box(*inner, *inner), Box(*outer, *outer)]).grown(FREE)
-            wide = own.grown(ALONG - FREE)
+            wide = own.grown(_CLOSE - FREE if close else ALONG - FREE)
             if any(wall != box and own.overlaps(wall) for wall in near.walls):
                 continue
             if any(wide.crossed(*line) for line in (*lines, *near.posts)):

@@ -135,6 +135,15 @@ def masses(count: int = 10) -> Any:
     return made(nodes, bonds)
 
 
+def crowded() -> Any:
+    """A junction with bonds all round it whose flow two elements read."""
+    return made(
+        [bg.Se("s", "u"), bg.One("j", flow="w"), bg.R("r", "b"), bg.I("i", "J"), bg.C("c", "C"),
+         bg.Zero("z", effort="p"), bg.R("q", "Q*(1 + w**2)"), bg.Sw("k", on="p - w"), bg.R("n", "N")],
+        [("s", "j"), ("j", "r"), ("j", "i"), ("j", "c"), ("j", "z"), ("z", "q"), ("j", "k"), ("z", "n")],
+    )  # fmt: skip
+
+
 def ring_of_pools(count: int = 6) -> Any:
     """Pools that no bonds join, each made by what its neighbour and one across have."""
     nodes: list[Any] = []
@@ -150,7 +159,7 @@ def ring_of_pools(count: int = 6) -> Any:
 PICTURED: "MappingProxyType[str, Callable[[], Any]]" = MappingProxyType({
     make.__name__: make
     for make in (prey_and_predators, pendulum, excited_motor, servo, amplifier, coupled_coils, reaction,
-                 relay, masses, ring_of_pools)
+                 relay, masses, crowded, ring_of_pools)
 })  # fmt: skip
 """By their names."""
 
