@@ -6,14 +6,17 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from bondgraph.drawing.places import CLEAR, Places
-from bondgraph.drawing.shapes import Box, Point
 from bondgraph.drawing.subject import Link, Subject
+from bondgraph.layout.boxes import Box, Point
 
 RADIUS, HALF_STROKE = 13.0, 6.0
 """Where bonds end from the centre of a junction; half the length of a causal stroke."""
 
 _FAN = (40.0, 140.0)
 _APART = 42.0
+
+_BESIDE = 15.0
+"""Bonds at one side of a field end so far from each other, so that their strokes do."""
 
 
 @dataclass(frozen=True)
@@ -76,9 +79,10 @@ def _ends(
     if not subject.items[node].junction:
         box = boxes[node]
         edge = box.bottom + CLEAR - 2 if below else box.top - CLEAR
+        wide = max(box.right - box.left, _BESIDE * (len(aims) + 1))
         for at, (_, bond) in enumerate(aims):
             share = (at + 1) / (len(aims) + 1) - 0.5
-            found[bond, node] = (x + share * (box.right - box.left), edge)
+            found[bond, node] = (x + share * wide, edge)
             if len(aims) == 1:
                 found[bond, node] = (x, edge)
         return found

@@ -7,7 +7,7 @@ from types import MappingProxyType
 import networkx as nx
 
 from bondgraph.drawing.subject import Subject
-from bondgraph.drawing.tight import extremes
+from bondgraph.layout.tight import extremes
 
 
 @dataclass(frozen=True)

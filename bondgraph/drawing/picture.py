@@ -5,7 +5,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from bondgraph.drawing.compose import scene
+from bondgraph.drawing.compose import Layout, Writing, scene
 from bondgraph.drawing.listing import listing
 from bondgraph.drawing.plot import save_figure
 from bondgraph.drawing.shapes import Scene
@@ -25,6 +25,7 @@ class Drawing:
     scene: Scene
     subject: Subject = field(repr=False)
     powers: bool = False
+    numbers: bool = False
 
     def svg(self) -> str:
         """The picture as an SVG document; the same graph gives the same bytes everywhere."""
@@ -32,9 +33,7 @@ class Drawing:
 
     def text(self) -> str:
         """The bonds for a terminal, a line each, ``|`` at the end that receives the effort."""
-        boxes = [node.labels[0].box for node in self.scene.nodes]
-        rows = {at: (round(box.bottom), box.left) for at, box in enumerate(boxes)}
-        return listing(self.subject, rows, self.powers)
+        return listing(self.subject, self.scene.order, self.powers, self.numbers)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the picture as .svg, .png or .pdf, as the suffix says.
@@ -57,21 +56,31 @@ class Drawing:
 
 
 def drawing(
-    graph: Any, powers: bool = False, values: bool = True, title: str = "Bond graph"
-) -> Drawing:
+    graph: Any, powers: bool = False, values: bool = True, title: str = "Bond graph",
+    names: bool = False, numbers: bool = False, signals: bool = True, layout: Layout | None = None,
+) -> Drawing:  # fmt: skip
     """Draw a causal graph, or a declared one whose causality is then assigned.
 
     Half arrows point with positive power, the causal stroke lies at the end that receives the effort;
     storages in derivative causality stand in a dashed frame. ``powers`` writes efforts over and flows
     under the bonds, where the one-port or a junction at the bond has a name for them. ``values=False``
-    writes names of elements instead of their values and conditions.
+    writes names of elements instead of their values and conditions, ``names`` both. ``numbers`` numbers
+    the bonds in the order of ``scene.bonds``. ``layout``: whether layers follow from left to right
+    ("horizontal") or from top to bottom ("vertical"); by default chains and what would be tall lie.
 
-    The first source is on top. Elements left of their bond read ``J :I``, so that the symbol is at the
-    bond. A switch is a Sw with what turns it on above zero (a diode with what it lets through, a latch with
-    what turns it off, too); in a mode it is on or off. A graph that `assign_causality` refuses is drawn
-    without strokes, with the reason under it.
+    What an element reads of another, in its value, law or condition, is a signal: a thin line with a full
+    arrow, from the detector, junction or storage that has it. Transformers, gyrators, sources and
+    resistances that signals rule are MTF, MGY, MSe, MSf, MR, those but sources also if the time does.
+    ``signals=False`` leaves the lines out. Bonds to detectors carry no power and have full arrows; a
+    field's bonds have the names of its ports.
 
-    Raises `StructureError` for what is not a bond graph.
+    The first source is on top, or on the left. Elements left of their bond read ``J :I``, so that the
+    symbol is at the bond. A switch is a Sw with what turns it on above zero (a diode with what it lets
+    through, a latch with what turns it off, too); in a mode it is on or off. Parts that signals alone
+    join stand side by side. A graph that `assign_causality` refuses is drawn without strokes, with the
+    reason under it.
+
+    Raises `StructureError` for what is not a bond graph, and for another layout.
 
     >>> import bondgraph as bg, networkx as nx
     >>> g = nx.DiGraph()
@@ -83,5 +92,8 @@ def drawing(
     1 shaft  |──⇀   I: Jᵣ *
     * dependent storage (derivative causality)
     """
-    what = subject(graph, values)
-    return Drawing(scene(what, title, powers), what, powers)
+    if layout not in (None, "horizontal", "vertical"):
+        raise StructureError(f"layout is 'horizontal', 'vertical' or None, not {layout!r}")
+    what = subject(graph, values, names, signals)
+    writing = Writing(powers, numbers, layout)
+    return Drawing(scene(what, title, writing), what, powers, numbers)

@@ -4,9 +4,10 @@ from pathlib import Path
 from typing import Any
 
 from bondgraph.drawing.metrics import FAMILY, SHIFT, SMALL, run_width
-from bondgraph.drawing.shapes import INK, MARKED, Box, Label, Point, Scene
-from bondgraph.drawing.svg import THICK, THIN
+from bondgraph.drawing.shapes import INK, MARKED, Label, Scene
+from bondgraph.drawing.svg import DOT, FINE, THICK, THIN, branches, full_arrows
 from bondgraph.errors import MissingExtraError
+from bondgraph.layout.boxes import Box, Point
 from bondgraph.writing import replacing
 
 DOTS_PER_INCH = 200
@@ -20,15 +21,16 @@ def save_figure(scene: Scene, path: Path) -> None:
     """
     figure, axes = _canvas(scene)
     for bond in scene.bonds:
-        _line(axes, bond.path + (bond.barb,), THIN)
+        _line(axes, bond.path if bond.other else bond.path + (bond.barb,), THIN)
         if bond.stroke:
             _line(axes, bond.stroke, THICK)
+    for signal in scene.signals:
+        _line(axes, signal.path, FINE)
+    _heads(axes, scene)
     for box in [node.frame for node in scene.nodes] + [scene.swatch]:
         if box is not None:
             _frame(axes, box)
-    labels = [label for node in scene.nodes for label in node.labels]
-    labels += [label for bond in scene.bonds for label in bond.labels]
-    for label in (*labels, *scene.notes):
+    for label in scene.labels:
         _text(axes, label)
     # Without a date, so that the same picture is the same bytes.
     stamp = {"CreationDate": None} if path.suffix == ".pdf" else {"Software": None}
@@ -59,6 +61,16 @@ def _canvas(scene: Scene) -> tuple[Any, Any]:
 def _line(axes: Any, points: tuple[Point, ...], wide: float) -> None:
     xs, ys = zip(*points, strict=True)
     axes.plot(xs, ys, color=INK, linewidth=wide, solid_capstyle="round", solid_joinstyle="round")
+
+
+def _heads(axes: Any, scene: Scene) -> None:
+    """Full arrows, and dots where signals branch off."""
+    from matplotlib.patches import Circle, Polygon
+
+    for corners in full_arrows(scene):
+        axes.add_patch(Polygon(corners, facecolor=INK, edgecolor=INK, linewidth=FINE))
+    for point in branches(scene):
+        axes.add_patch(Circle(point, DOT, facecolor=INK, linewidth=0))
 
 
 def _frame(axes: Any, box: Box) -> None:

@@ -2,7 +2,7 @@
 
 import re
 import unicodedata
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -79,6 +79,18 @@ def formula(value: sp.Expr) -> Rich:
             runs.append(Run(token[2:], 1))
         else:
             runs.append(Run({"*": "·", "**": "^", "-": "−"}.get(token, token)))
+    return joined(runs)
+
+
+def listed(names: Iterable[object]) -> Rich:
+    """Names with commas between them.
+
+    >>> plain(listed(["omega", "v_1"]))
+    'ω, v₁'
+    """
+    runs: list[Run] = []
+    for name in names:
+        runs += [Run(", "), *named(str(name))] if runs else named(str(name))
     return joined(runs)
 
 

@@ -5,56 +5,10 @@ from dataclasses import dataclass
 
 from bondgraph.drawing.metrics import ASCENT, DESCENT, width
 from bondgraph.drawing.rich import Rich
-
-Point = tuple[float, float]
+from bondgraph.layout.boxes import Box, Point, around
 
 INK, QUIET, MARKED = "#000000", "#595959", "#B34700"
 """Text and bonds, names that only explain, and dependent storages (vermilion, darkened to be read)."""
-
-
-@dataclass(frozen=True)
-class Box:
-    """A rectangle."""
-
-    left: float
-    top: float
-    right: float
-    bottom: float
-
-    def overlaps(self, other: "Box") -> bool:
-        """True where the two have an area in common."""
-        across = self.left < other.right and other.left < self.right
-        return across and self.top < other.bottom and other.top < self.bottom
-
-    def crossed(self, first: Point, second: Point) -> bool:
-        """True where the line from one point to the other runs through the inside (Liang, Barsky)."""
-        begin, end = 0.0, 1.0
-        (x, y), (dx, dy) = first, (second[0] - first[0], second[1] - first[1])
-        for step, room in (
-            (-dx, x - self.left), (dx, self.right - x), (-dy, y - self.top), (dy, self.bottom - y),
-        ):  # fmt: skip
-            if step == 0:
-                if room <= 0:
-                    return False
-            elif step < 0:
-                begin = max(begin, room / step)
-            else:
-                end = min(end, room / step)
-        return begin < end
-
-    def grown(self, by: float) -> "Box":
-        """The rectangle with a margin."""
-        return Box(self.left - by, self.top - by, self.right + by, self.bottom + by)
-
-
-def around(boxes: list[Box]) -> Box:
-    """The smallest rectangle that holds all of them."""
-    return Box(
-        min(box.left for box in boxes),
-        min(box.top for box in boxes),
-        max(box.right for box in boxes),
-        max(box.bottom for box in boxes),
-    )
 
 
 @dataclass(frozen=True)
@@ -98,7 +52,8 @@ class BondShape:
     """A bond: the line from its tail to its head, the barb of its half arrow, its stroke and names.
 
     ``ends``: the bond as declared. ``receiver``: the node at whose end the stroke lies, which receives
-    the effort. ``tail``, ``head``: the nodes that the line runs between.
+    the effort. ``tail``, ``head``: the nodes that the line runs between. ``other``: the second barb of the
+    full arrow of a bond that leads to a detector, and carries no power.
     """
 
     ends: tuple[Hashable, Hashable]
@@ -109,11 +64,33 @@ class BondShape:
     stroke: tuple[Point, Point] | None = None
     receiver: Hashable | None = None
     labels: tuple[Label, ...] = ()
+    other: Point | None = None
+
+
+@dataclass(frozen=True)
+class SignalShape:
+    """A signal: the thin line from what has it to what reads it, and the barbs of its full arrow.
+
+    ``branch``: whether the line begins on that of the same signal to another reader.
+    """
+
+    source: Hashable
+    reader: Hashable
+    path: tuple[Point, ...]
+    barbs: tuple[Point, Point]
+    branch: bool = False
+    labels: tuple[Label, ...] = ()
+
+
+Shape = NodeShape | BondShape | SignalShape
 
 
 @dataclass(frozen=True)
 class Scene:
-    """A whole picture. ``notes``: lines under it, the first ``swatch`` beside a sample of a frame."""
+    """A whole picture. ``notes``: lines under it, the first ``swatch`` beside a sample of a frame.
+
+    ``order``: the nodes' places in `Subject.items` as one reads them, layer by layer.
+    """
 
     title: str
     description: str
@@ -123,3 +100,11 @@ class Scene:
     bonds: tuple[BondShape, ...]
     notes: tuple[Label, ...] = ()
     swatch: Box | None = None
+    signals: tuple[SignalShape, ...] = ()
+    order: tuple[int, ...] = ()
+
+    @property
+    def labels(self) -> tuple[Label, ...]:
+        """All text of the picture."""
+        drawn: tuple[Shape, ...] = (*self.nodes, *self.bonds, *self.signals)
+        return (*(label for one in drawn for label in one.labels), *self.notes)

@@ -1,18 +1,17 @@
 """What there is to draw: the nodes and bonds of a graph with their texts, and where strokes lie."""
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import sympy as sp
-
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
-from bondgraph.declare.elements import OTHER, Bond, Element, Switch
+from bondgraph.declare.elements import Bond, Element
 from bondgraph.declare.kinds import Kind
-from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.validate import validate
-from bondgraph.drawing.rich import MOST, Rich, Run, formula, joined, length, named
+from bondgraph.drawing.readers import is_modulated, readings
+from bondgraph.drawing.rich import Rich, Run, listed, named
+from bondgraph.drawing.texts import bounds, switched, value_text
 from bondgraph.errors import AlgebraicLoopError, CausalityError
 
 
@@ -20,7 +19,8 @@ from bondgraph.errors import AlgebraicLoopError, CausalityError
 class Item:
     """A node: its kind, what is written beside it, and whether it is dependent.
 
-    Beside a junction there is its name only, small. ``one_port``: with one bond, so no field.
+    Beside a junction there is its name only, small. ``one_port``: with one bond, so no field. ``caption``:
+    its name, small, where its value is written beside it. ``modulated``: whether signals or the time rule it.
     """
 
     name: Hashable
@@ -28,11 +28,13 @@ class Item:
     beside: Rich
     one_port: bool = False
     dependent: bool = False
+    caption: Rich = ()
+    modulated: bool = False
 
     @property
     def symbol(self) -> str:
-        """0, 1, TF, Se, ..."""
-        return self.kind.symbol
+        """0, 1, TF, MTF, Se, ..."""
+        return f"M{self.kind.symbol}" if self.modulated else self.kind.symbol
 
     @property
     def junction(self) -> bool:
@@ -42,7 +44,11 @@ class Item:
 
 @dataclass(frozen=True)
 class Link:
-    """A bond from ``tail`` to ``head`` (places in `Subject.items`): effort, flow, who receives the effort."""
+    """A bond from ``tail`` to ``head`` (places in `Subject.items`): effort, flow, who receives the effort.
+
+    ``active``: it leads to a detector, so no power is in it. ``ports``: what a field's port at its tail and
+    at its head is called.
+    """
 
     tail: int
     head: int
@@ -50,21 +56,33 @@ class Link:
     effort: Rich
     flow: Rich
     receiver: int | None
+    active: bool = False
+    ports: tuple[Rich, Rich] = ((), ())
+
+
+@dataclass(frozen=True)
+class Signal:
+    """What an item reads of another, ``names``: an arrow from ``source`` to ``reader``."""
+
+    source: int
+    reader: int
+    names: Rich
 
 
 @dataclass(frozen=True)
 class Subject:
-    """All nodes and bonds of a graph; ``remark`` says why there are no strokes, where there are none."""
+    """All nodes, bonds and signals of a graph; ``remark`` says why there are no strokes, if so."""
 
     items: tuple[Item, ...]
     links: tuple[Link, ...]
     remark: str = ""
+    signals: tuple[Signal, ...] = ()
 
 
-def subject(graph: Any, values: bool) -> Subject:
+def subject(graph: Any, values: bool, names: bool = False, signals: bool = True) -> Subject:
     """What to draw of a causal graph, or of a declared one: its causality is assigned.
 
-    A graph whose causality is refused has no strokes but a remark.
+    A graph whose causality is refused has no strokes but a remark. ``names``: beside values, too.
 
     Raises `StructureError` for what is not a bond graph.
     """
@@ -78,7 +96,12 @@ def subject(graph: Any, values: bool) -> Subject:
     ports: dict[Hashable, list[Element]] = {owner: [] for owner in places}
     for name, owner in owners.items():
         ports[owner].append(elements[name])
-    items = tuple(_item(owner, own, dependent, values) for owner, own in ports.items())
+    read = readings(checked, owners)
+    modulated = {reader for _, reader in read}
+    items = tuple(
+        _item(owner, own, dependent, values, names, is_modulated(own, owner in modulated))
+        for owner, own in ports.items()
+    )
     links = tuple(
         _link(
             elements[tail], elements[head], checked.edges[tail, head]["declared"],
@@ -87,7 +110,11 @@ def subject(graph: Any, values: bool) -> Subject:
         for tail, head in checked.edges
         if owners[tail] != owners[head]
     )  # fmt: skip
-    return Subject(items, links, remark)
+    arrows = tuple(
+        Signal(places[source], places[reader], listed(names))
+        for (source, reader), names in read.items()
+    )
+    return Subject(items, links, remark, arrows if signals else ())
 
 
 def _drawn_as(element: Element) -> Hashable:
@@ -109,103 +136,31 @@ def _causal(graph: Any) -> tuple[CausalGraph | None, str]:
 
 
 def _item(
-    owner: Hashable, ports: list[Element], dependent: frozenset[Hashable], values: bool
-) -> Item:
-    element = ports[0]
+    owner: Hashable, ports: list[Element], dependent: frozenset[Hashable], values: bool,
+    names: bool, modulated: bool,
+) -> Item:  # fmt: skip
+    element, name = ports[0], named(owner)
     if element.whole is not None:
-        return Item(
-            owner, Kind.STOP, (_bounds(ports) if values else ()) or named(owner), one_port=True
-        )
+        beside: Rich = (bounds(ports) if values else ()) or name
+        return Item(owner, Kind.STOP, beside, one_port=True, caption=_caption(names, beside, name))
     if element.kind.joins:
-        return Item(owner, element.kind, named(owner))
-    switched = _switched(element)
-    beside = named(owner)
-    if switched:
-        beside = (*beside, Run(f" ({switched})"))
-    elif values:
-        beside = _value(element) or beside
+        return Item(owner, element.kind, name)
+    held = switched(element)
+    beside = (value_text(element) if values and not held else None) or name
     return Item(
         owner,
-        Kind.SW if switched else element.kind,
-        beside,
+        Kind.SW if held else element.kind,
+        (*name, Run(f" ({held})")) if held else beside,
         one_port=not element.kind.two_port and len(ports) == 1,
         dependent=any(port.name in dependent for port in ports),
+        caption=_caption(names, beside, name),
+        modulated=modulated,
     )
 
 
-def _bounds(ports: Sequence[Element]) -> Rich:
-    """What a rigid stop keeps its displacement within, if that is short; nothing of one that yields."""
-    place = next(port.integral for port in ports if port.integral is not None)
-    low: Rich = ()
-    high: Rich = ()
-    for port in ports:
-        if port.switch is None:
-            continue
-        if sp.diff(port.switch.off, place) < 0:
-            low = (*formula(place + port.switch.off), Run(" ≤ "))
-        else:
-            high = (Run(" ≤ "), *formula(place - port.switch.off))
-    bounded: Rich = (*low, *formula(place), *high)
-    switches = [port.switch for port in ports if port.switch is not None]
-    text = (*bounded, *_resets(switches[0])) if switches else bounded
-    for one in (text, bounded):
-        if (low or high) and length(one) <= MOST:
-            return joined([*one])
-    return ()
-
-
-def _switched(element: Element) -> str:
-    """On or off: what in_mode leaves of a switch is a port that gives zero of one of the two."""
-    if element.kind.resists and element.law == ExpressionLaw(sp.Integer(0)):
-        return "on" if element.gives == "effort" else "off"
-    return ""
-
-
-def _value(element: Element) -> Rich | None:
-    """What the element is by its value, by its law or by how it switches, if that is short."""
-    if element.switch is not None:
-        one_way = _one_way(element)
-        text = (*one_way, *_resets(element.switch)) if one_way else _conditions(element.switch)
-        return joined([*text]) if length(text) <= MOST else None
-    given = element.value
-    if given is None and element.kind.supplies and element.owner is None:
-        law = element.law
-        given = law.expression if isinstance(law, ExpressionLaw) else element.given
-    if given is None or element.owner is not None:
-        return None
-    text = formula(given)
-    return text if length(text) <= MOST else None
-
-
-def _one_way(element: Element) -> Rich:
-    """What a switch lets through, where its own two variables change it over, as a diode's; else nothing."""
-    switch = element.switch
-    own = None if switch is None else element.variable(switch.gives)
-    other = None if switch is None else element.variable(OTHER[switch.gives])
-    if switch is None or own is None or other is None:
-        return ()
-    on, off = switch.on / own, switch.off / other
-    if on.is_positive and off.is_negative:
-        return (*named(other), Run(" ≥ 0"))
-    if on.is_negative and off.is_positive:
-        return (*named(other), Run(" ≤ 0"))
-    return ()
-
-
-def _conditions(switch: Switch) -> Rich:
-    """What turns a switch on, and what turns it off where that is more than the opposite."""
-    text: Rich = (*formula(switch.on), Run(" > 0"))
-    if switch.off != -switch.on:
-        text = (*text, Run(", off "), *formula(switch.off), Run(" > 0"))
-    return (*text, *_resets(switch))
-
-
-def _resets(switch: Switch) -> Rich:
-    """What a switch sets states to."""
-    parts: Rich = ()
-    for one in switch.resets:
-        parts = (*parts, Run("; "), *formula(one.state), Run(" := "), *formula(one.value))
-    return parts
+def _caption(names: bool, beside: Rich, name: Rich) -> Rich:
+    """The name, where it is asked for and not written yet."""
+    return name if names and beside != name else ()
 
 
 def _link(
@@ -219,4 +174,13 @@ def _link(
         for which in ("effort", "flow")
     ]
     receiver = places[strokes[declared]] if strokes else None
-    return Link(places[ends[0]], places[ends[1]], declared, names[0], names[1], receiver)
+    return Link(
+        places[ends[0]], places[ends[1]], declared, names[0], names[1], receiver,
+        active=first.kind.detects or second.kind.detects,
+        ports=(_port(first, ends[0]), _port(second, ends[1])),
+    )  # fmt: skip
+
+
+def _port(element: Element, owner: Hashable) -> Rich:
+    """What a field calls the port."""
+    return named(str(element.name).removeprefix(f"{owner}.")) if element.owner is not None else ()

@@ -4,10 +4,14 @@ from collections.abc import Iterator
 from xml.sax.saxutils import escape
 
 from bondgraph.drawing.metrics import FAMILY, SHIFT, SMALL, run_width
-from bondgraph.drawing.shapes import INK, MARKED, Box, Label, Point, Scene
+from bondgraph.drawing.shapes import INK, MARKED, Label, Scene
+from bondgraph.layout.boxes import Box, Point
 
-THIN, THICK = 1.2, 2.0
-"""Widths of bonds and of causal strokes."""
+FINE, THIN, THICK = 0.7, 1.2, 2.0
+"""Widths of signals, of bonds and of causal strokes."""
+
+DOT = 1.8
+"""Radius of the dot where a signal branches off."""
 
 DASH = "3 2"
 _FONTS = f"{FAMILY}, Verdana, sans-serif"
@@ -32,21 +36,36 @@ def _lines(scene: Scene) -> Iterator[str]:
         'stroke-linejoin="round">'
     )
     for bond in scene.bonds:
-        yield f'<path d="{_path(bond.path + (bond.barb,))}"/>'
+        yield f'<path d="{_path(bond.path if bond.other else bond.path + (bond.barb,))}"/>'
     for bond in scene.bonds:
         if bond.stroke:
             yield f'<path d="{_path(bond.stroke)}" stroke-width="{THICK}"/>'
+    for signal in scene.signals:
+        yield f'<path d="{_path(signal.path)}" stroke-width="{FINE}"/>'
+    for head in full_arrows(scene):
+        yield f'<path d="{_path(head)}Z" fill="{INK}" stroke-width="{FINE}"/>'
+    for x, y in branches(scene):
+        yield f'<circle cx="{_number(x)}" cy="{_number(y)}" r="{DOT}" fill="{INK}" stroke="none"/>'
     yield "</g>"
     for box in [node.frame for node in scene.nodes] + [scene.swatch]:
         if box is not None:
             yield _frame(box)
     yield f'<g font-family="{_FONTS}" xml:space="preserve">'
-    labels = [label for node in scene.nodes for label in node.labels]
-    labels += [label for bond in scene.bonds for label in bond.labels]
-    for label in (*labels, *scene.notes):
+    for label in scene.labels:
         yield _text(label)
     yield "</g>"
     yield "</svg>"
+
+
+def full_arrows(scene: Scene) -> list[tuple[Point, Point, Point]]:
+    """The corners of every full arrow: of signals, and of bonds that carry no power."""
+    bonds = [(one.barb, one.path[-1], one.other) for one in scene.bonds if one.other]
+    return [*bonds, *((one.barbs[0], one.path[-1], one.barbs[1]) for one in scene.signals)]
+
+
+def branches(scene: Scene) -> list[Point]:
+    """Where signals branch off."""
+    return [one.path[0] for one in scene.signals if one.branch]
 
 
 def _text(label: Label) -> str:

@@ -1,6 +1,7 @@
 """``draw`` and ``convert``: the graph itself, as a picture or a file."""
 
 from pathlib import Path
+from typing import Literal
 
 import click
 
@@ -15,12 +16,21 @@ from differentials.commands.subject import ENDINGS, Subject
     "The bond graph, in the terminal or as a picture.",
     "draw alsd",
     "draw alsd -o alsd.svg",
+    "draw alsd --names --numbers --layout horizontal -o alsd.svg",
     "draw examples/oscillator.json -o oscillator.svg",
 )
 @options.subject
 @options.variants
 @click.option("--powers", is_flag=True, help="With the names of efforts and flows.")
 @click.option("--no-values", is_flag=True, help="Without the elements' values.")
+@click.option("--names", is_flag=True, help="With the elements' names beside their values.")
+@click.option("--numbers", is_flag=True, help="With the bonds' numbers.")
+@click.option("--no-signals", is_flag=True, help="Without what elements read of each other.")
+@click.option(
+    "--layout",
+    type=click.Choice(["horizontal", "vertical"]),
+    help="From left to right, as chains are drawn, or from top to bottom.",
+)
 @click.option(
     "-o",
     "target",
@@ -30,11 +40,15 @@ from differentials.commands.subject import ENDINGS, Subject
 )
 def draw(
     subject: Subject, halfshafts: bool, unlumped: bool, on: tuple[str, ...], off: tuple[str, ...],
-    powers: bool, no_values: bool, target: Path | None,
+    powers: bool, no_values: bool, names: bool, numbers: bool, no_signals: bool,
+    layout: Literal["horizontal", "vertical"] | None, target: Path | None,
 ) -> None:  # fmt: skip
     """The bond graph of MODEL with its causal strokes, in the terminal or as a picture."""
     shown = bg.assign_causality(subject.graph(halfshafts, unlumped, on, off))
-    drawn = bg.drawing(shown, powers=powers, values=not no_values)
+    drawn = bg.drawing(
+        shown, powers=powers, values=not no_values, names=names, numbers=numbers,
+        signals=not no_signals, layout=layout,
+    )  # fmt: skip
     if target is None:
         click.echo(drawn.text())
     else:

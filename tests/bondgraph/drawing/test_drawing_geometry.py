@@ -2,20 +2,20 @@
 
 import math
 import random
-from collections.abc import Iterator
 from functools import cache
 from importlib import util
-from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 import pytest
+from references.drawn import boxes, lines, touching
 from references.random_graphs import random_graph
 from soak.families import seeds
 
 import bondgraph as bg
 import differentials
-from bondgraph.drawing.shapes import Box, Point, Scene
+from bondgraph.drawing.shapes import Scene
+from bondgraph.layout.boxes import Box, Point
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -28,43 +28,6 @@ CATALOG = [
 def drawn(name: str, full: bool = False, powers: bool = False) -> Scene:
     """A differential's picture, made once for all that is asked of it."""
     return bg.drawing(differentials.graph(name, full), powers=powers).scene
-
-
-def boxes(scene: Scene) -> list[tuple[str, Box]]:
-    """Every label of a picture: what it says and what it fills."""
-    labels = [label for node in scene.nodes for label in node.labels]
-    labels += [label for bond in scene.bonds for label in bond.labels] + list(scene.notes)
-    return [("".join(run.text for run in label.rich), label.box) for label in labels]
-
-
-def lines(scene: Scene) -> Iterator[tuple[Any, Point, Point]]:
-    """Every straight line of every bond."""
-    for bond in scene.bonds:
-        for first, last in zip(bond.path, bond.path[1:], strict=False):
-            yield bond.ends, first, last
-        yield bond.ends, bond.path[-1], bond.barb
-        if bond.stroke:
-            yield bond.ends, *bond.stroke
-
-
-def touching(scene: Scene) -> list[tuple[object, object]]:
-    """Labels that overlap, lines through labels, lines through frames, frames on others' labels."""
-    texts = boxes(scene)
-    found: list[tuple[object, object]] = [
-        (one, two) for (one, a), (two, b) in combinations(texts, 2) if a.overlaps(b)
-    ]
-    for ends, first, last in lines(scene):
-        found += [(ends, text) for text, box in texts if box.crossed(first, last)]
-    for node in scene.nodes:
-        if node.frame is not None:
-            own = {label.box for label in node.labels}
-            found += [
-                (node.name, text)
-                for text, box in texts
-                if box not in own and box.overlaps(node.frame)
-            ]
-            found += [(node.name, e) for e, a, b in lines(scene) if node.frame.crossed(a, b)]
-    return found
 
 
 def example(name: str) -> Any:

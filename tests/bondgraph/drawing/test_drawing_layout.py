@@ -10,10 +10,10 @@ from references.random_graphs import random_graph
 import bondgraph as bg
 from bondgraph.algebra.expressions import expression
 from bondgraph.drawing.layers import layered
-from bondgraph.drawing.order import crossings, mirrored, ordered
 from bondgraph.drawing.rich import GREEK, Run, formula, named, plain
 from bondgraph.drawing.subject import subject
-from bondgraph.drawing.tight import extremes
+from bondgraph.layout.order import crossings, mirrored, ordered
+from bondgraph.layout.tight import extremes
 
 
 def slow_crossings(graph: "nx.DiGraph[int]", order: list[list[int]]) -> int:

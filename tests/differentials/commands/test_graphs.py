@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import networkx as nx
 import pytest
 from click.testing import Result
 
@@ -23,6 +24,27 @@ def test_draw_without_a_file_is_text(call: Call) -> None:
     text = call("draw", "alsd").stdout
     for name in ("input", "case", "left", "right"):
         assert name in text
+
+
+def test_draw_takes_layout_names_and_numbers(call: Call, tmp_path: Path) -> None:
+    """A part of its own drives the source: the picture lies, has names and numbers, and the signal."""
+    graph = nx.DiGraph()
+    graph.add_nodes_from([
+        bg.Se("drive", "-k*x"), bg.One("body"), bg.I("mass", "m"), bg.Sf("speed", "u"), bg.Zero("node"),
+        bg.C("store", "c", effort="x"),
+    ])  # fmt: skip
+    graph.add_edges_from(
+        [("drive", "body"), ("body", "mass"), ("speed", "node"), ("node", "store")]
+    )
+    bg.write_json(graph, tmp_path / "parts.json")
+    words = ["--names", "--numbers", "--layout", "horizontal", "-o", "parts.svg"]
+    assert call("draw", "parts.json", *words).exit_code == 0
+    drawing = bg.drawing(graph, names=True, numbers=True, layout="horizontal")
+    assert (tmp_path / "parts.svg").read_text(encoding="utf-8") == drawing.svg()
+    lines = call("draw", "parts.json", "--numbers").stdout.splitlines()
+    assert [line.split()[0] for line in lines] == ["1", "2", "3", "4", "C:"]
+    assert "┄" not in call("draw", "parts.json", "--no-signals").stdout
+    assert call("draw", "parts.json", "--layout", "round").exit_code == 2
 
 
 @pytest.mark.parametrize("ending", ["json", "graphml"])

@@ -111,15 +111,17 @@ def latex(bench: Bench) -> None:
 
 
 def drawing(bench: Bench) -> None:
-    """Every node is drawn, a switch as one, every bond with its stroke."""
+    """Every node is drawn, a switch as one, every bond with its stroke, every signal."""
     switches = [one for one in bench.kind.equations.switches if not one.switch.stops]
     stops = [node for node, kind in bench.kind.graph.nodes(data="kind") if kind == "Stop"]
     drawn = bg.drawing(bench.kind.graph)
     drawn.save(bench.folder / "kind.svg")
     assert {node.name for node in drawn.scene.nodes} >= {*bench.kind.graph}
     assert all(bond.stroke for bond in drawn.scene.bonds)
-    assert drawn.text().count("Sw: ") == len(switches)
-    assert drawn.text().count("Stop: ") == len(stops)
+    assert len(drawn.scene.signals) == len(drawn.subject.signals)
+    bonds = drawn.text().splitlines()[: len(drawn.scene.bonds)]
+    assert sum(line.count("Sw: ") for line in bonds) == len(switches)
+    assert sum(line.count("Stop: ") for line in bonds) == len(stops)
 
 
 def json(bench: Bench) -> None:

@@ -30,7 +30,7 @@ WHAT = """
 | print | what laws, sources and rates are said to be holds at an instant of the run, everything put in too |
 | explain, latex | every state, switch and law is told; of hundreds of states, how many there are |
 | explicit | its rates are the slopes of the run |
-| drawing | every node, every bond with its stroke, a switch as one |
+| drawing | every node, every bond with its stroke, every signal, a switch as one |
 | JSON, GraphML | read again, the graph has the same equations, laws and switches |
 | linearize | in the mode of the run its model changes rates as the run does |
 | trim | a state from which a run does not move |

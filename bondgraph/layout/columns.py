@@ -6,8 +6,8 @@ from math import ceil
 
 import networkx as nx
 
-from bondgraph.drawing.order import Order
-from bondgraph.drawing.tight import extremes
+from bondgraph.layout.order import Order
+from bondgraph.layout.tight import extremes
 
 FAN = (0.0, 30.0, 70.0, 120.0, 180.0, 250.0, 350.0, 500.0, 700.0)
 """From each of these widths on, a bond's width counts once more."""

@@ -1,0 +1,84 @@
+"""What is written beside elements: values, conditions of switches, bounds of stops, where they are short."""
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+from bondgraph.declare.elements import OTHER, Element, Switch
+from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.drawing.rich import MOST, Rich, Run, formula, joined, length, named
+
+
+def bounds(ports: Sequence[Element]) -> Rich:
+    """What a rigid stop keeps its displacement within, if that is short; nothing of one that yields."""
+    place = next(port.integral for port in ports if port.integral is not None)
+    low: Rich = ()
+    high: Rich = ()
+    for port in ports:
+        if port.switch is None:
+            continue
+        if sp.diff(port.switch.off, place) < 0:
+            low = (*formula(place + port.switch.off), Run(" ≤ "))
+        else:
+            high = (Run(" ≤ "), *formula(place - port.switch.off))
+    bounded: Rich = (*low, *formula(place), *high)
+    switches = [port.switch for port in ports if port.switch is not None]
+    text = (*bounded, *_resets(switches[0])) if switches else bounded
+    for one in (text, bounded):
+        if (low or high) and length(one) <= MOST:
+            return joined([*one])
+    return ()
+
+
+def switched(element: Element) -> str:
+    """On or off: what in_mode leaves of a switch is a port that gives zero of one of the two."""
+    if element.kind.resists and element.law == ExpressionLaw(sp.Integer(0)):
+        return "on" if element.gives == "effort" else "off"
+    return ""
+
+
+def value_text(element: Element) -> Rich | None:
+    """What the element is by its value, by its law or by how it switches, if that is short."""
+    if element.switch is not None:
+        one_way = _one_way(element)
+        text = (*one_way, *_resets(element.switch)) if one_way else _conditions(element.switch)
+        return joined([*text]) if length(text) <= MOST else None
+    given = element.value
+    if given is None and element.kind.supplies and element.owner is None:
+        law = element.law
+        given = law.expression if isinstance(law, ExpressionLaw) else element.given
+    if given is None or element.owner is not None:
+        return None
+    text = formula(given)
+    return text if length(text) <= MOST else None
+
+
+def _one_way(element: Element) -> Rich:
+    """What a switch lets through, where its own two variables change it over, as a diode's; else nothing."""
+    switch = element.switch
+    own = None if switch is None else element.variable(switch.gives)
+    other = None if switch is None else element.variable(OTHER[switch.gives])
+    if switch is None or own is None or other is None:
+        return ()
+    on, off = switch.on / own, switch.off / other
+    if on.is_positive and off.is_negative:
+        return (*named(other), Run(" ≥ 0"))
+    if on.is_negative and off.is_positive:
+        return (*named(other), Run(" ≤ 0"))
+    return ()
+
+
+def _conditions(switch: Switch) -> Rich:
+    """What turns a switch on, and what turns it off where that is more than the opposite."""
+    text: Rich = (*formula(switch.on), Run(" > 0"))
+    if switch.off != -switch.on:
+        text = (*text, Run(", off "), *formula(switch.off), Run(" > 0"))
+    return (*text, *_resets(switch))
+
+
+def _resets(switch: Switch) -> Rich:
+    """What a switch sets states to."""
+    parts: Rich = ()
+    for one in switch.resets:
+        parts = (*parts, Run("; "), *formula(one.state), Run(" := "), *formula(one.value))
+    return parts
