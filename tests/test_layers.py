@@ -15,8 +15,8 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 ORDER = {
-    "bondgraph": "errors writing tables algebra inverses declare causality reduce show equations derive "
-    "analyse explaining drawing files",
+    "bondgraph": "errors writing tables algebra solving inverses declare causality reduce show equations "
+    "derive analyse rates explaining drawing files",
     "codegen": "tuning standalone fixed stops numbers inputs targets supplied program model ports straight "
     "modes corners instants energy runs pictures record plots analysis c engine simulator simulate trim "
     "packing family batch abreast sweeps python switched sparse fmu exports",

@@ -39,9 +39,8 @@ class Generators:
         return expr.xreplace({name: part for part, name in self.named.items()})
 
     def pairs(self) -> list[tuple[sp.Dummy, sp.Dummy]]:
-        """The sine and the cosine of each angle that has both."""
-        return [
-            (name, self.named[sp.cos(*part.args)])
-            for part, name in self.named.items()
-            if isinstance(part, sp.sin) and sp.cos(*part.args) in self.named
-        ]
+        """The sine and the cosine of each angle, both of which are named for it."""
+        angles = dict.fromkeys(
+            part.args[0] for part in self.named if isinstance(part, sp.sin | sp.cos)
+        )
+        return [tuple(self.plain(round_(angle)) for round_ in (sp.sin, sp.cos)) for angle in angles]
