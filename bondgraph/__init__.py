@@ -44,6 +44,7 @@ from bondgraph.files.disk import read_graphml, read_json, write_graphml, write_j
 from bondgraph.files.graphml import from_graphml, to_graphml
 from bondgraph.files.nodelink import from_json, to_json
 from bondgraph.rates.explicit import explicit
+from bondgraph.rates.record import ExplicitRates
 from bondgraph.reduce.junction import junction_structure
 from bondgraph.reduce.structure import JunctionStructure
 from bondgraph.reduce.switch_port import SwitchPort
@@ -67,6 +68,7 @@ __all__ = [
     "DryFriction",
     "Equation",
     "Explanation",
+    "ExplicitRates",
     "ExpressionError",
     "ExpressionLaw",
     "Factor",

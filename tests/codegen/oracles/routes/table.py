@@ -39,11 +39,6 @@ REFUSALS = (
         "control instead.",
         "not affine|not one affine map",
     ),
-    Refusal(
-        ("large",), ("explicit",), True,
-        "A closed form of more than 40 states is no expression for people; `A`, `J`, `B`, `E` stay sparse.",
-        "no expression for people",
-    ),
 )  # fmt: skip
 
 
