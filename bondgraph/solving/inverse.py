@@ -15,6 +15,10 @@ LARGEST_MINORS = 3
 """Up to so many rows the minors of the entries as they stand are looked at."""
 
 
+MOST_FACTORED = 12
+"""A polynomial of more terms is searched for no factors but those that all terms have."""
+
+
 @dataclass(frozen=True)
 class Fractions:
     """A row of an inverse: what stands above at each column, and the one denominator below."""
@@ -96,8 +100,14 @@ def _factored(row: FixedRow, under: sp.Expr, names: Generators) -> Fractions:
         turned = (_without_square(parts, one, other) for one, other in ways)
         parts = min((parts, *turned), key=lambda some: sum(map(_count, some)))
     common = (sp.gcd_list(parts) if names.pairs() else 1) * _sign(parts[0])
-    under, *over = (names.back(factored(sp.cancel(part / common))) for part in parts)
+    under, *over = (names.back(_in_factors(part, common)) for part in parts)
     return Fractions(dict(zip(row, over, strict=True)), under)
+
+
+def _in_factors(part: sp.Expr, common: sp.Expr) -> sp.Expr:
+    """A polynomial without a factor that it has, as a product where it is short."""
+    left = part / common if abs(common) == 1 else sp.cancel(part / common)
+    return factored(left) if _count(left) <= MOST_FACTORED else sp.factor_terms(sp.expand(left))
 
 
 def _without_square(parts: Iterable[sp.Expr], one: sp.Symbol, other: sp.Symbol) -> list[sp.Expr]:

@@ -10,7 +10,7 @@ from sympy.polys.rings import PolyElement
 
 from bondgraph.algebra.exact import FixedRow
 
-MOST_TERMS = 120
+MOST_TERMS = 60
 """An entry, of the inverse or on the way, that has more terms is long."""
 
 PolyRow = dict[int, PolyElement]

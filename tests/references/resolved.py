@@ -23,7 +23,9 @@ def at(expr: sp.Expr, point: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
     return value if value.is_Rational else sp.N(value, 40)
 
 
-def rates_at(found: "bg.ExplicitRates", point: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
+def rates_at(
+    found: "bg.ExplicitRates", point: Mapping[sp.Symbol, sp.Expr]
+) -> dict[sp.Symbol, sp.Expr]:
     """The rates of states at a point, parts with names worked out one after the other."""
     assert not found.implicit
     known = dict(point)
@@ -32,7 +34,9 @@ def rates_at(found: "bg.ExplicitRates", point: Mapping[sp.Symbol, sp.Expr]) -> d
     return {state: at(rate, known) for state, rate in found.items()}
 
 
-def left_over(equations: bg.StateEquations, found: "bg.ExplicitRates", seed: int = 0) -> list[sp.Expr]:
+def left_over(
+    equations: bg.StateEquations, found: "bg.ExplicitRates", seed: int = 0
+) -> list[sp.Expr]:
     """``A x' - J x - B u - E u'`` of equations without laws, row by row, relative to its largest term."""
     rates_of = {u: sp.Symbol(f"d_{u}") for u in equations.inputs}
     point = rationals({*equations.parameters, *equations.states, *equations.inputs, *rates_of.values(),
