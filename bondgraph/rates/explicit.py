@@ -14,7 +14,10 @@ from bondgraph.rates.closing import closed
 from bondgraph.rates.energy import in_energy_states
 from bondgraph.rates.record import ExplicitRates
 from bondgraph.rates.signals import Signals
-from bondgraph.solving.steps import told
+from bondgraph.solving.steps import size, told
+
+MOST_TIDIED = 40
+"""A shorter form of a rate is looked for where it has no more operands."""
 
 
 def explicit(
@@ -50,10 +53,15 @@ def explicit(
         parts = {name: expr.xreplace(put_in) for name, expr in parts.items()}
     whole = told([*results.values(), *solution.implicit.values()], parts)
     names = _names(whole.parts, {name: rate_symbol(s) for s, name in rates.items()}, whole.results)
-    found = [tidy(result.xreplace(names)) for result in whole.results]
+    found = [_tidy(result.xreplace(names)) for result in whole.results]
     implicit = dict(zip(solution.implicit, found[len(results) :], strict=True))
-    where = {names.get(name, name): tidy(e.xreplace(names)) for name, e in whole.parts.items()}
+    where = {names.get(name, name): _tidy(e.xreplace(names)) for name, e in whole.parts.items()}
     return ExplicitRates(dict(zip(results, found, strict=False)), implicit, where)
+
+
+def _tidy(expr: sp.Expr) -> sp.Expr:
+    """What is not long by itself in its shortest form; the rest is over few denominators already."""
+    return tidy(expr) if size(expr, {}) <= MOST_TIDIED else expr
 
 
 def _names(
