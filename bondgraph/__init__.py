@@ -2,7 +2,6 @@
 
 from bondgraph.algebra.expressions import expression
 from bondgraph.algebra.lookup_table import LookupTable
-from bondgraph.analyse.explicit import explicit
 from bondgraph.analyse.linear_model import LinearModel
 from bondgraph.analyse.linearize import linearize
 from bondgraph.analyse.loops import Loop, loops
@@ -44,6 +43,8 @@ from bondgraph.explaining.records import Equation, Factor, Formula, Step
 from bondgraph.files.disk import read_graphml, read_json, write_graphml, write_json
 from bondgraph.files.graphml import from_graphml, to_graphml
 from bondgraph.files.nodelink import from_json, to_json
+from bondgraph.rates.explicit import explicit
+from bondgraph.rates.record import ExplicitRates
 from bondgraph.reduce.junction import junction_structure
 from bondgraph.reduce.structure import JunctionStructure
 from bondgraph.reduce.switch_port import SwitchPort
@@ -67,6 +68,7 @@ __all__ = [
     "DryFriction",
     "Equation",
     "Explanation",
+    "ExplicitRates",
     "ExpressionError",
     "ExpressionLaw",
     "Factor",

@@ -8,8 +8,10 @@ import sympy as sp
 from sympy.polys.constructor import construct_domain
 from sympy.polys.matrices import DomainMatrix
 
+from bondgraph.algebra.elimination import ResidueRows
 from bondgraph.algebra.expressions import expanded_terms
-from bondgraph.algebra.residues import is_zero
+from bondgraph.algebra.generators import Generators
+from bondgraph.algebra.residues import is_zero, residues
 
 Row = dict[int, sp.Expr]
 """A sparse row: column to expression, no zeros."""
@@ -68,7 +70,8 @@ def cancelled(expr: sp.Expr) -> sp.Expr:
 def solve(matrix: Sequence[FixedRow], right: Sequence[FixedRow]) -> list[Row]:
     """Solve ``matrix * X = right`` exactly, both given as sparse rows; the columns of X as in ``right``.
 
-    Entries are fractions in lowest terms. Raises `SingularError` if the determinant vanishes.
+    Entries are fractions in lowest terms over names, functions and roots. Raises `SingularError` if the
+    determinant vanishes, be it by an identity of sines and cosines.
 
     >>> a, b = sp.symbols("a b")
     >>> solve([{0: a, 1: sp.Integer(1)}, {1: b}], [{}, {0: sp.Integer(1)}])
@@ -81,9 +84,12 @@ def solve(matrix: Sequence[FixedRow], right: Sequence[FixedRow]) -> list[Row]:
     entries += [(i, place[j], entry) for i, row in enumerate(right) for j, entry in row.items()]
     if not entries:
         raise SingularError
+    names = Generators()
     domain, elements = construct_domain(
-        [entry for _, _, entry in entries], field=True, extension=True
+        [names.plain(entry) for _, _, entry in entries], field=True, extension=True
     )
+    if names.named and not regular_by_residues(matrix):
+        raise SingularError
     rows: dict[int, dict[int, Any]] = {}
     for (i, j, _), element in zip(entries, elements, strict=True):
         if element:
@@ -96,7 +102,7 @@ def solve(matrix: Sequence[FixedRow], right: Sequence[FixedRow]) -> list[Row]:
     for i, row in reduced.to_sparse().rep.items():
         for j, element in row.items():
             if j >= size:
-                result[i][columns[j - size]] = domain.to_sympy(element)
+                result[i][columns[j - size]] = names.back(domain.to_sympy(element))
     return result
 
 
@@ -107,12 +113,24 @@ def determinant(matrix: Sequence[FixedRow]) -> sp.Expr:
     >>> determinant([{0: a, 1: sp.Integer(1)}, {0: sp.Integer(1), 1: b}])
     a*b - 1
     """
-    size = len(matrix)
-    entries = [row.get(j, sp.Integer(0)) for row in matrix for j in range(size)]
+    size, names = len(matrix), Generators()
+    entries = [names.plain(row.get(j, sp.Integer(0))) for row in matrix for j in range(size)]
     domain, elements = construct_domain(entries, field=True, extension=True)
     rows = [elements[i * size : (i + 1) * size] for i in range(size)]
-    found: sp.Expr = domain.to_sympy(DomainMatrix(rows, (size, size), domain).det())
-    return found
+    return names.back(domain.to_sympy(DomainMatrix(rows, (size, size), domain).det()))
+
+
+def regular_by_residues(matrix: Sequence[FixedRow]) -> bool:
+    """Whether the determinant of a square system is not zero, identities of functions included.
+
+    >>> a = sp.Symbol("a")
+    >>> s, c = sp.sin(a), sp.cos(a)
+    >>> regular_by_residues([{0: c, 1: sp.Integer(1)}, {0: 1 - s**2, 1: c}])
+    False
+    """
+    value = residues()
+    rows = ResidueRows({j: v for j, e in row.items() if (v := value(e))} for row in matrix)
+    return all(rows.pivot(column, jordan=False) for column in range(len(matrix)))
 
 
 def combined(parts: Iterable[tuple[FixedRow, sp.Expr]]) -> Row:

@@ -1,1 +1,1 @@
-"""What derived equations are asked: loops, holding efforts, linear models, explicit rates."""
+"""What derived equations are asked: loops, holding efforts, linear models."""

@@ -5,9 +5,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from bondgraph.algebra.elimination import ResidueRows
-from bondgraph.algebra.exact import Row, SingularError, add_scaled, solve
-from bondgraph.algebra.residues import residues
+from bondgraph.algebra.exact import Row, SingularError, add_scaled, regular_by_residues, solve
 from bondgraph.analyse.deviations import Deviations
 from bondgraph.analyse.holding import balances_of, solve_for
 from bondgraph.analyse.slopes import Point, slopes, turns_with_slip
@@ -156,9 +154,7 @@ def _take_over(A: list[Row], rows: Sequence[Reading]) -> None:
     """Move what the right sides hold of x' into A; `SingularStorageError` if that leaves no inverse."""
     for i, row in enumerate(rows):
         add_scaled(A[i], row.H, sp.Integer(-1))
-    value = residues()
-    exact = ResidueRows({j: v for j, e in row.items() if (v := value(e))} for row in A)
-    if not all(exact.pivot(i, jordan=False) for i in range(len(A))):
+    if not regular_by_residues(A):
         raise SingularStorageError(
             "laws that read rates cancel the storages: A is singular; change a law, or a storage's value"
         )

@@ -16,8 +16,9 @@ Parts = Iterator[tuple[str, Any]]
 def changeable(record: object) -> list[str]:
     """Each place in a record, caches included, that can be changed, with what stands there.
 
-    Followed are records, tuples, frozen sets, mappings, sparse arrays, and what methods and partial functions
-    are bound to; objects of classes that are no records, such as expressions, are not.
+    Followed are records, be they mappings or not, tuples, frozen sets, mappings, sparse arrays, and what
+    methods and partial functions are bound to; objects of classes that are no records, such as expressions,
+    are not.
     """
     found: list[str] = []
     waiting, seen = [(type(record).__name__, record)], set[int]()
@@ -41,7 +42,11 @@ def _wrong(value: Any) -> str | None:
     """What about a value can be changed by itself; None if nothing."""
     if isinstance(value, list | dict | set | bytearray):
         return f"a {type(value).__name__}"
-    if isinstance(value, Mapping) and not isinstance(value, MappingProxyType):
+    if (
+        isinstance(value, Mapping)
+        and not isinstance(value, MappingProxyType)
+        and not is_dataclass(value)
+    ):
         return f"a mapping that is not read-only, a {type(value).__name__}"
     if isinstance(value, np.ndarray) and value.flags.writeable:
         return "an array that can be written to"

@@ -120,6 +120,19 @@ FAMILIES = (
         1_000,
     ),
     Family(
+        "explicit-graphs",
+        "bondgraph/rates/test_random.py::test_rates_of_a_random_graph_solve_its_matrices",
+        40,
+        1_000,
+    ),
+    Family(
+        "explicit-shafts",
+        "bondgraph/rates/test_random.py::test_rates_of_coupled_shafts_solve_their_matrices",
+        6,
+        20,
+    ),
+    Family("explicit-laws", "bondgraph/rates/test_loops_of_laws.py::test_random_laws", 15, 400),
+    Family(
         "accelerating-mechanisms",
         "bondgraph/analyse/test_accelerating_random.py",
         4,

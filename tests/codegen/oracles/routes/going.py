@@ -58,7 +58,10 @@ def explicit(bench: Bench) -> None:
     kind, rates = bench.kind, bg.explicit(bench.kind.equations, bench.kind.laws)
     run, h = bench.about, CLOSE * kind.end
     numbers = {sp.Symbol(name): value for name, value in kind.numbers.items()}
+    assert not rates.implicit
     for state, rate in rates.items():
+        for name, part in reversed(rates.where.items()):
+            rate = rate.xreplace({name: part})
         found = rate.subs(numbers).subs(sp.Symbol("t"), kind.at)
         moving = {name: name.name.removeprefix("d_") for name in found.free_symbols}
         values = {name: _value(run, name.name, source, h) for name, source in moving.items()}

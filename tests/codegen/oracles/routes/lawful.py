@@ -28,6 +28,23 @@ def driven_dependent() -> Kind:
                 at=0.3, rest={"inputs": {"w": 0.0}})  # fmt: skip
 
 
+def loop_of_laws() -> Kind:
+    """An inverting amplifier whose output is -a v_m, which it rules itself: v_m = v_f/(1 + a)."""
+    a, R1, R2, C, u = 20.0, 1.0, 2.0, 0.4, 1.5
+    nodes = [bg.Se("source", "u"), bg.One("in"), bg.R("R1", "R1"), bg.Zero("m", effort="v_m"),
+             bg.One("back"), bg.Zero("pair"), bg.R("R2", "R2"), bg.C("C", "C", effort="v_f"),
+             bg.Zero("o"), bg.Se("amp", "-a*v_m")]  # fmt: skip
+    rate = (1 / ((1 + a) * R1) + 1 / R2) / C
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        return {"v_f": u / (R1 * C * rate) * (1 - np.exp(-rate * t))}
+
+    return Kind("law that determines itself at once",
+                bond_graph(nodes, "source>in>R1 in>m>back>pair>R2 pair>C back>o amp>o"),
+                {"a": a, "R1": R1, "R2": R2, "C": C}, {"u": f"{u}"}, known, 1.0, at=0.3,
+                rest={"inputs": {"u": 0.0}})  # fmt: skip
+
+
 def inverted_storage() -> Kind:
     """A law in derivative causality by its inverse: J w + asinh(J_2 w/i)/i = T t."""
     J1, J2, i, T = 1.0, 2.0, 0.5, 4.0
@@ -223,6 +240,7 @@ def large() -> Kind:
 
 
 LAWFUL = (
+    loop_of_laws,
     driven_dependent, inverted_storage, energy_field, heated, accumulators, reaction, feedback, piecewise,
     table, play, soft_stop, large,
 )  # fmt: skip

@@ -41,9 +41,10 @@ REFUSALS = (
         "not affine|not one affine map",
     ),
     Refusal(
-        ("large",), ("explicit",), True,
-        "A closed form of more than 40 states is no expression for people; `A`, `J`, `B`, `E` stay sparse.",
-        "no expression for people",
+        ("loop_of_laws",), ("C, exact",), False,
+        "Linear laws that determine one another are solved at each instant, and not yet counted as affine. "
+        "`method=\"auto\"` runs them with step control.",
+        "not affine",
     ),
 )  # fmt: skip
 

@@ -1,0 +1,59 @@
+"""What `explicit` finds: the rates of states, what is left of loops of laws, and names of long parts."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+import sympy as sp
+
+from bondgraph.show.rates import rates_latex, rates_text
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ExplicitRates(Mapping[sp.Symbol, sp.Expr]):
+    """``x' = f(x, u, t)``, a mapping of each state to its rate; equal to any mapping that has the same.
+
+    Rates are over states, open inputs, the time and parameters, and over names of `implicit` and `where`,
+    which small models without nonlinear loops of laws have none of.
+    """
+
+    rates: Mapping[sp.Symbol, sp.Expr]
+    #: What a law gives to what it is: nonlinear equations ``name = expression`` that hold at once.
+    implicit: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    #: Long parts by name, each over earlier ones: in rates and in the equations above.
+    where: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name in ("rates", "implicit", "where"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copied and pickled by what it maps, as read-only mappings by themselves cannot be."""
+        return ExplicitRates, (dict(self.rates), dict(self.implicit), dict(self.where))
+
+    def __getitem__(self, state: sp.Symbol) -> sp.Expr:
+        return self.rates[state]
+
+    def __iter__(self) -> Iterator[sp.Symbol]:
+        return iter(self.rates)
+
+    def __len__(self) -> int:
+        return len(self.rates)
+
+    def __repr__(self) -> str:
+        """The mapping, and beside it what else there is."""
+        others = [f"{name}={dict(getattr(self, name))}" for name in ("implicit", "where")
+                  if getattr(self, name)]  # fmt: skip
+        return f"ExplicitRates({', '.join([str(dict(self.rates)), *others])})"
+
+    def __str__(self) -> str:
+        """One line for each rate, then equations that are left to be solved, then what names stand for."""
+        return rates_text(self.rates, self.implicit, self.where)
+
+    def latex(self) -> str:
+        r"""The same in LaTeX, lines with ``&=`` for an ``aligned`` environment."""
+        return rates_latex(self.rates, self.implicit, self.where)
+
+    def _repr_latex_(self) -> str:
+        return rf"$$\begin{{aligned}} {self.latex()} \end{{aligned}}$$"
