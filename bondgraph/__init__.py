@@ -10,6 +10,9 @@ from bondgraph.analyse.sticking import holding_efforts
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.assignments import Assignment, assignments
 from bondgraph.causality.causal_graph import CausalGraph
+from bondgraph.checking.check import check
+from bondgraph.checking.merging import merged
+from bondgraph.checking.records import Check, Finding, StrokeVerdict
 from bondgraph.declare.composition import assemble, prefixed
 from bondgraph.declare.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
 from bondgraph.declare.kinds import Kind
