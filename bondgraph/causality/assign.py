@@ -66,9 +66,9 @@ def _tried(graph: "nx.DiGraph[Hashable]") -> CausalGraph | None:
 
 def _assigned(checked: "nx.DiGraph[Hashable]") -> CausalGraph:
     strokes = StrokeSearch(checked)
-    order, preferred = _preferences(strokes)
+    order, preferred = preferences(strokes)
     _impose_fixed(strokes, order)
-    found = _search(strokes, order, preferred)
+    found = complete(strokes, order, preferred)
     # By strokes alone a switch may come to drive a dependent storage; by exact rank it never does, as
     # a storage is dependent only on what comes before it.
     if not found or _has_loop(strokes) or _switches_beside_dependent(strokes):
@@ -92,7 +92,7 @@ def _vanishing(checked: "nx.DiGraph[Hashable]") -> str:
     return ""
 
 
-def _preferences(strokes: StrokeSearch) -> tuple[list[int], dict[int, str]]:
+def preferences(strokes: StrokeSearch) -> tuple[list[int], dict[int, str]]:
     """The one-ports in the order of their importance, and what each should give."""
     preferred: dict[int, str] = {}
     ranks: dict[int, tuple[int, float, int]] = {}
@@ -122,7 +122,7 @@ def _impose_fixed(strokes: StrokeSearch, order: list[int]) -> None:
             raise CausalityError(contradiction_story(strokes.found, conflict))
 
 
-def _search(strokes: StrokeSearch, order: list[int], preferred: dict[int, str]) -> bool:
+def complete(strokes: StrokeSearch, order: list[int], preferred: dict[int, str]) -> bool:
     """Complete the strokes by trials that backtrack; False if there is no way or it takes too long."""
     items = [(strokes.at[node][0], strokes.end_for(node, preferred[node]), node) for node in order]
     items += [(bond, head, tail) for bond, (tail, head) in enumerate(strokes.bonds)]
@@ -218,7 +218,7 @@ def _search_with(
             text = f"imposes its {chosen[node]}"
         end = strokes.end_for(node, chosen[node])
         conflict = conflict or strokes.assign(strokes.at[node][0], end, Reason(node, text))
-    if conflict or not _search(strokes, order, preferred | chosen):
+    if conflict or not complete(strokes, order, preferred | chosen):
         raise CausalityError(
             "no complete set of causal strokes was found, though the equations are regular; "
             "please report this graph"

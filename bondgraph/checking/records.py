@@ -22,8 +22,8 @@ MARKS = {"right": "ok", "not preferred": "so-so", "wrong": "WRONG", "missing": "
 class Finding:
     """Something in a graph that a teacher would ask about, and what to do.
 
-    ``kind``: a "doubt" most likely is not what was meant; a "hint" says what could be simpler, and
-    changes no equation. ``node`` or ``bond``, as declared, is where it is.
+    ``kind``: a "doubt" most likely is not what was meant; a "hint" says what could be simpler, at
+    the same equations, or what is not drawn yet. ``node`` or ``bond``, as declared, is where it is.
     """
 
     kind: Literal["doubt", "hint"]

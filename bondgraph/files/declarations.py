@@ -21,7 +21,10 @@ FRICTION = ("breakaway", "curve", "level")
 """The parts of a dry friction, in a file's order."""
 
 NAMES = frozenset(
-    {"kind", "effort", "flow", "gives", "integrate", "unit", "port", "tail_port", "head_port"}
+    {
+        "kind", "effort", "flow", "gives", "integrate", "unit", "port", "tail_port", "head_port",
+        "stroke",
+    }  # fmt: skip
 )
 """Attributes of nodes and bonds that are mere names."""
 
