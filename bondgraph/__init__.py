@@ -12,6 +12,7 @@ from bondgraph.causality.assignments import Assignment, assignments
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.checking.check import check
 from bondgraph.checking.merging import merged
+from bondgraph.checking.paths import CausalPath, CausalPaths, causal_paths
 from bondgraph.checking.records import Check, Finding, StrokeVerdict
 from bondgraph.declare.composition import assemble, prefixed
 from bondgraph.declare.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
@@ -60,7 +61,10 @@ __all__ = [
     "BondGraphError",
     "C",
     "CausalGraph",
+    "CausalPath",
+    "CausalPaths",
     "CausalityError",
+    "Check",
     "CheckValve",
     "De",
     "DependentSourceError",
@@ -74,6 +78,7 @@ __all__ = [
     "ExpressionLaw",
     "Factor",
     "FileFormatError",
+    "Finding",
     "Formula",
     "Freewheel",
     "I",
@@ -96,6 +101,7 @@ __all__ = [
     "Step",
     "Stop",
     "StoreError",
+    "StrokeVerdict",
     "StructureError",
     "Sw",
     "Switch",
@@ -106,6 +112,8 @@ __all__ = [
     "assemble",
     "assign_causality",
     "assignments",
+    "causal_paths",
+    "check",
     "derive",
     "drawing",
     "explain",
@@ -119,6 +127,7 @@ __all__ = [
     "latex",
     "linearize",
     "loops",
+    "merged",
     "prefixed",
     "read_graphml",
     "read_json",

@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 
 ORDER = {
     "bondgraph": "errors writing tables algebra inverses declare causality reduce equations derive "
-    "analyse show explaining drawing files",
+    "analyse show explaining checking drawing files",
     "codegen": "tuning standalone fixed stops numbers inputs targets supplied program model ports straight "
     "modes corners instants energy runs pictures record plots analysis c engine simulator simulate trim "
     "packing family batch abreast sweeps python switched sparse fmu exports",

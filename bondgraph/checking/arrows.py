@@ -1,4 +1,4 @@
-"""Arrows that most likely point the wrong way: out of storages, into every source, from parts without supply."""
+"""Arrows that most likely point the wrong way: out of storages, into every source, sums for differences."""
 
 from collections.abc import Hashable, Iterator
 
@@ -27,7 +27,9 @@ def _out_of_what_absorbs(graph: "nx.DiGraph[Hashable]") -> Iterator[Finding]:
             continue
         way_out = f"draw the bond as {last!r} -> {first!r}"
         if other.kind.two_port:
-            way_out = f"put a junction between, or turn both bonds of {last!r} and invert its modulus"
+            way_out = (
+                f"put a junction between, or turn both bonds of {last!r} and invert its modulus"
+            )
         yield Finding(
             "doubt", "arrow",
             f"the arrow {first!r} -> {last!r} points out of {_told(element)}, "

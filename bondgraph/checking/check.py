@@ -6,10 +6,11 @@ from typing import Any
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.checking.arrows import arrows_doubted
+from bondgraph.checking.drawn import strokes_drawn
 from bondgraph.checking.names import parameters_doubted
 from bondgraph.checking.records import Check, Finding, StrokeVerdict
 from bondgraph.checking.shapes import junctions_doubted, junctions_simpler
-from bondgraph.checking.strokes import strokes_drawn, strokes_judged
+from bondgraph.checking.strokes import strokes_judged
 from bondgraph.declare.elements import Bond
 from bondgraph.declare.tables import with_tables
 from bondgraph.declare.validate import validate

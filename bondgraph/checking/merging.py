@@ -140,7 +140,9 @@ class Merger:
         self.graph.remove_node(other)
         for tail, head, ports in edges:
             if name not in (tail, head):
-                self.graph.add_edge(*(name if end == other else end for end in (tail, head)), **ports)
+                self.graph.add_edge(
+                    *(name if end == other else end for end in (tail, head)), **ports
+                )
 
     def bridge(self, name: Hashable) -> None:
         """Put one bond in the place of a junction and its two."""
@@ -157,7 +159,9 @@ class Merger:
         made.add_nodes_from((name, dict(data)) for name, data in self.graph.nodes(data=True))
         for tail, head, ports in self.graph.edges(data=True):
             given = {key: port for key, port in ports.items() if port is not None}
-            made.add_edge(tail, head, **({"port": given.popitem()[1]} if len(given) == 1 else given))
+            made.add_edge(
+                tail, head, **({"port": given.popitem()[1]} if len(given) == 1 else given)
+            )
         return made
 
 

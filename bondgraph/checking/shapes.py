@@ -35,7 +35,7 @@ def junctions_simpler(graph: Any) -> Iterator[Finding]:
             first, second = merger.neighbours(name)
             yield Finding(
                 "hint", "pass-through",
-                f"{kind.word} {name!r} has two bonds and only hands on what comes from {first!r} to {second!r}",
+                f"{kind.word} {name!r} has two bonds and only hands on, from {first!r} to {second!r}",
                 f"bond {first!r} to {second!r}, as bondgraph.merged does", node=name,
             )  # fmt: skip
         for other in merger.same_kind_after(name):

@@ -2,9 +2,6 @@
 
 from collections.abc import Collection, Hashable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
-
-import networkx as nx
 
 from bondgraph.algebra.exact import determinant
 from bondgraph.algebra.residues import is_zero
@@ -13,35 +10,10 @@ from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.record import Contradiction, Reason
 from bondgraph.causality.signals import causal_equations, causal_groups, loop_rows
 from bondgraph.causality.strokes import StrokeSearch
+from bondgraph.checking.drawn import Drawn
 from bondgraph.checking.records import StrokeVerdict
 from bondgraph.declare.elements import OTHER, Bond
 from bondgraph.declare.validate import with_elements
-from bondgraph.errors import StructureError
-
-Drawn = Mapping[Bond, Hashable]
-"""Bonds, as declared, to the node at whose end the stroke was drawn."""
-
-
-def strokes_drawn(graph: Any, strokes: Drawn | None) -> dict[Bond, Hashable]:
-    """The strokes of a declared graph's bonds, ``stroke="tail"`` or ``"head"``, and those told beside it.
-
-    Raises `StructureError` for a bond that is not there, an end that is none of it, and a bond that is
-    told twice in different ways.
-    """
-    found: dict[Bond, Hashable] = {}
-    for tail, head, attributes in graph.edges(data=True):
-        if attributes.get("stroke") is not None:
-            found[tail, head] = tail if attributes["stroke"] == "tail" else head
-    for bond, end in (strokes or {}).items():
-        if not graph.has_edge(*bond):
-            raise StructureError(f"strokes: there is no bond {bond!r}; name it as it was declared")
-        if end not in bond:
-            raise StructureError(f"strokes: {end!r} is no end of bond {bond!r}; give one of the two")
-        if found.setdefault(bond, end) != end:
-            raise StructureError(
-                f"strokes: bond {bond!r} has a stroke at {found[bond]!r} and is told to have it at {end!r}"
-            )
-    return found
 
 
 @dataclass(frozen=True)
@@ -69,7 +41,7 @@ def strokes_judged(
 
 
 def _with_least(causal: CausalGraph, derivative: Collection[int]) -> CausalGraph:
-    """The causality with most integral storages in which these come last: dependent if any choice lets them."""
+    """The causality with most integral storages in which these come last: dependent where any may be."""
     if not derivative:
         return causal
     strokes = causal.assignment
@@ -137,11 +109,13 @@ def _excluded(
 
 def _end(search: StrokeSearch, bond: int, name: Hashable) -> int:
     """The number of a bond's end by the name of its node; a port's is its field's."""
-    return next(n for n in search.bonds[bond] if (search.elements[n].owner or search.names[n]) == name)
+    return next(
+        n for n in search.bonds[bond] if (search.elements[n].owner or search.names[n]) == name
+    )
 
 
 def _needless(best: CausalGraph, search: StrokeSearch, drawn: Drawn) -> dict[int, int]:
-    """Drawn bonds that leave a storage without the integral causality that it could have, and that storage."""
+    """Drawn bonds that keep a storage from the integral causality that it could have, and the storage."""
     found: dict[int, int] = {}
     integral = set(best.integral)
     for node in _derivative(search):
@@ -177,7 +151,9 @@ def _verdict(
     end = drawn[declared]
     if bond in accepted.broken:
         node, rule = accepted.broken[bond]
-        return StrokeVerdict(declared, end, "wrong", f"{_told(search, node)} {rule}", _name(search, node))
+        return StrokeVerdict(
+            declared, end, "wrong", f"{_told(search, node)} {rule}", _name(search, node)
+        )
     if bond in needless:
         node = needless[bond]
         gives = search.elements[node].kind.gives
@@ -208,7 +184,7 @@ def _told(search: StrokeSearch, node: int) -> str:
 
 
 def _unsolved(accepted: _Accepted) -> tuple[Hashable, ...]:
-    """The nodes of a loop of bonds that complete strokes leave without a solution, though they break no rule."""
+    """The nodes of a loop that complete strokes leave without a solution, though they break no rule."""
     search = accepted.search
     if accepted.broken or None in search.end:
         return ()

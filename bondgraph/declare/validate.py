@@ -100,8 +100,8 @@ def _check_bond(graph: Any, tail: Hashable, head: Hashable, attributes: dict[str
         )
     if attributes.get("stroke") not in (None, "tail", "head"):
         raise StructureError(
-            f"bond {tail!r} -> {head!r}: stroke is {attributes['stroke']!r}; it must be 'tail' or 'head', the "
-            "end of the bond at which it is drawn"
+            f"bond {tail!r} -> {head!r}: stroke is {attributes['stroke']!r}; it must be 'tail' or 'head', "
+            "the end of the bond at which it is drawn"
         )
 
 

@@ -21,11 +21,8 @@ FRICTION = ("breakaway", "curve", "level")
 """The parts of a dry friction, in a file's order."""
 
 NAMES = frozenset(
-    {
-        "kind", "effort", "flow", "gives", "integrate", "unit", "port", "tail_port", "head_port",
-        "stroke",
-    }  # fmt: skip
-)
+    {"kind", "effort", "flow", "gives", "integrate", "unit", "port", "tail_port", "head_port"}
+) | {"stroke"}
 """Attributes of nodes and bonds that are mere names."""
 
 
