@@ -29,6 +29,8 @@ def ways(graph: "nx.DiGraph[int]", start: int, end: int) -> tuple[Way, ...]:
     if start == end:
         return (Way((start,), sp.Integer(1)),)
     useful = (nx.descendants(graph, start) | {start}) & (nx.ancestors(graph, end) | {end})
+    if end not in useful:
+        return ()
     found = nx.all_simple_paths(graph.subgraph(sorted(useful)), start, end)
     return _sorted([_way(graph, path, closed=False) for path in _few(found, "paths")])
 
