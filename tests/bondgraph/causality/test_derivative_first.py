@@ -57,7 +57,7 @@ def test_strokes_that_have_no_state_equations_are_refused_by_name() -> None:
 
 
 def test_fields_are_chosen_whole_and_unknown_storages_refused() -> None:
-    with pytest.raises(bg.StructureError, match="'springs' is no storage.*did you mean 'spring'"):
+    with pytest.raises(bg.StructureError, match=r"'springs' is no storage.*did you mean 'spring'"):
         bg.assign_causality(OSCILLATOR, derivative=["springs"])
     with pytest.raises(bg.StructureError, match="'drag' is no storage"):
         bg.assign_causality(OSCILLATOR, derivative=["drag"])
