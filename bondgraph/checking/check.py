@@ -7,13 +7,12 @@ from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.checking.arrows import arrows_doubted
 from bondgraph.checking.drawn import strokes_drawn
-from bondgraph.checking.names import parameters_doubted
+from bondgraph.checking.names import parameters_doubted, validated
 from bondgraph.checking.records import Check, Finding, StrokeVerdict
 from bondgraph.checking.shapes import junctions_doubted, junctions_simpler
 from bondgraph.checking.strokes import strokes_judged
 from bondgraph.declare.elements import Bond
 from bondgraph.declare.tables import with_tables
-from bondgraph.declare.validate import validate
 from bondgraph.errors import AlgebraicLoopError, CausalityError
 
 
@@ -48,7 +47,7 @@ def check(
     [ok] mass -> m, stroke at m: 'm' receives the effort
     [open] mass -> damper: it has to be at 'mass': 1-junction 'mass' takes its flow from one bond only
     """
-    checked = validate(graph)
+    checked = validated(graph)
     drawn = strokes_drawn(graph, strokes)
     causal, refusals = _causality(checked)
     verdicts: tuple[StrokeVerdict, ...] = ()

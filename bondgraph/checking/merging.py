@@ -5,13 +5,12 @@ from typing import Any
 
 import networkx as nx
 
-from bondgraph.checking.names import signals_named
+from bondgraph.checking.names import signals_named, validated
 from bondgraph.declare.attributes import kind_of
 from bondgraph.declare.elements import Bond
 from bondgraph.declare.kinds import Kind
 from bondgraph.declare.renaming import names_read
 from bondgraph.declare.tables import with_tables
-from bondgraph.declare.validate import validate
 
 _CONTROLS = ("on", "off", "reset")
 
@@ -57,7 +56,7 @@ class Merger:
     """
 
     def __init__(self, graph: Any) -> None:
-        validate(graph)
+        validated(graph)
         self.given = graph
         self.graph: nx.DiGraph[Hashable] = nx.DiGraph()
         self.graph.graph.update(self.given.graph)
@@ -69,6 +68,7 @@ class Merger:
                 ports[tail if self.graph.nodes[tail].get("ports") else head] = attributes["port"]
             first, last = (head, tail) if self._turns(tail, head) else (tail, head)
             self.graph.add_edge(first, last, tail_port=ports[first], head_port=ports[last])
+        self._place = {name: at for at, name in enumerate(self.graph)}
         self._read = names_read(with_tables(graph))
         self._shared = _named_twice(self.given)
 
@@ -107,8 +107,7 @@ class Merger:
 
     def same_kind_after(self, name: Hashable) -> Iterator[Hashable]:
         """Those of them that come later in the graph, so that each pair is told once."""
-        place = {one: at for at, one in enumerate(self.graph)}
-        return (other for other in self.same_kind(name) if place[other] > place[name])
+        return (other for other in self.same_kind(name) if self._place[other] > self._place[name])
 
     def _unites(self, name: Hashable, other: Hashable) -> bool:
         if self._controlled(name) or self._controlled(other) or self._asked_for(other):

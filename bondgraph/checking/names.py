@@ -1,12 +1,25 @@
 """Names and numbers: parameters that nothing reads, and those that were nearly given."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from typing import Any
+
+import networkx as nx
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.checking.records import Finding
 from bondgraph.declare.renaming import names_read, quantities
-from bondgraph.errors import nearest
+from bondgraph.declare.validate import validate
+from bondgraph.errors import StructureError, nearest
+
+
+def validated(graph: Any) -> "nx.DiGraph[Hashable]":
+    """The checked copy of a declared graph; `StructureError` for one that is a checked copy itself."""
+    found = validate(graph)
+    if found is graph:
+        raise StructureError(
+            "this is the checked copy that validate made; give the graph as it was declared"
+        )
+    return found
 
 
 def signals_named(graph: Any) -> set[str]:

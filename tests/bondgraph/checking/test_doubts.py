@@ -107,6 +107,10 @@ def test_sources_that_contradict_each_other_are_a_finding_with_the_engines_way_o
 def test_what_is_no_bond_graph_is_refused() -> None:
     with pytest.raises(bg.StructureError, match="no kind"):
         bg.check(nx.DiGraph([("a", "b")]))
+    checked = bg.validate(bond_graph(MASS, "push>mass>m mass>damper"))
+    for judge in (bg.check, bg.merged):
+        with pytest.raises(bg.StructureError, match="checked copy"):
+            judge(checked)
 
 
 def test_numbers_that_nothing_reads() -> None:
