@@ -9,6 +9,10 @@ from bondgraph.analyse.sticking import holding_efforts
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.assignments import Assignment, assignments
 from bondgraph.causality.causal_graph import CausalGraph
+from bondgraph.checking.check import check
+from bondgraph.checking.merging import merged
+from bondgraph.checking.paths import CausalPath, CausalPaths, causal_paths
+from bondgraph.checking.records import Check, Finding, StrokeVerdict
 from bondgraph.declare.composition import assemble, prefixed
 from bondgraph.declare.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
 from bondgraph.declare.kinds import Kind
@@ -58,7 +62,10 @@ __all__ = [
     "BondGraphError",
     "C",
     "CausalGraph",
+    "CausalPath",
+    "CausalPaths",
     "CausalityError",
+    "Check",
     "CheckValve",
     "De",
     "DependentSourceError",
@@ -73,6 +80,7 @@ __all__ = [
     "ExpressionLaw",
     "Factor",
     "FileFormatError",
+    "Finding",
     "Formula",
     "Freewheel",
     "I",
@@ -95,6 +103,7 @@ __all__ = [
     "Step",
     "Stop",
     "StoreError",
+    "StrokeVerdict",
     "StructureError",
     "Sw",
     "Switch",
@@ -105,6 +114,8 @@ __all__ = [
     "assemble",
     "assign_causality",
     "assignments",
+    "causal_paths",
+    "check",
     "derive",
     "drawing",
     "explain",
@@ -118,6 +129,7 @@ __all__ = [
     "latex",
     "linearize",
     "loops",
+    "merged",
     "prefixed",
     "read_graphml",
     "read_json",

@@ -1,6 +1,6 @@
 """`assign_causality`: strokes by trial and propagation, each with its reason; refusals told as a story."""
 
-from collections.abc import Hashable
+from collections.abc import Collection, Hashable
 from types import MappingProxyType
 from typing import Any
 
@@ -14,14 +14,21 @@ from bondgraph.causality.signals import causal_equations, causal_groups, loop_ro
 from bondgraph.causality.stories import contradiction_story
 from bondgraph.causality.strokes import StrokeSearch
 from bondgraph.causality.vanishing import elements_in, generic, told
+from bondgraph.declare.elements import OTHER
 from bondgraph.declare.validate import validate, with_elements
-from bondgraph.errors import AlgebraicLoopError, BondGraphError, CausalityError
+from bondgraph.errors import (
+    AlgebraicLoopError,
+    BondGraphError,
+    CausalityError,
+    StructureError,
+    nearest,
+)
 
 TRIALS_PER_BOND = 20
 """Beyond this the search for strokes stops and exact rank decides the ports first."""
 
 
-def assign_causality(graph: Any) -> CausalGraph:
+def assign_causality(graph: Any, derivative: bool | Collection[Hashable] = False) -> CausalGraph:
     """Give every bond its causal stroke; storages get integral causality wherever that is possible.
 
     Order: sources and ports of fixed causality; storages by ``priority``, then declaration; dry friction;
@@ -33,8 +40,22 @@ def assign_causality(graph: Any) -> CausalGraph:
     also where they impose what a storage keeps. Both are genuine: a graph is
     refused only if the determinant of its bond equations vanishes identically. A switch has one causality
     for all of its modes: it gives zero in one, and in the other whatever keeps at zero what it receives.
+
+    ``derivative``: True prefers derivative causality of all storages, names that of some, tried before
+    the others. Those that stay integral all the same are as many as the state matrix lacks in rank; where
+    none does, constant inputs determine where all rests. Such strokes are to be looked at; a graph whose
+    storages wait for resistances has no state equations in them, and `state_equations` refuses.
+
+    >>> import bondgraph as bg, networkx as nx
+    >>> g = nx.DiGraph()
+    >>> g.add_nodes_from([bg.Se("push", "F"), bg.One("mass"), bg.I("m", "m"), bg.R("drag", "b")])
+    >>> g.add_edges_from([("push", "mass"), ("mass", "m"), ("mass", "drag")])
+    >>> assign_causality(g).integral, assign_causality(g, derivative=True).integral
+    (('m',), ())
     """
     checked = validate(graph)
+    if derivative is not False:
+        return _asked(checked, derivative)
     try:
         found = _assigned(checked)
     except AlgebraicLoopError as error:
@@ -47,6 +68,24 @@ def assign_causality(graph: Any) -> CausalGraph:
             raise CausalityError(f"{error}{wanting(checked, str(error), turned)}") from None
         return other
     return _with_fewest(checked, found) or found
+
+
+def _asked(checked: "nx.DiGraph[Hashable]", derivative: bool | Collection[Hashable]) -> CausalGraph:
+    """Strokes with derivative causality of these storages, or of all, wherever that is possible."""
+    storages = [name for name in checked if checked.nodes[name]["element"].kind.stores]
+    owners = [checked.nodes[name]["element"].owner for name in storages]
+    if derivative is True:
+        return _assigned(checked, frozenset(storages))
+    if isinstance(derivative, str) or not isinstance(derivative, Collection):
+        raise StructureError(f"derivative must be True or a list of storages, not {derivative!r}")
+    for name in derivative:
+        if name not in storages and name not in owners:
+            raise StructureError(
+                f"derivative: {name!r} is no storage of the graph{nearest(str(name), map(str, storages))}"
+            )
+    pairs = zip(storages, owners, strict=True)
+    chosen = (name for name, owner in pairs if name in derivative or owner in derivative)
+    return _assigned(checked, frozenset(chosen))
 
 
 def _with_fewest(graph: "nx.DiGraph[Hashable]", found: CausalGraph | None) -> CausalGraph | None:
@@ -64,11 +103,13 @@ def _tried(graph: "nx.DiGraph[Hashable]") -> CausalGraph | None:
         return None
 
 
-def _assigned(checked: "nx.DiGraph[Hashable]") -> CausalGraph:
+def _assigned(
+    checked: "nx.DiGraph[Hashable]", derivative: frozenset[Hashable] = frozenset()
+) -> CausalGraph:
     strokes = StrokeSearch(checked)
-    order, preferred = _preferences(strokes)
+    order, preferred = preferences(strokes, derivative)
     _impose_fixed(strokes, order)
-    found = _search(strokes, order, preferred)
+    found = complete(strokes, order, preferred)
     # By strokes alone a switch may come to drive a dependent storage; by exact rank it never does, as
     # a storage is dependent only on what comes before it.
     if not found or _has_loop(strokes) or _switches_beside_dependent(strokes):
@@ -92,8 +133,13 @@ def _vanishing(checked: "nx.DiGraph[Hashable]") -> str:
     return ""
 
 
-def _preferences(strokes: StrokeSearch) -> tuple[list[int], dict[int, str]]:
-    """The one-ports in the order of their importance, and what each should give."""
+def preferences(
+    strokes: StrokeSearch, derivative: frozenset[Hashable] = frozenset()
+) -> tuple[list[int], dict[int, str]]:
+    """The one-ports in the order of their importance, and what each should give.
+
+    ``derivative``: the storages that should have derivative causality; they come before others.
+    """
     preferred: dict[int, str] = {}
     ranks: dict[int, tuple[int, float, int]] = {}
     for node, element in enumerate(strokes.elements):
@@ -103,11 +149,12 @@ def _preferences(strokes: StrokeSearch) -> tuple[list[int], dict[int, str]]:
             preferred[node] = element.gives
             ranks[node] = (0 if element.kind.supplies else 1, 0, node)
         elif element.kind.stores:
-            preferred[node] = element.kind.gives
-            ranks[node] = (2, -element.priority, node)
+            asked = strokes.names[node] in derivative
+            preferred[node] = OTHER[element.kind.gives] if asked else element.kind.gives
+            ranks[node] = (2 if asked else 3, -element.priority, node)
         else:
             preferred[node] = element.switch.gives if element.switch else "effort"
-            ranks[node] = (3 if element.law else 4, 0, node)
+            ranks[node] = (4 if element.law else 5, 0, node)
     return sorted(ranks, key=ranks.__getitem__), preferred
 
 
@@ -122,7 +169,7 @@ def _impose_fixed(strokes: StrokeSearch, order: list[int]) -> None:
             raise CausalityError(contradiction_story(strokes.found, conflict))
 
 
-def _search(strokes: StrokeSearch, order: list[int], preferred: dict[int, str]) -> bool:
+def complete(strokes: StrokeSearch, order: list[int], preferred: dict[int, str]) -> bool:
     """Complete the strokes by trials that backtrack; False if there is no way or it takes too long."""
     items = [(strokes.at[node][0], strokes.end_for(node, preferred[node]), node) for node in order]
     items += [(bond, head, tail) for bond, (tail, head) in enumerate(strokes.bonds)]
@@ -152,8 +199,11 @@ Choice = tuple[int, int, int]
 def _try(strokes: StrokeSearch, choice: Choice) -> Contradiction | None:
     """Set the preferred stroke and all that follows; on a contradiction leave no trace and tell it."""
     bond, end, node = choice
-    storage = strokes.elements[node].kind.stores
-    text = "is tried in integral causality first" if storage else "is free to choose"
+    kind = strokes.elements[node].kind
+    text = "is free to choose"
+    if kind.stores:
+        integral = end == strokes.end_for(node, kind.gives)
+        text = f"is tried in {'integral' if integral else 'derivative'} causality first"
     return _assign_or_undo(strokes, bond, end, Reason(node, text))
 
 
@@ -218,7 +268,7 @@ def _search_with(
             text = f"imposes its {chosen[node]}"
         end = strokes.end_for(node, chosen[node])
         conflict = conflict or strokes.assign(strokes.at[node][0], end, Reason(node, text))
-    if conflict or not _search(strokes, order, preferred | chosen):
+    if conflict or not complete(strokes, order, preferred | chosen):
         raise CausalityError(
             "no complete set of causal strokes was found, though the equations are regular; "
             "please report this graph"

@@ -92,11 +92,16 @@ def _check_bond(graph: Any, tail: Hashable, head: Hashable, attributes: dict[str
             f"nodes {tail!r} and {head!r} are bonded both ways; a bond is one edge, in the "
             "direction of positive power"
         )
-    unknown = sorted(map(str, attributes.keys() - {"port", "tail_port", "head_port"}))
+    unknown = sorted(map(str, attributes.keys() - {"port", "tail_port", "head_port", "stroke"}))
     if unknown:
         raise StructureError(
             f"bond {tail!r} -> {head!r}: unknown attribute {unknown[0]!r}; a bond may carry port, the name "
-            "of a field's port, or tail_port and head_port"
+            "of a field's port, or tail_port and head_port; and stroke, the end of a stroke that was drawn"
+        )
+    if attributes.get("stroke") not in (None, "tail", "head"):
+        raise StructureError(
+            f"bond {tail!r} -> {head!r}: stroke is {attributes['stroke']!r}; it must be 'tail' or 'head', "
+            "the end of the bond at which it is drawn"
         )
 
 

@@ -1,13 +1,13 @@
 """Resistances and dependent storages folded away: any row over the ports as ``F x + D u + H x' + K u'``."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.errors import DependentSourceError
+from bondgraph.errors import CausalityError, DependentSourceError
 from bondgraph.reduce.energies import in_energies
 from bondgraph.reduce.motion import Motion, moving_names, settled
 from bondgraph.reduce.record import Reading
@@ -15,6 +15,21 @@ from bondgraph.reduce.resistances import resistances
 from bondgraph.reduce.sorting import Reduction, detects, imposes, is_storage
 from bondgraph.reduce.storages import stored_rate
 from bondgraph.reduce.structure import JunctionStructure
+
+
+def _check_dependent(
+    structure: JunctionStructure, dependent: tuple[int, ...], later: Collection[int]
+) -> None:
+    """Refuse derivative causality that was asked for where a storage would wait for what waits for it."""
+    for port in dependent:
+        for other in structure.rows[port]:
+            if other in later:
+                name, cause = (structure.ports[i].element.name for i in (port, other))
+                raise CausalityError(
+                    f"storage {name!r} has derivative causality and follows from what {cause!r} gives, which "
+                    "follows from it: these strokes have no state equations; assign causality without "
+                    "derivative=, which leaves it dependent only on states and inputs"
+                )
 
 
 def reduce_ports(structure: JunctionStructure) -> Reduction:
@@ -30,6 +45,7 @@ def reduce_ports(structure: JunctionStructure) -> Reduction:
     resistive = tuple(
         i for i, port in enumerate(ports) if port.element.kind.resists and not imposes(port)
     )
+    _check_dependent(structure, dependent, {*dependent, *resistive})
     imposed = tuple(i for i, port in enumerate(ports) if imposes(port) and not detects(port))
     inputs = tuple(dict.fromkeys([*(ports[i].given for i in imposed), *structure.opened]))
     one = sp.Integer(1)

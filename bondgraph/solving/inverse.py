@@ -1,6 +1,6 @@
 """Inverses of small matrices of expressions as a person would write them: minors over a determinant."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -23,7 +23,7 @@ MOST_FACTORED = 12
 class Fractions:
     """A row of an inverse: what stands above at each column, and the one denominator below."""
 
-    over: dict[int, sp.Expr]
+    over: Mapping[int, sp.Expr]
     under: sp.Expr
 
     @property

@@ -10,6 +10,7 @@ import click
 
 import bondgraph as bg
 import differentials.commands.options as options
+from differentials.commands.checking import check
 from differentials.commands.exporting import export
 from differentials.commands.graphs import convert, draw
 from differentials.commands.linearising import linear, modes
@@ -113,7 +114,7 @@ def app() -> None:
 
 
 for _name, _command in {
-    "list": list_all, "show": show, "draw": draw,
+    "list": list_all, "show": show, "draw": draw, "check": check,
     "derive": derive, "explain": explain, "modes": modes,
     "linear": linear, "simulate": simulate, "sweep": sweep,
     "export": export, "convert": convert, "figures": draw_figures,

@@ -74,6 +74,23 @@ FAMILIES = (
     ),
     # What is shown of equations.
     Family("whole-equations", "codegen/test_whole_equations.py", 12, 1_000),
+    # Graphs judged.
+    Family(
+        "drawn-strokes",
+        "bondgraph/checking/test_drawn_strokes.py::test_random_strokes_against_all_that_are_possible",
+        40,
+        2_000,
+    ),
+    Family(
+        "drawn-causality",
+        "bondgraph/checking/test_drawn_strokes.py"
+        "::test_as_many_storages_are_blamed_as_have_derivative_causality_without_need",
+        40,
+        2_000,
+    ),
+    Family("causal-paths", "bondgraph/checking/test_causal_paths.py", 30, 1_000),
+    Family("merged-graphs", "bondgraph/checking/test_merging.py", 30, 1_000),
+    Family("derivative-first", "bondgraph/causality/test_derivative_first.py", 40, 2_000),
     # Derivation.
     Family(
         "graphs",

@@ -1,0 +1,1 @@
+"""Graphs judged: doubts and hints with the way out, drawn strokes, causal paths, junctions merged."""
