@@ -15,7 +15,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 ORDER = {
-    "bondgraph": "errors writing tables algebra inverses declare causality reduce equations derive "
+    "bondgraph": "errors named writing tables algebra inverses declare causality reduce equations derive "
     "analyse show explaining drawing files",
     "codegen": "tuning standalone fixed stops numbers inputs targets supplied program model ports straight "
     "modes corners instants energy runs pictures record plots analysis c engine simulator simulate trim "

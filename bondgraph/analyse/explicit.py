@@ -1,7 +1,6 @@
 """`explicit`: every state's rate as one expression, laws put in; in co-energy or energy states."""
 
 from collections.abc import Hashable, Mapping
-from types import MappingProxyType
 from typing import Any
 
 import sympy as sp
@@ -16,6 +15,7 @@ from bondgraph.analyse.turned import turned
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import AlgebraicLoopError, StructureError
+from bondgraph.named import Named
 from bondgraph.reduce.motion import slope_of
 from bondgraph.reduce.rates import resolved
 from bondgraph.reduce.record import Reading
@@ -24,10 +24,26 @@ LARGEST = 40
 """The inverse of a larger A is too long to be read, and grows as its determinant does."""
 
 
+class Rates(Named[sp.Symbol, sp.Expr]):
+    """Each state to its rate; ``print`` and notebooks show them as equations."""
+
+    def __str__(self) -> str:
+        from bondgraph.show.formulas import rates_text
+
+        return rates_text(self)
+
+    def _repr_latex_(self) -> str | None:
+        from bondgraph.show.formulas import rates_latex
+
+        return rates_latex(self)
+
+
 def explicit(
     equations: StateEquations, laws: Mapping[Any, object] | None = None, energy: bool = False
-) -> Mapping[sp.Symbol, sp.Expr]:
+) -> Rates:
     """``x' = f(x, u, t)``: each state, those of laws and detectors included, to its rate.
+
+    A mapping, which notebooks and ``print`` show as equations; ``found["v"]`` is the rate of v.
 
     ``laws``: as for a simulator. Ports with dry friction and switches stay inputs, by what they give. The
     rate of an input u is the symbol ``d_u``. ``energy``: in momenta ``p_<node>`` and displacements
@@ -40,8 +56,12 @@ def explicit(
     >>> g.add_nodes_from([bg.Se("force", "F"), bg.One("j"), bg.I("m", "m", flow="v"),
     ...                   bg.C("k", law="k*q_k**3")])
     >>> g.add_edges_from([("force", "j"), ("j", "m"), ("j", "k")])
-    >>> dict(explicit(bg.derive(g)))
+    >>> found = explicit(bg.derive(g))
+    >>> dict(found)
     {v: (F - k*q_k**3)/m, q_k: v}
+    >>> print(found)
+    v' = (F - k*q_k^3)/m
+    q_k' = v
     """
     if len(equations.states) > LARGEST:
         raise StructureError(
@@ -53,7 +73,7 @@ def explicit(
     found = system.rates()
     if energy:
         found = _in_energy_states(equations, found)
-    return MappingProxyType({state: tidy(rate) for state, rate in found.items()})
+    return Rates({state: tidy(rate) for state, rate in found.items()})
 
 
 class _Explicit:

@@ -36,11 +36,15 @@ class Observer:
     def _equations(self) -> StateEquations:
         return self.model.equations
 
+    def names(self) -> tuple[str, ...]:
+        """Every named effort and flow of the graph."""
+        return tuple(map(str, self._equations.signals))
+
     def signal(self, name: str) -> Array:
         """A named effort or flow; `KeyError` naming what there is."""
         row = self._equations.signals.get(sp.Symbol(name))
         if row is None:
-            known = dict.fromkeys([*self.columns, *map(str, self._equations.signals)])
+            known = dict.fromkeys([*self.columns, *self.names()])
             raise KeyError(f"no signal {name!r}; there are {', '.join(known)}")
         return self._values(self._equations.reduction.reading(row))
 

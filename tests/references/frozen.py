@@ -10,6 +10,8 @@ import networkx as nx
 import numpy as np
 import scipy.sparse as sps
 
+from bondgraph.named import Named
+
 Parts = Iterator[tuple[str, Any]]
 
 
@@ -41,7 +43,7 @@ def _wrong(value: Any) -> str | None:
     """What about a value can be changed by itself; None if nothing."""
     if isinstance(value, list | dict | set | bytearray):
         return f"a {type(value).__name__}"
-    if isinstance(value, Mapping) and not isinstance(value, MappingProxyType):
+    if isinstance(value, Mapping) and not isinstance(value, MappingProxyType | Named):
         return f"a mapping that is not read-only, a {type(value).__name__}"
     if isinstance(value, np.ndarray) and value.flags.writeable:
         return "an array that can be written to"
