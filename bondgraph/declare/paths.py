@@ -136,8 +136,7 @@ def _check_arrow(result: BondGraph, text: str, where: str) -> None:
         sign = ARROWS.findall(text)[0]
         sign += ">" if text.endswith(sign) else ""
         raise StructureError(
-            f"{where}: {sign!r} is no arrow here; a bond is written 'a > b', "
-            "towards positive power"
+            f"{where}: {sign!r} is no arrow here; a bond is written 'a > b', towards positive power"
         )
 
 

@@ -88,7 +88,7 @@ def _table(space: Sized) -> tuple[str, list[tuple[str, ...]]]:
     head = ", ".join(sizes)
     if len(modes) > MOST:
         head += f"; the slowest {MOST} of {len(modes)} modes"
-    rows = [("pole [1/s]", "frequency [Hz]", "damping")]
+    rows: list[tuple[str, ...]] = [("pole [1/s]", "frequency [Hz]", "damping")]
     for mode in modes[:MOST]:
         rows.append((pole_text(mode.pole), f"{mode.frequency:.5g}", f"{mode.damping:.5g}"))
     return head, rows
