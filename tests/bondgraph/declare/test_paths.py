@@ -77,7 +77,7 @@ def test_tables_are_those_of_the_graph() -> None:
 
 
 WRONG: dict[str, tuple[tuple[object, ...], str]] = {
-    "an unknown name": (("push > jj > m",), r"path 'push > jj > m'.*'no node 'jj'.*there are push, j"),
+    "an unknown name": (("push > jj > m",), r"path 'push > jj > m'.*no node 'jj'.*there are push, j"),
     "a near name": (("puhs > j",), r"path 'puhs > j'.*no node 'puhs' \(did you mean 'push'\?\)"),
     "an unknown node": ((["push", 7],), r"path \['push', 7\].*no node 7.*there are push, j, m, drag"),
     "no hashable": ((["push", []],), r"no node \[\]"),
