@@ -32,6 +32,9 @@ class Rates(Named[sp.Symbol, sp.Expr]):
 
         return rates_text(self)
 
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        printer.text(str(self))
+
     def _repr_latex_(self) -> str | None:
         from bondgraph.show.formulas import rates_latex
 

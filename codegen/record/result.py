@@ -169,6 +169,10 @@ class Result:
             self.time, states, tuple(self.columns), self.units, self.events, self.backend
         )
 
+    def __dir__(self) -> list[str]:
+        """What users ask; what works it out is left out."""
+        return [name for name in super().__dir__() if name not in ("observer", "ledger")]
+
     def _ipython_key_completions_(self) -> list[str]:
         return list(dict.fromkeys([*self.columns, *self.observer.names()]))
 

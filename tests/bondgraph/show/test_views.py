@@ -95,6 +95,8 @@ def test_a_run_completes_every_signal_that_it_has() -> None:
     assert {"v", "f", "F", "e_d", "f_d", "f_push"} <= set(names)
     assert len(names) == len(set(names))
     assert all(len(run[name]) == 2 for name in names)
+    assert {"time", "states", "events", "plot", "summary"} <= set(dir(run))
+    assert not {"observer", "ledger"} & set(dir(run))
 
 
 def test_a_sweep_shows_ranges_and_completes_columns() -> None:
