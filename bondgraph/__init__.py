@@ -14,10 +14,12 @@ from bondgraph.checking.merging import merged
 from bondgraph.checking.paths import CausalPath, CausalPaths, causal_paths
 from bondgraph.checking.records import Check, Finding, StrokeVerdict
 from bondgraph.declare.composition import assemble, prefixed
+from bondgraph.declare.drawn import BondGraph
 from bondgraph.declare.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
 from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.declare.one_way import CheckValve, Diode, Freewheel
+from bondgraph.declare.paths import graph
 from bondgraph.declare.stops import Stop
 from bondgraph.declare.switching import in_mode, switches
 from bondgraph.declare.validate import validate
@@ -59,6 +61,7 @@ __all__ = [
     "TF",
     "AlgebraicLoopError",
     "Assignment",
+    "BondGraph",
     "BondGraphError",
     "C",
     "CausalGraph",
@@ -123,6 +126,7 @@ __all__ = [
     "expression",
     "from_graphml",
     "from_json",
+    "graph",
     "holding_efforts",
     "in_mode",
     "junction_structure",
@@ -141,3 +145,8 @@ __all__ = [
     "write_graphml",
     "write_json",
 ]
+
+
+def __dir__() -> list[str]:
+    """What is public; the modules that hold it are found by their own imports."""
+    return list(__all__)

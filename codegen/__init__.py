@@ -103,3 +103,8 @@ __all__ = [
     "work",
     "write_fmu",
 ]
+
+
+def __dir__() -> list[str]:
+    """What is public; the modules that hold it are found by their own imports."""
+    return list(__all__)

@@ -26,3 +26,8 @@ __all__ = [
     "stribeck_clutch",
     "zero_slip_ratios",
 ]
+
+
+def __dir__() -> list[str]:
+    """What is public, and the parts; other modules are found by their own imports."""
+    return [*__all__, "parts"]

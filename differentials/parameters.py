@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import bondgraph as bg
+from bondgraph.named import Named
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ _OUTPUT = Parameter(0.008, "kg m^2", "output inertia, all that turns with the ou
 _WHEEL = Parameter(0.808, "kg m^2", "wheel and output inertia", "I_w + I_1 of the full model")
 _SHAFT = Parameter(8600, "N m/rad", "halfshaft stiffness", _PAPER)
 
-PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
+PARAMETERS: Mapping[str, Parameter] = Named(
     {
         "i": Parameter(2.8, "", "final drive ratio, input over case speed", _PAPER),
         "I_i": Parameter(0.1604, "kg m^2", "input inertia, the case's referred to it", _PAPER),

@@ -2,13 +2,13 @@
 
 from collections.abc import Container, Hashable, Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 import bondgraph as bg
 import codegen
+from bondgraph.named import Named
 from differentials.model import Model, model
 from differentials.parameters import checked
 
@@ -45,7 +45,7 @@ def _figure_12(speed: float, factor: float) -> Scenario:
 
 
 # The paper prints no torques: those of Fig. 11 are read off its axes, the others are assumed.
-scenarios: Mapping[str, Scenario] = MappingProxyType(
+scenarios: Mapping[str, Scenario] = Named(
     {
         "fig11": Scenario(80.0, -2.0, 350.0, (1000.0,), 0.1, 0.5, 1.0),
         **{

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import bondgraph as bg
+from bondgraph.named import Named
 from differentials import active, passive
 from differentials.parts import Part
 from differentials.pieces import Variant
@@ -84,7 +85,7 @@ _ALL = (
     ),
 )  # fmt: skip
 
-catalog: Mapping[str, Differential] = MappingProxyType({row.name: row for row in _ALL})
+catalog: Mapping[str, Differential] = Named({row.name: row for row in _ALL})
 """Name to differential, in the paper's order."""
 
 

@@ -15,7 +15,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 ORDER = {
-    "bondgraph": "errors writing searching tables algebra solving inverses declare causality reduce "
+    "bondgraph": "errors named writing searching tables algebra solving inverses declare causality reduce "
     "equations derive analyse show rates explaining checking layout drawing files",
     "codegen": "tuning standalone fixed stops numbers inputs targets supplied program model ports straight "
     "modes corners instants energy runs pictures record plots analysis c engine simulator simulate trim "

@@ -1,4 +1,7 @@
-"""Every notebook runs from clean, and is stored without what a run leaves in it."""
+"""Every notebook runs from clean, and is stored with what such a run shows.
+
+``pytest tests/test_notebooks.py --update-golden`` stores what runs show now.
+"""
 
 import re
 from collections.abc import Iterator
@@ -11,6 +14,7 @@ from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_notebook
+from references.shown import differences, kept
 
 ROOT = Path(__file__).parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
@@ -59,7 +63,7 @@ def kernel(tmp_path_factory: pytest.TempPathFactory) -> Iterator[KernelManager]:
 def run(notebook: NotebookNode, kernel: KernelManager, folder: Path) -> None:
     """From clean: without a name of those that ran before."""
     cells = [new_code_cell(BEGIN.format(str(folder))), *notebook.cells]
-    client = NotebookClient(new_notebook(cells=cells), timeout=None, km=kernel)
+    client = NotebookClient(new_notebook(cells=cells), timeout=None, km=kernel, record_timing=False)
     try:
         client.execute()
     finally:
@@ -67,9 +71,19 @@ def run(notebook: NotebookNode, kernel: KernelManager, folder: Path) -> None:
 
 
 @every
-def test_runs(path: Path, kernel: KernelManager, tmp_path: Path) -> None:
-    notebook = read(path)
+def test_shows_what_is_stored(
+    path: Path, kernel: KernelManager, tmp_path: Path, update_golden: bool
+) -> None:
+    """Texts, formulas and drawings of a run are those in the file; other pictures are there."""
+    notebook, stored = read(path), read(path)
     run(notebook, kernel, tmp_path)
+    for count, cell in enumerate(code(notebook), 1):
+        cell.outputs, cell.execution_count = kept(cell.outputs, count), count
+    if update_golden:
+        nbformat.write(notebook, path)
+        stored = read(path)
+    for cell, want in zip(code(notebook), code(stored), strict=True):
+        assert differences(cell.outputs, want.outputs) == []
     outputs = [output for cell in code(notebook) for output in cell.outputs]
     assert outputs
     # A warning of any library is written there.
@@ -83,12 +97,13 @@ def test_none_has_the_names_of_another(kernel: KernelManager, tmp_path: Path) ->
 
 
 @every
-def test_is_stored_without_a_run(path: Path) -> None:
+def test_is_stored_as_a_run_from_clean_leaves_it(path: Path) -> None:
+    """Cells are counted from one; nothing is stored of which every run has another."""
     notebook = read(path)
     nbformat.validate(notebook)
-    for cell in code(notebook):
-        assert cell.outputs == []
-        assert cell.execution_count is None
+    for count, cell in enumerate(code(notebook), 1):
+        assert cell.execution_count == count
+        assert cell.outputs == kept(cell.outputs, count)
     assert all(cell.metadata == {} for cell in notebook.cells)
     assert set(notebook.metadata) == {"kernelspec", "language_info"}
     assert dict(notebook.metadata.language_info) == {"name": "python"}
@@ -97,6 +112,7 @@ def test_is_stored_without_a_run(path: Path) -> None:
 @every
 def test_names_no_place_of_a_machine(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
+    assert not re.search(r"\b0x[0-9a-f]{6,}", text)
     assert not re.search(r"(?<![\w.])/(home|root|tmp|usr|work|Users)/|[A-Z]:\\\\", text)
 
 
@@ -115,4 +131,7 @@ def test_asserts_and_explains(path: Path) -> None:
 
 @every
 def test_is_small(path: Path) -> None:
-    assert path.stat().st_size < 30_000
+    """What is written by hand, and the whole with its pictures."""
+    notebook = read(path)
+    assert sum(len(cell.source) for cell in notebook.cells) < 20_000
+    assert path.stat().st_size < 400_000

@@ -36,6 +36,22 @@ class LinearModel:
     D: sp.ImmutableSparseMatrix
     G: sp.ImmutableSparseMatrix
 
+    def __str__(self) -> str:
+        """The matrices; of large models sizes and places of entries."""
+        from bondgraph.show.display import equations_text
+
+        return equations_text(self)
+
+    def _repr_latex_(self) -> str:
+        """The matrices, and where they are numbers the poles."""
+        from bondgraph.show.latex_matrices import notebook_matrices
+        from bondgraph.show.poles import poles_latex
+
+        matrices = notebook_matrices(self)
+        if not self.states or self.parameters:
+            return matrices
+        return f"{matrices}\n$${poles_latex(self.numeric({}).modes())}$$"
+
     @property
     def parameters(self) -> tuple[sp.Symbol, ...]:
         """The names that the matrices need numbers for, sorted."""

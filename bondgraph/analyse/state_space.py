@@ -70,6 +70,17 @@ class StateSpace:
     #: Whether a pole is exactly 0, so that constant inputs have no steady state.
     drifts: bool = False
 
+    def __str__(self) -> str:
+        """Sizes, and every pole and pair with its frequency and damping."""
+        from bondgraph.show.poles import space_text
+
+        return space_text(self)
+
+    def _repr_html_(self) -> str:
+        from bondgraph.show.poles import space_html
+
+        return space_html(self)
+
     def poles(self) -> ComplexArray:
         """The eigenvalues of P [1/s], slowest first, pairs together."""
         found = np.linalg.eigvals(self.P).astype(complex)

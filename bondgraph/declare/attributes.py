@@ -30,7 +30,8 @@ def kind_of(attributes: Mapping[str, Any], where: str) -> Kind:
         return Kind(attributes["kind"])
     except ValueError:
         raise StructureError(
-            f"{where}: unknown kind {attributes['kind']!r}; there are {', '.join(Kind)}"
+            f"{where}: unknown kind {attributes['kind']!r}; there are {', '.join(Kind)}, "
+            "and 0 and 1 for Zero and One"
         ) from None
 
 

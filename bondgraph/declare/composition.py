@@ -7,6 +7,8 @@ import networkx as nx
 
 from bondgraph.algebra.atoms import normal, symbol
 from bondgraph.algebra.expressions import TIME
+from bondgraph.declare.drawn import BondGraph
+from bondgraph.declare.kinds import Kind
 from bondgraph.declare.laws import SLIP
 from bondgraph.declare.renaming import Names, Part, name_text, names_read, quantities, renamed
 from bondgraph.declare.tables import TABLES, tables_of, with_tables
@@ -33,12 +35,12 @@ def assemble(*parts: Part) -> Part:
     ['hub', 'J', 'tire']
     """
     tables = tables_of(nx.DiGraph(tables=[one for part in parts for one in tables_of(part)]))
-    whole: nx.DiGraph[Hashable] = nx.DiGraph()
+    whole = BondGraph()
     whole.graph.update({TABLES: list(tables)} if tables else {})
     for part in parts:
         for name, attributes in part.nodes(data=True):
             known = whole.nodes[name] if name in whole else {}
-            if attributes and known and dict(known) != dict(attributes):
+            if attributes and known and _told(known) != _told(attributes):
                 raise StructureError(f"two parts declare node {name!r}: {known} and {attributes}")
             whole.add_node(name, **attributes)
         for tail, head, attributes in part.edges(data=True):
@@ -46,6 +48,12 @@ def assemble(*parts: Part) -> Part:
                 raise StructureError(f"two parts declare the bond {tail!r} -> {head!r}")
             whole.add_edge(tail, head, **attributes)
     return whole
+
+
+def _told(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """The attributes, with one name for one kind."""
+    kind = attributes.get("kind")
+    return {**attributes, "kind": Kind(kind) if kind in ("0", "1") else kind}
 
 
 def prefixed(
@@ -87,7 +95,7 @@ def prefixed(
     read = names_read(graph)
     names = signals | _parameter_names(read - signals.keys(), prefix, parameters)
     _check_names(names, read, prefix)
-    result: nx.DiGraph[Hashable] = nx.DiGraph()
+    result = BondGraph()
     result.graph.update({TABLES: graph.graph[TABLES]} if TABLES in graph.graph else {})
     for inner, attributes in graph.nodes(data=True):
         result.add_node(nodes[inner], **renamed(inner, attributes, names))

@@ -38,10 +38,10 @@ class Nature:
 
 
 class Kind(StrEnum):
-    """The kinds of node; the plain-dict form has their text as ``kind``.
+    """The kinds of node; the plain-dict form has their text as ``kind``; "0" and "1" are junctions, too.
 
-    >>> Kind("I").stores, Kind("I").gives, Kind("C").letter, Kind("Zero").common
-    (True, 'flow', 'q', 'effort')
+    >>> Kind("I").stores, Kind("I").gives, Kind("C").letter, Kind("Zero").common, str(Kind("1"))
+    (True, 'flow', 'q', 'effort', 'One')
     """
 
     nature: Nature
@@ -80,6 +80,13 @@ class Kind(StrEnum):
         kind = str.__new__(cls, text)
         kind._value_, kind.nature = text, nature
         return kind
+
+    @classmethod
+    def _missing_(cls, value: object) -> "Kind | None":
+        """The junction that a digit stands for."""
+        return next(
+            (kind for kind in cls if kind.nature.digit and kind.nature.digit == value), None
+        )
 
     @property
     def supplies(self) -> bool:

@@ -70,6 +70,8 @@ def declaration(graph: Any) -> Declaration:
 
 def _all_plain(attributes: Mapping[str, Any], kind: object, where: str) -> dict[str, Any]:
     given = {key: value for key, value in attributes.items() if value is not None}
+    if kind is not None:
+        given["kind"] = Kind(str(kind))
     keys = sorted(given, key=lambda key: (key != "kind", key))
     return {key: _plain(key, given[key], kind, f"{where}, {key}") for key in keys}
 

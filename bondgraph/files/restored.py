@@ -7,6 +7,7 @@ import networkx as nx
 
 from bondgraph.algebra.atoms import symbol
 from bondgraph.algebra.expressions import expression
+from bondgraph.declare.drawn import BondGraph
 from bondgraph.declare.kinds import EXPRESSIONS
 from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.declare.tables import TABLES, tables_of
@@ -42,7 +43,7 @@ def restored(declaration: Declaration, tables: Iterable[Sampled] = ()) -> "nx.Di
     Raises `FileFormatError` for attributes of a wrong type, nodes and bonds that come twice and bonds
     to nodes that are not there, and what `validate` raises.
     """
-    graph: nx.DiGraph[Hashable] = nx.DiGraph()
+    graph = BondGraph()
     if declaration.name is not None:
         check_type(declaration.name, (str,), "the graph's name")
         graph.graph["name"] = declaration.name

@@ -7,6 +7,7 @@ from typing import Any
 
 import sympy as sp
 
+from bondgraph.named import Named
 from bondgraph.show.rates import rates_latex, rates_text
 
 
@@ -25,15 +26,20 @@ class ExplicitRates(Mapping[sp.Symbol, sp.Expr]):
     where: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name in ("rates", "implicit", "where"):
+        object.__setattr__(self, "rates", Named(dict(self.rates)))
+        for name in ("implicit", "where"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Copied and pickled by what it maps, as read-only mappings by themselves cannot be."""
         return ExplicitRates, (dict(self.rates), dict(self.implicit), dict(self.where))
 
-    def __getitem__(self, state: sp.Symbol) -> sp.Expr:
-        return self.rates[state]
+    def __getitem__(self, state: sp.Symbol | str) -> sp.Expr:
+        """The rate of a state, or of the one of that name; `KeyError` naming what there is."""
+        return self.rates[state]  # type: ignore[index]
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return [str(state) for state in self.rates]
 
     def __iter__(self) -> Iterator[sp.Symbol]:
         return iter(self.rates)

@@ -33,8 +33,8 @@ def latex(equations: StateEquations) -> str:
 def beside(equations: StateEquations) -> list[str]:
     """What stands beside the matrices, as lines of LaTeX; none where these say all."""
     found = statements(equations)
-    stated = _aligned((*found.given, *found.rates))
-    closed = _aligned(put_in(equations, found))
+    stated = aligned((*found.given, *found.rates))
+    closed = aligned(put_in(equations, found))
     lines = [*([stated] if stated else []), *ways_latex(equations)]
     if lines and (equations.states or equations.outputs):
         lines.insert(0, r"\text{where}")
@@ -43,7 +43,8 @@ def beside(equations: StateEquations) -> list[str]:
     return [*lines, rf"\text{{{PUT_IN}}}", closed] if closed else lines
 
 
-def _aligned(stated: Iterable[Statement]) -> str:
+def aligned(stated: Iterable[Statement]) -> str:
+    """Equations below one another at their signs of equality; of none nothing."""
     rows = [row for one in stated for row in _rows(one)]
     body = " \\\\\n".join(rows)
     return rf"\begin{{aligned}} {body} \end{{aligned}}" if rows else ""

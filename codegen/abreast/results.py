@@ -1,6 +1,6 @@
 """What runs side by side have recorded, as records of single runs: worked out as far as it is asked for."""
 
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -92,6 +92,10 @@ class Again:
     @cached_property
     def _result(self) -> Result:
         return self._alone()
+
+    def names(self) -> Sequence[str]:
+        """Of the signals that the run by itself has."""
+        return self._result.observer.names()
 
     def signal(self, name: str) -> Array:
         """See `Result`; so the others."""

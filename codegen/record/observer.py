@@ -36,6 +36,10 @@ class Observer:
     def _equations(self) -> StateEquations:
         return self.model.equations
 
+    def names(self) -> tuple[str, ...]:
+        """Every named effort and flow of the graph, and what its storages hold."""
+        return tuple(map(str, (*self._equations.signals, *self._equations.held)))
+
     def signal(self, name: str) -> Array:
         """A named effort or flow, or what a storage holds; `KeyError` naming what there is."""
         row = self._equations.signals.get(sp.Symbol(name))
@@ -44,7 +48,7 @@ class Observer:
         held = self._equations.held
         if sp.Symbol(name) in held:
             return self._at(held[sp.Symbol(name)])
-        known = dict.fromkeys([*self.columns, *map(str, (*self._equations.signals, *held))])
+        known = dict.fromkeys([*self.columns, *self.names()])
         raise KeyError(f"no signal {name!r}; there are {', '.join(known)}")
 
     def bond(self, tail: Hashable, head: Hashable) -> tuple[Array, Array]:

@@ -14,6 +14,7 @@ from codegen.pictures.marks import Marks, stuck_spans
 from codegen.pictures.stacked import Line, Panel, along, fill, stacked
 from codegen.record.summary import summary
 from codegen.record.tables import dataset, frame, write_columns, write_netcdf
+from codegen.record.views import run_html
 from codegen.runs.track import Event
 
 
@@ -32,6 +33,9 @@ class Accountant(Protocol):
 
 class Watcher(Protocol):
     """What works out a run's signals, bonds, powers and energies."""
+
+    def names(self) -> Sequence[str]:
+        """Of the signals that it works out."""
 
     def signal(self, name: str) -> Array:
         """A named effort or flow."""
@@ -158,6 +162,19 @@ class Result:
 
     def __str__(self) -> str:
         return self.summary()
+
+    def _repr_html_(self) -> str:
+        states = {name: self.columns[name] for name in self.states}
+        return run_html(
+            self.time, states, tuple(self.columns), self.units, self.events, self.backend
+        )
+
+    def __dir__(self) -> list[str]:
+        """What users ask; what works it out is left out."""
+        return [name for name in super().__dir__() if name not in ("observer", "ledger")]
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(dict.fromkeys([*self.columns, *self.observer.names()]))
 
     def plot(
         self, *names: str, title: str | None = None, ax: Any = None,

@@ -25,6 +25,10 @@ NO_POWERS = "a sparse run knows no powers; derive the graph and run a simulator 
 class Recorded:
     """A run of which the states, inputs and outputs were recorded, and nothing else."""
 
+    def names(self) -> tuple[str, ...]:
+        """None beside the columns."""
+        return ()
+
     def signal(self, name: str) -> Array:
         """Refuses: what was not recorded cannot be worked out."""
         raise KeyError(f"{name!r} was not recorded; name its node in outputs of sparse_model")

@@ -10,10 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bondgraph.errors import MissingExtraError
+from bondgraph.show.blocks import aligned
+from bondgraph.show.html import html_lines, html_table
 from codegen.numbers.arrays import Array
 from codegen.sweeps.chunks import NOTHING, Outcome
 from codegen.sweeps.columns import Columns
 from codegen.sweeps.design import Table
+from codegen.sweeps.views import sweep_rows
 
 Shapes = tuple[tuple[int, ...], ...]
 
@@ -58,6 +61,18 @@ class Sweep:
             return self.design.column(name)
         known = ", ".join((*self.design.names, *self.measures))
         raise KeyError(f"no column {name!r}; there are {known}")
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return [*self.design.names, *self.measures]
+
+    def __str__(self) -> str:
+        """How many runs, and of every column the least, the mean and the most."""
+        head, rows = sweep_rows(self.table(), len(self), int(self.done.sum()), len(self.failed))
+        return "\n".join([head, *aligned(rows)])
+
+    def _repr_html_(self) -> str:
+        head, rows = sweep_rows(self.table(), len(self), int(self.done.sum()), len(self.failed))
+        return html_lines([head]) + html_table(rows[0], rows[1:])
 
     @property
     def complete(self) -> bool:
