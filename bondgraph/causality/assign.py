@@ -33,6 +33,13 @@ def assign_causality(graph: Any) -> CausalGraph:
     also where they impose what a storage keeps. Both are genuine: a graph is
     refused only if the determinant of its bond equations vanishes identically. A switch has one causality
     for all of its modes: it gives zero in one, and in the other whatever keeps at zero what it receives.
+
+    >>> import bondgraph as bg, networkx as nx
+    >>> g = nx.DiGraph([("u", "loop"), ("loop", "L"), ("loop", "R")])
+    >>> g.add_nodes_from([bg.Se("u", "u"), bg.One("loop"), bg.I("L", "L", flow="i"), bg.R("R", "R")])
+    >>> causal = assign_causality(g)
+    >>> causal.integral, causal.strokes["u", "loop"]
+    (('L',), 'loop')
     """
     checked = validate(graph)
     try:
