@@ -47,7 +47,7 @@ def _can_raise(package: str, name: str) -> bool:
     thing = getattr(importlib.import_module(package), name)
     if not inspect.isclass(thing):
         return callable(thing)
-    if issubclass(thing, (Exception, Warning)):
+    if issubclass(thing, BaseException):
         return False
     tree = ast.parse(textwrap.dedent(inspect.getsource(thing)))
     return any(
