@@ -4,6 +4,7 @@ That each is on exactly one page `test_site.py` checks; that examples run, the c
 """
 
 import ast
+import builtins
 import importlib
 import inspect
 import re
@@ -64,6 +65,33 @@ def _told(package: str, name: str) -> bool:
     return any(re.search(r"\bRaises\b", text) for text in texts)
 
 
+def _raised(package: str, name: str) -> set[type[BaseException]]:
+    """The classes of errors that its own lines raise, methods included, helpers not."""
+    thing = getattr(importlib.import_module(package), name)
+    if not callable(thing):
+        return set()
+    inside = vars(importlib.import_module(thing.__module__)) | vars(builtins)
+    tree = ast.parse(textwrap.dedent(inspect.getsource(thing)))
+    calls = [node.exc for node in ast.walk(tree) if isinstance(node, ast.Raise)]
+    names = [
+        call.func.id
+        for call in calls
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Name)
+    ]
+    return {inside[name] for name in names}
+
+
+def _unnamed(package: str, name: str) -> bool:
+    """Whether an error that its own lines raise is told by no name, its own or a base's."""
+    thing = getattr(importlib.import_module(package), name)
+    methods = vars(thing).values() if inspect.isclass(thing) else ()
+    told = " ".join([_own_text(package, name), *(inspect.getdoc(one) or "" for one in methods)])
+    return any(
+        not any(base.__name__ in told for base in error.__mro__ if base is not Exception)
+        for error in _raised(package, name)
+    )
+
+
 def _missing(wanting: object) -> set[str]:
     return {f"{package}.{name}" for package, name in NAMES if wanting(package, name)}  # type: ignore[operator]
 
@@ -75,6 +103,10 @@ def test_every_public_name_has_an_example() -> None:
 
 def test_whatever_can_raise_says_what_or_that_it_does_not() -> None:
     assert _missing(lambda *at: _can_raise(*at) and not _told(*at)) == WITHOUT_ERRORS
+
+
+def test_errors_that_its_own_lines_raise_are_named() -> None:
+    assert _missing(_unnamed) == set()
 
 
 def test_every_public_name_is_used_in_a_guide() -> None:
