@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+import bondgraph.errors
 from docs.site_tools.used_in import public, used
 
 ROOT = Path(__file__).parents[2]
@@ -70,14 +71,13 @@ def _raised(package: str, name: str) -> set[type[BaseException]]:
     thing = getattr(importlib.import_module(package), name)
     if not callable(thing):
         return set()
-    inside = vars(importlib.import_module(thing.__module__)) | vars(builtins)
+    inside = (
+        vars(builtins) | vars(bondgraph.errors) | vars(importlib.import_module(thing.__module__))
+    )
     tree = ast.parse(textwrap.dedent(inspect.getsource(thing)))
     calls = [node.exc for node in ast.walk(tree) if isinstance(node, ast.Raise)]
-    names = [
-        call.func.id
-        for call in calls
-        if isinstance(call, ast.Call) and isinstance(call.func, ast.Name)
-    ]
+    made = [call.func for call in calls if isinstance(call, ast.Call)]
+    names = [getattr(one, "id", getattr(one, "attr", "")) for one in made]
     return {inside[name] for name in names}
 
 
