@@ -17,7 +17,7 @@ class PWM(Endless):
     Period k begins at ``(k + phase)/frequency``, so ``phase`` counts in periods. A duty that is a signal is
     read at each period's start. It is clipped to [0, 1], at whose ends nothing switches.
 
-    Raises `SignalError` for a frequency that is not positive or a share outside of 0 to 1.
+    Raises `SignalError` for a frequency that is not positive, and for what is not finite.
 
     >>> gate = PWM(1000.0, 0.25)
     >>> gate(0.0), gate(0.3e-3), gate.following(1.0)
