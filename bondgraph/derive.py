@@ -76,6 +76,12 @@ def state_equations(
 
     Raises `SingularStorageError` if A is singular, `DependentSourceError` if a law would have to be
     differentiated, `StructureError` for an output that does not exist.
+
+    >>> import bondgraph as bg, networkx as nx
+    >>> g = nx.DiGraph([("u", "loop"), ("loop", "L"), ("loop", "R")])
+    >>> g.add_nodes_from([bg.Se("u", "u"), bg.One("loop"), bg.I("L", "L", flow="i"), bg.R("R", "R")])
+    >>> state_equations(junction_structure(assign_causality(g))).J
+    Matrix([[-R]])
     """
     return _equations(structure, lambda reduction, _: shown_signals(reduction.structure, outputs))
 

@@ -17,6 +17,9 @@ def linear_model(
 ) -> StateSpace:
     """The full model with open clutches and tires linearised at a speed [rad/s], in numbers.
 
+    Raises `ParameterError` for a name that the differential does not use, `StructureError` for an
+    unknown differential.
+
     >>> shuffle = linear_model("alsd").modes()[0]
     >>> round(shuffle.damped_frequency, 1)
     18.6

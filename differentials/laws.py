@@ -6,7 +6,13 @@ import bondgraph as bg
 
 
 def coulomb_clutch(level: str) -> bg.DryFriction:
-    """The clutch of the paper's simulations: eq. (17) with T_S = T_C, hydraulic torque ``level`` [N m]."""
+    """The clutch of the paper's simulations: eq. (17) with T_S = T_C, hydraulic torque ``level`` [N m].
+
+    Raises `ExpressionError` for a level that is no expression, or negative.
+
+    >>> coulomb_clutch("tau_h").level
+    tau_h
+    """
     return bg.DryFriction(level)
 
 
@@ -35,6 +41,8 @@ def linear_tire(number: int) -> str:
     The tire's centre moves at the constant speed ``v = r omega_0``, each wheel with its own
     ``omega_0``, the parameter ``omega_t<number>_0`` [rad/s].
 
+    Raises nothing.
+
     >>> linear_tire(1)
     'k_t*r/omega_t1_0*(omega_t1 - omega_t1_0)'
     """
@@ -48,6 +56,12 @@ def magic_formula_tire(number: int) -> str:
     ``s = (omega_t - omega_0)/omega_0``, as in `linear_tire`. Peak force ``D_t`` [N], shapes ``C_t`` and
     ``E_t``; ``B = k_t/(C_t D_t)``, so that the force's slope at zero slip is k_t. H. B. Pacejka, Tyre and
     Vehicle Dynamics, 2002, section 4.3.
+
+    Raises nothing.
+
+    >>> law = bg.expression(magic_formula_tire(1), "tire")
+    >>> law.diff("omega_t1").subs("omega_t1", "omega_t1_0")  # as the linear tire's
+    k_t*r/omega_t1_0
     """
     start = f"omega_t{number}_0"
     turned = f"k_t/(C_t*D_t)*(omega_t{number} - {start})/{start}"

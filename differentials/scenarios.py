@@ -97,6 +97,10 @@ def simulate(
     the paper does not extend by halfshafts is run as it is.
 
     Raises `BondGraphError` for names and numbers that don't fit the differential.
+
+    >>> run = simulate("alsd", "fig11")
+    >>> [event.kind for event in run.events]
+    ['stick', 'slip']
     """
     ready = prepared(name, scenario, parameters, laws, backlash)
     simulator = codegen.simulator(ready.equations, ready.parameters, ready.laws, backend)

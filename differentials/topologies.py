@@ -105,6 +105,9 @@ def graph(name: str, halfshafts: bool = False, lumped: bool = True, backlash: bo
     ``backlash=True`` puts a gap into the halfshafts, or into the compliant input shaft (Fig. 5).
 
     Raises `StructureError` for a variant that the differential does not have.
+
+    >>> dict(graph("alsd").nodes["clutch"])["kind"]
+    'R'
     """
     chosen = differential(name)
     if halfshafts and not chosen.full:
@@ -123,6 +126,8 @@ def graph(name: str, halfshafts: bool = False, lumped: bool = True, backlash: bo
 
 def equations(name: str, halfshafts: bool = False) -> bg.StateEquations:
     """A differential's equations; F shows the clutches' slips, as in the paper.
+
+    Raises what `graph` raises.
 
     >>> equations("alsd").F
     Matrix([[1/2, -1/2]])

@@ -136,6 +136,8 @@ def Se(name: Hashable, value: object, **more: object) -> Node:
 
     ``"1*v"`` repeats a signal v of the model: an ideal follower.
 
+    Raises nothing: `validate` looks at nodes.
+
     >>> Se("engine", "tau_e")
     ('engine', {'kind': 'Se', 'value': 'tau_e'})
     """
@@ -143,7 +145,13 @@ def Se(name: Hashable, value: object, **more: object) -> Node:
 
 
 def Sf(name: Hashable, value: object, **more: object) -> Node:
-    """A flow source. A bare name as value is an input of that name, anything else is known."""
+    """A flow source. A bare name as value is an input of that name, anything else is known.
+
+    Raises nothing: `validate` looks at nodes.
+
+    >>> Sf("pump", "Q_0 + dQ*t")
+    ('pump', {'kind': 'Sf', 'value': 'Q_0 + dQ*t'})
+    """
     return _node(name, Kind.SF, value=value, **more)
 
 
@@ -158,6 +166,11 @@ def I(  # noqa: E743
     ``p_<name>`` whose slope is the law. ``ports=``: names of several ports, each bond's given as ``port=`` on
     the edge; ``value`` is then their symmetric matrix, or ``energy`` a function of all ``p_<name>_<port>``,
     and ``start`` maps ports to what their states are.
+
+    Raises nothing: `validate` looks at nodes.
+
+    >>> I("m", "m", flow="v", priority=-1)
+    ('m', {'kind': 'I', 'value': 'm', 'flow': 'v', 'priority': -1})
     """
     return _node(name, Kind.I, value=value, flow=flow, law=law, priority=priority, **more)
 
@@ -169,6 +182,11 @@ def C(
     """A compliance ``f = (value * e)'``, value = 1/stiffness, or the law ``e = law(q_<name>)``.
 
     ``energy=``, ``start=`` and ``ports=`` as for `I`, with ``q_<name>`` and ``q_<name>_<port>``.
+
+    Raises nothing: `validate` looks at nodes.
+
+    >>> C("spring", "1/k", effort="F"), C("duffing", law="k*q_duffing**3")[1]["law"]
+    (('spring', {'kind': 'C', 'value': '1/k', 'effort': 'F'}), 'k*q_duffing**3')
     """
     return _node(name, Kind.C, value=value, effort=effort, law=law, priority=priority, **more)
 
@@ -178,6 +196,8 @@ def R(
     law: object = None, gives: object = "effort", **more: object,
 ) -> Node:  # fmt: skip
     """A resistance ``e = value * f``; a law; or, with neither, an open port.
+
+    Raises nothing: `validate` looks at nodes.
 
     An open port gives an input (its effort, or its flow with ``gives="flow"``) and receives an
     output. With ``ports=`` (see `I`) the value is a matrix, efforts over flows, or ``law`` has one for each
@@ -194,12 +214,24 @@ def R(
 
 
 def TF(name: Hashable, m: object, **more: object) -> Node:
-    """A transformer: ``e_in = m e_out``, ``f_out = m f_in``; a gear of ratio w_in/w_out is m = 1/ratio."""
+    """A transformer: ``e_in = m e_out``, ``f_out = m f_in``; a gear of ratio w_in/w_out is m = 1/ratio.
+
+    Raises nothing: `validate` looks at nodes.
+
+    >>> TF("gear", "1/i")
+    ('gear', {'kind': 'TF', 'value': '1/i'})
+    """
     return _node(name, Kind.TF, value=m, **more)
 
 
 def GY(name: Hashable, r: object, **more: object) -> Node:
-    """A gyrator: ``e_in = r f_out``, ``e_out = r f_in``."""
+    """A gyrator: ``e_in = r f_out``, ``e_out = r f_in``.
+
+    Raises nothing: `validate` looks at nodes.
+
+    >>> GY("motor", "K")
+    ('motor', {'kind': 'GY', 'value': 'K'})
+    """
     return _node(name, Kind.GY, value=r, **more)
 
 
@@ -208,6 +240,11 @@ def Zero(name: Hashable, effort: object = None, **more: object) -> Node:
 
     With ``on=`` (and ``off=``, see `Sw`) it is a controlled junction: off, its effort is zero. What it
     then takes to keep it there are ``e_<name>_switch`` and ``f_<name>_switch``.
+
+    Raises nothing: `validate` looks at nodes.
+
+    >>> Zero("node", effort="U")
+    ('node', {'kind': 'Zero', 'effort': 'U'})
     """
     return _node(name, Kind.ZERO, effort=effort, **more)
 
@@ -217,6 +254,11 @@ def One(name: Hashable, flow: object = None, **more: object) -> Node:
 
     With ``on=`` (and ``off=``, see `Sw`) it is a controlled junction: off, its flow is zero. What it
     then takes to keep it there are ``e_<name>_switch`` and ``f_<name>_switch``.
+
+    Raises nothing: `validate` looks at nodes.
+
+    >>> One("shaft", flow="w")
+    ('shaft', {'kind': 'One', 'flow': 'w'})
     """
     return _node(name, Kind.ONE, flow=flow, **more)
 
@@ -224,6 +266,11 @@ def One(name: Hashable, flow: object = None, **more: object) -> Node:
 def De(name: Hashable, effort: object = None, integrate: object = None, **more: object) -> Node:
     """A detector of an effort: it draws no flow. ``integrate`` names the effort's integral, a state,
     which begins at ``start=``, or at 0.
+
+    Raises nothing: `validate` looks at nodes.
+
+    >>> De("gauge", effort="p", integrate="impulse")
+    ('gauge', {'kind': 'De', 'effort': 'p', 'integrate': 'impulse'})
     """
     return _node(name, Kind.DE, effort=effort, integrate=integrate, **more)
 
@@ -231,6 +278,8 @@ def De(name: Hashable, effort: object = None, integrate: object = None, **more: 
 def Df(name: Hashable, flow: object = None, integrate: object = None, **more: object) -> Node:
     """A detector of a flow: it takes no effort. ``integrate`` names the flow's integral, a state,
     which begins at ``start=``, or at 0.
+
+    Raises nothing: `validate` looks at nodes.
 
     So an angle becomes a state that moduli can use:
 
@@ -244,6 +293,8 @@ def Sw(
     name: Hashable, on: object, off: object = None, reset: object = None, **more: object
 ) -> Node:
     """An ideal switch: zero effort while it is on (closed), zero flow while it is off (open).
+
+    Raises nothing: `validate` looks at nodes.
 
     Off, it turns on as the expression ``on`` rises above zero; on, it turns off as ``off`` does, which
     is ``-on`` unless given; where they are at rest at zero it stays as it is. They may use any signal, its

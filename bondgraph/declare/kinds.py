@@ -40,6 +40,8 @@ class Nature:
 class Kind(StrEnum):
     """The kinds of node; the plain-dict form has their text as ``kind``; "0" and "1" are junctions, too.
 
+    Raises `ValueError` for a text that is no kind.
+
     >>> Kind("I").stores, Kind("I").gives, Kind("C").letter, Kind("Zero").common, str(Kind("1"))
     (True, 'flow', 'q', 'effort', 'One')
     """

@@ -47,6 +47,8 @@ class DryFriction:
     default the curve's value at ``slip = 0``; it must not be less than that value. ``tables``: what these
     texts may call.
 
+    Raises `ExpressionError` for a negative level, and for a curve that is not finite or drives at standstill.
+
     >>> DryFriction("tau_h", "1 + 0.2*exp(-slip/0.1)").breakaway
     6/5
     """

@@ -11,6 +11,8 @@ def Diode(name: Hashable, effort: object = None, flow: object = None) -> Node:
     On, its flow is not negative and its effort zero; off, its effort is not positive and its flow zero.
     ``effort`` and ``flow`` name its variables, else ``e_<name>`` and ``f_<name>``.
 
+    Raises nothing: `validate` looks at nodes.
+
     >>> Diode("d")
     ('d', {'kind': 'Sw', 'on': 'e_d', 'off': '-f_d'})
     """
@@ -21,6 +23,8 @@ def Diode(name: Hashable, effort: object = None, flow: object = None) -> Node:
 def CheckValve(name: Hashable, effort: object = None, flow: object = None) -> Node:
     """An ideal check valve, which is a `Diode`: open in its bond's direction, shut against it.
 
+    Raises nothing: `validate` looks at nodes.
+
     >>> CheckValve("v", flow="Q") == Diode("v", flow="Q")
     True
     """
@@ -29,6 +33,8 @@ def CheckValve(name: Hashable, effort: object = None, flow: object = None) -> No
 
 def Freewheel(name: Hashable, effort: object = None, flow: object = None) -> Node:
     """An ideal freewheel (overrunning clutch), a `Sw`: it holds in its bond's direction, free against it.
+
+    Raises nothing: `validate` looks at nodes.
 
     Off, it is locked: its flow is zero and its effort not negative. On, it runs free: its effort is zero
     and its flow not positive. Between two shafts it lets the first drive the second, not be driven by it:

@@ -36,6 +36,8 @@ def Stop(
     which runs begin, 0 unless told; values may hold parameters. ``reset``: of a rigid one states by name and
     what each becomes at each of its impacts, ``{"n": "n + 1"}``: expressions have the values just after it.
 
+    Raises nothing: `validate` looks at nodes.
+
     >>> import bondgraph as bg, networkx as nx
     >>> g = nx.DiGraph()
     >>> g.add_nodes_from([bg.Se("weight", "-g*m"), bg.One("ball"), bg.I("m", "m", flow="v"), Stop("floor")])

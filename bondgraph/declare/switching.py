@@ -15,7 +15,18 @@ from bondgraph.errors import StructureError
 
 
 def switches(graph: Any) -> tuple[Switch, ...]:
-    """When each switch and each controlled junction of a graph changes over, in declaration order."""
+    """When each switch and each controlled junction of a graph changes over, in declaration order.
+
+    Raises what `validate` raises.
+
+    >>> import networkx as nx
+    >>> from bondgraph.declare.elements import One, Se, Sw
+    >>> g = nx.DiGraph()
+    >>> g.add_nodes_from([Se("battery", "E"), One("wire"), Sw("key", on="gate")])
+    >>> nx.add_path(g, ["battery", "wire", "key"])
+    >>> [(switch.name, switch.on, switch.off) for switch in switches(g)]
+    [('key', gate, -gate)]
+    """
     return tuple(element.switch for element in _elements(validate(graph)) if element.switch)
 
 

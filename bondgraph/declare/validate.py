@@ -30,6 +30,13 @@ def validate(graph: Any) -> "nx.DiGraph[Hashable]":
     of nodes it was declared with. A graph that has passed is returned as it is.
 
     Raises `StructureError`, naming the node or bond, for whatever is not a bond graph.
+
+    >>> import bondgraph as bg, networkx as nx
+    >>> g = nx.DiGraph([("u", "loop"), ("loop", "L"), ("loop", "R")])
+    >>> g.add_nodes_from([bg.Se("u", "u"), bg.One("loop"), bg.I("L", "L", flow="i"), bg.R("R", "R")])
+    >>> checked = validate(g)
+    >>> checked.nodes["L"]["element"].value, nx.is_frozen(checked)
+    (L, True)
     """
     if not isinstance(graph, nx.DiGraph) or graph.is_multigraph():
         raise StructureError(

@@ -64,6 +64,8 @@ def explain(
     every port receives, loops and resistances solved; dependent storages differentiated and put in; A,
     and the result. ``outputs`` and ``inputs`` as for `derive`, whose errors it raises.
 
+    Raises what `derive` raises.
+
     >>> import bondgraph as bg, networkx as nx
     >>> g = nx.DiGraph()
     >>> g.add_nodes_from([bg.Se("u", "u"), bg.One("loop"), bg.I("L", "L", flow="i"), bg.R("R", "R")])

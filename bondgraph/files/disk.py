@@ -18,26 +18,82 @@ MAX_BYTES = 10_000_000
 
 
 def write_json(graph: Any, path: str | os.PathLike[str]) -> None:
-    """Write the graph as JSON, see `to_json`; a failing write leaves the file that was there."""
+    """Write the graph as JSON, see `to_json`; a failing write leaves the file that was there.
+
+    Raises `WriteError` where the file cannot be written, `FileFormatError` where it could not be read back,
+    and what `to_json` raises.
+
+    >>> import tempfile
+    >>> import bondgraph as bg
+    >>> g = nx.DiGraph([("u", "loop"), ("loop", "L")])
+    >>> g.add_nodes_from([bg.Se("u", "u"), bg.One("loop"), bg.I("L", "L")])
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_json(g, f"{folder}/coil.json")
+    ...     again = read_json(f"{folder}/coil.json")
+    >>> bg.derive(again).B == bg.derive(g).B
+    True
+    """
     _write(to_json(graph), path)
 
 
 def read_json(
     path: str | os.PathLike[str], tables: Iterable[Sampled] = ()
 ) -> "nx.DiGraph[Hashable]":
-    """The validated graph in a JSON file, see `from_json`; the errors name the file."""
+    """The validated graph in a JSON file, see `from_json`; the errors name the file.
+
+    Raises `FileFormatError` for a file too large or not UTF-8, `OSError` for one that cannot be opened,
+    and what `from_json` raises.
+
+    >>> import tempfile
+    >>> import bondgraph as bg
+    >>> g = nx.DiGraph([("u", "loop"), ("loop", "L")])
+    >>> g.add_nodes_from([bg.Se("u", "u"), bg.One("loop"), bg.I("L", "L")])
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_json(g, f"{folder}/coil.json")
+    ...     again = read_json(f"{folder}/coil.json")
+    >>> bg.derive(again).B == bg.derive(g).B
+    True
+    """
     return _read(from_json, path, tables)
 
 
 def write_graphml(graph: Any, path: str | os.PathLike[str]) -> None:
-    """Write the graph as GraphML, see `to_graphml`; a failing write leaves the file that was there."""
+    """Write the graph as GraphML, see `to_graphml`; a failing write leaves the file that was there.
+
+    Raises `WriteError` where the file cannot be written, `FileFormatError` where it could not be read back,
+    and what `to_graphml` raises.
+
+    >>> import tempfile
+    >>> import bondgraph as bg
+    >>> g = nx.DiGraph([("u", "loop"), ("loop", "L")])
+    >>> g.add_nodes_from([bg.Se("u", "u"), bg.One("loop"), bg.I("L", "L")])
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_graphml(g, f"{folder}/coil.graphml")
+    ...     again = read_graphml(f"{folder}/coil.graphml")
+    >>> bg.derive(again).B == bg.derive(g).B
+    True
+    """
     _write(to_graphml(graph), path)
 
 
 def read_graphml(
     path: str | os.PathLike[str], tables: Iterable[Sampled] = ()
 ) -> "nx.DiGraph[Hashable]":
-    """The validated graph in a GraphML file, see `from_graphml`; the errors name the file."""
+    """The validated graph in a GraphML file, see `from_graphml`; the errors name the file.
+
+    Raises `FileFormatError` for a file too large or not UTF-8, `OSError` for one that cannot be opened,
+    and what `from_graphml` raises.
+
+    >>> import tempfile
+    >>> import bondgraph as bg
+    >>> g = nx.DiGraph([("u", "loop"), ("loop", "L")])
+    >>> g.add_nodes_from([bg.Se("u", "u"), bg.One("loop"), bg.I("L", "L")])
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_graphml(g, f"{folder}/coil.graphml")
+    ...     again = read_graphml(f"{folder}/coil.graphml")
+    >>> bg.derive(again).B == bg.derive(g).B
+    True
+    """
     return _read(from_graphml, path, tables)
 
 

@@ -98,6 +98,12 @@ def from_graphml(text: str, tables: Iterable[Sampled] = ()) -> "nx.DiGraph[Hasha
     attribute that a bond graph has no use for.
 
     Raises `FileFormatError` for text that is not such GraphML, and what `validate` raises.
+
+    >>> import bondgraph as bg, networkx as nx
+    >>> g = nx.DiGraph([("u", "loop"), ("loop", "L")])
+    >>> g.add_nodes_from([bg.Se("u", "u"), bg.One("loop"), bg.I("L", "L")])
+    >>> sorted(from_graphml(to_graphml(g)).edges)
+    [('loop', 'L'), ('u', 'loop')]
     """
     check_xml(text)
     try:

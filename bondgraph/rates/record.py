@@ -36,7 +36,7 @@ class ExplicitRates(Mapping[sp.Symbol, sp.Expr]):
 
     def __getitem__(self, state: sp.Symbol | str) -> sp.Expr:
         """The rate of a state, or of the one of that name; `KeyError` naming what there is."""
-        return self.rates[state]  # type: ignore[index]
+        return self.rates[state]
 
     def _ipython_key_completions_(self) -> list[str]:
         return [str(state) for state in self.rates]
@@ -61,5 +61,7 @@ class ExplicitRates(Mapping[sp.Symbol, sp.Expr]):
         r"""The same in LaTeX, lines with ``&=`` for an ``aligned`` environment."""
         return rates_latex(self.rates, self.implicit, self.where)
 
-    def _repr_latex_(self) -> str:
+    def _repr_latex_(self) -> str | None:
+        if not self.rates:
+            return None
         return rf"$$\begin{{aligned}} {self.latex()} \end{{aligned}}$$"

@@ -26,6 +26,13 @@ def junction_structure(causal: CausalGraph) -> JunctionStructure:
     """Eliminate the bonds along causal paths, solving each loop of them on its own.
 
     Raises `AlgebraicLoopError` for a loop whose determinant vanishes identically.
+
+    >>> import bondgraph as bg, networkx as nx
+    >>> g = nx.DiGraph([("u", "loop"), ("loop", "L"), ("loop", "R")])
+    >>> g.add_nodes_from([bg.Se("u", "u"), bg.One("loop"), bg.I("L", "L", flow="i"), bg.R("R", "R")])
+    >>> from bondgraph import assign_causality
+    >>> junction_structure(assign_causality(g)).S.tolist()  # of the ports u, L and R
+    [[0, 1, 0], [1, 0, -1], [0, 1, 0]]
     """
     strokes = causal.assignment
     equations = causal_equations(strokes)

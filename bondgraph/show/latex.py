@@ -19,6 +19,8 @@ def latex(equations: StateEquations) -> str:
 
     Lines of amsmath's ``gathered``. Names are Greek where they are called so: ``omega_1`` is \omega_{1}.
 
+    Raises nothing.
+
     >>> import bondgraph as bg, networkx as nx
     >>> g = nx.DiGraph()
     >>> g.add_nodes_from([bg.Se("engine", "tau_e"), bg.One("shaft"), bg.I("J", "J", flow="omega")])

@@ -20,6 +20,8 @@ class Audit:
     the magnitudes of all these and of what storages hold at both ends, beside which ``residual`` is small.
 
     Energies are in J where efforts and flows are in units of SI.
+
+    Raises nothing.
     """
 
     gave: Mapping[Hashable, float]

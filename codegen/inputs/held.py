@@ -17,6 +17,8 @@ from codegen.numbers.arrays import Array, is_finite, is_number, real_array
 class Pulse(Signal):
     """``value`` from ``begin`` to ``end`` [s], ``initial`` before and after.
 
+    Raises `SignalError` for what is not a finite number, or an end before it begins.
+
     >>> [Pulse(0.1, 0.2, 5.0)(t) for t in (0.0, 0.1, 0.2)]
     [0.0, 5.0, 0.0]
     """
@@ -51,6 +53,8 @@ class ZeroOrderHold(Signal):
     """Each value from its time [s] to the next one's; the first also before, the last for ever.
 
     Either ``times``, which must increase, or the ``period`` [s] between values, the first at ``start``.
+
+    Raises `SignalError` for times that do not increase, and for what is not finite.
 
     >>> held = ZeroOrderHold(values=[1.0, 4.0, 2.0], period=0.1)
     >>> held.breakpoints, held(0.15)

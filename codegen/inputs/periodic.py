@@ -17,6 +17,8 @@ class PWM(Endless):
     Period k begins at ``(k + phase)/frequency``, so ``phase`` counts in periods. A duty that is a signal is
     read at each period's start. It is clipped to [0, 1], at whose ends nothing switches.
 
+    Raises `SignalError` for a frequency that is not positive, and for what is not finite.
+
     >>> gate = PWM(1000.0, 0.25)
     >>> gate(0.0), gate(0.3e-3), gate.following(1.0)
     (1.0, 0.0, 1.00025)
@@ -51,6 +53,8 @@ class Square(Endless):
 
     Period k begins at ``(k + phase)/frequency``.
 
+    Raises `SignalError` for a frequency that is not positive or a share outside of 0 to 1.
+
     >>> [Square(2.0, -1.0, 1.0)(t) for t in (0.0, 0.2, 0.25, 0.5)]
     [1.0, 1.0, -1.0, 1.0]
     """
@@ -78,6 +82,8 @@ class Sawtooth(Endless):
 
     Period k begins at ``(k + phase)/frequency``. A width of 1 jumps back, of 0 jumps up and falls; one of
     0.5 is a triangle.
+
+    Raises `SignalError` for a frequency that is not positive or a share outside of 0 to 1.
 
     >>> [Sawtooth(2.0, 0.0, 1.0)(t) for t in (0.0, 0.125, 0.25, 0.5)]
     [0.0, 0.25, 0.5, 0.0]

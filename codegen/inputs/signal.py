@@ -25,6 +25,12 @@ class Signal(ABC):
 
     Runs ask for `piece` and `following`. Where breakpoints have no end no tuple holds them, and what
     a signal does is what its `summands` do.
+
+    Raises `SignalError` where a factor is not finite.
+
+    >>> from codegen import Constant, Step
+    >>> (Constant(2) + 3 * Step(1, 10))(1)
+    32.0
     """
 
     @property

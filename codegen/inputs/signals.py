@@ -14,7 +14,13 @@ from codegen.numbers.arrays import is_finite, is_number
 
 @dataclass(frozen=True)
 class Constant(Signal):
-    """One value for ever."""
+    """One value for ever.
+
+    Raises `SignalError` for what is not a finite number.
+
+    >>> Constant(5)(0.3)
+    5.0
+    """
 
     value: float
 
@@ -32,6 +38,8 @@ class Constant(Signal):
 @dataclass(frozen=True)
 class Step(Signal):
     """From ``initial`` to ``value`` at ``time`` [s].
+
+    Raises `SignalError` for what is not a finite number.
 
     >>> Step(0.1, 350)(0.05), Step(0.1, 350)(0.1)
     (0.0, 350.0)
@@ -57,7 +65,13 @@ class Step(Signal):
 
 @dataclass(frozen=True)
 class Ramp(Signal):
-    """``initial`` until ``time`` [s], then rising by ``slope`` [1/s], until ``end`` [s] if given."""
+    """``initial`` until ``time`` [s], then rising by ``slope`` [1/s], until ``end`` [s] if given.
+
+    Raises `SignalError` for what is not a finite number, or an end before it begins.
+
+    >>> [Ramp(1, 2, end=3)(t) for t in (0, 2, 4)]
+    [0.0, 2.0, 4.0]
+    """
 
     time: float
     slope: float
@@ -84,7 +98,13 @@ class Ramp(Signal):
 
 @dataclass(frozen=True)
 class Sine(Signal):
-    """``offset + amplitude * sin(2 pi frequency t + phase)``; frequency in Hz, phase in rad."""
+    """``offset + amplitude * sin(2 pi frequency t + phase)``; frequency in Hz, phase in rad.
+
+    Raises `SignalError` for what is not a finite number.
+
+    >>> round(Sine(2, 50)(0.005), 9)
+    2.0
+    """
 
     amplitude: float
     frequency: float
@@ -110,6 +130,8 @@ class Lag(Signal):
 
     Of a signal that repeats the steady state repeats, too; of one whose duty is a signal the lag is, up to
     the period that holds t = 0, as if the duty had been for ever what it is there.
+
+    Raises `SignalError` for what is no signal, or a time constant that is not positive.
 
     >>> round(Lag(Step(0.0, 1.0), 0.04)(0.04), 6)
     0.632121

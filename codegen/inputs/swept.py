@@ -19,6 +19,8 @@ class Swept:
     Stands where `codegen.sweep` takes a signal. The name is one that is swept, and may but need not be
     that of a parameter, too.
 
+    Raises `SignalError` for what is no name, or no signal.
+
     >>> from codegen import Lag, Step
     >>> torque = Swept("torque", Lag(Step(0.5, 1.0), 0.04))
     >>> round(torque.of({"torque": 1000.0})(0.54), 3)

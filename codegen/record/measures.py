@@ -35,6 +35,8 @@ class Measure:
 def peak(signal: str) -> Measure:
     """The largest magnitude of a signal at the samples.
 
+    Raises nothing; a sweep lists runs without such a signal in `Sweep.failed`.
+
     >>> peak("tau_k1")
     peak('tau_k1')
     """
@@ -42,47 +44,97 @@ def peak(signal: str) -> Measure:
 
 
 def largest(signal: str) -> Measure:
-    """The largest value of a signal at the samples."""
+    """The largest value of a signal at the samples.
+
+    Raises nothing; a sweep lists runs without such a signal in `Sweep.failed`.
+
+    >>> largest("v")
+    largest('v')
+    """
     return Measure(_largest, (signal,))
 
 
 def smallest(signal: str) -> Measure:
-    """The smallest value of a signal at the samples."""
+    """The smallest value of a signal at the samples.
+
+    Raises nothing; a sweep lists runs without such a signal in `Sweep.failed`.
+
+    >>> smallest("v")
+    smallest('v')
+    """
     return Measure(_smallest, (signal,))
 
 
 def final(signal: str) -> Measure:
-    """A signal's value at the last point in time."""
+    """A signal's value at the last point in time.
+
+    Raises nothing; a sweep lists runs without such a signal in `Sweep.failed`.
+
+    >>> final("v")
+    final('v')
+    """
     return Measure(_final, (signal,))
 
 
 def integral(signal: str) -> Measure:
-    """A signal integrated through the run, however few its samples; see `Result.integral`."""
+    """A signal integrated through the run, however few its samples; see `Result.integral`.
+
+    Raises nothing; a sweep lists runs without such a signal in `Sweep.failed`.
+
+    >>> integral("v")
+    integral('v')
+    """
     return Measure(_integral, (signal,))
 
 
 def samples(signal: str) -> Measure:
-    """The whole signal, a number for each point in time."""
+    """The whole signal, a number for each point in time.
+
+    Raises nothing; a sweep lists runs without such a signal in `Sweep.failed`.
+
+    >>> samples("v")
+    samples('v')
+    """
     return Measure(_samples, (signal,), over_time=True)
 
 
 def first_event(port: Hashable, kind: str) -> Measure:
-    """The time [s] of the first event of that kind at a port, such as "stick"; NaN if there is none."""
+    """The time [s] of the first event of that kind at a port, such as "stick"; NaN if there is none.
+
+    Raises nothing; a port that has no such event may be any name.
+
+    >>> first_event("clutch", "stick")
+    first_event('clutch', 'stick')
+    """
     return Measure(_first_event, (port, kind))
 
 
 def event_count(port: Hashable, kind: str) -> Measure:
-    """How many events of that kind a port has."""
+    """How many events of that kind a port has.
+
+    Raises nothing; a port that has no such event may be any name.
+
+    >>> event_count("clutch", "slip")
+    event_count('clutch', 'slip')
+    """
     return Measure(_event_count, (port, kind))
 
 
 def work(node: Hashable) -> Measure:
-    """The energy that an element absorbs, or a source supplies, through the run; see `Result.work`."""
+    """The energy that an element absorbs, or a source supplies, through the run; see `Result.work`.
+
+    Raises nothing; a sweep lists runs without such a node in `Sweep.failed`.
+
+    >>> work("brake")
+    work('brake')
+    """
     return Measure(_work, (node,))
 
 
 def balance() -> Measure:
     """What the power balance of a run leaves open, of the energy turned over; see `Result.audit`.
+
+    Raises nothing.
 
     >>> balance()
     balance()

@@ -18,6 +18,8 @@ Draw = Callable[[np.random.Generator], float]
 class Table:
     """A run for each row: columns of equal length, or a list of rows.
 
+    Raises `SignalError` for columns of several lengths, or what is no list of numbers.
+
     >>> table = Table(m=[1, 2, 3], k=[10, 10, 40])
     >>> len(table), table.names, table.row(2)
     (3, ('m', 'k'), (3.0, 40.0))
@@ -71,6 +73,8 @@ class Table:
 class Grid(Table):
     """A run for each combination; the last name changes fastest.
 
+    Raises `SignalError` for what is no list of numbers; for a name without values `sweep` does.
+
     >>> grid = Grid(m=[1, 2], k=[10, 20, 30])
     >>> len(grid), grid.row(1), grid.row(3)
     (6, (1.0, 20.0), (2.0, 10.0))
@@ -106,6 +110,8 @@ class Samples(Table):
 
     Every name has random numbers of its own: they change neither with other names nor, as far as they
     go, with the number of runs.
+
+    Raises `SignalError` for a list that is not two limits.
 
     >>> draws = Samples(100, seed=1, m=(1, 2), k=lambda generator: generator.normal(40, 2))
     >>> draws.row(0) == Samples(1, seed=1, k=lambda generator: generator.normal(40, 2), m=(1, 2)).row(0)[::-1]

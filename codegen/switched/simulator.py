@@ -82,6 +82,8 @@ def switched_simulator(
 
     ``parameters``, ``laws`` and ``backend`` as for `simulator`, ``outputs`` as for `derive`.
 
+    Raises `StructureError` for a graph without switches, and what `derive` and `simulator` raise.
+
     >>> import bondgraph as bg, networkx as nx
     >>> g = nx.DiGraph()
     >>> g.add_nodes_from([bg.One("first"), bg.I("m_1", 1, flow="v_1"), bg.Zero("gap"),

@@ -69,6 +69,12 @@ def test_examples_in_docstrings_are_code(site: Path) -> None:
     assert text.count('<span class="gp">&gt;&gt;&gt; </span>') > 20
 
 
+def test_names_of_the_api_lead_to_the_guides_that_use_them(site: Path) -> None:
+    text = (site / "api" / "codegen" / "index.html").read_text("utf-8")
+    below = text.partition('id="codegen.sweep"')[2].partition("<h3")[0]
+    assert re.search(r'Used in .*<a href="\.\./\.\./tour/#many-runs">', below)
+
+
 @pytest.mark.parametrize("package", ["bondgraph", "codegen", "differentials"])
 def test_the_api_has_every_public_name(package: str) -> None:
     text = (ROOT / "docs" / "api" / f"{package}.md").read_text("utf-8")
@@ -81,6 +87,6 @@ def test_the_api_has_every_public_name(package: str) -> None:
 
 def test_links_between_readme_and_guides_lead_somewhere() -> None:
     text = (ROOT / "README.md").read_text("utf-8")
-    linked = set(re.findall(r"\]\((docs/[a-z-]+\.md)\)", text))
+    linked = set(re.findall(r"\]\((docs/[a-z0-9-]+\.md)\)", text))
     pages = {f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")} - {"docs/index.md"}
     assert linked == pages

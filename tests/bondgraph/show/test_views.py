@@ -42,7 +42,7 @@ def test_rates_are_a_mapping_that_shows_equations() -> None:
     with pytest.raises(KeyError, match=r"no 'w'.*there are v, f"):
         found["w"]
     with pytest.raises(TypeError, match="does not support item assignment"):
-        found.entries[v] = 0  # type: ignore[index]
+        found.rates[v] = 0  # type: ignore[index]
 
 
 def test_no_rates_are_nothing_to_show() -> None:
