@@ -17,6 +17,8 @@ class ExplicitRates(Mapping[sp.Symbol, sp.Expr]):
 
     Rates are over states, open inputs, the time and parameters, and over names of `implicit` and `where`,
     which small models without nonlinear loops of laws have none of.
+
+    Raises nothing of its own; `KeyError`, as mappings do, for a state that there is not.
     """
 
     rates: Mapping[sp.Symbol, sp.Expr]
