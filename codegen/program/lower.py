@@ -154,8 +154,8 @@ def _read(closing: Closing) -> tuple[int, ...]:
 
 
 def _is_affine(closing: Closing, friction: list[sp.Expr], parameters: set[str]) -> bool:
-    """Whether all laws are affine and none has to be solved for; curves must be constant."""
-    if closing.joint or any(loop for _, loop in closing.order):
+    """Whether all laws are affine, those too that determine one another; curves must be constant."""
+    if closing.joint:
         return False
     given = [law.expression for law in closing.laws.values() if isinstance(law, ExpressionLaw)]
     rubbing = [law for law in closing.laws.values() if isinstance(law, DryFriction)]

@@ -40,12 +40,6 @@ REFUSALS = (
         "control instead.",
         "not affine|not one affine map",
     ),
-    Refusal(
-        ("loop_of_laws",), ("C, exact",), False,
-        "Linear laws that determine one another are solved at each instant, and not yet counted as affine. "
-        "`method=\"auto\"` runs them with step control.",
-        "not affine",
-    ),
 )  # fmt: skip
 
 
