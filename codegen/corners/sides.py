@@ -144,8 +144,16 @@ def check_ends(
         if (sight.on(sides).values(t, s)[1][list(one.sides)] > 0).any():
             raise SimulationError(
                 f"at t = {t:.9g} {one.argument} leaves table {one.name!r}, which is from {one.ends[0]!r} "
-                f"to {one.ends[1]!r} and refuses what is outside; give it more points, or another outside"
+                f"to {one.ends[1]!r} and refuses what is outside; {_way_out(one.name)}"
             )
+
+
+def _way_out(table: str) -> str:
+    """Of a table that a user gave; one that guards a law which is turned round was not."""
+    node, law, _ = table.partition(".law")
+    if not law:
+        return "give it more points, or another outside"
+    return f"the law of {node!r} gives it in no state"
 
 
 def turned(sight: Sight, sides: Sides, over: frozenset[int], t: float, s: Array) -> Sides:

@@ -90,5 +90,5 @@ def test_a_turned_storage_is_refused_what_its_law_never_gives(backend: str) -> N
     run = ready.run(times := np.linspace(0, 1, 5), {}, {"v": Sine(0.5, 0.5)})
     speed, rate = 0.5 * np.sin(np.pi * times), 0.5 * np.pi * np.cos(np.pi * times)
     assert run["e_m"] == pytest.approx(rate / (1 + speed), abs=1e-9)
-    with pytest.raises(bg.SimulationError, match="the law of 'm' gives in no state"):
+    with pytest.raises(bg.SimulationError, match="the law of 'm' gives it in no state"):
         ready.run([0, 1.4, 1.5], {}, {"v": Sine(1.5, 0.5)})

@@ -40,7 +40,7 @@ enum { BG_PARTS(BG_PLACE) BG_MAP_ROWS };
  * an axis there are `cells` between breaks. The factors of each cell, those along the last axis in
  * turn, are of (x - x_i)^p (y - y_j)^q, highest powers first. They come of `counts` points along
  * each axis (over one, of 1 along the other), of values row by row; no slope over one axis is above
- * `steepest`. Of a table that is turned round the degree is -3: it has c3, c2, c1 and x of each cell. */
+ * `steepest`. Of a table that is turned round the degree is -3: c3, c2, c1 and x of a cell. */
 typedef struct {
     int degree, outside, cells[2];
     const double *breaks[2], *factors;
