@@ -60,6 +60,7 @@ class Tuning:
     impacts: int = _told(20, "so often a mode is decided again where one impact leads to another")
     renewals: int = _told(100, "so often events may reset states in one instant")
     stalled: int = _told(60, "so many events within a moment are a run that goes nowhere")
+    quiet: int = _told(8, "so many events without motion are at rest, to and fro")
     together: float = _told(1e-12, "events so close, of the time, are one")
 
     # Stops

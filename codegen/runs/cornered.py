@@ -4,6 +4,8 @@ from collections import deque
 from collections.abc import Callable, Hashable, Sequence
 from typing import Protocol
 
+import numpy as np
+
 from codegen.corners.sides import CornerWatch, Sight, begun, check_ends, check_start, turned
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
@@ -47,7 +49,8 @@ class CorneredLeg:
         self._model, self._made = model, made
         self._sight = Sight(model, pieces, mode, settings.rtol, settings.atol)
         self._plain, self._origin = made(model, None, None), origin
-        self._rounds = deque[float](maxlen=TUNING.stalled)
+        self._rounds = deque[tuple[float, Array]](maxlen=TUNING.stalled)
+        self._within = settings.rtol, settings.atol
 
     def fastest(self, t: float, s: Array) -> float:
         """See `Leg.fastest`."""
@@ -68,8 +71,8 @@ class CorneredLeg:
                 return t, s, ended
             track.cross(t, [self._nodes[i] for i in sorted(leg.crossed)])
             sides, step, fastest = turned(self._sight, sides, leg.crossed, t, s), leg.step, leg.rate
-            if self._stalls(t, fastest):
-                over = max(2 * over, self._time(fastest, t))
+            if self._stalls(t, s, fastest):
+                over = max(4 * over, self._time(fastest, t))
                 t, s, ended = self._plain.run(t, s, min(stop, t + over), times, track)
                 if ended or t >= stop:
                     return t, s, ended
@@ -83,12 +86,22 @@ class CorneredLeg:
     def _time(self, fastest: float, t: float) -> float:
         return time_constant(fastest, t - self._origin)
 
-    def _stalls(self, t: float, fastest: float) -> bool:
-        """Whether so many of the latest crossings lie within next to no time."""
+    def _stalls(self, t: float, s: Array, fastest: float) -> bool:
+        """Whether so many of the latest crossings lie within next to no time, or next to no motion.
+
+        The second is a tank that is empty: its level goes to and fro by less than steps are off.
+        """
         rounds = self._rounds
-        rounds.append(t)
-        within = hardly_apart(self._time(fastest, t))
-        if len(rounds) < TUNING.stalled or t - rounds[0] >= within:
+        rounds.append((t, s))
+        still = len(rounds) >= TUNING.quiet and self._still([other for _, other in rounds])
+        crowded = len(rounds) == TUNING.stalled
+        if not still and (not crowded or t - rounds[0][0] >= hardly_apart(self._time(fastest, t))):
             return False
         rounds.clear()
         return True
+
+    def _still(self, states: Sequence[Array]) -> bool:
+        """Whether the latest of them differ by less than a step may be off."""
+        latest = np.array(states[-TUNING.quiet :])
+        rtol, atol = self._within
+        return bool((np.ptp(latest, axis=0) <= atol + rtol * np.abs(latest[-1])).all())

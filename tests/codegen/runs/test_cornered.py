@@ -220,3 +220,15 @@ def test_a_law_without_a_value_beyond_its_corner_is_crossed_all_the_same() -> No
     energy = found["v"] ** 2 / 2 + 8 / 3 * np.abs(found["q_s"]) ** 1.5
     assert energy == pytest.approx(np.full(7, 0.5), abs=1e-8)
     assert len(found.events) == 2
+
+
+def test_a_tank_that_has_run_empty_stays_so() -> None:
+    """``h' = -sqrt(h)``: sqrt(h) = 1 - t/2, and nothing from t = 2 on, where the slope is infinite."""
+    graph = bg.graph(
+        [bg.Zero("tank"), bg.C("A", "A", effort="h"),
+         bg.R("hole", law="sign(e_hole)*sqrt(abs(e_hole)/d)", gives="flow")],
+        "tank > A, tank > hole",
+    )  # fmt: skip
+    times = np.array([0.0, 0.5, 1.0, 1.9, 2.0, 2.05])
+    run = simulator(bg.derive(graph), {"A": 1.0, "d": 1.0}).run(times, {"h": 1.0})
+    assert run["h"] == pytest.approx(np.maximum(0.0, 1 - times / 2) ** 2, abs=1e-8)
