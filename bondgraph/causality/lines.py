@@ -94,6 +94,17 @@ def _term(strokes: Strokes, node: int, effort: bool, factor: sp.Expr) -> Term:
     return 2 * bond + (not effort), -factor if turned else factor
 
 
+def field_solved(owner: Hashable, matrix: list[Row], right: list[Row]) -> list[Row]:
+    """What a field's ports give, from its equations; `AlgebraicLoopError` where these do not tell it."""
+    try:
+        return solve(matrix, right)
+    except SingularError:
+        raise AlgebraicLoopError(
+            f"the field {owner!r} cannot give what it has to: that part of its matrix has no inverse; "
+            "change a value, or put a storage between"
+        ) from None
+
+
 def _field(strokes: Strokes, nodes: list[int]) -> dict[int, list[Term]]:
     """``e = R f`` of a field of resistances, solved for what its ports give."""
     matrix: list[Row] = []
@@ -109,14 +120,7 @@ def _field(strokes: Strokes, nodes: list[int]) -> dict[int, list[Term]]:
                 known[k] = value
         matrix.append(line)
         right.append(known)
-    try:
-        solved = solve(matrix, right)
-    except SingularError:
-        owner = strokes.elements[nodes[0]].owner
-        raise AlgebraicLoopError(
-            f"the field {owner!r} cannot give what it has to: that part of its matrix has no inverse; "
-            "change a value, or put a storage between"
-        ) from None
+    solved = field_solved(strokes.elements[nodes[0]].owner, matrix, right)
     return {
         node: [
             _term(strokes, nodes[k], strokes.gives(nodes[k]) == "flow", factor)

@@ -7,14 +7,15 @@ from types import MappingProxyType
 import networkx as nx
 import sympy as sp
 
-from bondgraph.algebra.exact import Row, SingularError, solve
+from bondgraph.algebra.exact import Row
 from bondgraph.algebra.expressions import TIME
 from bondgraph.causality.causal_graph import CausalGraph
+from bondgraph.causality.lines import field_solved
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations, causal_equations
 from bondgraph.declare.elements import Element
 from bondgraph.declare.names import named_by
-from bondgraph.errors import AlgebraicLoopError, StructureError
+from bondgraph.errors import StructureError
 
 
 @dataclass(frozen=True)
@@ -116,14 +117,7 @@ def _solved(strokes: Strokes, nodes: list[int], s: sp.Symbol) -> list[Row]:
                 line[k] = line.get(k, sp.Integer(0)) - scale * value
         matrix.append(line)
         right.append(known)
-    try:
-        return solve(matrix, right)
-    except SingularError:
-        owner = strokes.elements[nodes[0]].owner
-        raise AlgebraicLoopError(
-            f"the field {owner!r} cannot give what it has to: that part of its matrix has no inverse; "
-            "change a value, or put a storage between"
-        ) from None
+    return field_solved(strokes.elements[nodes[0]].owner, matrix, right)
 
 
 def _caused(element: Element) -> str:

@@ -12,7 +12,8 @@ from bondgraph.explaining.records import Equation, Step, equation
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.resistances import ResistiveGroup, resistive_groups
 from bondgraph.reduce.sorting import Reduction, detects
-from bondgraph.show.sums import Term, rate
+from bondgraph.show.statements import reading_sum
+from bondgraph.show.sums import Term
 
 LARGEST_TIDIED = 100
 """Entries of graphs with more ports are shown as they were derived."""
@@ -20,15 +21,8 @@ LARGEST_TIDIED = 100
 
 def reading_terms(reduction: Reduction, reading: Reading) -> list[Term]:
     """A reading as a sum over states, inputs and their rates, entries as a person would write them."""
-    x, u = reduction.names, reduction.inputs
-    terms: list[Term] = []
-    for row, names, is_rate in zip(
-        reading.parts, (x, u, x, u), (False, False, True, True), strict=True
-    ):
-        for j in sorted(row):
-            signal = rate(names[j]) if is_rate else names[j]
-            terms.append((_tidied(reduction, row[j]), signal))
-    return terms
+    terms = reading_sum(reduction.names, reduction.inputs, reading)
+    return [(_tidied(reduction, entry), signal) for entry, signal in terms]
 
 
 def row_terms(reduction: Reduction, row: Mapping[int, sp.Expr]) -> list[Term]:

@@ -4,7 +4,7 @@ With these the equations are whole: every name is a state, a parameter, the time
 a switch or dry friction gives, or stated.
 """
 
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import networkx as nx
@@ -95,11 +95,12 @@ def _received(model: StateEquations, name: sp.Symbol) -> Sum:
     """A signal over states and inputs; itself where it is one of these, or an output."""
     if name in {*model.states, *model.inputs, *model.outputs}:
         return signed_terms(name)
-    return reading_sum(model, _reading(model, name))
+    return _over_columns(model, name)
 
 
-def _reading(model: StateEquations, name: sp.Symbol) -> Reading:
-    return model.readings.get(name) or model.reduction.reading(model.signals[name])
+def _over_columns(model: StateEquations, name: sp.Symbol) -> Sum:
+    reading = model.readings.get(name) or model.reduction.reading(model.signals[name])
+    return reading_sum(model.states, model.inputs, reading)
 
 
 def _read(model: StateEquations) -> set[sp.Symbol]:
@@ -127,13 +128,12 @@ def _add_readings(
         if name in known or name not in model.signals:
             continue
         known.add(name)
-        stated[name] = Statement(name, reading_sum(model, _reading(model, name)))
+        stated[name] = Statement(name, _over_columns(model, name))
         waiting += sorted(stated[name].value.free_symbols - known, key=str)
 
 
-def reading_sum(model: StateEquations, reading: Reading) -> Sum:
-    """A reading as a sum over states, inputs and their rates."""
-    x, u = model.states, model.inputs
+def reading_sum(x: Sequence[sp.Symbol], u: Sequence[sp.Symbol], reading: Reading) -> Sum:
+    """A reading as a sum over states x, inputs u and their rates."""
     columns = (x, u, [rate(name) for name in x], [rate(name) for name in u])
     return tuple(
         (row[j], names[j])

@@ -71,6 +71,8 @@ def together(loop: Sequence[sp.Symbol]) -> str:
 
 def put_in(model: StateEquations, found: Statements) -> tuple[Statement, ...]:
     """Every state's and output's equation with laws and sources put in; none where that changes none."""
+    if not found.given:
+        return ()
     rows, bare = closed(model, found), closed(model, Statements((), found.rates, ()))
     return () if rows == bare else rows
 

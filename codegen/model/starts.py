@@ -48,8 +48,11 @@ def by_states(
     """
     if not isinstance(initial, Mapping):
         return initial
-    held = equations.held
-    told = {sp.Symbol(str(n)): v for n, v in initial.items() if sp.Symbol(str(n)) in held}
+    states = {*equations.states, *equations.further_states}
+    others = {sp.Symbol(str(n)): v for n, v in initial.items() if sp.Symbol(str(n)) not in states}
+    # What is held is looked up only where a name is no state: every run passes here.
+    held = equations.held if others else {}
+    told = {name: value for name, value in others.items() if name in held}
     if not told:
         return dict(initial)
     rest = {name: value for name, value in initial.items() if sp.Symbol(str(name)) not in told}

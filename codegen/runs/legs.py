@@ -212,7 +212,7 @@ class Trials:
 
     def __call__(self, t: float, s: Array) -> Array:
         """The rates at t and s; no numbers where there are none."""
-        if not np.isfinite(s).all():
+        if not _is_finite(s):
             # A stage after one without rates has no state: the first tells why.
             return np.full(len(s), np.nan)
         try:
@@ -220,7 +220,7 @@ class Trials:
         except SimulationError as error:
             self._refused, self._at = error, None
             return np.full(len(s), np.nan)
-        if math.isfinite(sum(rate.tolist())) or np.isfinite(rate).all():
+        if _is_finite(rate):
             self._refused, self._at = None, None
             return rate
         self._refused, self._at = None, (t, s.copy())
@@ -237,6 +237,11 @@ def _failed(solver: Any, message: str | None) -> SimulationError:
     if isinstance(solver, scipy.integrate.DOP853 | scipy.integrate.Radau):
         return no_progress(solver.t, "jump there, or grow without bound")
     return SimulationError(f"at t = {solver.t:.9g} the integrator failed: {message}")
+
+
+def _is_finite(values: Array) -> bool:
+    """Whether all are numbers; of a few their sum tells that sooner, unless it is beyond all numbers."""
+    return math.isfinite(sum(values.tolist())) or bool(np.isfinite(values).all())
 
 
 def _stepped(solver: Any) -> Any:
