@@ -15,12 +15,7 @@ from bondgraph.checking.paths import CausalPath, CausalPaths, causal_paths
 from bondgraph.checking.records import Check, Finding, StrokeVerdict
 from bondgraph.declare.composition import assemble, prefixed
 from bondgraph.declare.drawn import BondGraph
-from bondgraph.declare.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
-from bondgraph.declare.kinds import Kind
-from bondgraph.declare.laws import DryFriction, ExpressionLaw
-from bondgraph.declare.one_way import CheckValve, Diode, Freewheel
 from bondgraph.declare.paths import graph
-from bondgraph.declare.stops import Stop
 from bondgraph.declare.switching import in_mode, switches
 from bondgraph.declare.validate import validate
 from bondgraph.derive import derive, state_equations
@@ -49,6 +44,11 @@ from bondgraph.explaining.records import Equation, Factor, Formula, Step
 from bondgraph.files.disk import read_graphml, read_json, write_graphml, write_json
 from bondgraph.files.graphml import from_graphml, to_graphml
 from bondgraph.files.nodelink import from_json, to_json
+from bondgraph.nodes.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
+from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw
+from bondgraph.nodes.one_way import CheckValve, Diode, Freewheel
+from bondgraph.nodes.stops import Stop
 from bondgraph.rates.explicit import explicit
 from bondgraph.rates.record import ExplicitRates
 from bondgraph.reduce.junction import junction_structure

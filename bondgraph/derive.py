@@ -16,9 +16,9 @@ import sympy as sp
 from bondgraph.algebra.exact import FixedRow
 from bondgraph.algebra.tidy import tidy_matrices
 from bondgraph.causality.assign import assign_causality
-from bondgraph.declare.elements import Element
 from bondgraph.declare.validate import graph_of
 from bondgraph.equations import StateEquations
+from bondgraph.nodes.elements import Element
 from bondgraph.reduce.impulses import bound_by_switches, check_impulses
 from bondgraph.reduce.inertia import check_regular, inertia
 from bondgraph.reduce.inverses import by_inverses, with_inverses, with_states_told

@@ -4,7 +4,7 @@ from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 
 import bondgraph as bg
-from bondgraph.declare.laws import law
+from bondgraph.nodes.laws import law
 from differentials.laws import coulomb_clutch, linear_tire
 from differentials.parameters import Parameter, defaults
 from differentials.topologies import Differential, differential, graph

@@ -10,8 +10,8 @@ import networkx as nx
 
 import bondgraph as bg
 from bondgraph.declare.composition import assemble as assemble
-from bondgraph.declare.elements import Node
 from bondgraph.declare.renaming import Part as Part
+from bondgraph.nodes.elements import Node
 from differentials.laws import backlash
 
 

@@ -6,7 +6,7 @@ import sympy as sp
 from bondgraph.core import Bond, BondGraph
 
 from bondgraph import junctions
-from bondgraph.declare import elements
+from bondgraph.nodes import elements
 
 ONE_PORTS = {
     "Se": elements.Source_effort, "R": elements.Element_R, "I": elements.Element_I,

@@ -10,9 +10,9 @@ from bondgraph.analyse.deviations import Deviations
 from bondgraph.analyse.holding import balances_of, solve_for
 from bondgraph.analyse.slopes import Point, slopes, turns_with_slip
 from bondgraph.analyse.unknowns import Moment, Unknowns
-from bondgraph.declare.laws import ExpressionLaw, Law, slides
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, SignalError, SingularStorageError
+from bondgraph.nodes.laws import ExpressionLaw, Law, slides
 from bondgraph.reduce.readings import depends_on_signals
 from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.structure import Port

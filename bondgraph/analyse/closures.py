@@ -3,10 +3,10 @@
 from collections.abc import Hashable, Mapping, Sequence
 
 from bondgraph.algebra.exact import rows_of
-from bondgraph.declare.inverting import as_received
-from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, check_slider, law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, StructureError
+from bondgraph.nodes.inverting import as_received
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw, Law, check_slider, law
 from bondgraph.reduce.readings import check_laws
 from bondgraph.reduce.structure import Port
 

@@ -6,8 +6,8 @@ import sympy as sp
 
 from bondgraph.algebra.exact import rows_of
 from bondgraph.algebra.residues import is_zero
-from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.equations import StateEquations
+from bondgraph.nodes.laws import ExpressionLaw, Law
 from bondgraph.reduce.motion import slope_of
 from bondgraph.reduce.rates import resolved
 from bondgraph.reduce.record import Reading, ReadingSum

@@ -5,9 +5,9 @@ from collections.abc import Collection, Hashable
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError
+from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.reduce.motion import slope_of
 from bondgraph.reduce.record import Reading, ReadingSum
 

@@ -14,8 +14,8 @@ from bondgraph.analyse.holding import balances_of
 from bondgraph.analyse.moving_hold import MovingHold, moving_hold
 from bondgraph.analyse.slopes import as_expression
 from bondgraph.analyse.unknowns import Unknown, Unknowns, still
-from bondgraph.declare.laws import DryFriction, Law, slides
 from bondgraph.errors import DependentSourceError, SignalError, SingularStorageError
+from bondgraph.nodes.laws import DryFriction, Law, slides
 from bondgraph.reduce.rates import reached
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import Port

@@ -20,10 +20,10 @@ from bondgraph.analyse.moving_hold import turns
 from bondgraph.analyse.slopes import Point, operating_point, with_given
 from bondgraph.analyse.turned import turned
 from bondgraph.analyse.unknowns import Unknowns, unknowns_in
-from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, slides
 from bondgraph.derive import derive_again
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, SingularStorageError
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw, Law, slides
 from bondgraph.reduce.rates import resolved
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import Port

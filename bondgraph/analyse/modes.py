@@ -9,9 +9,9 @@ import sympy as sp
 from bondgraph.analyse.closed_rows import ClosedRows
 from bondgraph.analyse.constrained import echelon
 from bondgraph.analyse.holding import split, stuck_ports
-from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law, slides
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw, Law, slides
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import Port
 

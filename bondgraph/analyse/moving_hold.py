@@ -10,7 +10,7 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.analyse.closed_rows import ClosedRows
 from bondgraph.analyse.modes import HeldRows, held_rows
 from bondgraph.analyse.unknowns import Moment, Unknowns, still
-from bondgraph.declare.laws import Law, slides
+from bondgraph.nodes.laws import Law, slides
 from bondgraph.reduce.motion import slope_of
 from bondgraph.reduce.readings import depends_on_signals
 from bondgraph.reduce.record import Reading

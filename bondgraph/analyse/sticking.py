@@ -11,9 +11,9 @@ from bondgraph.analyse.constrained import echelon, multiplied
 from bondgraph.analyse.holding import balances_of, listed, solve_for, split, stuck_ports
 from bondgraph.analyse.input_rates import InputRates
 from bondgraph.analyse.turned import turned
-from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError, StructureError
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 from bondgraph.reduce.rates import resolved
 from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.structure import Port

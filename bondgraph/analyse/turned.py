@@ -9,13 +9,13 @@ import sympy as sp
 from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.factored import factored
 from bondgraph.algebra.lookups import Look
-from bondgraph.declare.elements import Element
-from bondgraph.declare.inverting import flipped
-from bondgraph.declare.laws import DryFriction, ExpressionLaw
-from bondgraph.declare.laws import law as as_law
 from bondgraph.derive import derive_again
 from bondgraph.equations import StateEquations
 from bondgraph.errors import DependentSourceError
+from bondgraph.nodes.elements import Element
+from bondgraph.nodes.inverting import flipped
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw
+from bondgraph.nodes.laws import law as as_law
 from bondgraph.reduce.inverses import by_inverse
 from bondgraph.reduce.structure import Port
 from bondgraph.tables.record import Sampled

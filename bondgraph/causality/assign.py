@@ -14,7 +14,6 @@ from bondgraph.causality.signals import causal_equations, causal_groups, loop_ro
 from bondgraph.causality.stories import contradiction_story
 from bondgraph.causality.strokes import StrokeSearch
 from bondgraph.causality.vanishing import elements_in, generic, told
-from bondgraph.declare.elements import OTHER
 from bondgraph.declare.validate import validate, with_elements
 from bondgraph.errors import (
     AlgebraicLoopError,
@@ -23,6 +22,7 @@ from bondgraph.errors import (
     StructureError,
     nearest,
 )
+from bondgraph.nodes.elements import OTHER
 
 TRIALS_PER_BOND = 20
 """Beyond this the search for strokes stops and exact rank decides the ports first."""

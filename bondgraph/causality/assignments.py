@@ -14,8 +14,8 @@ from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.lines import Line, Rule, is_independent, owner, signal_lines, variable_of
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations, Term, causal_equations, causal_groups
-from bondgraph.declare.elements import Bond
 from bondgraph.declare.names import named_by
+from bondgraph.nodes.elements import Bond
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import networkx as nx
 
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.stories import stroke_story
-from bondgraph.declare.elements import Bond
+from bondgraph.nodes.elements import Bond
 
 
 @dataclass(frozen=True)

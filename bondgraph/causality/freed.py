@@ -8,9 +8,9 @@ import sympy as sp
 
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.vanishing import elements_in
-from bondgraph.declare.elements import Element
-from bondgraph.declare.inverting import flipped, why_unturned, with_inverse
 from bondgraph.declare.validate import with_elements
+from bondgraph.nodes.elements import Element
+from bondgraph.nodes.inverting import flipped, why_unturned, with_inverse
 
 Tried = Callable[["nx.DiGraph[Hashable]"], CausalGraph | None]
 """From a graph to its strokes, None where they contradict each other."""

@@ -8,8 +8,8 @@ import sympy as sp
 from bondgraph.algebra.exact import Row, SingularError, solve
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations, Term
-from bondgraph.declare.elements import Element
 from bondgraph.errors import AlgebraicLoopError
+from bondgraph.nodes.elements import Element
 
 Rule = Literal["given", "balance", "transfer", "law", "rate"]
 """The kinds of right sides; of a "rate" the terms are the momentum or displacement it is the rate of."""

@@ -3,7 +3,7 @@
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
-from bondgraph.declare.elements import Bond, Element
+from bondgraph.nodes.elements import Bond, Element
 
 
 @dataclass(frozen=True)

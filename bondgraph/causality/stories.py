@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from bondgraph.causality.record import Contradiction, Reason, Strokes
-from bondgraph.declare.elements import OTHER
+from bondgraph.nodes.elements import OTHER
 
 LONGEST_STORY = 12
 """Lines of a chain that are told; of a longer one the middle is counted only."""

@@ -6,7 +6,7 @@ from collections.abc import Hashable, Sequence
 import networkx as nx
 
 from bondgraph.causality.record import Contradiction, Ends, Reason, Strokes
-from bondgraph.declare.elements import Element
+from bondgraph.nodes.elements import Element
 
 
 class StrokeSearch(Ends):

@@ -9,7 +9,7 @@ import sympy as sp
 from bondgraph.algebra.exact import Row, determinant
 from bondgraph.algebra.factored import factored
 from bondgraph.algebra.residues import is_zero
-from bondgraph.declare.elements import Element
+from bondgraph.nodes.elements import Element
 
 MOST = 6
 """Determinants of more rows are too long to be read."""

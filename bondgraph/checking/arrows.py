@@ -5,8 +5,8 @@ from collections.abc import Hashable, Iterator
 import networkx as nx
 
 from bondgraph.checking.records import Finding
-from bondgraph.declare.elements import Element
-from bondgraph.declare.kinds import Kind
+from bondgraph.nodes.elements import Element
+from bondgraph.nodes.kinds import Kind
 
 
 def arrows_doubted(graph: "nx.DiGraph[Hashable]") -> Iterator[Finding]:

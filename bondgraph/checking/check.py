@@ -11,9 +11,9 @@ from bondgraph.checking.names import parameters_doubted, validated
 from bondgraph.checking.records import Check, Finding, StrokeVerdict
 from bondgraph.checking.shapes import junctions_doubted, junctions_simpler
 from bondgraph.checking.strokes import strokes_judged
-from bondgraph.declare.elements import Bond
 from bondgraph.declare.tables import with_tables
 from bondgraph.errors import AlgebraicLoopError, CausalityError
+from bondgraph.nodes.elements import Bond
 
 
 def check(

@@ -3,8 +3,8 @@
 from collections.abc import Hashable, Mapping
 from typing import Any
 
-from bondgraph.declare.elements import Bond
 from bondgraph.errors import StructureError
+from bondgraph.nodes.elements import Bond
 
 Drawn = Mapping[Bond, Hashable]
 """Bonds, as declared, to the node at whose end the stroke was drawn."""

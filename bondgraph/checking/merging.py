@@ -6,11 +6,11 @@ from typing import Any
 import networkx as nx
 
 from bondgraph.checking.names import signals_named, validated
-from bondgraph.declare.attributes import kind_of
-from bondgraph.declare.elements import Bond
-from bondgraph.declare.kinds import Kind
 from bondgraph.declare.renaming import names_read
 from bondgraph.declare.tables import with_tables
+from bondgraph.nodes.attributes import kind_of
+from bondgraph.nodes.elements import Bond
+from bondgraph.nodes.kinds import Kind
 
 _CONTROLS = ("on", "off", "reset")
 

@@ -4,7 +4,7 @@ from collections.abc import Hashable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from bondgraph.declare.elements import Bond
+from bondgraph.nodes.elements import Bond
 
 Rule = Literal[
     "parameter", "one bond", "arrow", "source", "supply", "pass-through",

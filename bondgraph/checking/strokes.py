@@ -12,8 +12,8 @@ from bondgraph.causality.signals import causal_equations, causal_groups, loop_ro
 from bondgraph.causality.strokes import StrokeSearch
 from bondgraph.checking.drawn import Drawn
 from bondgraph.checking.records import StrokeVerdict
-from bondgraph.declare.elements import OTHER, Bond
 from bondgraph.declare.validate import with_elements
+from bondgraph.nodes.elements import OTHER, Bond
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,9 @@ from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.lines import field_solved
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations, causal_equations
-from bondgraph.declare.elements import Element
 from bondgraph.declare.names import named_by
 from bondgraph.errors import StructureError
+from bondgraph.nodes.elements import Element
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ import networkx as nx
 from bondgraph.algebra.atoms import normal, symbol
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.drawn import BondGraph
-from bondgraph.declare.kinds import Kind
-from bondgraph.declare.laws import SLIP
 from bondgraph.declare.renaming import Names, Part, name_text, names_read, quantities, renamed
 from bondgraph.declare.tables import TABLES, tables_of, with_tables
 from bondgraph.errors import StructureError
+from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.laws import SLIP
 
 
 def assemble(*parts: Part) -> Part:

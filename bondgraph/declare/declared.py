@@ -7,8 +7,9 @@ from typing import Any
 import sympy as sp
 
 from bondgraph.algebra.atoms import symbol
-from bondgraph.declare import fields
-from bondgraph.declare.attributes import (
+from bondgraph.errors import StructureError, nearest
+from bondgraph.nodes import fields
+from bondgraph.nodes.attributes import (
     bare_name,
     check_keys,
     check_node_name,
@@ -25,11 +26,10 @@ from bondgraph.declare.attributes import (
     value_of,
     variable,
 )
-from bondgraph.declare.elements import OTHER, Element
-from bondgraph.declare.kinds import Kind
-from bondgraph.declare.laws import DryFriction, ExpressionLaw, law
-from bondgraph.declare.stops import stop_elements
-from bondgraph.errors import StructureError, nearest
+from bondgraph.nodes.elements import OTHER, Element
+from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw, law
+from bondgraph.nodes.stops import stop_elements
 
 
 def elements_of(name: Hashable, attributes: Mapping[str, Any]) -> dict[Hashable, Element]:

@@ -8,9 +8,9 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.elements import Element
-from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
 from bondgraph.errors import StructureError
+from bondgraph.nodes.elements import Element
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw, Law
 
 
 def check_names(elements: Sequence[Element]) -> None:

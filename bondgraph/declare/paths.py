@@ -5,11 +5,11 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
-from bondgraph.declare.attributes import check_node_name
 from bondgraph.declare.drawn import BondGraph
-from bondgraph.declare.elements import Node
 from bondgraph.declare.tables import TABLES, tables_of
 from bondgraph.errors import StructureError, nearest
+from bondgraph.nodes.attributes import check_node_name
+from bondgraph.nodes.elements import Node
 from bondgraph.tables.record import Sampled
 
 ARROWS = re.compile(r"[-<=–—→⇀⇁|;]+")

@@ -8,12 +8,12 @@ import sympy as sp
 
 from bondgraph.algebra.atoms import normal
 from bondgraph.algebra.expressions import expression
-from bondgraph.declare.attributes import bare_name
-from bondgraph.declare.kinds import Kind
-from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw
-from bondgraph.declare.stops import stop_parts
 from bondgraph.declare.tables import READ
 from bondgraph.errors import StructureError
+from bondgraph.nodes.attributes import bare_name
+from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.laws import SLIP, DryFriction, ExpressionLaw
+from bondgraph.nodes.stops import stop_parts
 
 Part: TypeAlias = "nx.DiGraph[Hashable]"
 """A bond graph whose terminals may still lack their attributes."""

@@ -7,11 +7,11 @@ from typing import Any
 import networkx as nx
 import sympy as sp
 
-from bondgraph.declare.elements import Element, Switch
-from bondgraph.declare.kinds import Kind
-from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.validate import validate, with_elements
 from bondgraph.errors import StructureError
+from bondgraph.nodes.elements import Element, Switch
+from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.laws import ExpressionLaw
 
 
 def switches(graph: Any) -> tuple[Switch, ...]:
@@ -20,7 +20,7 @@ def switches(graph: Any) -> tuple[Switch, ...]:
     Raises what `validate` raises.
 
     >>> import networkx as nx
-    >>> from bondgraph.declare.elements import One, Se, Sw
+    >>> from bondgraph.nodes.elements import One, Se, Sw
     >>> g = nx.DiGraph()
     >>> g.add_nodes_from([Se("battery", "E"), One("wire"), Sw("key", on="gate")])
     >>> nx.add_path(g, ["battery", "wire", "key"])

@@ -9,9 +9,9 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import callable_in_text, expression
 from bondgraph.algebra.lookups import Handle
-from bondgraph.declare.kinds import EXPRESSIONS
-from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.errors import TableError
+from bondgraph.nodes.kinds import EXPRESSIONS
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 from bondgraph.tables.record import Sampled
 
 TABLES = "tables"

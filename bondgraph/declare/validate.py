@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 import networkx as nx
 
 from bondgraph.declare.declared import elements_of
-from bondgraph.declare.elements import Bond, Element
-from bondgraph.declare.fields import part
 from bondgraph.declare.names import check_names, check_one_whole
 from bondgraph.declare.tables import TABLES, tables_of, with_calls
 from bondgraph.errors import StructureError
+from bondgraph.nodes.elements import Bond, Element
+from bondgraph.nodes.fields import part
 from bondgraph.tables.record import Sampled
 
 if TYPE_CHECKING:

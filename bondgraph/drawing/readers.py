@@ -6,8 +6,8 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.elements import Element
 from bondgraph.declare.names import named_by
+from bondgraph.nodes.elements import Element
 
 Reading = tuple[Hashable, Hashable]
 """Who has a signal, and who reads it."""

@@ -6,13 +6,13 @@ from typing import Any
 
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
-from bondgraph.declare.elements import Bond, Element
-from bondgraph.declare.kinds import Kind
 from bondgraph.declare.validate import validate
 from bondgraph.drawing.readers import is_modulated, readings
 from bondgraph.drawing.rich import Rich, Run, listed, named
 from bondgraph.drawing.texts import bounds, switched, value_text
 from bondgraph.errors import AlgebraicLoopError, CausalityError
+from bondgraph.nodes.elements import Bond, Element
+from bondgraph.nodes.kinds import Kind
 
 
 @dataclass(frozen=True)

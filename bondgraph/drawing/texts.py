@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from bondgraph.declare.elements import OTHER, Element, Switch
-from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.drawing.rich import MOST, Rich, Run, formula, joined, length, named
+from bondgraph.nodes.elements import OTHER, Element, Switch
+from bondgraph.nodes.laws import ExpressionLaw
 
 
 def bounds(ports: Sequence[Element]) -> Rich:

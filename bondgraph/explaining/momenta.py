@@ -7,8 +7,8 @@ import sympy as sp
 
 from bondgraph.algebra.exact import Row
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.names import energy_name
+from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.reduce.sorting import Reduction, field_row
 from bondgraph.show.sums import Sum
 

@@ -7,11 +7,11 @@ import sympy as sp
 from bondgraph.causality.assignments import Assignment
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations
-from bondgraph.declare.elements import OTHER
-from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.explaining.momenta import Momenta
 from bondgraph.explaining.records import Equation, Step, equation
+from bondgraph.nodes.elements import OTHER
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 from bondgraph.reduce.sorting import Reduction, detects
 from bondgraph.show.sums import rate, split
 from bondgraph.show.ways import rubbing, switching

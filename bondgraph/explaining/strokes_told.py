@@ -9,8 +9,8 @@ from bondgraph.causality.assignments import Assignment
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.record import Reason, Strokes
 from bondgraph.causality.stories import deciding_nodes
-from bondgraph.declare.elements import Bond
 from bondgraph.explaining.records import Step
+from bondgraph.nodes.elements import Bond
 from bondgraph.reduce.sorting import Reduction
 
 Symbols = Mapping[tuple[Bond, Literal["effort", "flow"]], sp.Symbol]

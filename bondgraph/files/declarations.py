@@ -10,12 +10,12 @@ from bondgraph.algebra.atoms import MAX_DIGITS, number
 from bondgraph.algebra.expressions import expression
 from bondgraph.algebra.lookups import Handle
 from bondgraph.algebra.written import written
-from bondgraph.declare.kinds import EXPRESSIONS, Kind
-from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.declare.tables import TABLES, tables_in
 from bondgraph.declare.validate import validate
 from bondgraph.errors import ExpressionError, FileFormatError
 from bondgraph.files.tables import plain_table
+from bondgraph.nodes.kinds import EXPRESSIONS, Kind
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 
 FRICTION = ("breakaway", "curve", "level")
 """The parts of a dry friction, in a file's order."""

@@ -8,13 +8,13 @@ import networkx as nx
 from bondgraph.algebra.atoms import symbol
 from bondgraph.algebra.expressions import expression
 from bondgraph.declare.drawn import BondGraph
-from bondgraph.declare.kinds import EXPRESSIONS
-from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.declare.tables import TABLES, tables_of
 from bondgraph.declare.validate import validate
 from bondgraph.errors import BondGraphError, FileFormatError
 from bondgraph.files.declarations import FRICTION, Declaration, check_text
 from bondgraph.files.tables import restored_table
+from bondgraph.nodes.kinds import EXPRESSIONS
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 from bondgraph.tables.record import Sampled
 
 SCALARS = (str, int, float)

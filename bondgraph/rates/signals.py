@@ -11,8 +11,8 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.analyse.closures import merged_laws
 from bondgraph.analyse.holding import balances_of
 from bondgraph.analyse.input_rates import rate_symbol
-from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
+from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.reduce.motion import slope_of
 from bondgraph.solving.blocks import solved
 from bondgraph.solving.steps import Steps

@@ -6,9 +6,9 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from bondgraph.declare.elements import Element, Switch
-from bondgraph.declare.inverting import with_inverse
-from bondgraph.declare.laws import DryFriction, ExpressionLaw
+from bondgraph.nodes.elements import Element, Switch
+from bondgraph.nodes.inverting import with_inverse
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 from bondgraph.reduce.motion import replaced
 from bondgraph.reduce.structure import JunctionStructure, Port
 

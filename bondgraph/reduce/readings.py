@@ -6,9 +6,9 @@ from dataclasses import replace
 import sympy as sp
 
 from bondgraph.algebra.exact import FixedRow
-from bondgraph.declare.inverting import why_unturned
-from bondgraph.declare.laws import DryFriction, Law, check_slider
 from bondgraph.errors import DependentSourceError, StructureError
+from bondgraph.nodes.inverting import why_unturned
+from bondgraph.nodes.laws import DryFriction, Law, check_slider
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import Port, PortRow
 

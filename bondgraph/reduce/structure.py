@@ -8,8 +8,8 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.exact import FixedRow, matrix_of
-from bondgraph.declare.elements import Bond, Element
-from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.nodes.elements import Bond, Element
+from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.tables.record import Sampled
 
 PortRow = FixedRow

@@ -6,7 +6,7 @@ from typing import Literal
 
 import sympy as sp
 
-from bondgraph.declare.elements import Switch
+from bondgraph.nodes.elements import Switch
 from bondgraph.reduce.structure import Port
 
 Guard = Literal["one-sided", "stop", "commanded", "general"]

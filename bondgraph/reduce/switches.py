@@ -7,8 +7,8 @@ import sympy as sp
 from bondgraph.algebra.exact import FixedRow
 from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.residues import is_zero
-from bondgraph.declare.elements import OTHER, Switch
 from bondgraph.errors import DependentSourceError
+from bondgraph.nodes.elements import OTHER, Switch
 from bondgraph.reduce.motion import slope_of
 from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.sorting import Reduction

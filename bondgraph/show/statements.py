@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import networkx as nx
 import sympy as sp
 
-from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw
 from bondgraph.equations import StateEquations
+from bondgraph.nodes.laws import SLIP, DryFriction, ExpressionLaw
 from bondgraph.reduce.record import Reading
 from bondgraph.show.sums import Sum, rate, signed_terms, split, total
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from bondgraph.declare.laws import SLIP, DryFriction
 from bondgraph.equations import StateEquations
+from bondgraph.nodes.laws import SLIP, DryFriction
 from bondgraph.reduce.structure import Port
 from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.show.sums import typeset

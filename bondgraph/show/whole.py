@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
-from bondgraph.declare.laws import DryFriction
 from bondgraph.equations import StateEquations
+from bondgraph.nodes.laws import DryFriction
 from bondgraph.show.display import (
     MOST_SIGNS,
     WIDTH,

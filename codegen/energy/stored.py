@@ -6,9 +6,9 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.lookups import Look
-from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, StructureError
+from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.reduce.structure import Port
 from codegen.energy.tabled import integral_of
 from codegen.model.exact_values import at_parameters

@@ -5,8 +5,8 @@ from collections.abc import Hashable, Iterator, Mapping
 import numpy as np
 import sympy as sp
 
-from bondgraph.declare.elements import Element
 from bondgraph.equations import StateEquations
+from bondgraph.nodes.elements import Element
 from codegen.model.exact_values import at_parameters
 from codegen.tuning import TUNING
 

@@ -8,11 +8,11 @@ import sympy as sp
 from bondgraph.algebra.elimination import ResidueRows
 from bondgraph.algebra.exact import FixedRow, rows_of
 from bondgraph.algebra.residues import residues
-from bondgraph.declare.elements import Element
-from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError
 from bondgraph.inverses.inverse import Inverse
+from bondgraph.nodes.elements import Element
+from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.reduce.resistances import resistive_loops
 from codegen.model.exact_values import at_parameters, residue_rows
 from codegen.model.numpy_backend import compiled

@@ -5,10 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 import sympy as sp
 
-from bondgraph.declare.elements import Element
-from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, SignalError
+from bondgraph.nodes.elements import Element
+from bondgraph.nodes.laws import ExpressionLaw
 from codegen.model.exact_values import exact_parameters
 from codegen.numbers.arrays import Array
 from codegen.numbers.lambdified import lambdified

@@ -9,9 +9,9 @@ import sympy as sp
 from bondgraph.algebra.expressions import TIME
 from bondgraph.analyse.acting import acting
 from bondgraph.analyse.closures import merged_laws
-from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError
+from bondgraph.nodes.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.reduce.readings import depends_on_signals
 from codegen.program.jumps import Jump, Smooth, jumps_of
 from codegen.program.sliding import Slider, sliders_of

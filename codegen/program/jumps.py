@@ -19,8 +19,8 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.analyse.degrees import Degrees
-from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw, Law
 from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.structure import Port
 from codegen.program.sliding import row_of, told_of, unused

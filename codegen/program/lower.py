@@ -6,9 +6,9 @@ from typing import Any
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME, callable_in_text
-from bondgraph.declare.laws import DryFriction, ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import StructureError
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 from codegen.program.affine import is_affine
 from codegen.program.closing import Closing, close_ports
 from codegen.program.gains import check_gains

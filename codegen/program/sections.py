@@ -7,8 +7,8 @@ import sympy as sp
 
 from bondgraph.algebra.exact import rows_of
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.equations import StateEquations
+from bondgraph.nodes.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.reduce.impulses import Momenta, momenta
 from bondgraph.reduce.record import Reading
 from codegen.program.closing import Closing

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from bondgraph.declare.laws import DryFriction, Law, slides
 from bondgraph.equations import StateEquations
+from bondgraph.nodes.laws import DryFriction, Law, slides
 from bondgraph.reduce.motion import slope_of
 from bondgraph.reduce.record import Reading, ReadingSum
 from bondgraph.reduce.structure import Port

@@ -13,7 +13,7 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.reduce.record import Reading, ReadingSum
 from codegen.program.closing import Closing
 from codegen.program.sliding import unused

@@ -10,7 +10,7 @@ from itertools import count
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.laws import DryFriction, ExpressionLaw, Law
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw, Law
 from codegen.inputs.known import known
 from codegen.program.closing import Closing
 

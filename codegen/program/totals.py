@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import sympy as sp
 
-from bondgraph.declare.laws import ExpressionLaw
+from bondgraph.nodes.laws import ExpressionLaw
 from codegen.program.closing import Closing
 from codegen.program.slopes import NoSlopeError, slope
 

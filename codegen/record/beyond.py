@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from bondgraph.declare.elements import Element
 from bondgraph.errors import SimulationError
+from bondgraph.nodes.elements import Element
 from codegen.model.exact_values import at_parameters
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.lambdified import lambdified

@@ -16,8 +16,8 @@ import scipy
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.lines import variable_of
-from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.errors import StructureError
+from bondgraph.nodes.laws import ExpressionLaw
 from codegen.inputs.signals import Constant
 from codegen.numbers.arrays import read_only
 from codegen.sparse.signal_rows import Row, SignalRows, matrix

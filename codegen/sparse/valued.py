@@ -6,11 +6,11 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.declare.elements import Element
-from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.names import named_by
 from bondgraph.declare.validate import validate, with_elements
 from bondgraph.errors import ParameterError, SingularStorageError, StructureError
+from bondgraph.nodes.elements import Element
+from bondgraph.nodes.laws import ExpressionLaw
 from codegen.model.exact_values import at_parameters, exact_parameters
 
 

@@ -5,8 +5,8 @@ import inspect
 import pytest
 
 import bondgraph as bg
-from bondgraph.declare import elements, stops
-from bondgraph.declare.kinds import Kind
+from bondgraph.nodes import elements, stops
+from bondgraph.nodes.kinds import Kind
 
 ROLES = {
     "supplies": "Se Sf", "stores": "I C", "resists": "R", "two_port": "TF GY", "gyrates": "GY",

@@ -9,7 +9,7 @@ import sympy as sp
 import bondgraph as bg
 
 
-def _graph(nodes: list[bg.declare.elements.Node], *paths: str) -> "nx.DiGraph[str]":
+def _graph(nodes: list[bg.nodes.elements.Node], *paths: str) -> "nx.DiGraph[str]":
     """A graph of these nodes; each path ``a b c`` is a chain of bonds."""
     graph: nx.DiGraph[str] = nx.DiGraph()
     graph.add_nodes_from(nodes)
@@ -107,7 +107,7 @@ SINGULAR = [
 
 @pytest.mark.parametrize(("nodes", "paths", "error", "text"), SINGULAR)
 def test_a_refusal_shows_what_vanishes(
-    nodes: list[bg.declare.elements.Node],
+    nodes: list[bg.nodes.elements.Node],
     paths: list[str],
     error: type[bg.BondGraphError],
     text: str,

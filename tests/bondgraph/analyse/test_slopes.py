@@ -5,7 +5,7 @@ import sympy as sp
 
 import bondgraph as bg
 from bondgraph.analyse.slopes import operating_point, slopes
-from bondgraph.declare.laws import law
+from bondgraph.nodes.laws import law
 
 v, q, c, g = sp.symbols("v q c g")
 below = sp.Piecewise((0, v < 0), (v, True))

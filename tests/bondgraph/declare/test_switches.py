@@ -161,7 +161,7 @@ def test_a_graph_in_no_mode_has_one_set_of_equations_for_both() -> None:
         (bg.Sw("q", "a", flow="t"), "'t' is the time"),
     ],
 )  # fmt: skip
-def test_wrong_declarations_are_refused(node: bg.declare.elements.Node, message: str) -> None:
+def test_wrong_declarations_are_refused(node: bg.nodes.elements.Node, message: str) -> None:
     graph = bond_graph([bg.Se("s", "u"), bg.One("j"), bg.R("r", "r"), node], "s>j>r j>q")
     with pytest.raises(bg.StructureError, match=message):
         bg.in_mode(graph)

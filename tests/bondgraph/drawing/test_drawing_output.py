@@ -11,8 +11,8 @@ import pytest
 
 import bondgraph as bg
 import differentials
-from bondgraph.declare.elements import Node
 from bondgraph.drawing.metrics import ADVANCES, FAMILY
+from bondgraph.nodes.elements import Node
 
 ROOT = Path(bg.__file__).parents[1]
 SVG = "{http://www.w3.org/2000/svg}"

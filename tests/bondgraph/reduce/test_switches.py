@@ -9,8 +9,8 @@ from references.build import Graph, bond_graph
 from references.random_switches import random_switched
 
 import bondgraph as bg
-from bondgraph.declare.elements import Node
 from bondgraph.declare.validate import validate, with_elements
+from bondgraph.nodes.elements import Node
 
 
 def _series(node: Node, *more: Node) -> Graph:

@@ -11,7 +11,7 @@ from references.switched.network import SOURCES, Branch, Network, Wave
 import bondgraph as bg
 from codegen import Constant, Signal, Sine, Step
 
-Node = bg.declare.elements.Node
+Node = bg.nodes.elements.Node
 
 
 @dataclass(frozen=True)

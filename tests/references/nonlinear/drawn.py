@@ -12,7 +12,7 @@ import networkx as nx
 import numpy as np
 
 import bondgraph as bg
-from bondgraph.declare.elements import Element
+from bondgraph.nodes.elements import Element
 
 from ..random_graphs import random_graph
 

@@ -6,14 +6,14 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.lookups import Look
-from bondgraph.declare.elements import OTHER, Element
-from bondgraph.declare.fields import inverts
-from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.inverses.cornered import cornered_inverse
 from bondgraph.inverses.guarding import guarded
 from bondgraph.inverses.inverse import inverse_of
 from bondgraph.inverses.reasons import why_not
 from bondgraph.inverses.undoing import undone
+from bondgraph.nodes.elements import OTHER, Element
+from bondgraph.nodes.fields import inverts
+from bondgraph.nodes.laws import ExpressionLaw
 
 Turned = tuple[sp.Expr, frozenset[sp.Symbol]]
 """An inverse, and the names that have to be positive for it beside those that it tells itself."""
@@ -26,7 +26,7 @@ def with_inverse(element: Element) -> Element | None:
     constants: what is found is put in and tried. Else it is an `Inverse`, which searches, where signs show
     that the law rises or falls all the way. Of a law with corners it is one of these for each stretch.
 
-    >>> from bondgraph.declare.elements import C
+    >>> from bondgraph.nodes.elements import C
     >>> from bondgraph.declare.declared import elements_of
     >>> diode, = elements_of(*C("diode", law="E*log(1 + q_diode/Q)")).values()
     >>> with_inverse(diode).inverse
@@ -49,7 +49,7 @@ def with_inverse(element: Element) -> Element | None:
 def flipped(element: Element) -> Element | None:
     """The resistance that gives what its law receives; None where no inverse of its law is found.
 
-    >>> from bondgraph.declare.elements import R
+    >>> from bondgraph.nodes.elements import R
     >>> from bondgraph.declare.declared import elements_of
     >>> damper, = elements_of(*R("damper", law="b*sinh(f_damper)")).values()
     >>> flipped(damper).gives, flipped(damper).law.expression
@@ -84,7 +84,7 @@ def as_received(element: Element, law: ExpressionLaw) -> ExpressionLaw | None:
 def why_unturned(element: Element) -> str:
     """A sentence that tells why the law of a storage or a resistance is not turned round; none of others.
 
-    >>> from bondgraph.declare.elements import C
+    >>> from bondgraph.nodes.elements import C
     >>> from bondgraph.declare.declared import elements_of
     >>> why_unturned(*elements_of(*C("buffer", law="k*q_buffer + sign(q_buffer)")).values())
     '. It is not turned round: it jumps at q_buffer = 0'

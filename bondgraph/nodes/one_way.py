@@ -2,7 +2,7 @@
 
 from collections.abc import Hashable
 
-from bondgraph.declare.elements import Node, Sw
+from bondgraph.nodes.elements import Node, Sw
 
 
 def Diode(name: Hashable, effort: object = None, flow: object = None) -> Node:

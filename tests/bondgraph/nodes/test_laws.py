@@ -7,7 +7,7 @@ import sympy as sp
 from references.build import bond_graph
 
 import bondgraph as bg
-from bondgraph.declare.laws import law
+from bondgraph.nodes.laws import law
 from codegen import simulator
 
 slip, v_s = sp.symbols("slip v_s")

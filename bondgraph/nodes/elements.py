@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from bondgraph.declare.kinds import Kind
-from bondgraph.declare.laws import DryFriction, Law
+from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.laws import DryFriction, Law
 
 Node = tuple[Hashable, dict[str, object]]
 """What networkx's ``add_nodes_from`` takes: a name and its attributes."""

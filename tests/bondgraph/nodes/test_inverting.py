@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 import bondgraph as bg
 from bondgraph.declare.declared import elements_of
-from bondgraph.declare.inverting import with_inverse
+from bondgraph.nodes.inverting import with_inverse
 from codegen import Step, simulator
 
 TURNED = [

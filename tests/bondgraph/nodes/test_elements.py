@@ -4,7 +4,7 @@ import pytest
 from references.build import bond_graph
 
 import bondgraph as bg
-from bondgraph.declare.elements import Element
+from bondgraph.nodes.elements import Element
 
 
 @pytest.mark.parametrize(

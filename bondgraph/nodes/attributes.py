@@ -8,12 +8,12 @@ import sympy as sp
 from bondgraph.algebra.atoms import number, symbol
 from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.algebra.residues import is_zero
-from bondgraph.declare import fields
-from bondgraph.declare.elements import Switch
-from bondgraph.declare.kinds import Kind
-from bondgraph.declare.laws import ExpressionLaw, Law, check_slider, law, slides
-from bondgraph.declare.resets import resets_of
 from bondgraph.errors import ExpressionError, StructureError
+from bondgraph.nodes import fields
+from bondgraph.nodes.elements import Switch
+from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.laws import ExpressionLaw, Law, check_slider, law, slides
+from bondgraph.nodes.resets import resets_of
 
 
 def check_node_name(name: Hashable) -> None:

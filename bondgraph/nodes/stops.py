@@ -7,12 +7,12 @@ import sympy as sp
 
 from bondgraph.algebra.atoms import symbol
 from bondgraph.algebra.expressions import expression
-from bondgraph.declare.attributes import variable
-from bondgraph.declare.elements import Element, Node, Switch
-from bondgraph.declare.kinds import Kind
-from bondgraph.declare.laws import ExpressionLaw
-from bondgraph.declare.resets import resets_of
 from bondgraph.errors import StructureError
+from bondgraph.nodes.attributes import variable
+from bondgraph.nodes.elements import Element, Node, Switch
+from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.laws import ExpressionLaw
+from bondgraph.nodes.resets import resets_of
 
 BOUNDS = {"low": 1, "high": -1}
 """The bounds of a stop, and which way its flow leads off each."""
