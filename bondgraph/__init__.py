@@ -44,10 +44,12 @@ from bondgraph.explaining.records import Equation, Factor, Formula, Step
 from bondgraph.files.disk import read_graphml, read_json, write_graphml, write_json
 from bondgraph.files.graphml import from_graphml, to_graphml
 from bondgraph.files.nodelink import from_json, to_json
+from bondgraph.nodes.controllers import Controller
 from bondgraph.nodes.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 from bondgraph.nodes.one_way import CheckValve, Diode, Freewheel
+from bondgraph.nodes.signals import Function, State
 from bondgraph.nodes.stops import Stop
 from bondgraph.rates.explicit import explicit
 from bondgraph.rates.record import ExplicitRates
@@ -70,6 +72,7 @@ __all__ = [
     "CausalityError",
     "Check",
     "CheckValve",
+    "Controller",
     "De",
     "DependentSourceError",
     "Df",
@@ -86,6 +89,7 @@ __all__ = [
     "Finding",
     "Formula",
     "Freewheel",
+    "Function",
     "I",
     "JunctionStructure",
     "Kind",
@@ -102,6 +106,7 @@ __all__ = [
     "SignalError",
     "SimulationError",
     "SingularStorageError",
+    "State",
     "StateEquations",
     "Step",
     "Stop",

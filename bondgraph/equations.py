@@ -11,6 +11,7 @@ from bondgraph.errors import StructureError
 from bondgraph.inverses.guarding import unguarded
 from bondgraph.nodes.elements import Element
 from bondgraph.nodes.laws import ExpressionLaw, Law
+from bondgraph.nodes.tasks import Task
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction, held
 from bondgraph.reduce.structure import Port, PortRow
@@ -126,6 +127,11 @@ class StateEquations:
             if turned and given is not None and inverse is not None:
                 found[given] = (element, unguarded(inverse).subs(given, starts[given]))
         return found
+
+    @property
+    def tasks(self) -> tuple[Task, ...]:
+        """What sampled controllers do, and at which instants, in declaration order."""
+        return tuple(one.task for one in self.elements.values() if one.task is not None)
 
     @property
     def tables(self) -> tuple[Sampled, ...]:

@@ -1,6 +1,6 @@
 """Nodes as checked elements: which kind of element the attributes of a node declare."""
 
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -26,10 +26,20 @@ from bondgraph.nodes.attributes import (
     value_of,
     variable,
 )
+from bondgraph.nodes.controllers import controller_elements
 from bondgraph.nodes.elements import OTHER, Element
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw, law
+from bondgraph.nodes.signals import function_elements, state_elements
 from bondgraph.nodes.stops import stop_elements
+
+COMPOSITE: Mapping[str, Callable[[Hashable, Mapping[str, Any]], list[Element]]] = {
+    Kind.STOP: stop_elements,
+    Kind.FUNCTION: function_elements,
+    Kind.STATE: state_elements,
+    Kind.CONTROLLER: controller_elements,
+}
+"""What nodes of several elements are made of, by their kind; the first of them stands for the node."""
 
 
 def elements_of(name: Hashable, attributes: Mapping[str, Any]) -> dict[Hashable, Element]:
@@ -38,8 +48,8 @@ def elements_of(name: Hashable, attributes: Mapping[str, Any]) -> dict[Hashable,
     Raises `StructureError` or `ExpressionError`, naming the node.
     """
     if attributes.get("ports") is None:
-        if attributes.get("kind") == Kind.STOP:
-            return {element.name: element for element in _stop(name, attributes)}
+        if (made := _composite(name, attributes)) is not None:
+            return {element.name: element for element in made}
         made = [_element(name, attributes)]
         if made[0].kind.joins and (attributes.keys() & {"on", "off", "reset"}):
             made.append(_control(made[0], attributes))
@@ -181,10 +191,15 @@ def _element(name: Hashable, attributes: Mapping[str, Any]) -> Element:
     return _passive(name, kind, attributes, unit)
 
 
-def _stop(name: Hashable, attributes: Mapping[str, Any]) -> list[Element]:
+def _composite(name: Hashable, attributes: Mapping[str, Any]) -> list[Element] | None:
+    """The elements of a node that is made of several; None of any other."""
+    build = COMPOSITE.get(str(attributes.get("kind")))
+    if build is None:
+        return None
     check_node_name(name)
-    check_keys(Kind.STOP, attributes, f"node {name!r}")
-    return stop_elements(name, attributes)
+    kind = Kind(attributes["kind"])
+    check_keys(kind, attributes, f"node {name!r}")
+    return [replace(element, declared=kind) for element in build(name, attributes)]
 
 
 def _source(name: Hashable, kind: Kind, attributes: Mapping[str, Any], unit: str | None) -> Element:

@@ -101,9 +101,11 @@ def _check_assumptions(elements: Sequence[Element], signals: set[sp.Symbol]) -> 
 def read_in(element: Element) -> list[Law | sp.Expr]:
     """What an element reads names in."""
     told: list[Law | sp.Expr | None] = [element.value, element.law]
+    resets = () if element.task is None else element.task.resets
     if element.switch is not None:
         told += [element.switch.on, element.switch.off]
-        told += [part for one in element.switch.resets for part in (one.state, one.value)]
+        resets = element.switch.resets
+    told += [part for one in resets for part in (one.state, one.value)]
     return [part for part in told if part is not None]
 
 

@@ -123,7 +123,8 @@ def _add_elements(result: _Validated, graph: Any) -> tuple[set[Hashable], list[B
             if element.owner is not None:
                 fields.add(name)
             elif own != name:
-                controls.append((name, own))
+                # What a source gives counts into the rest.
+                controls.append((own, name) if element.kind.supplies else (name, own))
     return fields, controls
 
 

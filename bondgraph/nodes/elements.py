@@ -7,6 +7,7 @@ import sympy as sp
 
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import DryFriction, Law
+from bondgraph.nodes.tasks import Reset, Task
 
 Node = tuple[Hashable, dict[str, object]]
 """What networkx's ``add_nodes_from`` takes: a name and its attributes."""
@@ -15,15 +16,6 @@ Bond = tuple[Hashable, Hashable]
 
 OTHER = {"effort": "flow", "flow": "effort"}
 """The variable that a port receives, by the one that it gives."""
-
-
-@dataclass(frozen=True)
-class Reset:
-    """What a state becomes at an event of a switch: as it turns "on" or "off"; at a "hit" of a stop."""
-
-    state: sp.Symbol
-    value: sp.Expr
-    event: str
 
 
 @dataclass(frozen=True)
@@ -56,8 +48,9 @@ class Element:
     it has per unit of each port's variable, by the ports' names; ``owner``: the field's node.
     ``energy``: of a storage with an energy function, that function. ``inverse``: of one with a law, its
     state as a function of what the law gives, so that it may have derivative causality. ``switch``: of an
-    ideal switch, when it turns on and off. ``whole``: of a stop's part, that stop. ``start``: of what keeps
-    or makes a state, the value with which runs begin. ``by_inverse``: whether the law counts by its inverse
+    ideal switch, when it turns on and off. ``whole``: of a part of a node of several, a stop or a signal,
+    that node, and ``declared`` its kind. ``task``: of a sampled controller, what it does at its instants.
+    ``start``: of what keeps or makes a state, the value with which runs begin. ``by_inverse``: whether the law counts by its inverse
     alone, what it gives being the state. ``turned``: whether its law is turned round by what is known of
     it: a resistance then gives what its law, as it was written, receives. ``needed``: names that have to be
     positive for that.
@@ -82,12 +75,19 @@ class Element:
     start: sp.Expr | None = None
     by_inverse: bool = False
     turned: bool = False
+    task: Task | None = None
+    declared: Kind | None = None
     needed: frozenset[sp.Symbol] = frozenset()
 
     @property
     def absorbs(self) -> bool:
         """Whether power counts into it whichever way the arrow points."""
         return self.kind.absorbs or (self.whole is not None and self.whole == self.name)
+
+    @property
+    def is_function(self) -> bool:
+        """Whether what it gives is a signal that was declared as a node."""
+        return self.declared is Kind.FUNCTION and self.kind.supplies
 
     @property
     def one_port(self) -> bool:

@@ -5,13 +5,17 @@ from enum import StrEnum
 from typing import Literal
 
 Role = Literal[
-    "source", "storage", "resistance", "switch", "detector", "transformer", "gyrator", "junction"
-]
+    "source", "storage", "resistance", "switch", "detector", "transformer", "gyrator", "junction",
+    "signal",
+]  # fmt: skip
 
 _BOUNDED = ("low", "high", "restitution", "start", "stiffness", "damping")
 
-EXPRESSIONS = ("value", "energy", "inverse", "on", "off", *_BOUNDED)
+EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", *_BOUNDED)
 """The attributes that are numbers or expressions."""
+
+NAMED = ("states", "update", "outputs")
+"""The attributes that map names to expressions."""
 
 _SWITCHED = frozenset({"on", "off", "reset"})
 _NAMED = frozenset({"value", "effort", "flow", "law", "unit", "ports"})
@@ -74,6 +78,12 @@ class Kind(StrEnum):
     )
     STOP = "Stop", Nature("switch", frozenset({"flow", "reset", *_BOUNDED}), place=8)
     SW = "Sw", Nature("switch", frozenset({"effort", "flow", *_SWITCHED}), place=2)
+    FUNCTION = "Function", Nature("signal", frozenset({"value", "unit"}), place=9)
+    STATE = "State", Nature("signal", frozenset({"rate", "start", "low", "high", "unit"}), place=10)
+    CONTROLLER = (
+        "Controller",
+        Nature("signal", frozenset({"every", "offset", "reads", *NAMED}), place=11),
+    )
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":
         """One of the rows above; ``Kind("I")`` looks one up and makes none."""
@@ -119,6 +129,11 @@ class Kind(StrEnum):
     def gyrates(self) -> bool:
         """Whether it turns efforts into flows and flows into efforts."""
         return self.nature.role == "gyrator"
+
+    @property
+    def signals(self) -> bool:
+        """Whether it has no power at all: a function of signals, a state or a controller."""
+        return self.nature.role == "signal"
 
     @property
     def two_port(self) -> bool:

@@ -8,7 +8,7 @@ import sympy as sp
 from bondgraph.algebra.atoms import symbol
 from bondgraph.algebra.expressions import expression
 from bondgraph.errors import StructureError
-from bondgraph.nodes.elements import Reset
+from bondgraph.nodes.tasks import Reset
 
 
 def resets_of(given: Any, where: str, events: Sequence[str]) -> tuple[Reset, ...]:

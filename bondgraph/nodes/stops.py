@@ -68,7 +68,7 @@ def stop_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element
         raise StructureError(
             f"{where}: a stop without a bound stops nothing; give low, high or both"
         )
-    _check_order(bounds, where)
+    check_order(bounds, where)
     flow = variable(attributes, "flow", name)
     place = symbol(f"q_{name}", where)
     junction = Element(name, Kind.ONE, None, None, flow, whole=name)
@@ -76,7 +76,7 @@ def stop_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element
         f"{name}.{POSITION}", Kind.DF, None, *_own(name, POSITION), gives="effort", integral=place,
         start=_optional(attributes, "start", where), whole=name,
     )  # fmt: skip
-    made = _springs if attributes.get("stiffness") is not None else _rigid
+    made = _springs if attributes.get("stiffness") is not None else rigid
     return [junction, position, *made(name, attributes, bounds, place)]
 
 
@@ -85,7 +85,7 @@ def stop_parts(attributes: Mapping[str, Any]) -> tuple[str, ...]:
     return (POSITION, *(key for key in BOUNDS if attributes.get(key) is not None))
 
 
-def _rigid(
+def rigid(
     name: Hashable, attributes: Mapping[str, Any], bounds: Mapping[str, sp.Expr], place: sp.Symbol
 ) -> list[Element]:
     """At each bound a switch that holds as long as its effort pushes, and lets go what has left."""
@@ -150,7 +150,7 @@ def _optional(attributes: Mapping[str, Any], key: str, where: str) -> sp.Expr | 
     return None if given is None else expression(given, f"{where}, {key}")
 
 
-def _check_order(bounds: Mapping[str, sp.Expr], where: str) -> None:
+def check_order(bounds: Mapping[str, sp.Expr], where: str) -> None:
     """Refuse numbers that leave no room between them."""
     if len(bounds) == 2:
         room = bounds["high"] - bounds["low"]

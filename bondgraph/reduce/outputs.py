@@ -7,6 +7,7 @@ import sympy as sp
 from bondgraph.algebra.exact import fixed
 from bondgraph.algebra.residues import is_zero
 from bondgraph.errors import StructureError
+from bondgraph.nodes.elements import Element
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction
 from bondgraph.reduce.structure import JunctionStructure, PortRow
@@ -32,12 +33,15 @@ def named_signals(reduction: Reduction) -> dict[sp.Symbol, PortRow]:
 def shown_signals(
     structure: JunctionStructure, outputs: Iterable[Hashable] | None
 ) -> list[tuple[sp.Symbol, PortRow]]:
-    """The signal each output node shows: what a one-port receives, what a junction has in common."""
+    """The signal each output node shows: what a one-port receives, what a junction has in common.
+
+    Of a function it is the function. Unless told, those of open ports, and functions.
+    """
     if outputs is None:
         outputs = [
             port.element.name
             for port in structure.ports
-            if port.element.kind.resists and port.element.gives and port.element.law is None
+            if _is_open(port.element) or port.element.is_function
         ]
     if isinstance(outputs, str) or not isinstance(outputs, Iterable):
         raise StructureError(f"outputs must be a list of nodes, not {outputs!r}")
@@ -47,11 +51,18 @@ def shown_signals(
         if not isinstance(name, Hashable) or name not in structure.elements:
             raise StructureError(f"output {name!r} is not a node of the graph")
         if name in numbers:
-            at = numbers[name]
-            result.append((structure.ports[at].received, structure.rows[at]))
+            at, port = numbers[name], structure.ports[numbers[name]]
+            shown = (port.received, structure.rows[at])
+            if port.element.is_function:
+                shown = (port.given, fixed({at: sp.Integer(1)}))
+            result.append(shown)
         else:
             result.append((_named_common(structure, name), structure.common[name]))
     return result
+
+
+def _is_open(element: Element) -> bool:
+    return element.kind.resists and element.gives is not None and element.law is None
 
 
 def _named_common(structure: JunctionStructure, name: Hashable) -> sp.Symbol:

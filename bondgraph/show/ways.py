@@ -2,8 +2,8 @@
 
 import sympy as sp
 
-from bondgraph.nodes.elements import Reset
 from bondgraph.nodes.laws import SLIP, DryFriction
+from bondgraph.nodes.tasks import Reset
 from bondgraph.reduce.structure import Port
 from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.show.plain import plain

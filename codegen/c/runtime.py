@@ -9,7 +9,7 @@ steps; many runs; units."""
 
 SHARED = (
     "port_set.h", "port_log.h", "port_switch.h", "port_switch.c", "port_ways.h", "port_ways.c",
-    "port_choosing.h", "port_bounce.c", "port_throw.c", "port_reset.c",
+    "port_choosing.h", "port_bounce.c", "port_throw.c", "port_reset.c", "port_clock.c",
     "port_block.c", "port_choose.h", "port_choose.c", "port_verdict.c", "port_events.h", "port_events.c",
     "port_rounding.h",
 )  # fmt: skip

@@ -119,6 +119,7 @@ def _sizes(program: Program, fast: Sequence[Straight]) -> dict[str, int]:
         "STOPPING": int(program.stopped),
         "GUARDS": len(program.guards.results),
         "RESETS": len(program.resets),
+        "CLOCKS": len(program.clocks),
         "MOMENTA": len(program.momenta.results),
         "COUPLED": coupled,
         "HOLDS": min(FEW_HOLDS if program.varying or ports > LARGE else MOST_HOLDS, 2**ports),
@@ -181,6 +182,8 @@ def program_tables(
     lines += array("const bg_switch bg_switches[]", rows, f"{{{', '.join('0' * 9)}}}")
     rows = [f"{{{one.port}, {one.sign}, {one.place}, {one.value}}}" for one in program.resets]
     lines += array("const bg_reset bg_resets[]", rows, "{0, 0, 0, 0}")
+    rows = [f"{{{one.every!r}, {one.offset!r}, {one.unit!r}}}" for one in program.clocks]
+    lines += array("const bg_clock bg_clocks[]", rows, "{0.0, 0.0, 0.0}")
     return [*lines, "", *_layout(program)]
 
 

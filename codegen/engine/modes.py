@@ -43,6 +43,8 @@ class Tables:
             self.record.switches[at] = port.in_c
         for at, one in enumerate(model.program.resets):
             self.record.resets[at] = (one.port, one.sign, one.place, one.value)
+        for at, clock in enumerate(model.program.clocks):
+            self.record.clocks[at] = (clock.every, clock.offset, clock.unit)
 
     def _fill_stops(self) -> None:
         """The gaps of stops where all states are zero, and their restitutions."""
@@ -192,6 +194,8 @@ class Tables:
         made.fastest = motion.fastest
         view(self.engine, made.weight)[:] = motion.weight
         self._tell_rates(made, motion)
+        if model.program.resets:
+            self._fill_by.rows(made.become, becoming(model, mode, affine))
         if model.program.guarded:
             self._fill_switches(made, mode, affine)
         if 0 in mode:
@@ -205,8 +209,6 @@ class Tables:
         """What keeps switches; where friction slips forwards also what they do as they come to hold."""
         model, size = self.model, self.engine.sizes.numbers
         self._fill_by.rows(made.stay, keeping(model, mode, affine))
-        if model.program.resets:
-            self._fill_by.rows(made.become, becoming(model, mode, affine))
         if any(sign != 1 and s is None for sign, s in zip(mode, model.switching, strict=True)):
             return
         found = impacts_of(model, mode)

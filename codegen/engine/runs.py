@@ -225,6 +225,8 @@ def not_affine(program: Program) -> str | None:
     if not program.guards_affine:
         what = ", or what one resets a state to," if program.resets else ""
         return f"a condition of a switch{what} is not affine"
+    if not program.ticks_affine:
+        return "what a controller sets is not affine"
     if not program.restitution_given:
         return "the restitution of a stop is not told by parameters alone"
     if program.affine:

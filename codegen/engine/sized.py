@@ -18,4 +18,5 @@ def sizes(model: ClosedModel, slots: int) -> Sizes:
         K=len(program.friction),
         G=next((size for size in SLOTS if size >= slots), slots),
         R=len(program.resets),
+        C=len(program.clocks),
     )

@@ -29,7 +29,7 @@ ALIGNMENT = 64
 
 @dataclass(frozen=True)
 class Sizes:
-    """What ``config.h`` says: lengths of s, x and u, external inputs, friction ports, slots, resets."""
+    """What ``config.h`` says: lengths of s, x and u, external inputs, ports, slots, resets, clocks."""
 
     N: int
     X: int
@@ -38,6 +38,7 @@ class Sizes:
     K: int
     G: int
     R: int = 0
+    C: int = 0
 
     @property
     def config(self) -> str:
@@ -47,6 +48,7 @@ class Sizes:
         guard = "#ifndef EXACT_SIZES_H\n#define EXACT_SIZES_H\n"
         ports = f"#ifndef BG_PORTS\n#define BG_PORTS {max(self.K, 1)}\n#endif\n"
         ports += f"#ifndef BG_RESETS\n#define BG_RESETS {self.R}\n#endif\n"
+        ports += f"#ifndef BG_CLOCKS\n#define BG_CLOCKS {self.C}\n#endif\n"
         return f"/* The sizes of one model. */\n{guard}{ports}enum {{\n{lines}\n}};\n#endif\n"
 
     @property
@@ -61,6 +63,7 @@ class Sizes:
             **vars(self), "MODES": min(3**self.K, most), "PORTS": ports, "ROW": row,
             "SHOT": shot, "WORDS": -(-ports // DIGITS), "L": length,
             "SHARP": 1 if self.K else length, "MOST_RESETS": max(self.R, 1),
+            "MOST_CLOCKS": max(self.C, 1),
         }  # fmt: skip
 
 

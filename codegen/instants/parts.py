@@ -4,7 +4,7 @@ What a reset becomes is told by the values just before it, after the impacts; al
 is set together.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -40,10 +40,13 @@ class Part(NamedTuple):
         return self.s if self.reset is None else self.reset
 
 
-def parts_of(decide: Decide, now: Occasion, here: Sight) -> list[Part]:
+def parts_of(
+    decide: Decide, now: Occasion, here: Sight, due: Collection[int] = (), begins: bool = False
+) -> list[Part]:
     """The parts of an instant at which ports may have events; the last has no resets.
 
-    ``decide``: what decides a mode.
+    ``decide``: what decides a mode. ``due``: the tasks whose instant it is: they set what they set once no
+    event is left. ``begins``: whether a run begins, which is no event of any port.
 
     Raises `SimulationError` where there is no mode, where what is set contradicts what is held or is set
     twice, and where resets set off one another without end.
@@ -55,7 +58,9 @@ def parts_of(decide: Decide, now: Occasion, here: Sight) -> list[Part]:
         part = Part(
             now.previous, decided.mode, decided.impacts, decided.s, clear=decided.clear
         )  # fmt: skip
-        fired = _fired(now.model, part)
+        fired = [] if begins and not found else _fired(now.model, part)
+        if not fired and due:
+            fired, due = [one for one in now.model.program.resets if -1 - one.port in due], ()
         if not fired:
             return [*found, part]
         seen = here if part.s is here.s else now.seen(part.s)
@@ -64,7 +69,7 @@ def parts_of(decide: Decide, now: Occasion, here: Sight) -> list[Part]:
         assert part.reset is not None
         here = now.seen(part.reset)
         now = now._replace(previous=part.mode, touched=frozenset())
-    names = sorted({repr(now.model.program.friction[one.port].name) for one in fired})
+    names = sorted({repr(now.model.owner(one)) for one in fired})
     raise SimulationError(
         f"at t = {now.t:.9g} resets at {', '.join(names)} set off one another without end; let what is "
         "set be away from where it is set off"
@@ -94,6 +99,8 @@ def _fired(model: ClosedModel, part: Part) -> list[Reset]:
     struck |= hits(model, part.before, part.mode, part.impacts).keys()
     found = []
     for one in model.program.resets:
+        if one.port < 0:
+            continue
         switching = model.switching[one.port]
         off = switching is not None and not switching.is_on(one.sign)
         if part.mode[one.port] == one.sign != part.before[one.port] or (one.port in struck and off):
@@ -110,7 +117,7 @@ def _reset(here: Sight, mode: Mode, fired: Sequence[Reset], peaks: Peaks | None)
         value = float(values[one.value])
         first = owners.setdefault(one.place, one)
         if float(values[first.value]) != value:
-            ports = [repr(model.program.friction[r.port].name) for r in (first, one)]
+            ports = [repr(model.owner(r)) for r in (first, one)]
             raise SimulationError(
                 f"at t = {here.t:.9g} {' and '.join(ports)} reset {model.place_name(one.place)} to "
                 f"{float(values[first.value]):.6g} and {value:.6g} at once; let one of them do it"

@@ -4,7 +4,7 @@ The integrated vector is ``s = [xi, z]``: ``xi = x - A^-1 E u`` stays continuous
 drives a dependent storage steps; z are the states that laws own.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from copy import copy
 from functools import cached_property, partial
 from types import MappingProxyType
@@ -46,6 +46,7 @@ from codegen.standalone.instant import Instant
 from codegen.standalone.levels import without_rounding
 from codegen.standalone.matrices import Numbers
 from codegen.standalone.striking import Strike
+from codegen.standalone.switchings import Reset
 from codegen.straight.modes import Plain, StraightModes
 from codegen.straight.recording import Changing
 
@@ -82,6 +83,8 @@ class ClosedModel:
         )
         #: The places of stops.
         self.stopping = [i for i, switch in enumerate(self.switching) if switch and switch.stops]
+        #: The places among the guards of what tasks set, which no mode hangs on.
+        self.ticked = tuple(one.value for one in program.resets if one.port < 0)
         #: Jumps of second order, with the guards that they hang on.
         self.hung = dict(program.hanging)
         self.timed = timed_ports(program)
@@ -263,12 +266,19 @@ class ClosedModel:
         ports = self.program.friction
         for one in self.program.resets:
             if one.value == at:
-                what = f"what {ports[one.port].name!r} resets {self.place_name(one.place)} to"
+                what = f"what {self.owner(one)!r} resets {self.place_name(one.place)} to"
                 return SimulationError(f"at t = {t:.9g} {what} has no finite value")
         name = next(p.name for p in ports if p.switch and p.switch.guard in (at, at - 1))
         return SimulationError(
             f"at t = {t:.9g} the condition of switch {name!r} has no finite value"
         )
+
+    def owner(self, one: Reset) -> Hashable:
+        """Whose reset it is: a port's, or a task's."""
+        program = self.program
+        if one.port >= 0:
+            return program.friction[one.port].name
+        return program.equations.tasks[-1 - one.port].name
 
     @cached_property
     def commands(self) -> tuple[Command, ...]:
@@ -320,15 +330,18 @@ class ClosedModel:
         affine = self.affine_map(mode, inputs)
         if affine is None or not self.program.guards_affine:
             return None
-        size = self.size
-        if not self.program.guards.results:
+        size, program = self.size, self.program
+        if not program.guards.results:
             return np.zeros((0, size + 2 * inputs + 1))
 
         def point(v: Array) -> list[Array]:
             s, w, dw = np.split(v, [size, size + inputs])
             x, z, u, du, y, rate, caps = affine(s, w, dw)
             now = Snapshot(x, z, u, du, y, rate, caps, w, self.constant)
-            return [self._guards(now.instant(0.0))]
+            found = self._guards(now.instant(0.0))
+            if not program.ticks_affine:
+                found[list(self.ticked)] = 0.0
+            return [found]
 
         return self._guard_maps.of(mode, lambda: probed(point, size + 2 * inputs, 0).matrix)
 

@@ -15,6 +15,7 @@ from codegen.program.gains import check_gains
 from codegen.program.moving import with_moving_slips
 from codegen.program.records import Program, block
 from codegen.program.sections import (
+    clocks,
     coefficients,
     exchanges,
     friction,
@@ -61,7 +62,9 @@ def lower(
     sources = Sources(closing, given, taken)
     guards = [*switches(closing)[1], *hung_on(closing)]
     first = len(guards)
-    guards += reset_values(closing)
+    told = reset_values(closing)
+    guards += told
+    own = len(guards) - sum(len(task.resets) for task in equations.tasks)
     if timed:
         expressions = [sources.parted(entry) for entry in expressions]
         guards = [sources.parted(guard) for guard in guards]
@@ -97,9 +100,11 @@ def lower(
         read=_read(closing),
         guards=block(guards, taken),
         resets=resets(closing, rubbing, first),
+        clocks=clocks(closing),
         momenta=block([*exchanged.states, *exchanged.readings.values()], taken),
         momenta_rows=tuple(readings.index(name) for name in exchanged.readings),
-        guards_affine=is_affine(guards, given),
+        guards_affine=is_affine(guards[:own], given),
+        ticks_affine=is_affine(guards[own:], given),
         varying=varying,
         affine=not (varying or moving) and _is_affine(closing, values, given),
         smooth=tuple(equations.inputs.index(one.given) for one in closing.smooth),
@@ -113,12 +118,13 @@ def lower(
 
 
 def _watched(equations: StateEquations) -> frozenset[sp.Symbol]:
-    """The names in conditions, restitutions and resets of switches."""
+    """The names in conditions, restitutions and resets of switches, and in what tasks set."""
     told = (
         value for p in equations.ports if (s := p.element.switch)
         for value in (s.on, s.off, s.restitution, *(one.value for one in s.resets))
     )  # fmt: skip
-    return frozenset[sp.Symbol]().union(*(value.free_symbols for value in told))
+    set_by_tasks = (reset.value for task in equations.tasks for reset in task.resets)
+    return frozenset[sp.Symbol]().union(*(value.free_symbols for value in (*told, *set_by_tasks)))
 
 
 def _check_varying(closing: Closing) -> None:

@@ -11,7 +11,7 @@ from bondgraph.algebra.lookups import Handle
 from bondgraph.equations import StateEquations
 from bondgraph.inverses.inverse import Turning
 from bondgraph.tables.record import Sampled
-from codegen.standalone.switchings import Reset, Switching
+from codegen.standalone.switchings import Clock, Reset, Switching
 
 TEMPORARY = "c"
 """Temporaries are c0, c1, ...; names that are taken are passed over."""
@@ -207,11 +207,15 @@ class Program:
     guards: Block
     #: What changes states over with them; these values come after the conditions.
     resets: tuple[Reset, ...]
+    #: The instants at which tasks set what they set.
+    clocks: tuple[Clock, ...]
     #: What impulses exchange where they move slopes in A: of each state, then of these readings.
     momenta: Block
     momenta_rows: tuple[int, ...]
     #: Whether all conditions are affine, as long as everything else is.
     guards_affine: bool
+    #: Whether all that tasks set is.
+    ticks_affine: bool
     #: Whether coefficients change in time, with states, external inputs or the time itself.
     varying: bool
     #: Whether each friction mode is an affine system with constant coefficients.

@@ -15,7 +15,7 @@ from codegen.program.closing import Closing
 from codegen.program.records import FrictionPort, Group, Pattern, block
 from codegen.program.sliding import Slider, halves_of
 from codegen.program.slopes import slope
-from codegen.standalone.switchings import Reset, Switching
+from codegen.standalone.switchings import Clock, Reset, Switching
 
 
 def coefficients(
@@ -188,7 +188,12 @@ def switches(closing: Closing) -> tuple[dict[sp.Symbol, Switching], list[sp.Expr
 
 def reset_values(closing: Closing) -> list[sp.Expr]:
     """What states become as switches change over, in the order of `resets`."""
-    return [one.value for port in closing.equations.switches for one in port.switch.resets]
+    equations = closing.equations
+    told = [
+        *(port.switch.resets for port in equations.switches),
+        *(t.resets for t in equations.tasks),
+    ]
+    return [one.value for group in told for one in group]
 
 
 def resets(closing: Closing, ports: Sequence[FrictionPort], first: int) -> tuple[Reset, ...]:
@@ -204,4 +209,13 @@ def resets(closing: Closing, ports: Sequence[FrictionPort], first: int) -> tuple
             sign = switching.sign(reset.event == "on")
             value = first + len(found)
             found.append(Reset(place, sign, states.index(reset.state), value))
+    for at, task in enumerate(closing.equations.tasks):
+        for reset in task.resets:
+            found.append(Reset(-1 - at, 0, states.index(reset.state), first + len(found)))
     return tuple(found)
+
+
+def clocks(closing: Closing) -> tuple[Clock, ...]:
+    """The instants of each task."""
+    tasks = closing.equations.tasks
+    return tuple(Clock(float(one.every), float(one.offset), float(one.unit)) for one in tasks)

@@ -1,5 +1,6 @@
 """The event-driven loop: smooth legs between breakpoints, and what ports do where these meet."""
 
+import math
 from collections import deque
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
@@ -95,6 +96,9 @@ class _Course:
         self._first_looks = glances, None if glances is None else Choices(glances)
         self._changes = Latest[tuple[Mode, Mode], list[tuple[Hashable, str]]]()
         self._clear = False
+        self._due = frozenset(
+            at for at, one in enumerate(model.program.clocks) if one.strikes(begin)
+        )
         self._touched = frozenset[int]()
         self._settled: float | None = None
         self._before: Sequence[Piece] | None = None
@@ -104,7 +108,7 @@ class _Course:
     def unfinished(self) -> bool:
         """Whether there is anything left to decide or to integrate."""
         undecided = self.t != self._settled
-        return undecided or self.t < self.end or bool(self._touched)
+        return undecided or self.t < self.end or bool(self._touched or self._due)
 
     @property
     def _slipping(self) -> frozenset[int]:
@@ -130,9 +134,9 @@ class _Course:
             model, t, pieces, self.mode, ahead, peaks, loose, self._touched, *self._first_looks
         )
         parts = self._decided(occasion, here)
+        self._due = NONE
         new, self._clear = parts[-1].mode, parts[-1].clear
-        if self._settled is not None:
-            self._note(parts)
+        self._note(parts if self._settled is not None else parts[1:])
         counted = self._touched - self._crossings.of(self.mode, new)
         thrown = any(one.thrown for part in parts for one in part.impacts)
         if self._settled is not None and counted and not thrown:
@@ -155,10 +159,9 @@ class _Course:
         run begins with no event.
         """
         if self._settled is None:
-            mode, s, impacts, clear = decide(now, here)
-            return [Part(self.mode, mode, impacts, s, clear=clear)]
+            return parts_of(decide, now, here, self._due, begins=True)
         try:
-            return parts_of(decide, now, here)
+            return parts_of(decide, now, here, self._due)
         except SimulationError:
             if self.t + now.ahead < self.end:
                 raise
@@ -205,24 +208,35 @@ class _Course:
         present = self._inputs.at(self.t)
         pieces, stop = present.pieces, min(present.following, self.end)
         instant, timed = self._clock.following(self.t, pieces, self.mode, stop)
-        stop = min(stop, instant)
+        tick, due = self._ticks(stop)
+        stop = min(stop, instant, tick)
         exact = self._exact(pieces, stop)
         if exact is not None:
             begin, s, first = self.t, self.s, self.track.recorded
             self.t, self.s, ended = exact.run(stop, self._times, self.track)
             self._touched = ended or (timed if self.t == instant else NONE)
+            self._due = due if self.t == tick else NONE
             self._back_to_sample(begin)
             self._integrate(pieces, begin, s, first)
         else:
             begin, leg = self.t, self._leg(pieces, self.mode)
             self.t, self.s, ended = leg.run(self.t, self.s, stop, self._times, self.track)
             self._touched = ended or (timed if self.t == instant else NONE)
+            self._due = due if self.t == tick else NONE
             self._back_to_sample(begin)
+
+    def _ticks(self, stop: float) -> tuple[float, frozenset[int]]:
+        """The next instant of a task up to ``stop`` [s], and whose it is; or infinity."""
+        times = [one.following(self.t) for one in self._model.program.clocks]
+        first = min(times, default=math.inf)
+        if first > stop:
+            return math.inf, NONE
+        return first, frozenset(at for at, time in enumerate(times) if time == first)
 
     def _back_to_sample(self, begin: float) -> None:
         """Where a switch changes over a rounding after a sample, that shows the instant just after, too."""
         track, switching = self.track, self._model.switching
-        if not track.recorded or all(switching[i] is None for i in self._touched):
+        if not track.recorded or not (self._due or any(switching[i] for i in self._touched)):
             return
         last = float(self._times[track.recorded - 1])
         if last > begin and self.t - last <= TUNING.together * max(abs(self.t), self.t - begin):

@@ -1,5 +1,6 @@
 """When switches change over, and the ways to try: from the one at hand to those farther off."""
 
+import math
 from collections.abc import Generator, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import combinations
@@ -84,13 +85,46 @@ class Reset:
     """What a state becomes as a port changes over, or at an impact of a stop.
 
     ``port``: its place; ``sign``: the mode that it comes to; ``place``: of the state in s;
-    ``value``: of what it becomes, among the guards.
+    ``value``: of what it becomes, among the guards. Of a task, which has instants of its own,
+    ``port`` is -1 less its place among the clocks.
     """
 
     port: int
     sign: int
     place: int
     value: int
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The instants ``(k*every + offset)/unit`` [s], k = 0, 1, ..., all three whole numbers.
+
+    Each is one division, rounded once: the same doubles wherever they are worked out.
+
+    >>> clock = Clock(1.0, 0.0, 100.0)
+    >>> clock.following(0.28), clock.following(0.29), clock.strikes(0.29), clock.following(-3.0)
+    (0.29, 0.3, True, 0.0)
+    """
+
+    every: float
+    offset: float
+    unit: float
+
+    def instant(self, k: float) -> float:
+        """Instant number k."""
+        return (k * self.every + self.offset) / self.unit
+
+    def following(self, t: float) -> float:
+        """The first instant after t."""
+        k = max(math.floor((t * self.unit - self.offset) / self.every) - 1.0, 0.0)
+        while self.instant(k) <= t:
+            k += 1.0
+        return self.instant(k)
+
+    def strikes(self, t: float) -> bool:
+        """Whether t is one of its instants."""
+        k = math.floor((t * self.unit - self.offset) / self.every + 0.5)
+        return k >= 0 and self.instant(k) == t
 
 
 def flipped(mode: Mode, ports: Iterable[int]) -> Mode:

@@ -60,6 +60,7 @@ static int bind(batch_room *room, const double *parameters)
     record->hung = BG_HUNG;
     memcpy(record->switches, bg_switches, sizeof *bg_switches * EX_K);
     memcpy(record->resets, bg_resets, sizeof *bg_resets * BG_RESETS);
+    memcpy(record->clocks, bg_clocks, sizeof *bg_clocks * BG_CLOCKS);
     batch_fill_stops(record, &own->m);
     ex_forget(room->context);
     return BG_OK;

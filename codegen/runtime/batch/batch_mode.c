@@ -156,7 +156,7 @@ int batch_supply(void *self, const int *mode)
     memset(made, 0, sizeof *made);
     if (found != BATCH_MODE_NONE)
         fill(made, own->map, &own->m.numbers, held);
-    if (found == BATCH_MODE_WHOLE && (BG_SWITCHES || BG_HUNG))
+    if (found == BATCH_MODE_WHOLE && (BG_SWITCHES || BG_HUNG || BG_RESETS))
         batch_fill_switches(made, own->map, &own->m, mode);
     made->none = found == BATCH_MODE_NONE;
     made->supported = found == BATCH_MODE_WHOLE;

@@ -17,6 +17,7 @@
 enum {
     EX_PORTS = EX_K > 0 ? EX_K : 1,
     EX_MOST_RESETS = BG_RESETS > 0 ? BG_RESETS : 1,
+    EX_MOST_CLOCKS = BG_CLOCKS > 0 ? BG_CLOCKS : 1,
     EX_DIGITS = 32,         /* of a word */
     EX_WORDS = (EX_PORTS + EX_DIGITS - 1) / EX_DIGITS,
     EX_Z = EX_N + EX_G,     /* state of a stretch: s and the slots of the generator */
@@ -90,6 +91,7 @@ typedef struct {
     double room[EX_PORTS], back[EX_PORTS]; /* of stops: the gap where s is zero; restitution */
     bg_switch switches[EX_PORTS];
     bg_reset resets[EX_MOST_RESETS];
+    bg_clock clocks[EX_MOST_CLOCKS];
 } ex_model;
 
 /* The generator of inputs: chains y0' = r y0 + y1, y1' = r y1 + y2, .. with w = constant + Re y0.

@@ -179,7 +179,7 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
     const bg_sight sight = {c, EX_N, EX_K, model->switched ? model->switches : NULL,
                             model->switches, model->stopping, model->coupled,
                             c->shot + EX_AT_RATE, c->point, c->struck, look, tell, ex_strike, couple,
-                            BG_RESETS, model->resets, ex_become};
+                            BG_RESETS, model->resets, ex_become, model->clocks};
     const bg_engine engine = {sight, c, pass, see, fastest, ex_choose, rest, advance};
     c->model = model;
     c->inputs = inputs;

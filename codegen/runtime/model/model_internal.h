@@ -94,6 +94,7 @@ extern const int bg_received_readings[];
 extern const int bg_moving[]; /* readings of how fast slips change by their factors; -1: none */
 extern const bg_switch bg_switches[];
 extern const bg_reset bg_resets[];
+extern const bg_clock bg_clocks[];
 extern const int bg_first_modes[]; /* before the first step, of friction anything */
 extern const double bg_defaults[];
 void bg_coefficients(const bg_values *v, double *out);

@@ -10,7 +10,10 @@
 #include "run_status.h"
 #include "tuning.h"
 
-enum { BG_MOST_RESETS = BG_RESETS > 0 ? BG_RESETS : 1 };
+enum {
+    BG_MOST_RESETS = BG_RESETS > 0 ? BG_RESETS : 1,
+    BG_MOST_CLOCKS = BG_CLOCKS > 0 ? BG_CLOCKS : 1,
+};
 
 /* What an instant is to a port: none of its own, its event, or an event that may be long past, as
  * whoever steps the model finds it no better. */
@@ -84,6 +87,7 @@ typedef struct {
     const bg_reset *reset;
     /* What s becomes at the place of each reset, in a mode that can be looked at. */
     int (*become)(void *self, const bg_instant *at, const int *mode, double *values);
+    const bg_clock *clocks;
 } bg_sight;
 
 /* port_reset.c: from the mode so far to the one just after the instant: 0 sticks or is held, 1
@@ -93,6 +97,9 @@ typedef struct {
  * decided anew. A status: where no mode is consistent BG_UNDECIDED or, if none could be looked at,
  * that of the first. */
 int bg_choose(const bg_sight *sight, const bg_instant *at, int *mode);
+
+/* port_reset.c: sets what the tasks that are due set, all by what is before; a status. */
+int bg_set_by_tasks(const bg_sight *sight, const bg_instant *at, const int *mode, const int *due);
 
 /* What to try where a mode cannot be evaluated, by number: slipping as it does, the same backwards
  * where it sticks, the mode, of few ports the ways of slipping, all stuck; 0 where there are no

@@ -11,7 +11,11 @@ int bg_find_fired(const bg_reset *resets, int count, const bg_switch *kinds, con
     int any = 0;
     for (int r = 0; r < count; r++) {
         const bg_reset *const one = resets + r;
-        const int i = one->port, comes = mode[i] == one->sign && before[i] != one->sign;
+        const int i = one->port;
+        fired[r] = 0;
+        if (i < 0)
+            continue;
+        const int comes = mode[i] == one->sign && before[i] != one->sign;
         const int off = kinds[i].on == (one->sign != 0);
         fired[r] = comes || (bg_has(hit, i) && off);
         any |= fired[r];
@@ -55,6 +59,14 @@ static int reset(const bg_sight *c, const bg_instant *at, const int *mode, const
     if (any)
         status = c->strike(c->self, at, held, NULL, c->struck, &blow);
     return status ? status : blow.struck ? BG_SET_HELD : BG_OK;
+}
+
+int bg_set_by_tasks(const bg_sight *c, const bg_instant *at, const int *mode, const int *due)
+{
+    int fired[BG_MOST_RESETS] = {0};
+    for (int r = 0; r < c->resets; r++)
+        fired[r] = c->reset[r].port < 0 && due[-1 - c->reset[r].port];
+    return reset(c, at, mode, fired);
 }
 
 int bg_choose(const bg_sight *c, const bg_instant *at, int *mode)

@@ -142,7 +142,7 @@ bg_sight bg_view_sight(bg_view *v)
 {
     return (bg_sight){v, BG_SIZE, K, BG_SWITCHES ? bg_switches : NULL, bg_switches, BG_STOPPING,
                       bg_beside, v->shot.rate, v->point, v->struck, bg_view_look, tell_ports,
-                      bg_view_strike, couple_ports, BG_RESETS, bg_resets, become};
+                      bg_view_strike, couple_ports, BG_RESETS, bg_resets, become, bg_clocks};
 }
 
 /* A term is the effect of a small relative change of a state. */

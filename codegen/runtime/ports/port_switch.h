@@ -19,10 +19,20 @@ typedef struct {
 } bg_switch;
 
 /* What a state becomes as a port comes to a mode, `sign`, or at an impact of a stop: its place in
- * s, and that of the value among the conditions. */
+ * s, and that of the value among the conditions. Of a task `port` is -1 less its place among the
+ * clocks. */
 typedef struct {
     int port, sign, place, value;
 } bg_reset;
+
+/* The instants (k * every + offset) / unit of a task, k = 0, 1, ..; all three are whole numbers. */
+typedef struct {
+    double every, offset, unit;
+} bg_clock;
+
+/* port_clock.c: the first instant after t, and whether t is one. */
+double bg_clock_after(const bg_clock *clock, double t);
+int bg_clock_strikes(const bg_clock *clock, double t);
 
 /* The place of the condition that changes a switch over in its mode. */
 int bg_condition(const bg_switch *s, int sign);

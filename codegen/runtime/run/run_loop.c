@@ -148,6 +148,30 @@ static int settle(const bg_engine *e, bg_course *c, int started)
     return status;
 }
 
+/* The next instant of a task after t, and of which. */
+static void look_for_tick(const bg_clock *clocks, bg_course *c, double t)
+{
+    c->tick = INFINITY;
+    for (int k = 0; k < BG_CLOCKS; k++)
+        c->tick = fmin(c->tick, bg_clock_after(clocks + k, t));
+}
+
+/* Which tasks are due at t; whether any is. */
+static int are_due(const bg_clock *clocks, bg_course *c)
+{
+    int any = 0;
+    for (int k = 0; k < BG_CLOCKS; k++)
+        any |= c->due[k] = bg_clock_strikes(clocks + k, c->at.t);
+    return any;
+}
+
+/* What is due is set once no event is left, and the mode decided anew. */
+static int strike(const bg_engine *e, bg_course *c)
+{
+    const int status = bg_set_by_tasks(&e->sight, &c->at, c->mode, c->due);
+    return status ? status : settle(e, c, 1);
+}
+
 void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
 {
     c->at = (bg_instant){.t = t, .s = s};
@@ -168,24 +192,28 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
 int bg_run(const bg_engine *e, bg_course *c)
 {
     const double most = 16.0 * c->log.capacity + 1000.0;
-    int status = BG_OK, started = 0;
+    int status = BG_OK, started = 0, due = !c->goes_on && are_due(e->sight.clocks, c);
     /* Breakpoints lie ahead one after the other: a turn that ends at one gets somewhere. */
     for (double turns = 0.0; turns < most; turns += c->at.t < c->at.following) {
         int undecided = 1;
         status = e->pass(e->self, c->at.t, &c->span);
-        c->at.following = c->span.following;
+        look_for_tick(e->sight.clocks, c, c->at.t);
+        c->at.following = fmin(c->span.following, c->tick);
         if (status == BG_OK && started && c->at.t >= c->end)
             status = come_to_end(e, c, &undecided);
-        if (status || !undecided)
+        if (status || !(undecided || due))
             return status;
         status = settle(e, c, started);
         started = 1;
+        if (due && status == BG_OK)
+            status = strike(e, c);
         memset(c->at.touched, 0, sizeof c->at.touched);
         if (status || c->at.t >= c->end)
             return status;
         status = e->advance(e->self, fmin(c->at.following, c->end));
         if (status)
             return status;
+        due = c->at.t == c->tick && are_due(e->sight.clocks, c);
     }
     return BG_EVENTS;
 }

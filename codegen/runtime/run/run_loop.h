@@ -14,6 +14,8 @@ typedef struct {
     double began, end;
     bg_span span;
     int goes_on;
+    double tick; /* the next instant of a task, and whose it is or was */
+    int due[BG_MOST_CLOCKS];
     int mode[BG_MOST_PORTS];
     bg_log log;
     bg_rounds rounds;

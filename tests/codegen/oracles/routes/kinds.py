@@ -8,6 +8,7 @@ from oracles.routes.lawful import LAWFUL
 from oracles.routes.plain import PLAIN
 from oracles.routes.resetting import RESETTING
 from oracles.routes.searched import SEARCHED
+from oracles.routes.signals import SIGNALS
 from oracles.routes.sloped import SLOPED
 from oracles.routes.stops import STOPS
 from oracles.routes.supplied import SUPPLIED
@@ -16,7 +17,7 @@ from oracles.routes.tabled import TABLED
 
 EVERY = (
     *FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL, *SUPPLIED,
-    *TABLED, *SEARCHED, *EXCHANGING,
+    *TABLED, *SEARCHED, *EXCHANGING, *SIGNALS,
 )  # fmt: skip
 
 KINDS = {make.__name__: make for make in EVERY}

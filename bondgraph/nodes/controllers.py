@@ -1,0 +1,175 @@
+"""Sampled controllers: `Controller` as a user writes it, and the elements that it is made of."""
+
+from collections.abc import Hashable, Iterable, Mapping
+from math import lcm
+from typing import Any
+
+import sympy as sp
+
+from bondgraph.algebra.atoms import number, symbol
+from bondgraph.algebra.expressions import TIME, expression
+from bondgraph.errors import ExpressionError, StructureError
+from bondgraph.nodes.elements import Element, Node
+from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.laws import ExpressionLaw
+from bondgraph.nodes.tasks import TICK, Reset, Task
+
+LARGEST = 2**40
+"""No instant of a run of a thousand million periods is beyond what a double counts exactly."""
+
+
+def Controller(
+    name: Hashable, every: object, offset: object = 0, reads: object = None,
+    states: Mapping[str, object] | None = None, update: Mapping[str, object] | None = None,
+    gives: Mapping[str, object] | None = None, **more: object,
+) -> Node:  # fmt: skip
+    """A controller that works at the instants ``offset + k*every`` [s], k = 0, 1, ..., and holds between.
+
+    ``gives``: signals by name and the expression that each takes the value of at an instant, and holds
+    until the next. ``states``: what it keeps, with where it begins, and ``update``, what each becomes. All
+    expressions read what stood before the instant, after events there: so what it gives is told by its
+    states before their update, and controllers that work at one instant do not see one another's new values.
+    What it gives is 0 before its first instant, or what ``states`` tells of it. ``reads``: the signals that
+    the expressions may read; any unless told.
+
+    Raises nothing: `validate` looks at nodes.
+
+    >>> import bondgraph as bg
+    >>> motor = bg.graph(
+    ...     [bg.Se("motor", "1*tau"), bg.One("shaft"), bg.I("J", "J", flow="omega"),
+    ...      Controller("pi", every=0.01, states={"z": 0}, update={"z": "z + T*(ref - omega)"},
+    ...                 gives={"tau": "K*(ref - omega) + z"})], "motor > shaft > J")
+    >>> bg.derive(motor).further_states, [task.period for task in bg.derive(motor).tasks]
+    ((z, tau), [0.01])
+    """
+    given = {
+        "every": every, "offset": offset, "reads": reads, "states": states, "update": update,
+        "outputs": gives, **more,
+    }  # fmt: skip
+    told = {key: value for key, value in given.items() if value is not None}
+    if told.get("offset") == 0:
+        del told["offset"]
+    return name, {"kind": str(Kind.CONTROLLER), **told}
+
+
+def controller_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element]:
+    """A junction that carries nothing, and at it a detector for each value that is kept."""
+    where = f"node {name!r}"
+    starts, updates, gives = (
+        _by_name(attributes.get(key), f"{where}, {word}")
+        for key, word in (("states", "states"), ("update", "update"), ("outputs", "gives"))
+    )
+    _check(starts, updates, gives, where)
+    kept = [*starts, *(one for one in gives if one not in starts)]
+    becomes = {**updates, **gives}
+    _check_read(becomes, kept, attributes.get("reads"), where)
+    resets = tuple(Reset(one, becomes[one], TICK) for one in kept)
+    task = Task(name, *_instants(attributes, where), resets)
+    effort, flow = (symbol(f"{letter}_{name}", where) for letter in "ef")
+    still = ExpressionLaw(sp.Integer(0))
+    found = [
+        Element(name, Kind.ZERO, None, effort, None, whole=name, task=task),
+        Element(
+            f"{name}.still", Kind.SE, None, effort, flow, law=still, gives="effort", whole=name
+        ),
+    ]
+    for one in kept:
+        own = [symbol(f"{letter}_{name}_{one}", where) for letter in "ef"]
+        found.append(
+            Element(
+                f"{name}.{one}", Kind.DE, None, *own, gives="flow", integral=one,
+                start=starts.get(one), whole=name,
+            )
+        )  # fmt: skip
+    return found
+
+
+def _by_name(given: Any, where: str) -> dict[sp.Symbol, sp.Expr]:
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
+        raise StructureError(f"{where} must map names to expressions, not be {given!r}")
+    found: dict[sp.Symbol, sp.Expr] = {}
+    for key, value in given.items():
+        one = symbol(key.name if isinstance(key, sp.Symbol) else key, where)
+        if one in found:
+            raise StructureError(f"{where}: {one} is there twice")
+        found[one] = expression(value, f"{where} of {one}")
+    return found
+
+
+def _check(
+    starts: Mapping[sp.Symbol, sp.Expr], updates: Mapping[sp.Symbol, sp.Expr],
+    gives: Mapping[sp.Symbol, sp.Expr], where: str,
+) -> None:  # fmt: skip
+    """Every state is updated and has a start, and nothing is both a state and given."""
+    if not gives:
+        raise StructureError(f"{where} gives nothing; name what it gives, gives={{'u': ...}}")
+    for one in updates:
+        if one in gives:
+            raise StructureError(
+                f"{where}: {one} is updated and given; give the state another name"
+            )
+        if one not in starts:
+            raise StructureError(
+                f"{where}: update of {one}, which is no state; tell where it begins, states={{'{one}': 0}}"
+            )
+    for one, start in starts.items():
+        if one not in updates and one not in gives:
+            raise StructureError(
+                f"{where}: the state {one} is never updated; tell what it becomes, update={{'{one}': ...}}"
+            )
+        if TIME in start.free_symbols:
+            raise StructureError(
+                f"{where}: the start of {one} reads the time; give numbers and parameters"
+            )
+
+
+def _check_read(
+    becomes: Mapping[sp.Symbol, sp.Expr], kept: Iterable[sp.Symbol], reads: Any, where: str
+) -> None:
+    """Every signal that it is to read is read; that nothing else is, is checked among all names."""
+    if reads is None:
+        return
+    if isinstance(reads, str) or not isinstance(reads, Iterable):
+        raise StructureError(f"{where}: reads must be a list of names, not {reads!r}")
+    names = [symbol(getattr(one, "name", one), f"{where}, reads") for one in reads]
+    used = {name for value in becomes.values() for name in value.free_symbols}
+    for one in names:
+        if one not in used:
+            raise StructureError(
+                f"{where}: it reads {one}, which none of its expressions does; leave it out"
+            )
+
+
+def _instants(attributes: Mapping[str, Any], where: str) -> tuple[int, int, int]:
+    """Period and offset as integers over one unit."""
+    if attributes.get("every") is None:
+        raise StructureError(f"{where} has no period; give every=..., a number of seconds")
+    every, offset = (
+        _seconds(attributes.get(key, 0), f"{where}, {key}") for key in ("every", "offset")
+    )
+    if every <= 0 or offset < 0:
+        raise StructureError(
+            f"{where}: every is {every} and offset {offset}; a period is above zero, an offset not below"
+        )
+    unit = lcm(int(every.q), int(offset.q))
+    found = int(every * unit), int(offset * unit), unit
+    if max(found) > LARGEST:
+        raise StructureError(
+            f"{where}: every {every} and offset {offset} have too many digits for exact instants; round them"
+        )
+    return found
+
+
+def _seconds(value: Any, where: str) -> sp.Rational:
+    """A number, or a text that is one, ``"1/3"``."""
+    try:
+        found = expression(value, where) if isinstance(value, str) else number(value, where)
+    except ExpressionError as error:
+        raise StructureError(f"{error}; give a number of seconds") from None
+    if not isinstance(found, sp.Rational):
+        raise StructureError(
+            f"{where}: {found} is not a number of seconds; instants are the same in all runs"
+        )
+    return found

@@ -1,0 +1,49 @@
+"""What is set at an instant: a `Reset` at an event, a `Task` at instants of its own, which are exact."""
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+
+import sympy as sp
+
+TICK = "tick"
+"""The event at which a task sets what it sets."""
+
+
+@dataclass(frozen=True)
+class Reset:
+    """What a state becomes at an event of a switch: as it turns "on" or "off"; at a "hit" of a stop;
+    at the "tick" of a task."""
+
+    state: sp.Symbol
+    value: sp.Expr
+    event: str
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a sampled controller does at the instants ``(k*every + offset)/unit`` [s], k = 0, 1, ...
+
+    ``resets``: what it sets, all told by what stood before it. The three numbers of an instant are
+    integers below 2^53, so each of its instants is one division, rounded once and the same wherever it
+    is worked out.
+    """
+
+    name: Hashable
+    every: int
+    offset: int
+    unit: int
+    resets: tuple[Reset, ...]
+
+    @property
+    def period(self) -> float:
+        """The time [s] from one instant to the next.
+
+        >>> Task("c", 1, 0, 100, ()).period
+        0.01
+        """
+        return self.every / self.unit
+
+    @property
+    def states(self) -> tuple[sp.Symbol, ...]:
+        """What it keeps from one instant to the next: its states, then what it gives."""
+        return tuple(reset.state for reset in self.resets)
