@@ -50,10 +50,10 @@ class Element:
     state as a function of what the law gives, so that it may have derivative causality. ``switch``: of an
     ideal switch, when it turns on and off. ``whole``: of a part of a node of several, a stop or a signal,
     that node, and ``declared`` its kind. ``task``: of a sampled controller, what it does at its instants.
-    ``start``: of what keeps or makes a state, the value with which runs begin. ``by_inverse``: whether the law counts by its inverse
-    alone, what it gives being the state. ``turned``: whether its law is turned round by what is known of
-    it: a resistance then gives what its law, as it was written, receives. ``needed``: names that have to be
-    positive for that.
+    ``start``: of what keeps or makes a state, the value with which runs begin. ``by_inverse``: whether the
+    law counts by its inverse alone, what it gives being the state. ``turned``: whether its law is turned
+    round by what is known of it: a resistance then gives what its law, as it was written, receives.
+    ``needed``: names that have to be positive for that.
     """
 
     name: Hashable
