@@ -17,6 +17,8 @@ def trim(
 ) -> dict[str, float]:
     """A point at which all states rest under constant inputs: every signal's value by name.
 
+    What sampled controllers keep rests where they set it to what it is.
+
     ``initial``: states to start the search from. ``mode``: what friction and switches do there, in the
     words of events, such as ``{"dog": "off", "brake": "stick"}``; of others a mode is found that is
     consistent, from the one that the start shows; so of laws that jump, which no word names. Sticking and

@@ -11,7 +11,6 @@ from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.errors import ExpressionError, StructureError
 from bondgraph.nodes.elements import Element, Node
 from bondgraph.nodes.kinds import Kind
-from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.nodes.tasks import TICK, Reset, Task
 
 LARGEST = 2**40
@@ -66,18 +65,16 @@ def controller_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[E
     resets = tuple(Reset(one, becomes[one], TICK) for one in kept)
     task = Task(name, *_instants(attributes, where), resets)
     effort, flow = (symbol(f"{letter}_{name}", where) for letter in "ef")
-    still = ExpressionLaw(sp.Integer(0))
     found = [
         Element(name, Kind.ZERO, None, effort, None, whole=name, task=task),
-        Element(
-            f"{name}.still", Kind.SE, None, effort, flow, law=still, gives="effort", whole=name
-        ),
+        # No flow passes it, so that its effort, the rate of all that is kept, is zero.
+        Element(f"{name}.still", Kind.R, sp.Integer(1), effort, flow, whole=name),
     ]
     for one in kept:
-        own = [symbol(f"{letter}_{name}_{one}", where) for letter in "ef"]
+        effort, flow = (symbol(f"{letter}_{name}_{one}", where) for letter in "ef")
         found.append(
             Element(
-                f"{name}.{one}", Kind.DE, None, *own, gives="flow", integral=one,
+                f"{name}.{one}", Kind.DE, None, effort, flow, gives="flow", integral=one,
                 start=starts.get(one), whole=name,
             )
         )  # fmt: skip

@@ -209,9 +209,9 @@ def resets(closing: Closing, ports: Sequence[FrictionPort], first: int) -> tuple
             sign = switching.sign(reset.event == "on")
             value = first + len(found)
             found.append(Reset(place, sign, states.index(reset.state), value))
-    for at, task in enumerate(closing.equations.tasks):
+    for clock, task in enumerate(closing.equations.tasks):
         for reset in task.resets:
-            found.append(Reset(-1 - at, 0, states.index(reset.state), first + len(found)))
+            found.append(Reset(-1 - clock, 0, states.index(reset.state), first + len(found)))
     return tuple(found)
 
 
