@@ -17,7 +17,7 @@ from bondgraph.analyse.instant import Instant
 from bondgraph.analyse.linear_model import LinearModel
 from bondgraph.analyse.modes import ToldModes, held_rows, told_modes
 from bondgraph.analyse.moving_hold import turns
-from bondgraph.analyse.sampled import SampledModel, sampled
+from bondgraph.analyse.sampled import SampledModel, check_told, sampled
 from bondgraph.analyse.slopes import Point, operating_point, with_given
 from bondgraph.analyse.turned import turned
 from bondgraph.analyse.unknowns import Unknowns, unknowns_in
@@ -119,6 +119,7 @@ def linearize(
     A, balances = system.dynamics()
     ys = tuple(system.put_in(system.signal(name)) for name in shown)
     if period is not None:
+        check_told(equations.tasks)
         ys += tuple(system.value(reset.value, task.name) for reset, task in sets)
         shown += [reset.state for reset, _ in sets]
     model = Rows(system.states, tuple(map(fixed, A)), tuple(balances), ys)

@@ -74,6 +74,19 @@ class SampledModel:
         )
 
 
+def check_told(tasks: Sequence[Task]) -> None:
+    """Refuse what only a Python function tells: it has no slopes.
+
+    Raises `SignalError`, naming the controller.
+    """
+    for task in tasks:
+        if task.step is not None:
+            raise SignalError(
+                f"the step of controller {task.name!r} is a Python function, which has no slopes; write what "
+                "it does as expressions, or linearize without a period"
+            )
+
+
 def sampled(between: LinearModel, tasks: Sequence[Task], period: object) -> SampledModel:
     """The model over a period [s], which each task's own has to divide.
 

@@ -82,7 +82,7 @@ class Kind(StrEnum):
     STATE = "State", Nature("signal", frozenset({"rate", "start", "low", "high", "unit"}), place=10)
     CONTROLLER = (
         "Controller",
-        Nature("signal", frozenset({"every", "offset", "reads", *NAMED}), place=11),
+        Nature("signal", frozenset({"every", "offset", "reads", "step", *NAMED}), place=11),
     )
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":

@@ -104,7 +104,7 @@ def _over_columns(model: StateEquations, name: sp.Symbol) -> Sum:
 
 
 def _read(model: StateEquations) -> set[sp.Symbol]:
-    """What matrices, dry friction and switches read, beside what is received at their ports."""
+    """What matrices, dry friction, switches and controllers read, beside what is received at their ports."""
     used: set[sp.Symbol] = set()
     for matrix in (model.A, model.J, model.B, model.E, model.F, model.D, model.G):
         used |= matrix.free_symbols
@@ -114,6 +114,8 @@ def _read(model: StateEquations) -> set[sp.Symbol]:
             used |= {*law.free_symbols} - {SLIP} | {port.received}
     for switch in model.switches:
         used |= {switch.port.received}.union(*(part.free_symbols for part in switch.read))
+    for task in model.tasks:
+        used |= {*task.reads}.union(*(one.value.free_symbols for one in task.resets))
     return used
 
 

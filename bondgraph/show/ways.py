@@ -3,7 +3,7 @@
 import sympy as sp
 
 from bondgraph.nodes.laws import SLIP, DryFriction
-from bondgraph.nodes.tasks import Reset
+from bondgraph.nodes.tasks import Reset, Task
 from bondgraph.reduce.structure import Port
 from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.show.plain import plain
@@ -43,6 +43,16 @@ def switching(one: SwitchPort) -> str:
     if one.gap is not None:
         return f"{text}; {_bound(one)}"
     return f"{text}; so {received} is never {least} and {given} never {most}"
+
+
+def working(task: Task) -> str:
+    """What a sampled controller sets, and when."""
+    if task.step is not None:
+        reads = ", ".join(map(str, task.reads)) or "nothing"
+        sets = " and ".join(map(str, task.states))
+        return f"{task.name}: {task.instants} a Python function sets {sets}; it reads {reads}"
+    sets = " and ".join(f"{one.state} becomes {plain(one.value)}" for one in task.resets)
+    return f"{task.name}: {task.instants} {sets}, by what there was before; between, these stay"
 
 
 def _reset(one: Reset) -> str:

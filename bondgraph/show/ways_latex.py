@@ -12,7 +12,7 @@ from bondgraph.show.sums import typeset
 
 
 def ways_latex(model: StateEquations) -> Iterator[str]:
-    """A formula for each dry friction and each switch."""
+    """A formula for each dry friction and each switch, and for all that controllers set."""
     for port in model.ports:
         law = model.laws.get(port.element.name)
         if isinstance(law, DryFriction):
@@ -22,6 +22,9 @@ def ways_latex(model: StateEquations) -> Iterator[str]:
         for reset in one.switch.resets:
             when = "at each impact" if reset.event == "hit" else f"as it turns {reset.event}"
             yield rf"{typeset(reset.state)} := {typeset(reset.value)} \quad \text{{{when}}}"
+    for task in model.tasks:
+        for reset in task.resets if task.step is None else ():
+            yield rf"{typeset(reset.state)} := {typeset(reset.value)} \quad \text{{{task.instants}}}"
 
 
 def _cases(rows: Iterator[tuple[str, str]]) -> str:

@@ -17,7 +17,7 @@ from bondgraph.show.display import (
 )
 from bondgraph.show.putting_in import closed
 from bondgraph.show.statements import Statement, Statements, statements
-from bondgraph.show.ways import rubbing, switching
+from bondgraph.show.ways import rubbing, switching, working
 
 PUT_IN = "with laws and sources put in"
 
@@ -48,13 +48,13 @@ def whole_text(model: StateEquations) -> str:
 
 
 def ways(model: StateEquations) -> list[str]:
-    """A sentence for each dry friction and each switch: both of its ways."""
+    """A sentence for each dry friction and each switch, both of its ways; and for each controller."""
     frictions = [
         rubbing(port, law)
         for port in model.ports
         if isinstance(law := model.laws.get(port.element.name), DryFriction)
     ]
-    return [*frictions, *map(switching, model.switches)]
+    return [*frictions, *map(switching, model.switches), *map(working, model.tasks)]
 
 
 def together(loop: Sequence[sp.Symbol]) -> str:
