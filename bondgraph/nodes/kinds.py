@@ -147,8 +147,8 @@ class Kind(StrEnum):
 
     @property
     def one_port(self) -> bool:
-        """True for everything but transformers, gyrators and junctions."""
-        return not self.two_port and not self.joins
+        """True for everything but transformers, gyrators, junctions and signals."""
+        return not (self.two_port or self.joins or self.signals)
 
     @property
     def absorbs(self) -> bool:
