@@ -29,7 +29,7 @@ def _missing(spring: str, damper: str, parameters: dict[str, float], **inputs: f
         # A source's own input is nobody's misspelling, however near a state's name is.
         ("k*q_spring", "f_damper*abs(f_damper)", {}, "v_r (of Sf 'road')"),
         # A law without any signal tells what it could read; one with a signal lacks a number.
-        ("k*q**3", "2*f_damper", {}, "v_r (of Sf 'road'), q (in the law of 'spring', which is over q_spring)"),
+        ("k*q**3", "f_damper", {}, "v_r (of Sf 'road'), q (in the law of 'spring', which is over q_spring)"),
         ("k*q_spring", "k*z", {}, "v_r (of Sf 'road'), z (in the law of 'damper', which receives f_damper)"),
         ("k*q_spring", "c*f_damper", {}, "v_r (of Sf 'road'), c (in the law of 'damper')"),
         # Nearly a signal's name, or that of a number which nothing reads.
