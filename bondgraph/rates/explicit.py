@@ -9,6 +9,7 @@ import sympy as sp
 from bondgraph.algebra.tidy import tidy
 from bondgraph.analyse.input_rates import rate_symbol
 from bondgraph.analyse.turned import turned
+from bondgraph.derive import check_derived
 from bondgraph.equations import StateEquations
 from bondgraph.rates.closing import closed
 from bondgraph.rates.energy import in_energy_states
@@ -44,6 +45,7 @@ def explicit(
     v' = (F - k*q_k**3)/m
     q_k' = v
     """
+    check_derived(equations)
     signals = Signals(turned(equations, laws), laws)
     solution = closed(signals.told, signals.owners)
     parts, rates = solution.told, signals.rates
