@@ -7,10 +7,10 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME, callable_in_text
+from bondgraph.algebra.lookups import unguarded
 from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.errors import StructureError
-from bondgraph.inverses.guarding import unguarded
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction, held
 from bondgraph.reduce.structure import Port, PortRow

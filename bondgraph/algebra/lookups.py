@@ -132,6 +132,13 @@ class Look(Tabled):
         return text if exp is None else rf"{{{text}}}^{{{exp}}}"
 
 
+def unguarded(expr: sp.Expr) -> sp.Expr:
+    """The same without what is there for its ends alone."""
+    return expr.replace(
+        lambda part: isinstance(part, Look) and part.GUARDS, lambda part: part.places[0]
+    )
+
+
 def _marks(handle: Handle) -> str:
     return "".join(letter * order for letter, order in zip("xy", handle.orders, strict=False))
 

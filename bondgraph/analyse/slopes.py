@@ -7,13 +7,13 @@ import sympy as sp
 
 from bondgraph.algebra.atoms import normal
 from bondgraph.algebra.expressions import TIME, expression
+from bondgraph.algebra.lookups import unguarded
 from bondgraph.algebra.residues import is_zero
 from bondgraph.algebra.table_corners import check_tables
 from bondgraph.algebra.whole import Below, Floor
 from bondgraph.analyse.unknowns import still
 from bondgraph.declare.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.errors import SignalError
-from bondgraph.inverses.guarding import unguarded
 
 Point = Mapping[sp.Symbol, sp.Expr]
 """Values of signals, and of parameters where they decide on which side of a corner it lies."""

@@ -8,9 +8,9 @@ from types import MappingProxyType
 import sympy as sp
 
 from bondgraph.algebra.exact import combined
+from bondgraph.algebra.lookups import unguarded
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.names import energy_name
-from bondgraph.inverses.guarding import unguarded
 from bondgraph.reduce.motion import Motion
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import JunctionStructure, Port
