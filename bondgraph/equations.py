@@ -6,8 +6,8 @@ from types import MappingProxyType
 
 import sympy as sp
 
+from bondgraph.algebra.called import unguarded
 from bondgraph.algebra.expressions import TIME, callable_in_text
-from bondgraph.algebra.lookups import unguarded
 from bondgraph.declare.elements import Element
 from bondgraph.declare.laws import ExpressionLaw, Law
 from bondgraph.errors import StructureError

@@ -24,6 +24,9 @@ class Called(sp.Function):  # type: ignore[misc]
     FIXED = 1
     """So many arguments come before those that have numbers."""
 
+    GUARDS = False
+    """Whether it is its argument, and there for refusing what is outside alone."""
+
     @property
     def places(self) -> tuple[sp.Expr, ...]:
         """The arguments that have numbers."""
@@ -60,3 +63,10 @@ class Called(sp.Function):  # type: ignore[misc]
 
     def _numpycode(self, printer: Any) -> str:
         return f"{self.code}({', '.join(map(printer._print, self.places))})"
+
+
+def unguarded(expr: sp.Expr) -> sp.Expr:
+    """The same without what is there for its ends alone."""
+    return expr.replace(
+        lambda part: isinstance(part, Called) and part.GUARDS, lambda part: part.places[0]
+    )

@@ -93,9 +93,6 @@ class Look(Tabled):
     those of `looked_up`.
     """
 
-    GUARDS = False
-    """Whether it is there for its ends alone."""
-
     @property
     def numeric(self) -> Callable[..., float]:
         """Of its arguments."""
@@ -126,17 +123,10 @@ class Look(Tabled):
 
     def _latex(self, printer: Any, exp: str | None = None) -> str:
         inside = ", ".join(map(printer._print, self.places))
-        name = printer._print(sp.Symbol(self.handle.table.name))
+        name = printer._hprint_Function(self.handle.table.name)
         marks = _marks(self.handle)
         text = rf"{name}{f'_{{{marks}}}' if marks else ''}\left({inside}\right)"
         return text if exp is None else rf"{{{text}}}^{{{exp}}}"
-
-
-def unguarded(expr: sp.Expr) -> sp.Expr:
-    """The same without what is there for its ends alone."""
-    return expr.replace(
-        lambda part: isinstance(part, Look) and part.GUARDS, lambda part: part.places[0]
-    )
 
 
 def _marks(handle: Handle) -> str:

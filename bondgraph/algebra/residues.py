@@ -16,7 +16,7 @@ from typing import Any
 import sympy as sp
 from sympy.ntheory import factorint, sqrt_mod
 
-from bondgraph.algebra.lookups import unguarded
+from bondgraph.algebra.called import unguarded
 
 PRIME = 2874246 * 802241960520 + 1
 """The largest prime below 2**61 of the form ``8 * 3 * 5 * ... * 29 * 31 * k + 1``."""

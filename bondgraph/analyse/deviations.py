@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 
 import sympy as sp
 
+from bondgraph.algebra.called import unguarded
 from bondgraph.algebra.expressions import TIME
-from bondgraph.algebra.lookups import unguarded
 from bondgraph.algebra.table_corners import check_tables
 from bondgraph.analyse.slopes import Point
 from bondgraph.analyse.unknowns import Moment, Unknowns

@@ -6,8 +6,8 @@ from itertools import product
 import sympy as sp
 
 from bondgraph.algebra.atoms import normal
+from bondgraph.algebra.called import unguarded
 from bondgraph.algebra.expressions import TIME, expression
-from bondgraph.algebra.lookups import unguarded
 from bondgraph.algebra.residues import is_zero
 from bondgraph.algebra.table_corners import check_tables
 from bondgraph.algebra.whole import Below, Floor

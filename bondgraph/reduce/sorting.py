@@ -7,8 +7,8 @@ from types import MappingProxyType
 
 import sympy as sp
 
+from bondgraph.algebra.called import unguarded
 from bondgraph.algebra.exact import combined
-from bondgraph.algebra.lookups import unguarded
 from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.declare.names import energy_name
 from bondgraph.reduce.motion import Motion

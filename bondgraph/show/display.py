@@ -1,5 +1,6 @@
 """State equations as text for a terminal: matrices, else row by row, else by their structure."""
 
+import re
 from collections.abc import Sequence
 from typing import Literal, Protocol
 
@@ -146,6 +147,15 @@ def written(left: Sequence[Term], right: Sequence[Term]) -> list[str]:
     pieces = text_pieces(left) + [f"= {piece}" if at == 0 else piece
                                   for at, piece in enumerate(text_pieces(right))]  # fmt: skip
     return wrapped(pieces, WIDTH, "    ")
+
+
+def words(sentence: str) -> list[str]:
+    """The words of a sentence; what is equal is one.
+
+    >>> words("off, f_D = 0 while e_D <= 0")
+    ['off,', 'f_D = 0', 'while', 'e_D <= 0']
+    """
+    return re.split(r"(?<!=) (?!<?=)", sentence)
 
 
 def wrapped(pieces: Sequence[str], width: int, indent: str) -> list[str]:

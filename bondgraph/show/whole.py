@@ -12,6 +12,7 @@ from bondgraph.show.display import (
     counted,
     equations_text,
     listed,
+    words,
     wrapped,
     written,
 )
@@ -81,7 +82,7 @@ def _beside(model: StateEquations, found: Statements) -> Iterator[str]:
     lines = [line for one in (*found.given, *found.rates) for line in _lines(one)]
     sentences = [*map(together, found.loops), *ways(model)]
     for text in sentences:
-        first, *rest = text.split()
+        first, *rest = words(text)
         lines += wrapped([f"  {first}", *rest], WIDTH, "    ")
     if lines and (model.states or model.outputs):
         yield "where"
