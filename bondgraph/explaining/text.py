@@ -6,7 +6,8 @@ from bondgraph.equations import StateEquations
 from bondgraph.explaining.layout import first_few, fits, heading, shortened
 from bondgraph.explaining.records import Equation, Factor, Formula, Step
 from bondgraph.show.blocks import Block, beside, matrix_block
-from bondgraph.show.display import WIDTH, counted, equations_shown, words, wrapped
+from bondgraph.show.display import WIDTH, counted, equations_shown
+from bondgraph.show.lines import words, wrapped
 from bondgraph.show.sums import Sum, text_pieces
 
 WIDEST_MATRIX = 120

@@ -9,6 +9,10 @@ from sympy.printing.latex import LatexPrinter
 from sympy.printing.str import StrPrinter
 
 from bondgraph.algebra.called import unguarded
+from bondgraph.algebra.expressions import TIME
+
+LATE = sp.Symbol("\U0010ffff")
+"""The time, by a name that comes after all others: ``w*t``, not ``t*w``."""
 
 LONG = 1000
 """Fractions with denominators from here on are read more easily as decimals."""
@@ -24,10 +28,19 @@ def plain(expr: sp.Expr) -> str:
     ('x^2/4', '0.12345*x', '3*x*|x|')
     >>> plain(sp.Piecewise((2*x, x < 0), (x, x < 1), (0, True)))
     '{2*x if x < 0, x if x < 1, else 0}'
-    >>> plain(-x + sp.Symbol("x_0"))
-    'x_0 - x'
+    >>> plain(-x + sp.Symbol("x_0")), plain(sp.sin(sp.Symbol("w")*sp.Symbol("t")))
+    ('x_0 - x', 'sin(w*t)')
     """
-    return str(_Plain().doprint(decimals(unguarded(expr)))).replace("**", "^")
+    return one_line(decimals(expr)).replace("**", "^")
+
+
+def one_line(expr: sp.Expr) -> str:
+    """The same with powers, and with numbers, as sympy writes them.
+
+    >>> one_line(sp.Symbol("x")**2/1024)
+    'x**2/1024'
+    """
+    return str(_Plain().doprint(_ready(expr))).replace(LATE.name, TIME.name)
 
 
 def typed(expr: Any, names: Mapping[sp.Symbol, str]) -> str:
@@ -37,7 +50,12 @@ def typed(expr: Any, names: Mapping[sp.Symbol, str]) -> str:
     >>> typed(y - x, {x: r"\dot{x}"})
     'y - \\dot{x}'
     """
-    return str(_Typed({"symbol_names": dict(names)}).doprint(decimals(unguarded(expr))))
+    told = {**names, LATE: names.get(TIME, TIME.name)}
+    return str(_Typed({"symbol_names": told}).doprint(_ready(decimals(expr))))
+
+
+def _ready(expr: Any) -> Any:
+    return unguarded(expr).xreplace({TIME: LATE})
 
 
 class _PositiveFirst:

@@ -12,10 +12,9 @@ from bondgraph.show.display import (
     counted,
     equations_text,
     listed,
-    words,
-    wrapped,
     written,
 )
+from bondgraph.show.lines import words, wrapped
 from bondgraph.show.putting_in import closed
 from bondgraph.show.statements import Statement, Statements, statements
 from bondgraph.show.ways import rubbing, switching

@@ -96,7 +96,7 @@ where
 
 RECTIFIER = """\
 where
-  e_u = U*sin(t*w)
+  e_u = U*sin(w*t)
   e_D = e_u - e_C - R*f_D
   D: an ideal switch; on, it keeps e_D = 0 by what f_D that takes, and turns off as f_D falls below
     zero; off, it gives f_D = 0, and turns on as e_D rises above zero; so e_D is never positive and
