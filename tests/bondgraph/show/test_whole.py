@@ -180,6 +180,13 @@ def test_a_reaction_is_told_by_the_rates_of_its_states() -> None:
     rows = {str(one.left): one.value for one in closed(equations, statements(equations))}
     assert sp.expand(rows["q_A'"] - k * (K_C * q_C - K_A * q_A)) == 0
     assert sp.expand(rows["q_Cc'"] + rows["q_A'"]) == 0
+    found = bg.explicit(equations)
+    assert sp.expand(found[q_A] - k * (K_C * q_C - K_A * q_A)) == 0
+    assert sp.expand(found[q_C] + found[q_A]) == 0
+    right = r"\left(K_{A} q_{A} - K_{C} q_{Cc}\right)"
+    for text in (equations._repr_latex_(), bg.explain(_reaction()).latex()):
+        assert rf"-k {right}" in text
+        assert rf"k {right}" in text.replace(rf"-k {right}", "")
 
 
 def test_a_source_that_drives_a_dependent_storage_has_its_slope_put_in() -> None:
