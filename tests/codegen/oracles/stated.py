@@ -10,7 +10,6 @@ import sympy as sp
 
 import bondgraph as bg
 from bondgraph.algebra.expressions import TIME
-from bondgraph.declare.laws import SLIP
 from bondgraph.show.putting_in import closed
 from bondgraph.show.statements import Statement, statements
 from codegen import Constant, Result, Signal, Simulator, Sine, simulator
@@ -145,5 +144,5 @@ def _parameters(equations: bg.StateEquations) -> list[str]:
     read += [part.free_symbols for switch in equations.switches for part in switch.read]
     read += [start.free_symbols for start in equations.starts.values()]
     known = {*equations.signals, *equations.states, *equations.inputs, *equations.further_states}
-    known |= {*equations.held, TIME, SLIP}
+    known |= {*equations.held, TIME}
     return sorted({str(name) for name in used.union(*read)} - {str(name) for name in known})
