@@ -9,6 +9,7 @@ from bondgraph.nodes.laws import SLIP, DryFriction
 from bondgraph.reduce.structure import Port
 from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.show.sums import typeset
+from bondgraph.show.ways import positive
 
 
 def ways_latex(model: StateEquations) -> Iterator[str]:
@@ -50,5 +51,10 @@ def _friction(port: Port, law: DryFriction) -> Iterator[tuple[str, str]]:
 def _switch(one: SwitchPort) -> Iterator[tuple[str, str]]:
     given, received = f"{typeset(one.port.given)} = 0", f"{typeset(one.port.received)} = 0"
     on, off = (received, given) if one.held == "on" else (given, received)
-    yield on, rf"\text{{on, until }} {typeset(one.off)} > 0"
-    yield off, rf"\text{{off, until }} {typeset(one.on)} > 0"
+    yield on, rf"\text{{on, until }} {_passed(one.off)}"
+    yield off, rf"\text{{off, until }} {_passed(one.on)}"
+
+
+def _passed(condition: sp.Expr) -> str:
+    falls, told = positive(condition)
+    return f"{typeset(told)} {'<' if falls else '>'} 0"

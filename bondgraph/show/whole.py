@@ -12,9 +12,9 @@ from bondgraph.show.display import (
     counted,
     equations_text,
     listed,
-    wrapped,
     written,
 )
+from bondgraph.show.lines import words, wrapped
 from bondgraph.show.putting_in import closed
 from bondgraph.show.statements import Statement, Statements, statements
 from bondgraph.show.ways import rubbing, switching, working
@@ -81,7 +81,7 @@ def _beside(model: StateEquations, found: Statements) -> Iterator[str]:
     lines = [line for one in (*found.given, *found.rates) for line in _lines(one)]
     sentences = [*map(together, found.loops), *ways(model)]
     for text in sentences:
-        first, *rest = text.split()
+        first, *rest = words(text)
         lines += wrapped([f"  {first}", *rest], WIDTH, "    ")
     if lines and (model.states or model.outputs):
         yield "where"
