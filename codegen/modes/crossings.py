@@ -15,6 +15,9 @@ from codegen.modes.rounding import Peaks, scales, slip_rates
 from codegen.modes.trials import Sight, hung_rounding
 from codegen.tuning import TUNING
 
+KeptCrossings = tuple[tuple[int, float, int, float, float], ...]
+"""Ports, when each was crossed last, how many leaps could not be seen, how fast it was the last two times."""
+
 
 class Crossings:
     """Of each jump when it was crossed last, and how many of the latest leaps could not be seen."""
@@ -54,6 +57,20 @@ class Crossings:
             self._unseen[i] = 0 if seen else self._unseen[i] + 1
             if self._unseen[i] >= TUNING.stalled:
                 raise _accumulates(model, i, here.t)
+
+    def kept(self) -> KeptCrossings:
+        """What is known of each jump that was crossed, to go on from there."""
+        return tuple(
+            (i, last, self._unseen[i], *self._speeds.get(i, (math.inf, math.inf)))
+            for i, last in sorted(self._last.items())
+        )
+
+    def take_up(self, kept: KeptCrossings) -> None:
+        """Know what was kept, and no more."""
+        self._last = {i: last for i, last, _, _, _ in kept}
+        self._unseen = dict.fromkeys(self._jumps, 0) | {i: count for i, _, count, _, _ in kept}
+        told = {i: (before, latest) for i, _, _, before, latest in kept if i in self._speeds}
+        self._speeds = dict.fromkeys(self._speeds, (math.inf, math.inf)) | told
 
     def _swing(self, port: int, speed: float, leap: float, peaks: Peaks) -> None:
         """Tell how high swings were, and whether they hardly shrink: by crossings to the same side."""

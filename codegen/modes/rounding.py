@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -65,6 +66,17 @@ class Peaks:
         states = len(model.program.states)
         return cls(np.zeros(states + len(model.program.inputs)), states)
 
+    def kept(self) -> "KeptPeaks":
+        """The same as a record."""
+        leapt = tuple(sorted(self.leapt.items()))
+        return KeptPeaks(tuple(self.both.tolist()), self.states, self.time, self.lingering, leapt)
+
+    @classmethod
+    def again(cls, kept: "KeptPeaks") -> "Peaks":
+        """What was kept."""
+        both = np.array(kept.both)
+        return cls(both, kept.states, kept.time, kept.lingering, dict(kept.leapt))
+
     @property
     def x(self) -> Array:
         """Of states."""
@@ -93,6 +105,16 @@ class Peaks:
         """The largest magnitudes of states and inputs, one after the other, with an instant's own."""
         found: Array = np.maximum(np.abs(np.concatenate((now.x, now.u))), self.both)
         return found
+
+
+class KeptPeaks(NamedTuple):
+    """The fields of `Peaks`, as nobody changes them any more."""
+
+    both: tuple[float, ...]
+    states: int
+    time: float
+    lingering: frozenset[int]
+    leapt: tuple[tuple[int, float], ...]
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 """The event-driven loop: smooth legs between breakpoints, and what ports do where these meet."""
 
+import math
 from collections import deque
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from codegen.inputs.pieces import Piece
 from codegen.inputs.present import Inputs, Present
 from codegen.inputs.signal import Signal
 from codegen.instants.parts import Part, hits, parts_of
-from codegen.model.snapshot import Mode
+from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.choices import Choices, Occasion
 from codegen.modes.choose import decide
 from codegen.modes.closed import ClosedModel
@@ -30,7 +31,7 @@ from codegen.runs.free import FreeLeg
 from codegen.runs.legs import Leg, leg_of
 from codegen.runs.methods import EXACT
 from codegen.runs.stretches import Stretches
-from codegen.runs.track import LATEST, Accumulating, Event, Settings, Track
+from codegen.runs.track import LATEST, Accumulating, Event, Kept, Settings, Track
 from codegen.standalone.switchings import way_of
 from codegen.tuning import TUNING
 
@@ -62,22 +63,23 @@ def run_hybrid(
     ``keeping``: whether events are kept; without them nothing grows with the length of a run but its samples.
     ``corners``: whether those of laws are among them.
     """
-    course = _Course(model, times, start, signals, settings, first)
+    course = Course(model, times, start, signals, settings, first)
     course.track.tally, course.track.keeping, course.track.cornered = tally, keeping, corners
     if tally is not None:
         tally.within(course.track)
-    while course.unfinished:
-        course.settle()
-        if course.t < course.end:
-            course.advance()
+    course.arrive()
+    course.settle()
     course.track.record(course.s, course.mode)
     if tally is not None:
         tally.record()
     return Stretch(course.track, course.s, course.mode)
 
 
-class _Course:
-    """Where a run is: time, integrated vector, mode; and the ports whose event it has come to."""
+class Course:
+    """Where a run is: time, integrated vector, mode; and the ports whose event it has come to.
+
+    It may pause where it ends, and go on from there.
+    """
 
     def __init__(
         self, model: ClosedModel, times: Array, start: Array, signals: Sequence[Signal],
@@ -97,14 +99,63 @@ class _Course:
         self._clear = False
         self._touched = frozenset[int]()
         self._settled: float | None = None
+        #: Whether the mode of the present instant is none that could go on, as a run may end with.
+        self._excused = False
+        #: The instant at which it paused, where that is decided again.
+        self._paused: float | None = None
         self._before: Sequence[Piece] | None = None
         self._peaks, self._rounds = Peaks.none(model), deque[float](maxlen=TUNING.stalled)
 
-    @property
-    def unfinished(self) -> bool:
-        """Whether there is anything left to decide or to integrate."""
-        undecided = self.t != self._settled
-        return undecided or self.t < self.end or bool(self._touched)
+    def arrive(self) -> None:
+        """Go on to the end, where the mode is not decided yet."""
+        while self.t < self.end:
+            if self._touched or self.t != self._settled:
+                self.settle()
+            self.advance()
+
+    def on_to(self, end: float) -> None:
+        """Go on from the present instant, with nothing recorded but what happens."""
+        self.end, self._times = end, np.array([self.t, end])
+        self.track.recorded = 1
+        self.track.modes, self.track.events = [self.mode], []
+
+    def under(self, signals: Sequence[Signal]) -> None:
+        """Other inputs from the present instant on."""
+        self._inputs = Inputs(signals)
+
+    def kept(self) -> Kept:
+        """Where the run is, to go on from there."""
+        decided = self._settled == self.t and not self._touched and not self._excused
+        return Kept(
+            self.t,
+            self._origin,
+            tuple(self.s.tolist()),
+            self.mode,
+            self._touched,
+            self._settled is not None,
+            decided,
+            tuple(self.track.largest.tolist()),
+            self._peaks.kept(),
+            self._crossings.kept(),
+            tuple(self._rounds),
+        )
+
+    def take_up(self, kept: Kept) -> None:
+        """Be where a run was that was kept, under the inputs as they are."""
+        self.t, self._origin, self.s = kept.t, kept.began, np.array(kept.s)
+        self.mode, self._touched = kept.mode, kept.touched
+        self._settled = kept.t if kept.decided else -math.inf if kept.begun else None
+        self._clear, self._excused = False, False
+        self._paused = None if kept.decided else kept.t
+        self.track.largest = np.array(kept.largest)
+        self._peaks = Peaks.again(kept.peaks)
+        self._crossings.take_up(kept.crossings)
+        self._rounds = deque(kept.rounds, maxlen=TUNING.stalled)
+        self._here = Sight(self._model, self.t, self.s, self._inputs.at(self.t).pieces)
+
+    def look(self) -> Snapshot:
+        """Everything at the present instant, which is decided."""
+        return self._here.at(self.mode)
 
     @property
     def _slipping(self) -> frozenset[int]:
@@ -115,13 +166,13 @@ class _Course:
     def settle(self) -> None:
         """Decide the mode just after t, and bring ports that hold to rest."""
         model, t, peaks, present = self._model, self.t, self._peaks, self._inputs.at(self.t)
-        pieces = present.pieces
+        pieces, self._excused = present.pieces, False
         here = Sight(model, t, self.s, pieces)
         peaks.see(here, self.mode)
         if self.mode:
             peaks.time = time_constant(self._fastest(here, present), t - self._origin)
         ahead = look_ahead(peaks.time, t, present.following)
-        if t >= self.end and self._settled is not None:
+        if (t >= self.end or t == self._paused) and self._settled is not None:
             # The search may have missed an event at the very end by a rounding.
             self._touched |= _still(here, self.mode, self._slipping, peaks)
         # A breakpoint may set the slips anew, so sticking ports are decided again with the others.
@@ -163,6 +214,7 @@ class _Course:
             if self.t + now.ahead < self.end:
                 raise
             here.at(self.mode)
+            self._excused = True
             return [Part(self.mode, self.mode, (), here.s)]
 
     def _note(self, parts: Sequence[Part]) -> None:
