@@ -39,7 +39,7 @@ from codegen.runs.arguments import (
 )
 from codegen.runs.completion import started, tell_completed
 from codegen.runs.impulses import refuse_impulses
-from codegen.stepping.going import NumpyGoing
+from codegen.stepping.in_numpy import NumpyGoing
 from codegen.stepping.known import Sources
 from codegen.stepping.plan import Plan
 from codegen.stepping.state import Start

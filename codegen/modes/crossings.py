@@ -9,14 +9,12 @@ import math
 from collections.abc import Collection
 
 from bondgraph.errors import SimulationError
+from codegen.model.kept import KeptCrossings
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks, scales, slip_rates
 from codegen.modes.trials import Sight, hung_rounding
 from codegen.tuning import TUNING
-
-KeptCrossings = tuple[tuple[int, float, int, float, float], ...]
-"""Ports, when each was crossed last, how many leaps could not be seen, how fast it was the last two times."""
 
 
 class Crossings:

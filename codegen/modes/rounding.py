@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 import numpy as np
 
 from codegen.inputs.pieces import Piece
+from codegen.model.kept import KeptPeaks
 from codegen.model.moves import Moves
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
@@ -66,13 +66,13 @@ class Peaks:
         states = len(model.program.states)
         return cls(np.zeros(states + len(model.program.inputs)), states)
 
-    def kept(self) -> "KeptPeaks":
+    def kept(self) -> KeptPeaks:
         """The same as a record."""
         leapt = tuple(sorted(self.leapt.items()))
         return KeptPeaks(tuple(self.both.tolist()), self.states, self.time, self.lingering, leapt)
 
     @classmethod
-    def again(cls, kept: "KeptPeaks") -> "Peaks":
+    def again(cls, kept: KeptPeaks) -> "Peaks":
         """What was kept."""
         both = np.array(kept.both)
         return cls(both, kept.states, kept.time, kept.lingering, dict(kept.leapt))
@@ -105,16 +105,6 @@ class Peaks:
         """The largest magnitudes of states and inputs, one after the other, with an instant's own."""
         found: Array = np.maximum(np.abs(np.concatenate((now.x, now.u))), self.both)
         return found
-
-
-class KeptPeaks(NamedTuple):
-    """The fields of `Peaks`, as nobody changes them any more."""
-
-    both: tuple[float, ...]
-    states: int
-    time: float
-    lingering: frozenset[int]
-    leapt: tuple[tuple[int, float], ...]
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,21 @@ from codegen.model.exact_values import at_parameters
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.numbers.lambdified import lambdified
-from codegen.record.result import Result
+
+
+class Named(Protocol):
+    """Signals by name."""
+
+    def __getitem__(self, name: str) -> Array:
+        """One over the times."""
+
+
+class Sampled(Named, Protocol):
+    """A run."""
+
+    @property
+    def time(self) -> Array:
+        """Of its samples [s]."""
 
 
 def turned_storages(model: ClosedModel) -> tuple[Element, ...]:
@@ -27,7 +41,7 @@ def turned_storages(model: ClosedModel) -> tuple[Element, ...]:
     return tuple(found)
 
 
-def refuse_all_beyond(model: ClosedModel, done: Result) -> None:
+def refuse_all_beyond(model: ClosedModel, done: Sampled) -> None:
     """Refuse a run in which a storage is given what its law gives in no state, as ``exp(p) - 1`` below -1.
 
     There its inverse has no value, though the inverse's slope, which is all that equations have, has one. It
@@ -37,13 +51,6 @@ def refuse_all_beyond(model: ClosedModel, done: Result) -> None:
     """
     for element in turned_storages(model):
         refuse_beyond(model, element, done.time, done)
-
-
-class Named(Protocol):
-    """Signals by name."""
-
-    def __getitem__(self, name: str) -> Array:
-        """One over the times."""
 
 
 def refuse_beyond(model: ClosedModel, element: Element, times: Array, told: Named) -> None:

@@ -13,6 +13,7 @@ from codegen.inputs.pieces import Piece
 from codegen.inputs.present import Inputs, Present
 from codegen.inputs.signal import Signal
 from codegen.instants.parts import Part, hits, parts_of
+from codegen.model.kept import Kept
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.choices import Choices, Occasion
 from codegen.modes.choose import decide
@@ -31,7 +32,7 @@ from codegen.runs.free import FreeLeg
 from codegen.runs.legs import Leg, leg_of
 from codegen.runs.methods import EXACT
 from codegen.runs.stretches import Stretches
-from codegen.runs.track import LATEST, Accumulating, Event, Kept, Settings, Track
+from codegen.runs.track import LATEST, Accumulating, Event, Settings, Track
 from codegen.standalone.switchings import way_of
 from codegen.tuning import TUNING
 

@@ -45,7 +45,7 @@ def refuse_step(
     model: ClosedModel, at: int, where: str, before: Signal, after: Signal,
     times: tuple[float, float],
 ) -> None:  # fmt: skip
-    """Refuse that such an input steps from one signal to another at the first of two times, or between them."""
+    """Refuse that such an input steps from one signal to another at the first of these times, or between."""
     begin, end = times
     old, new = before(begin), after(begin)
     step = begin if abs(new - old) > TUNING.together * max(abs(old), abs(new)) else None

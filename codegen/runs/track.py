@@ -8,8 +8,6 @@ import numpy as np
 
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Impact, Mode, Run
-from codegen.modes.crossings import KeptCrossings
-from codegen.modes.rounding import KeptPeaks
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING
 
@@ -32,38 +30,6 @@ class Event(NamedTuple):
     port: Hashable
     kind: str
     impulse: float = 0.0
-
-
-class Kept(NamedTuple):
-    """All that what follows rests on, but for the inputs: plain numbers, the same for each backend.
-
-    ``t``, ``began`` [s]: the present instant, and where the run began. ``s``: the integrated vector.
-    ``touched``: the ports whose event the instant is, where that is not decided yet. ``begun``: whether
-    the run's first instant has been decided, ``decided``: whether the present one has. ``largest``: the
-    magnitudes that the vector's components have reached. ``rounds`` [s]: the latest events.
-    """
-
-    t: float
-    began: float
-    s: tuple[float, ...]
-    mode: Mode
-    touched: frozenset[int]
-    begun: bool
-    decided: bool
-    largest: tuple[float, ...]
-    peaks: KeptPeaks
-    crossings: KeptCrossings
-    rounds: tuple[float, ...]
-
-
-class Paused(NamedTuple):
-    """A run that pauses: ``arrived`` there, with nothing decided yet; ``present``: under inputs that go on.
-
-    Other inputs from there on decide the instant anew, from where it was arrived at.
-    """
-
-    arrived: Kept
-    present: Kept
 
 
 Ended = tuple[float, Array, frozenset[int]]

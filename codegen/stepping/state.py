@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from codegen.inputs.signal import Signal
-from codegen.runs.track import Event, Paused
+from codegen.model.kept import Paused
+from codegen.runs.track import Event
 
 
 class Start(NamedTuple):
