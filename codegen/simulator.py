@@ -39,11 +39,11 @@ from codegen.runs.arguments import (
 )
 from codegen.runs.completion import started, tell_completed
 from codegen.runs.impulses import refuse_impulses
-from codegen.stepping.in_numpy import NumpyGoing
 from codegen.stepping.known import Sources
 from codegen.stepping.plan import Plan
 from codegen.stepping.state import Start
 from codegen.stepping.stepper import Origin, Stepper
+from codegen.stepping.ways import going_of
 from codegen.tuning import TUNING
 
 EQUILIBRIUM = "equilibrium"
@@ -226,7 +226,7 @@ class Simulator:
         on = checked_modes(self.switches, initially_on)
         start = Start(tuple(told.items()), on)
         plan = Plan(self.closed)
-        going = NumpyGoing(plan, settings_of(method, rtol, atol))
+        going = going_of(plan, settings_of(method, rtol, atol), self.engine, self.located)
         made = Stepper(
             Origin(self.closed, self.inputs, plan, going, float(time), start), given, sources
         )

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Protocol
 
+from codegen.engine.fallback import Stopped
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
 from codegen.model.kept import Paused
@@ -20,14 +21,41 @@ def as_signals(given: Sequence[Given]) -> tuple[Signal, ...]:
     return tuple(Constant(one) if isinstance(one, float) else one for one in given)
 
 
+def only_numbers(before: Sequence[Given], after: Sequence[Given]) -> dict[int, float] | None:
+    """The numbers that are others now, by place; None where anything else is, too."""
+    if len(before) != len(after):
+        return None
+    found = dict[int, float]()
+    for at, (old, new) in enumerate(zip(before, after, strict=True)):
+        if old is not new:
+            if not (isinstance(old, float) and isinstance(new, float)):
+                return None
+            found[at] = new
+    return found
+
+
+class GaveUpError(Exception):
+    """A way of going on that cannot; ``endless``: nor can any other that steps."""
+
+    def __init__(self, stopped: Stopped, endless: bool = False) -> None:
+        super().__init__(str(stopped))
+        self.stopped, self.endless = stopped, endless
+
+
+def refused_by_c(method: str, limit: bool) -> "Going":
+    """No way: C does not step by such a method."""
+    raise GaveUpError(Stopped(f"C has no method {method!r}", limit=limit))
+
+
 class Going(Protocol):
     """A run that pauses at an instant. A call that fails leaves it where it was."""
 
-    #: What runs it.
-    backend: str
+    @property
+    def backend(self) -> str:
+        """What runs it."""
 
-    def under(self, given: Sequence[Given], end: float) -> None:
-        """Take this as all external inputs; sources among them are known up to ``end`` [s]."""
+    def under(self, given: Sequence[Given], t: float) -> None:
+        """Take this as all external inputs from t [s] on."""
 
     def begin(self, t: float, states: Array, begun: Beginning) -> None:
         """Be at the beginning of a run, at t [s]; ``states``: there, law states last."""

@@ -13,7 +13,7 @@ from codegen.runs.completion import Beginning
 from codegen.runs.hybrid import Course
 from codegen.runs.track import Event, Settings
 from codegen.stepping.going import Given, as_signals
-from codegen.stepping.plan import Plan, Row
+from codegen.stepping.plan import PlainRow, Plan, Row
 
 
 class NumpyGoing:
@@ -28,9 +28,9 @@ class NumpyGoing:
         self._row: Row | None = None
         self._signals: tuple[Signal, ...] = ()
 
-    def under(self, given: Sequence[Given], end: float) -> None:
+    def under(self, given: Sequence[Given], t: float) -> None:
         """See `Going`."""
-        del end
+        del t
         self._signals = as_signals(given)
 
     def begin(self, t: float, states: Array, begun: Beginning) -> None:
@@ -93,4 +93,4 @@ class NumpyGoing:
 def _row_of(course: Course) -> Row:
     now = course.look()
     values = np.concatenate([getattr(now, NAMES[part]) for part in RECORDED])
-    return Row(course.t, values.tolist(), course.mode)
+    return PlainRow(course.t, values.tolist(), course.mode)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import accumulate
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -18,8 +18,24 @@ from codegen.record.observer import Observer
 from codegen.record.snapshots import Snapshots
 
 
-class Row(NamedTuple):
-    """Everything at an instant: the recorded parts, one after the other, and the mode of each port."""
+class Row(Protocol):
+    """Everything at an instant."""
+
+    @property
+    def time(self) -> float:
+        """The instant [s]."""
+
+    @property
+    def values(self) -> Sequence[float]:
+        """The recorded parts, one after the other."""
+
+    @property
+    def mode(self) -> Mode:
+        """The mode of each port."""
+
+
+class PlainRow(NamedTuple):
+    """One that is worked out."""
 
     time: float
     values: Sequence[float]
@@ -31,7 +47,8 @@ class Plan:
 
     def __init__(self, model: ClosedModel) -> None:
         self.model = model
-        firsts = [0, *accumulate(recorded(model.program))]
+        self.widths = recorded(model.program)
+        firsts = [0, *accumulate(self.widths)]
         self._cuts = firsts[1:-1]
         first = dict(zip(RECORDED, firsts, strict=False))
         columns = column_places(model.program)
@@ -42,14 +59,14 @@ class Plan:
             if port.switch is not None and not port.slides
         }
         self.names = (*self.places, *self.switches)
-        self._turned = turned_storages(model)
+        self.turned = turned_storages(model)
 
     def check(self, row: Row) -> None:
         """Refuse an instant, as a run does its samples, where a signal is not finite."""
-        if not self._turned and math.isfinite(sum(row.values)):
+        if not self.turned and math.isfinite(sum(row.values)):
             return
         columns, _ = self.columns(row)
-        for element in self._turned:
+        for element in self.turned:
             refuse_beyond(self.model, element, np.array([row.time]), columns)
 
     def columns(self, row: Row) -> tuple[Mapping[str, Array], Observer]:

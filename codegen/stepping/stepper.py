@@ -93,12 +93,12 @@ class Stepper:
         if self._rated:
             self._refuse_steps(given, time)
         if reached or anew:
-            self._going.under((*given, *self._sources.signals), self._sources.end)
+            self._going.under((*given, *self._sources.signals), self._time)
         try:
             events = self._advanced(given, time, anew)
         except BaseException:
             if anew:
-                self._going.under((*self._given, *self._sources.signals), self._sources.end)
+                self._going.under((*self._given, *self._sources.signals), self._time)
             raise
         if anew and events:
             events = self._untold(events)
@@ -127,7 +127,7 @@ class Stepper:
                 f"{state.names}, those here {self._names}"
             )
         self._sources.reach(state.time, state.time)
-        self._going.under((*state.inputs, *self._sources.signals), self._sources.end)
+        self._going.under((*plainly(state.inputs), *self._sources.signals), state.time)
         self._going.take_up(state.paused)
         self._given, self._time, self._late = plainly(state.inputs), state.time, state.late
         self._start, self._events = state.start, state.events
@@ -146,9 +146,10 @@ class Stepper:
 
     def _begin(self, start: Start, given: Sequence[Given] | None = None) -> Mapping[str, float]:
         model, t = self._origin.model, self._time
-        signals = as_signals((*(self._given if given is None else given), *self._sources.signals))
+        under = (*(self._given if given is None else given), *self._sources.signals)
+        signals = as_signals(under)
         states, begun = started(model, t, dict(start.told), signals, start.on)
-        self._going.under(signals, self._sources.end)
+        self._going.under(under, t)
         self._going.begin(t, states, begun)
         return begun.completed
 

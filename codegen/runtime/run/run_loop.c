@@ -48,6 +48,7 @@ static int decide(const bg_engine *e, bg_course *c, int started)
         || (status != BG_UNDECIDED && status != BG_BAD_FRICTION && status != BG_NEGATIVE))
         return status;
     memcpy(c->mode, before, sizeof before);
+    c->excused = 1;
     return sight->look(sight->self, c->at.t, c->at.s, c->mode);
 }
 
@@ -136,6 +137,7 @@ static int settle_once(const bg_engine *e, bg_course *c, const int *before, int 
 static int settle(const bg_engine *e, bg_course *c, int started)
 {
     int before[BG_MOST_PORTS], rests = e->sight.ports > 0, status = BG_OK;
+    c->excused = 0;
     while (rests && status == BG_OK) {
         memcpy(before, c->mode, sizeof before);
         status = settle_once(e, c, before, started);
@@ -152,7 +154,7 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
 {
     c->at = (bg_instant){.t = t, .s = s};
     c->began = t;
-    c->goes_on = 0;
+    c->goes_on = c->started = c->decided = c->paused = c->excused = 0;
     c->end = end;
     c->span = (bg_span){0, -INFINITY, INFINITY};
     c->log.count = c->rounds.next = c->rounds.full = 0;
@@ -165,27 +167,52 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
     }
 }
 
-int bg_run(const bg_engine *e, bg_course *c)
+/* Decides the mode at the present instant. */
+static int decide_here(const bg_engine *e, bg_course *c)
+{
+    const int status = settle(e, c, c->started);
+    c->started = c->decided = 1;
+    memset(c->at.touched, 0, sizeof c->at.touched);
+    return status;
+}
+
+int bg_arrive(const bg_engine *e, bg_course *c)
 {
     const double most = 16.0 * c->log.capacity + 1000.0;
-    int status = BG_OK, started = 0;
+    int status = BG_OK, undecided;
     /* Breakpoints lie ahead one after the other: a turn that ends at one gets somewhere. */
     for (double turns = 0.0; turns < most; turns += c->at.t < c->at.following) {
-        int undecided = 1;
         status = e->pass(e->self, c->at.t, &c->span);
         c->at.following = c->span.following;
-        if (status == BG_OK && started && c->at.t >= c->end)
-            status = come_to_end(e, c, &undecided);
-        if (status || !undecided)
-            return status;
-        status = settle(e, c, started);
-        started = 1;
-        memset(c->at.touched, 0, sizeof c->at.touched);
         if (status || c->at.t >= c->end)
             return status;
+        if (!c->decided && c->paused)
+            status = come_to_end(e, c, &undecided);
+        if (!c->decided && status == BG_OK)
+            status = decide_here(e, c);
+        if (status)
+            return status;
+        c->decided = c->paused = 0;
         status = e->advance(e->self, fmin(c->at.following, c->end));
         if (status)
             return status;
     }
     return BG_EVENTS;
+}
+
+int bg_finish(const bg_engine *e, bg_course *c)
+{
+    int undecided = 1, status = BG_OK;
+    if (c->started)
+        status = come_to_end(e, c, &undecided);
+    if (status == BG_OK && undecided)
+        status = decide_here(e, c);
+    c->decided = status == BG_OK;
+    return status;
+}
+
+int bg_run(const bg_engine *e, bg_course *c)
+{
+    const int status = bg_arrive(e, c);
+    return status ? status : bg_finish(e, c);
 }
