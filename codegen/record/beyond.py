@@ -12,15 +12,11 @@ from codegen.numbers.arrays import Array
 from codegen.numbers.lambdified import lambdified
 
 
-class Named(Protocol):
-    """Signals by name."""
+class Sampled(Protocol):
+    """A run."""
 
     def __getitem__(self, name: str) -> Array:
-        """One over the times."""
-
-
-class Sampled(Named, Protocol):
-    """A run."""
+        """A signal over its times."""
 
     @property
     def time(self) -> Array:
@@ -50,16 +46,14 @@ def refuse_all_beyond(model: ClosedModel, done: Sampled) -> None:
     Raises `SimulationError`, naming the storage and the time.
     """
     for element in turned_storages(model):
-        refuse_beyond(model, element, done.time, done)
+        refuse_beyond(model, element, done.time, done[str(element.co_energy)])
 
 
-def refuse_beyond(model: ClosedModel, element: Element, times: Array, told: Named) -> None:
-    """The same of one storage, from the signals at these times [s]."""
+def refuse_beyond(model: ClosedModel, element: Element, times: Array, values: Array) -> None:
+    """The same of one storage, from its co-energy variable at these times [s]."""
     given = element.co_energy
-    assert given is not None
     assert element.inverse is not None
     inverse = at_parameters(element.inverse, model.parameters)
-    values = told[given.name]
     with np.errstate(all="ignore"):
         names = sorted(inverse.free_symbols, key=str)
         states = np.zeros(len(values)) + lambdified(names, inverse)(*[values for _ in names])

@@ -318,9 +318,10 @@ class Course:
 def _still(here: Sight, mode: Mode, ports: frozenset[int], peaks: Peaks) -> frozenset[int]:
     """Those of the ports that are at rest, or close enough for it to be the event's own rounding.
 
-    A stop is met where its gap is closed, not where it is at rest.
+    A stop is met where its gap is closed, not where it is at rest; what keeps a switch with a condition of
+    its own is that.
     """
-    ports -= {*here.model.stopping}
+    ports -= {*here.model.stopping, *here.model.guarded}
     if not ports:
         return frozenset()
     known, now = here.evaluated(mode)

@@ -65,9 +65,11 @@ class Plan:
         """Refuse an instant, as a run does its samples, where a signal is not finite."""
         if not self.turned and math.isfinite(sum(row.values)):
             return
-        columns, _ = self.columns(row)
+        columns, observer = self.columns(row)
         for element in self.turned:
-            refuse_beyond(self.model, element, np.array([row.time]), columns)
+            name = str(element.co_energy)
+            values = columns[name] if name in columns else observer.signal(name)
+            refuse_beyond(self.model, element, np.array([row.time]), values)
 
     def columns(self, row: Row) -> tuple[Mapping[str, Array], Observer]:
         """One instant as the columns of a run of one sample; refuses what is not finite."""
