@@ -208,13 +208,28 @@ class Simulator:
         atol: float = TUNING.atol,
         initially_on: Iterable[Hashable] = (),
     ) -> Stepper:
-        """What is stepped from outside: from ``time`` [s] on, under inputs that may change at each step.
+        """The model at ``time`` [s], to be stepped from outside under inputs that may change at each step.
 
         Arguments as of `run`; ``inputs`` are those that hold until others are told. What backend "c" cannot
         step is stepped by numpy, and a `BackendWarning` tells why.
 
         Raises what `run` raises of a start, and `SignalError` for a time that is no finite number.
         """
+        made = self.stepping(initial, inputs, time, method, rtol, atol, initially_on)
+        tell_completed(made.completed)
+        return made
+
+    def stepping(
+        self,
+        initial: Mapping[str, float] | str | None,
+        inputs: Mapping[str, object] | None,
+        time: float,
+        method: str,
+        rtol: float,
+        atol: float,
+        initially_on: Iterable[Hashable],
+    ) -> Stepper:
+        """As `stepper`, without a word on states that were completed."""
         if not is_number(time) or not is_finite(time):
             raise SignalError(f"the time must be a finite number, not {time!r}")
         known = (name.name for name in self.closed.equations.signals)
@@ -227,11 +242,8 @@ class Simulator:
         start = Start(tuple(told.items()), on)
         plan = Plan(self.closed)
         going = going_of(plan, settings_of(method, rtol, atol), self.engine, self.located)
-        made = Stepper(
-            Origin(self.closed, self.inputs, plan, going, float(time), start), given, sources
-        )
-        tell_completed(made.completed)
-        return made
+        origin = Origin(self.closed, self.inputs, plan, going, float(time), start)
+        return Stepper(origin, given, sources)
 
     def _told(self, initial: Any, signals: Sequence[Signal], begin: float) -> Any:
         """Initial values by states, as told for a run under these signals."""

@@ -39,7 +39,7 @@ class Carried:
         p = self.ports
         widths = [HEAD, TUNING.stalled, *[p] * 6, 2 * p]
         widths += [self.size, self.states, self.inputs, max(len(self.reached), self.least)]
-        return np.cumsum(widths).tolist()
+        return [int(cut) for cut in np.cumsum(widths)]
 
     #: So many magnitudes there is room for, at the least.
     least: int = 1
