@@ -39,6 +39,7 @@ from codegen.runs.arguments import (
 )
 from codegen.runs.completion import started, tell_completed
 from codegen.runs.impulses import refuse_impulses
+from codegen.stepping.in_numpy import NumpyGoing
 from codegen.stepping.known import Sources
 from codegen.stepping.plan import Plan
 from codegen.stepping.state import Start
@@ -241,7 +242,8 @@ class Simulator:
         on = checked_modes(self.switches, initially_on)
         start = Start(tuple(told.items()), on)
         plan = Plan(self.closed)
-        going = going_of(plan, settings_of(method, rtol, atol), self.engine, self.located)
+        settings = settings_of(method, rtol, atol)
+        going = going_of(plan, settings, self.engine, self.located, NumpyGoing)
         origin = Origin(self.closed, self.inputs, plan, going, float(time), start)
         return Stepper(origin, given, sources)
 

@@ -7,8 +7,8 @@ from typing import TypeVar
 from codegen.engine.fallback import BackendWarning, Stopped
 from codegen.model.kept import Paused
 from codegen.model.outside import outside
+from codegen.model.snapshot import Mode
 from codegen.numbers.arrays import Array
-from codegen.runs.completion import Beginning
 from codegen.runs.track import Event
 from codegen.stepping.going import GaveUpError, Given, Going
 from codegen.stepping.plan import Row
@@ -37,9 +37,9 @@ class FallingGoing:
         except GaveUpError as gave:
             self._fall(gave, self._begun, lambda _: None)
 
-    def begin(self, t: float, states: Array, begun: Beginning) -> None:
+    def begin(self, t: float, s: Array, mode: Mode) -> None:
         """See `Going`."""
-        self._do(lambda going: going.begin(t, states, begun))
+        self._do(lambda going: going.begin(t, s, mode))
 
     def advance(self, stop: float, anew: bool) -> Sequence[Event]:
         """See `Going`."""

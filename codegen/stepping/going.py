@@ -7,8 +7,8 @@ from codegen.engine.fallback import Stopped
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant
 from codegen.model.kept import Paused
+from codegen.model.snapshot import Mode
 from codegen.numbers.arrays import Array
-from codegen.runs.completion import Beginning
 from codegen.runs.track import Event
 from codegen.stepping.plan import Row
 
@@ -57,8 +57,8 @@ class Going(Protocol):
     def under(self, given: Sequence[Given], t: float) -> None:
         """Take this as all external inputs from t [s] on."""
 
-    def begin(self, t: float, states: Array, begun: Beginning) -> None:
-        """Be at the beginning of a run, at t [s]; ``states``: there, law states last."""
+    def begin(self, t: float, s: Array, mode: Mode) -> None:
+        """Be at the beginning of a run, at t [s]: the integrated vector, and the mode before."""
 
     def advance(self, stop: float, anew: bool) -> Sequence[Event]:
         """Go on to ``stop`` [s]; what happens on the way, and at both ends.

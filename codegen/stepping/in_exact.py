@@ -13,7 +13,6 @@ from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.layout import EXTERNAL, RECORDED
-from codegen.runs.completion import Beginning
 from codegen.runs.track import Event
 from codegen.stepping.exact_room import ExactRoom
 from codegen.stepping.going import Given, as_signals, only_numbers
@@ -43,11 +42,10 @@ class ExactGoing:
         for at, value in numbers.items():
             self._inputs.constant[:, at] = value
 
-    def begin(self, t: float, states: Array, begun: Beginning) -> None:
+    def begin(self, t: float, s: Array, mode: Mode) -> None:
         """See `Going`."""
-        del states
         room, inputs = self._at
-        room.begin(inputs, t, begun.s, begun.mode)
+        room.begin(inputs, t, s, mode)
         self._commit(t)
 
     def advance(self, stop: float, anew: bool) -> Sequence[Event]:

@@ -13,8 +13,8 @@ from codegen.engine.sizes import aligned
 from codegen.engine.status import Status
 from codegen.inputs.tables import NO_TABLE, has_table, signal_table
 from codegen.model.kept import Paused
+from codegen.model.snapshot import Mode
 from codegen.numbers.arrays import Array
-from codegen.runs.completion import Beginning
 from codegen.runs.track import Event, Settings
 from codegen.stepping.carried import Carried
 from codegen.stepping.going import GaveUpError, Given, as_signals, only_numbers
@@ -62,11 +62,10 @@ class LocatedGoing:
         for at, value in numbers.items():
             self._coefficients[self._places[at], 0] = value
 
-    def begin(self, t: float, states: Array, begun: Beginning) -> None:
+    def begin(self, t: float, s: Array, mode: Mode) -> None:
         """See `Going`."""
-        del states
-        self._first[: len(begun.mode)] = begun.mode
-        start = np.ascontiguousarray(begun.s)
+        self._first[: len(mode)] = mode
+        start = np.ascontiguousarray(s)
         self._call(self._library.bg_pause_first, self._to[1], t, self._pointer(start))
         self._commit(t)
 

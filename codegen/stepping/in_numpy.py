@@ -9,7 +9,6 @@ from codegen.model.kept import Paused
 from codegen.model.snapshot import Mode
 from codegen.numbers.arrays import Array
 from codegen.program.layout import NAMES, RECORDED
-from codegen.runs.completion import Beginning
 from codegen.runs.hybrid import Course
 from codegen.runs.track import Event, Settings
 from codegen.stepping.going import Given, as_signals
@@ -33,10 +32,9 @@ class NumpyGoing:
         del t
         self._signals = as_signals(given)
 
-    def begin(self, t: float, states: Array, begun: Beginning) -> None:
+    def begin(self, t: float, s: Array, mode: Mode) -> None:
         """See `Going`."""
-        del states
-        course = self._new(t, begun.s, begun.mode)
+        course = self._new(t, s, mode)
         with np.errstate(all="ignore"):
             self._paused, self._row = self._shown(course)
         self._course = course

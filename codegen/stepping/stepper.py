@@ -148,9 +148,9 @@ class Stepper:
         model, t = self._origin.model, self._time
         under = (*(self._given if given is None else given), *self._sources.signals)
         signals = as_signals(under)
-        states, begun = started(model, t, dict(start.told), signals, start.on)
+        _, begun = started(model, t, dict(start.told), signals, start.on)
         self._going.under(under, t)
-        self._going.begin(t, states, begun)
+        self._going.begin(t, begun.s, begun.mode)
         return begun.completed
 
     def _later(self, dt: float) -> tuple[float, float]:

@@ -11,15 +11,15 @@ from codegen.stepping.falling import FallingGoing
 from codegen.stepping.going import Going, refused_by_c
 from codegen.stepping.in_exact import ExactGoing
 from codegen.stepping.in_located import LocatedGoing
-from codegen.stepping.in_numpy import NumpyGoing
 from codegen.stepping.plan import Plan
 
 
 def going_of(
-    plan: Plan, settings: Settings, engine: CRuns | None, located: LocatedRuns | None
-) -> Going:
+    plan: Plan, settings: Settings, engine: CRuns | None, located: LocatedRuns | None,
+    in_numpy: Callable[[Plan, Settings], Going],
+) -> Going:  # fmt: skip
     """What steps a model: numpy, unless there is C, which goes first as in a run."""
-    last = partial(NumpyGoing, plan, settings)
+    last = partial(in_numpy, plan, settings)
     if located is None:
         return last()
     method, ways = settings.method, list[Callable[[], Going]]()

@@ -102,9 +102,9 @@ def wheels() -> bg.StateEquations:
 def test_steps_that_would_be_impulses_are_refused_as_in_a_run(backend: str) -> None:
     one = simulator(wheels(), {}, backend=backend).stepper(inputs={"w": 1.0})
     one.advance(0.5)
-    with pytest.raises(bg.errors.SimulationError, match="input 'w' steps at t = 0.5, where"):
+    with pytest.raises(bg.errors.SimulationError, match=r"input 'w' steps at t = 0\.5, where"):
         one.advance(0.5, w=2.0)
-    with pytest.raises(bg.errors.SimulationError, match="input 'w' steps at t = 0.75, where"):
+    with pytest.raises(bg.errors.SimulationError, match=r"input 'w' steps at t = 0\.75, where"):
         one.advance(0.5, w=Step(0.75, 2.0, initial=1.0))
     smooth = Lag(Step(0.5, 2.0, initial=1.0), 0.5)
     assert one.advance(0.5, w=smooth)["w"] == pytest.approx(2 - math.exp(-1))

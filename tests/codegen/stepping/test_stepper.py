@@ -123,7 +123,7 @@ def counter() -> bg.StateEquations:
 
 @BACKENDS
 def test_a_sampled_controller_samples_at_its_instants(backend: str) -> None:
-    """By hand: v + F = 2 t + 2 is sampled as the sine rises, at 0.1 s, 0.2 s, ..; half of the steps end there.
+    """By hand: v + F = 2 t + 2 is sampled as the sine rises, at 0.1 s, 0.2 s, ..; steps end there.
 
     A run begins with no event.
     """

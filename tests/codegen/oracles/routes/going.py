@@ -331,7 +331,8 @@ ROUTES: Mapping[str, Route] = MappingProxyType(
     {
         "print": whole, "explain": explain, "explicit": explicit, "latex": latex,
         "drawing": drawing, "JSON": json, "GraphML": graphml, "numpy": numpy,
-        "stepper": stepper, "linearize": linearize, "trim": trim, "sweep": sweep_numpy, "command line": commands,
+        "stepper": stepper, "linearize": linearize, "trim": trim,
+        "sweep": sweep_numpy, "command line": commands,
         "to_python": to_python, "C, exact": c_exact, "C, located": c_located,
         "stepper in C": stepper_in_c,
         "sweep in C": sweep_c, "to_c, fixed steps": to_c_stepped,
