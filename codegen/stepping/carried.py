@@ -27,6 +27,8 @@ class Carried:
     states: int
     inputs: int
     reached: tuple[int, ...]
+    #: So many magnitudes there is room for, at the least.
+    least: int = 1
 
     @property
     def ports(self) -> int:
@@ -40,9 +42,6 @@ class Carried:
         widths = [HEAD, TUNING.stalled, *[p] * 6, 2 * p]
         widths += [self.size, self.states, self.inputs, max(len(self.reached), self.least)]
         return [int(cut) for cut in np.cumsum(widths)]
-
-    #: So many magnitudes there is room for, at the least.
-    least: int = 1
 
     def told(self, numbers: Array) -> Paused:
         """The record of a paused run."""

@@ -9,7 +9,7 @@ from codegen.engine.fallback import Stopped
 from codegen.engine.happened import told_events
 from codegen.engine.modes import Tables
 from codegen.engine.packed import Packed
-from codegen.engine.runs import CAPACITY, LIMITS, MEANINGS
+from codegen.engine.runs import CAPACITY, LIMITS, MEANINGS, MOST_AT_FIRST
 from codegen.engine.sizes import Engine, aligned
 from codegen.engine.status import Status
 from codegen.model.kept import Paused
@@ -89,7 +89,7 @@ class ExactRoom:
                 tables.supply(tables.mode_at(self._task.where))
             elif status == Status.BLUNT:
                 tables.sharpen()
-            elif status == Status.EVENTS:
+            elif status == Status.EVENTS and self._capacity < MOST_AT_FIRST:
                 self._capacity *= 8
                 self._make_room()
             else:

@@ -291,7 +291,8 @@ int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_reque
     if (status == BG_OK)
         status = bg_located_go(c);
     if (status == BG_OK)
-        status = bg_located_hand_over(c, c->s); /* the last sample shows the instant after all events */
+        /* the last sample shows the instant after all events */
+        status = bg_located_hand_over(c, c->s);
     asked->count = c->run.log.count;
     asked->time = c->run.at.t;
     return status;

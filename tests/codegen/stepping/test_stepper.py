@@ -262,3 +262,36 @@ def test_states_are_told_for_the_instant_before_anything(backend: str) -> None:
 def test_constants_are_numbers() -> None:
     one = simulator(bg.derive(MASS), {"m": 1}).stepper(inputs={"F": Constant(2)})
     assert one.advance(1.0, F=np.float32(2.0))["v"] == 2.0
+
+
+@BACKENDS
+def test_an_event_that_a_step_ends_at_is_decided_again_under_other_inputs(backend: str) -> None:
+    """The ball hits at 1 s with 10 m/s; from then on it falls at 16 m/s^2: back after 2*8/16 s."""
+    nodes = [
+        bg.Se("F", "F"),
+        bg.One("n"),
+        bg.I("m", 2, flow="v"),
+        bg.Stop("floor", restitution=0.8),
+    ]
+    ready = simulator(bg.derive(bond_graph(nodes, "F>n>m n>floor")), {}, backend=backend)
+    one = ready.stepper({"q_floor": 5.0}, {"F": -20.0}, initially_on=["floor"])
+    one.advance(1.0)
+    told = list(one.events)
+    for _ in range(3):
+        one.advance(0.5, F=-32.0)
+        told += one.events
+    assert [e.kind for e in told[:2]] == ["hit", "hit"]
+    assert [e.time for e in told[:2]] == pytest.approx([1.0, 2.0], abs=1e-9)
+    assert one.signals["q_floor"] >= 0.0
+
+
+@METHODS
+def test_what_counts_as_zero_is_carried_on(backend: str, method: str) -> None:
+    """It is told by the largest magnitudes: the speed, at rest since 2/3 s, has been 1 m/s."""
+    one = block(backend, method)
+    for _ in range(8):
+        one.advance(0.125)
+    there = block(backend, method)
+    there.restore(one.state)
+    for stepper in (one, there):
+        assert stepper.state.paused.present.peaks.both[0] == 1.0
