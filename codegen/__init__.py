@@ -38,6 +38,8 @@ from codegen.simulate import simulator
 from codegen.simulator import Simulator
 from codegen.sparse.model import SparseModel, sparse_model
 from codegen.sparse.run import run_sparse
+from codegen.stepping.state import StepperState
+from codegen.stepping.stepper import Stepper
 from codegen.sweeps.design import Grid, Samples, Table
 from codegen.sweeps.result import Failure, Sweep, SweepInterrupted
 from codegen.sweeps.sweep import sweep
@@ -70,6 +72,8 @@ __all__ = [
     "Spectrum",
     "Square",
     "Step",
+    "Stepper",
+    "StepperState",
     "Sweep",
     "SweepInterrupted",
     "Swept",

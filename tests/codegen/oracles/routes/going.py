@@ -160,6 +160,27 @@ def numpy(bench: Bench) -> None:
     bench.check(bench.run, EXACT)
 
 
+def stepper(bench: Bench) -> None:
+    """Steps from outside."""
+    _stepped_outside(bench, bench.ready, EXACT)
+
+
+def stepper_in_c(bench: Bench) -> None:
+    with _in_c_alone():
+        _stepped_outside(bench, bench.compiled, LOCATED)
+
+
+def _stepped_outside(bench: Bench, ready: codegen.Simulator, within: float) -> None:
+    kind = bench.kind
+    one = ready.stepper(kind.initial, kind.signals, initially_on=kind.on)
+    rows, told = [dict(one.signals)], list[codegen.Event]()
+    for t in kind.times()[1:]:
+        rows.append(dict(one.advance(t - one.time)))
+        told += one.events
+    bench.check({name: np.array([row[name] for row in rows]) for name in rows[0]}, within)
+    assert [(e.port, e.kind) for e in told] == [(e.port, e.kind) for e in bench.run.events]
+
+
 def c_exact(bench: Bench) -> None:
     _in_c(bench, "exact", EXACT)
 
@@ -310,8 +331,10 @@ ROUTES: Mapping[str, Route] = MappingProxyType(
     {
         "print": whole, "explain": explain, "explicit": explicit, "latex": latex,
         "drawing": drawing, "JSON": json, "GraphML": graphml, "numpy": numpy,
-        "linearize": linearize, "trim": trim, "sweep": sweep_numpy, "command line": commands,
+        "stepper": stepper, "linearize": linearize, "trim": trim,
+        "sweep": sweep_numpy, "command line": commands,
         "to_python": to_python, "C, exact": c_exact, "C, located": c_located,
+        "stepper in C": stepper_in_c,
         "sweep in C": sweep_c, "to_c, fixed steps": to_c_stepped,
         "to_c, located": to_c_located, "FMI 2 ME": _fmu("2.0", "ModelExchange"),
         "FMI 2 CS": _fmu("2.0", "CoSimulation"), "FMI 3 ME": _fmu("3.0", "ModelExchange"),

@@ -34,8 +34,8 @@ WHAT = """
 | JSON, GraphML | read again, the graph has the same equations, laws and switches |
 | linearize | in the mode of the run its model changes rates as the run does |
 | trim | a state from which a run does not move |
-| numpy, sweep, command line, C exact | the known run, to 1e-7 of its range |
-| C located, sweep in C, to_c located | to 1e-6, without a run that numpy does for C |
+| numpy, stepper, sweep, command line, C exact | the known run, to 1e-7 of its range |
+| C located, stepper in C, sweep in C, to_c located | to 1e-6, without a run that numpy does for C |
 | FMI ME, CS | to 1e-5, in FMPy, by CVODE and at the samples' steps |
 | to_python, to_c fixed steps | to 60 over their number (2,500 and 20,000), but for samples beside an event |
 """
