@@ -10,7 +10,7 @@ from bondgraph.declare.laws import ExpressionLaw
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, SignalError
 from codegen.model.exact_values import exact_parameters
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, is_finite, is_number
 from codegen.numbers.lambdified import lambdified
 from codegen.tuning import TUNING
 
@@ -55,6 +55,7 @@ def by_states(
     told = {name: value for name, value in others.items() if name in held}
     if not told:
         return dict(initial)
+    _check_numbers(initial)
     rest = {name: value for name, value in initial.items() if sp.Symbol(str(name)) not in told}
     known = {sp.Symbol(name): value for name, value in exact_parameters(parameters).items()}
     known |= {sp.Symbol(str(name)): value for name, value in rest.items()}
@@ -73,6 +74,12 @@ def by_states(
             )
         linear[name] = law
     return rest | by_law | _solved(linear, told)
+
+
+def _check_numbers(initial: Mapping[str, float]) -> None:
+    for name, value in initial.items():
+        if not is_number(value) or not is_finite(value):
+            raise SignalError(f"initial {name}: {value!r} is not a finite number")
 
 
 def _turned_laws(equations: StateEquations) -> dict[sp.Symbol, tuple[sp.Symbol, sp.Expr]]:
@@ -98,7 +105,13 @@ def _solved(held: Mapping[sp.Symbol, sp.Expr], told: Mapping[sp.Symbol, float]) 
     matrix = np.array([[float(expr.coeff(one)) for one in names] for expr in held.values()])
     rest = dict.fromkeys(names, sp.Integer(0))
     right = [float(told[name] - expr.xreplace(rest)) for name, expr in held.items()]
-    values = np.linalg.solve(matrix, np.array(right))
+    try:
+        values = np.linalg.solve(matrix, np.array(right))
+    except np.linalg.LinAlgError:
+        raise SignalError(
+            f"initial {', '.join(map(str, held))}: these do not tell {', '.join(map(str, names))}; tell the "
+            "states"
+        ) from None
     return {one.name: value for one, value in zip(names, values.tolist(), strict=True)}
 
 
