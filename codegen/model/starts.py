@@ -61,11 +61,11 @@ def by_states(
     known |= {sp.Symbol(str(name)): value for name, value in rest.items()}
     by_law: dict[str, float] = {}
     linear: dict[sp.Symbol, sp.Expr] = {}
-    laws = _turned_laws(equations)
+    laws = laws_of_held(equations)
     for name, value in told.items():
         state, law = laws.get(name, (name, held[name].xreplace(known)))
         if name in laws:
-            by_law[state.name] = float(law.xreplace({**known, name: sp.Float(value)}))
+            by_law[state.name] = _given(law.xreplace({**known, name: sp.Float(value)}), name, state)
             continue
         if not law.free_symbols or not law.free_symbols <= {*equations.states}:
             raise SignalError(
@@ -76,13 +76,22 @@ def by_states(
     return rest | by_law | _solved(linear, told)
 
 
+def _given(law: sp.Expr, name: sp.Symbol, state: sp.Symbol) -> float:
+    """What a law gives at what is held; `SignalError` where that is no number."""
+    if not (law.is_number and law.is_finite and law.is_real):
+        raise SignalError(
+            f"initial {name}: the law gives {state} = {law}, no finite number; tell {state}"
+        )
+    return float(law)
+
+
 def _check_numbers(initial: Mapping[str, float]) -> None:
     for name, value in initial.items():
         if not is_number(value) or not is_finite(value):
             raise SignalError(f"initial {name}: {value!r} is not a finite number")
 
 
-def _turned_laws(equations: StateEquations) -> dict[sp.Symbol, tuple[sp.Symbol, sp.Expr]]:
+def laws_of_held(equations: StateEquations) -> dict[sp.Symbol, tuple[sp.Symbol, sp.Expr]]:
     """What a storage whose law counts by its inverse holds, to its state and the law that gives that."""
     found = {}
     for port in equations.reduction.structure.ports:

@@ -103,6 +103,10 @@ void bg_guards(const bg_values *v, double *out);
 /* What storages hold of each state, then of readings, where impulses move slopes. */
 void bg_momenta(const bg_values *v, double *out);
 extern const int bg_momenta_rows[];
+void bg_held_values(const bg_values *v, double *out);
+/* What a start may tell of storages: where the values of each begin, and their end; the states that
+ * it is a sum of, times these; or the one that a law gives, whose value it is. */
+extern const int bg_held_begins[], bg_held_states[], bg_held_by_law[];
 void bg_corners(const bg_values *v, double *out); /* what they hang on; whether each counts */
 void bg_prepare_rhs(bg_model *m);
 
