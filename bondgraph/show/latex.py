@@ -14,21 +14,8 @@ LONGEST_LINE = 6
 """Terms on one line of a right side."""
 
 
-def latex(equations: StateEquations) -> str:
-    r"""The matrices, then laws, sources and further states, and every equation with these put in.
-
-    Lines of amsmath's ``gathered``. Names are Greek where they are called so: ``omega_1`` is \omega_{1}.
-
-    Raises nothing.
-
-    >>> import bondgraph as bg, networkx as nx
-    >>> g = nx.DiGraph()
-    >>> g.add_nodes_from([bg.Se("engine", "tau_e"), bg.One("shaft"), bg.I("J", "J", flow="omega")])
-    >>> nx.add_path(g, ["engine", "shaft", "J"])
-    >>> left, right = latex(bg.derive(g)).split(" = ")
-    >>> print(left.replace("begin{matrix}", "").replace("end{matrix}", ""))
-    \left[\J\\right]\frac{d}{dt}\left[\\omega\\right]
-    """
+def equations_latex(equations: StateEquations) -> str:
+    """The matrices, then laws, sources and further states, and every equation with these put in."""
     return " \\\\\n".join(part for part in (matrices_latex(equations), *beside(equations)) if part)
 
 
@@ -64,7 +51,7 @@ def _rows(one: Statement) -> Iterator[str]:
 def notebook_latex(equations: StateEquations) -> str:
     """The equations for a notebook's display; of large systems the sizes alone."""
     if is_readable(equations):
-        text = latex(equations)
+        text = equations_latex(equations)
         if len(text) <= 4 * MOST_SIGNS:
             return rf"$$\begin{{gathered}} {text} \end{{gathered}}$$" if text else ""
     return notebook_matrices(equations)
