@@ -48,10 +48,11 @@ void bg_edges(const bg_table *of, int axis, int bits, double x, double region, d
 double *bg_tables_values(bg_own_tables *own, int table);
 int bg_tables_fit(bg_own_tables *own, int table);
 
-/* An argument of a table that refuses what is outside, and along which axis it is one. */
+/* An argument of a table that refuses what is outside, and along which axis it is one. `never`:
+ * what is said where it guards a law that is turned round; else 0. */
 typedef struct {
     int table, axis;
-    const char *argument;
+    const char *argument, *never;
 } bg_refusing;
 
 /* A law that rises or falls all over its domain, and its slope; no number outside that domain. */

@@ -213,10 +213,11 @@ void bg_tables_init(bg_own_tables *own);
 int bg_tables_set(bg_own_tables *own, int table, const double *values);
 
 /* A table that refuses what is outside, its ends along an axis, and when which argument left it, to
- * this place. After a call that failed: whether one was left; model_left.h has it in words. */
+ * this place; `never`: what is to be said of a law that is turned round and gives this in no state,
+ * else 0. After a call that failed: whether one was left; model_left.h has it in words. */
 typedef struct {
     double time, place, low, high;
-    const char *table, *argument;
+    const char *table, *argument, *never;
 } bg_leaving;
 int bg_model_left(const bg_model *m, int status, bg_leaving *told);
 

@@ -251,7 +251,7 @@ static void coupled_values(const bg_values *v, double *out)
     (void)out;
 }
 
-const bg_refusing bg_refusings[] = {{0, 0, 0}};
+const bg_refusing bg_refusings[] = {{0, 0, 0, 0}};
 
 /* Arguments of tables that refuse what is outside: 0 operations. */
 void bg_refused(const bg_values *v, double *out)
