@@ -44,11 +44,11 @@ def latex(subject: Any) -> str:
     >>> nx.add_path(g, ["engine", "shaft", "J"])
     >>> left, right = latex(bg.derive(g)).split(" = ")
     >>> print(left.replace("begin{matrix}", "").replace("end{matrix}", ""))
-    \left[J\\right]\frac{d}{dt}\left[\\omega\\right]
+    \left[\J\\right]\frac{d}{dt}\left[\\omega\\right]
     >>> print(latex(bg.explicit(bg.derive(g))))
     \begin{aligned} \dot{\omega} &= \frac{\tau_{e}}{J} \end{aligned}
-    >>> print(latex(bg.linearize(bg.derive(g, outputs=["J"])).transfer_function()[0]))
-    \frac{1}{J s}
+    >>> print(latex({"tau_e": "J*alpha"}))
+    \begin{aligned} \tau_{e} &= J \alpha \end{aligned}
     """
     if isinstance(subject, StateEquations):
         return equations_latex(subject)
