@@ -258,7 +258,8 @@ class Simulator:
     def _ledger(self, run: Run) -> Ledger:
         program = self.closed.program
         names = (*program.states, *program.law_states, *program.inputs, *program.asked)
-        return Ledger(self.closed.declared, tuple(name.name for name in names), run.again)
+        told = tuple(name.name for name in names)
+        return Ledger(self.closed.declared, told, run.again, self.closed.parameters)
 
     def steady(
         self, inputs: Mapping[str, float], initial: Mapping[str, float]

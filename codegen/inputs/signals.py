@@ -82,7 +82,8 @@ class Ramp(Signal):
     end: float | None = None
 
     def __post_init__(self) -> None:
-        check_finite(self, self.time, self.slope, self.initial, self.end or 0.0)
+        ends = () if self.end is None else (self.end,)
+        check_finite(self, self.time, self.slope, self.initial, *ends)
         if self.end is not None and self.end <= self.time:
             raise SignalError(f"{self}: a ramp must end after it begins")
 

@@ -63,6 +63,17 @@ def named_columns(
     return known, Observer(times, model, known, x, dx, u, du)
 
 
+def known_names(program: Program) -> tuple[str, ...]:
+    """All that a run can be asked for by name: its columns, switches, and every signal of the graph."""
+    equations = program.equations
+    switches = (p.name for p in program.friction if p.switch is not None and not p.slides)
+    inputs = (program.inputs[at] for at in program.shown_inputs)
+    readings = (program.readings[at] for at in program.shown)
+    signals = (*equations.signals, *equations.held)
+    names = (*program.states, *program.law_states, *inputs, *program.asked, *readings, *switches)
+    return tuple(dict.fromkeys(map(str, (*names, *signals))))
+
+
 def _check_finite(times: Array, columns: Mapping[str, Array], states: Collection[str]) -> None:
     """Refuse numbers that are not finite, by the first that is none."""
     wrong = {name: ~np.isfinite(column) for name, column in columns.items()}

@@ -1,6 +1,6 @@
 """`Result`: the record of a run, and every effort, flow, power and energy in it."""
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from types import MappingProxyType
@@ -36,6 +36,9 @@ class Watcher(Protocol):
 
     def names(self) -> Sequence[str]:
         """Of the signals that it works out."""
+
+    def nodes(self) -> Collection[Hashable]:
+        """Where events may happen: the nodes of the graph and the ports of its fields."""
 
     def signal(self, name: str) -> Array:
         """A named effort or flow."""
@@ -112,7 +115,10 @@ class Result:
         return self.ledger.work(node)
 
     def integral(self, name: str) -> Array:
-        """A signal integrated up to each sample, as `work` is; `SignalError` for one that there is not."""
+        """A signal, or what a linear storage holds, integrated up to each sample, as `work` is.
+
+        Raises `SignalError` for one that there is not.
+        """
         return self.ledger.integral(name)
 
     def audit(self) -> Audit:

@@ -9,6 +9,7 @@ from oracles.routes.jumping import JUMPING
 from oracles.routes.kind import Kind
 from oracles.routes.kinds import KINDS
 from oracles.routes.lawful import LAWFUL
+from oracles.routes.looped import LOOPED
 from oracles.routes.plain import PLAIN
 from oracles.routes.sloped import SLOPED
 from oracles.routes.switches import SWITCHES
@@ -48,7 +49,7 @@ def page() -> str:
         ("Dry friction", (*FRICTION, *SLOPED)),
         ("Laws that jump", JUMPING),
         ("Switches", (*SWITCHES, *EXCHANGING)),
-        ("No port that switches", (*PLAIN, *LAWFUL)),
+        ("No port that switches", (*PLAIN, *LAWFUL, *LOOPED)),
         ("Lookup tables", TABLED),
     ):
         plain = [route for route in ROUTES if route not in COMPILED]
