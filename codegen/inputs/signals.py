@@ -192,6 +192,11 @@ def as_signal(value: object, name: str) -> Signal:
         return Constant(float(value))
     told = repr(value).replace("\n", "")
     told = told if len(told) <= LONGEST else told[: LONGEST - 3] + "..."
+    if callable(value):
+        raise SignalError(
+            f"input {name!r}: {told} is a Python function, which only runs in numpy call; give its "
+            "polynomials, codegen.Function(f).over(times), or samples, codegen.Sampled(times, values)"
+        )
     points = "; values at times are Sampled(times, values)"
     raise SignalError(
         f"input {name!r}: {told} is neither a signal nor a number; use Constant, Step, Pulse, Ramp, "

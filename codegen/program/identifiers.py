@@ -28,7 +28,15 @@ PYTHON_WORDS = frozenset(
 )
 """Keywords, builtins, and the names that generated Python uses."""
 
-RESERVED: Mapping[str, frozenset[str]] = MappingProxyType({"c": C_WORDS, "python": PYTHON_WORDS})
+MATLAB_WORDS = frozenset(
+    "break case catch classdef continue else elseif end for function global if otherwise parfor persistent "
+    "return spmd switch try while".split()
+)
+"""Keywords of MATLAB, which no variable is called by."""
+
+RESERVED: Mapping[str, frozenset[str]] = MappingProxyType(
+    {"c": C_WORDS, "python": PYTHON_WORDS, "matlab": MATLAB_WORDS}
+)
 
 
 _MODULES = frozenset(

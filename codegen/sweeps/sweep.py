@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from bondgraph.algebra.atoms import normal
 from bondgraph.errors import SignalError
 from codegen.batch.asked import Given
+from codegen.called.function import followed
 from codegen.engine.fallback import tell_all
 from codegen.inputs.signal import Signal
 from codegen.inputs.swept import Swept, settled
@@ -111,8 +112,12 @@ def sweep(
     settings = MappingProxyType({"method": method, "rtol": rtol, "atol": atol})
     asked = MappingProxyType(dict(measures))
     on = tuple(initially_on)
-    given = by_states_of(model, initial), inputs, settings, on, events, len(runs)
-    job = Job(model, runs.names, checked_times(time), asked, *given)
+    times = checked_times(time)
+    # Once for all runs and processes, which need not have the functions.
+    in_numpy = getattr(model, "backend", "numpy") == "numpy"
+    told = followed(inputs, times) if in_numpy else inputs
+    given = by_states_of(model, initial), told, settings, on, events, len(runs)
+    job = Job(model, runs.names, times, asked, *given)
     _check(job)
     _check_count(workers, "workers", 0)
     _check_count(chunk, "chunk", 1)
