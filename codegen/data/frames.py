@@ -9,9 +9,7 @@ from bondgraph.errors import SignalError
 from codegen.data.record import Column, Columns, chosen, numbers, rows_of
 
 
-def read_frame(
-    frame: Any, wanted: Sequence[Column] | None, source: str | None = None
-) -> Columns:
+def read_frame(frame: Any, wanted: Sequence[Column] | None, source: str | None = None) -> Columns:
     """Columns by name, all of numbers in one row each if none are named; ``source``: the file it is of.
 
     Raises `SignalError` naming column and row for what is no number.

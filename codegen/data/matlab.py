@@ -19,7 +19,9 @@ def read_matlab(path: Path) -> dict[str, Any]:
     try:
         found = loadmat(path, squeeze_me=True)
     except NotImplementedError:
-        raise SignalError(f"{path} is of MATLAB's version 7.3; save it by save(..., '-v7')") from None
+        raise SignalError(
+            f"{path} is of MATLAB's version 7.3; save it by save(..., '-v7')"
+        ) from None
     except (MatReadError, ValueError, TypeError, IndexError, EOFError) as error:
         raise SignalError(f"{path} is no MAT file: {error}") from None
     table = found.get(SIGNALS)

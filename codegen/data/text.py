@@ -67,7 +67,7 @@ def _read(file: TextIO, source: str, wanted: Sequence[Column] | None) -> Columns
 
 def _lines(file: TextIO, mark: str, source: str) -> Iterator[tuple[int, list[str]]]:
     """The lines that are not empty by their numbers, as cells without blanks around."""
-    reader = csv.reader(file, delimiter=mark, strict=True)
+    reader = csv.reader(file, delimiter=mark, skipinitialspace=True, strict=True)
     try:
         for cells in reader:
             if any(cells):

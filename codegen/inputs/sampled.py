@@ -133,8 +133,9 @@ class Sampled(Points):
     ) -> "Sampled":
         """Two columns of a file or of a frame as an input.
 
-        ``source``: a path that ends in ``.csv``, ``.tsv``, ``.txt``, ``.parquet``, ``.mat`` or ``.nc``, or what
-        gives a column by its name: a data frame of pandas, a data set of xarray, a table of pyarrow, a mapping.
+        ``source``: a path that ends in ``.csv``, ``.tsv``, ``.txt``, ``.parquet``, ``.mat`` or ``.nc``, or
+        what gives a column by its name: a data frame of pandas, a data set of xarray, a table of pyarrow, a
+        mapping.
         ``time`` and ``value``: the names of the columns, or in files of text their numbers, counted from 1.
 
         Raises `SignalError` naming file, line and column for what cannot be used, `MissingExtraError` without

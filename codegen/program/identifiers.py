@@ -28,10 +28,12 @@ PYTHON_WORDS = frozenset(
 )
 """Keywords, builtins, and the names that generated Python uses."""
 
-MATLAB_WORDS = frozenset(
-    "break case catch classdef continue else elseif end for function global if otherwise parfor persistent "
-    "return spmd switch try while".split()
-)
+_MATLAB_WORDS = """
+    break case catch classdef continue else elseif end for function global if otherwise parfor persistent
+    return spmd switch try while
+"""
+
+MATLAB_WORDS = frozenset(_MATLAB_WORDS.split())
 """Keywords of MATLAB, which no variable is called by."""
 
 RESERVED: Mapping[str, frozenset[str]] = MappingProxyType(

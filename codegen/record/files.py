@@ -41,7 +41,9 @@ def write_parquet(
     import pyarrow.parquet
 
     fields = [
-        pyarrow.field(name, pyarrow.float64(), metadata={"unit": units[name]} if name in units else None)
+        pyarrow.field(
+            name, pyarrow.float64(), metadata={"unit": units[name]} if name in units else None
+        )
         for name in names
     ]
     told = [[event.time, str(event.port), event.kind] for event in events]

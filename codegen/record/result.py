@@ -136,9 +136,9 @@ class Result:
     def write_mat(self, path: str | PathLike[str]) -> None:
         """Write time, as "t", and every column as variables of a MAT file, for MATLAB and Octave.
 
-        The variable ``signals`` lists variable, signal and unit, as not every name is one in MATLAB; events are
-        ``event_time``, ``event_port`` and ``event_kind``. Raises `SignalError` for a name beyond 63 characters,
-        `WriteError` where the file cannot be written.
+        The variable ``signals`` lists variable, signal and unit, as not every name is one in MATLAB; events
+        are ``event_time``, ``event_port`` and ``event_kind``. Raises `SignalError` for a name beyond 63
+        characters, `WriteError` where the file cannot be written.
         """
         write_mat(path, *self._timed(), self.events)
 
