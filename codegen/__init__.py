@@ -3,7 +3,7 @@
 from codegen.analysis.comparison import Comparison, compare
 from codegen.analysis.spectrum import Spectrum, spectrum
 from codegen.c.export import to_c
-from codegen.called.function import Function
+from codegen.called.function import TimeFunction
 from codegen.energy.audit import Audit
 from codegen.engine.fallback import BackendWarning
 from codegen.family import Family
@@ -55,7 +55,6 @@ __all__ = [
     "Event",
     "Failure",
     "Family",
-    "Function",
     "Grid",
     "Lag",
     "Program",
@@ -77,6 +76,7 @@ __all__ = [
     "Swept",
     "SwitchedSimulator",
     "Table",
+    "TimeFunction",
     "ZeroOrderHold",
     "balance",
     "bode",

@@ -1,4 +1,4 @@
-"""`Function`: a Python function of time as an input."""
+"""`TimeFunction`: a Python function of time as an input."""
 
 import hashlib
 import math
@@ -54,7 +54,7 @@ class Followed(Signal):
 
 
 @dataclass(frozen=True, repr=False)
-class Function:
+class TimeFunction:
     """A Python function of time [s] as an input of runs in numpy; the function alone is as good.
 
     A run gets polynomials of degree 13 that miss it by no more than ``tolerance`` of its size, so that the
@@ -70,7 +70,7 @@ class Function:
     that is not between 0 and 1.
 
     >>> import math
-    >>> wave = Function(math.sin).over([0, 10])
+    >>> wave = TimeFunction(math.sin).over([0, 10])
     >>> abs(wave(1.0) - math.sin(1.0)) < 1e-14, wave(11.0) == wave(10.0)
     (True, True)
     """
@@ -155,7 +155,7 @@ class Function:
 
     def __repr__(self) -> str:
         told = f", breakpoints={self.breakpoints!r}" if self.breakpoints else ""
-        return f"Function({self._name}{told})"
+        return f"TimeFunction({self._name}{told})"
 
 
 def followed(inputs: Any, times: Array) -> Any:
@@ -171,7 +171,7 @@ def followed(inputs: Any, times: Array) -> Any:
 def _followed(name: object, value: Any, times: Array) -> Any:
     if isinstance(value, Signal) or not callable(value):
         return value
-    function = value if isinstance(value, Function) else Function(value)
+    function = value if isinstance(value, TimeFunction) else TimeFunction(value)
     try:
         return function.over(times)
     except SignalError as error:

@@ -195,13 +195,13 @@ def as_signal(value: object, name: str) -> Signal:
     if callable(value):
         raise SignalError(
             f"input {name!r}: {told} is a Python function, which only runs in numpy call; give its "
-            "polynomials, codegen.Function(f).over(times), or samples, codegen.Sampled(times, values)"
+            "polynomials, codegen.TimeFunction(f).over(times), or samples, codegen.Sampled(times, values)"
         )
-    points = "; values at times are Sampled(times, values)"
+    points = "; values at times are Sampled(times, values)" if hasattr(value, "__len__") else ""
     raise SignalError(
         f"input {name!r}: {told} is neither a signal nor a number; use Constant, Step, Pulse, Ramp, "
         "Sine, Square, Sawtooth, PWM, Sampled, ZeroOrderHold or Lag"
-        f"{points if callable(value) or hasattr(value, '__len__') else ''}"
+        f"{points}"
     )
 
 

@@ -13,7 +13,7 @@ from references.build import bond_graph
 
 import bondgraph as bg
 import codegen
-from codegen import Function, Sampled
+from codegen import Sampled, TimeFunction
 
 TIMES = np.linspace(0.0, 4.0, 81)
 
@@ -41,7 +41,7 @@ CASES: dict[str, tuple[Callable[[float], float], tuple[float, ...], Callable[[fl
 @pytest.mark.parametrize("method", ["exact", "DOP853"])
 def test_the_speed_of_a_mass_is_the_integral_in_closed_form(name: str, method: str) -> None:
     function, breaks, integral = CASES[name]
-    given = Function(function, breaks) if breaks else function
+    given = TimeFunction(function, breaks) if breaks else function
     run = mass().run(TIMES, {"v": 0.0}, {"F": given}, method)
     # Exact steps keep to rounding and what the function is missed by, DOP853 to a run's tolerances.
     off = 1e-10 if method == "exact" else 1e-7
@@ -52,7 +52,7 @@ def test_the_speed_of_a_mass_is_the_integral_in_closed_form(name: str, method: s
 @pytest.mark.parametrize("name", CASES)
 def test_between_the_samples_it_is_missed_by_no_more_than_the_tolerance(name: str) -> None:
     function, breaks, _ = CASES[name]
-    signal = Function(function, breaks).over(TIMES)
+    signal = TimeFunction(function, breaks).over(TIMES)
     times = np.sort(np.random.default_rng(1).uniform(0.0, 4.0, 5000))
     expected = np.array([function(t) for t in times.tolist()])
     assert signal.sampled(times) == pytest.approx(expected, rel=1e-10, abs=2e-11)
@@ -60,7 +60,7 @@ def test_between_the_samples_it_is_missed_by_no_more_than_the_tolerance(name: st
 
 def test_a_larger_tolerance_takes_fewer_polynomials() -> None:
     function = CASES["fast"][0]
-    fine, coarse = Function(function).over(TIMES), Function(function, (), 1e-4).over(TIMES)
+    fine, coarse = TimeFunction(function).over(TIMES), TimeFunction(function, (), 1e-4).over(TIMES)
     assert len(coarse.pieces) < len(fine.pieces) / 2
     times = np.linspace(0.0, 3.9, 3000)
     missed = abs(coarse.sampled(times) - np.cos(400 * times)).max()
@@ -73,7 +73,7 @@ def test_corners_are_no_jumps_and_jumps_are() -> None:
         ("smooth", None), ("corner", None), ("corner told", None), ("root", None),
         ("jump", math.pi / 2), ("jump told", 1.3), ("jump halfway", 2.0),
     ):  # fmt: skip
-        found = Function(*CASES[name][:2]).over(TIMES).first_jump(0.0, 4.0)
+        found = TimeFunction(*CASES[name][:2]).over(TIMES).first_jump(0.0, 4.0)
         assert found == (jump if jump is None else pytest.approx(jump, abs=1e-10)), name
 
 
@@ -88,7 +88,7 @@ def test_impulses_of_functions_are_refused_as_of_signals() -> None:
     )
     assert run["e_drive"][-1] == pytest.approx(2 * math.cos(4.0) + math.sin(4.0), abs=1e-9)
     with pytest.raises(bg.SimulationError, match=r"input 'w' steps at t = 1\.3"):
-        ready.run(TIMES, {}, {"w": Function(*CASES["jump told"][:2])})
+        ready.run(TIMES, {}, {"w": TimeFunction(*CASES["jump told"][:2])})
 
 
 def test_events_come_where_the_closed_form_has_them() -> None:
@@ -111,7 +111,7 @@ def test_events_come_where_the_closed_form_has_them() -> None:
 @pytest.mark.parametrize(
     ("function", "told"),
     [
-        (lambda t: 1 / (t - 2), r"input 'F': Function\(.*\) raised ZeroDivisionError at t = 2"),
+        (lambda t: 1 / (t - 2), r"input 'F': TimeFunction\(.*\) raised ZeroDivisionError at t = 2"),
         (lambda t: "a", r"input 'F': .* gives 'a' at t = 0, which is no finite number"),
         (lambda t: 1j, r"gives 1j at t = 0"),
         (lambda t: float("nan"), r"gives nan at t = 0"),
@@ -130,7 +130,7 @@ def test_what_gives_no_input_is_refused_by_name(function: Callable[..., object],
     [
         ((3,), r"3 is no Python function"),
         ((codegen.Constant(1),), r"is no Python function"),
-        ((math.sin, ["a"]), r"Function\(math\.sin.*breakpoints must be numbers"),
+        ((math.sin, ["a"]), r"TimeFunction\(math\.sin.*breakpoints must be numbers"),
         ((math.sin, [math.inf]), r"a breakpoint is not finite"),
         ((math.sin, (), 0.0), r"tolerance=0\.0 is not between 0 and 1"),
         ((math.sin, (), True), r"tolerance=True is not between"),
@@ -138,13 +138,13 @@ def test_what_gives_no_input_is_refused_by_name(function: Callable[..., object],
 )
 def test_what_is_no_function_is_refused(arguments: tuple[object, ...], told: str) -> None:
     with pytest.raises(bg.SignalError, match=told):
-        Function(*arguments)  # type: ignore[arg-type]
+        TimeFunction(*arguments)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("times", [[0.0], [1.0, 1.0], [0.0, math.inf], ["a", "b"]])
 def test_a_stretch_has_two_ends(times: list[float]) -> None:
     with pytest.raises(bg.SignalError, match=r"two finite times or more|must be numbers"):
-        Function(math.sin).over(times)
+        TimeFunction(math.sin).over(times)
 
 
 OUT = r"'V'.*only runs in numpy call; give its polynomials, .*over\(times\), or samples, codegen\.Sampled"
@@ -158,19 +158,19 @@ def test_c_and_exports_refuse_it_and_tell_the_ways_out() -> None:
     with pytest.raises(bg.SignalError, match=OUT):
         codegen.to_c(equations, NUMBERS, main=True, inputs={"V": math.sin})
     with pytest.raises(bg.SignalError, match=OUT):
-        codegen.write_fmu("a.fmu", equations, NUMBERS, inputs={"V": Function(math.sin)})
+        codegen.write_fmu("a.fmu", equations, NUMBERS, inputs={"V": TimeFunction(math.sin)})
     family = codegen.Family(equations, NUMBERS, backend="c")
     with pytest.raises(bg.SignalError, match=OUT):
         codegen.sweep(
             family, {"R": [1, 2]}, TIMES, {"i": codegen.final("i")}, inputs={"V": math.sin}
         )
     with pytest.raises(bg.SignalError, match="a lag follows a signal, not"):
-        codegen.Lag(Function(math.sin), 0.1)  # type: ignore[arg-type]
+        codegen.Lag(TimeFunction(math.sin), 0.1)  # type: ignore[arg-type]
 
 
 def test_the_ways_out_give_what_the_function_gives() -> None:
     expected = np.sin(TIMES) / 2
-    over = Function(math.cos).over(TIMES)
+    over = TimeFunction(math.cos).over(TIMES)
     assert mass("c").run(TIMES, {}, {"F": over})["v"] == pytest.approx(expected, abs=1e-10)
     fine = np.linspace(0.0, 4.0, 4001)
     cubics = Sampled(fine, np.cos(fine), "pchip")
@@ -200,9 +200,9 @@ def test_sparse_runs_take_functions() -> None:
 
 
 def test_what_is_made_is_the_same_every_time_and_tells_itself() -> None:
-    one, other = (Function(math.sin).over(TIMES) for _ in range(2))
+    one, other = (TimeFunction(math.sin).over(TIMES) for _ in range(2))
     assert (one, repr(one)) == (other, repr(other))
     assert pickle.loads(pickle.dumps(one)) == one
-    assert repr(Function(math.cos).over(TIMES)) != repr(one)
+    assert repr(TimeFunction(math.cos).over(TIMES)) != repr(one)
     assert repr(one).startswith("<function math.sin from 0.0 to 4.")
-    assert repr(Function(math.sin, [2, 1])) == "Function(math.sin, breakpoints=(1.0, 2.0))"
+    assert repr(TimeFunction(math.sin, [2, 1])) == "TimeFunction(math.sin, breakpoints=(1.0, 2.0))"
