@@ -3,6 +3,7 @@
 from codegen.analysis.comparison import Comparison, compare
 from codegen.analysis.spectrum import Spectrum, spectrum
 from codegen.c.export import to_c
+from codegen.called.function import TimeFunction
 from codegen.energy.audit import Audit
 from codegen.engine.fallback import BackendWarning
 from codegen.family import Family
@@ -79,6 +80,7 @@ __all__ = [
     "Swept",
     "SwitchedSimulator",
     "Table",
+    "TimeFunction",
     "ZeroOrderHold",
     "balance",
     "bode",

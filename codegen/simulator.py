@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from bondgraph.declare.switching import checked_modes
 from bondgraph.errors import SignalError
+from codegen.called.function import followed
 from codegen.energy.ledger import Ledger
 from codegen.engine.backends import Request, in_c, in_numpy
 from codegen.engine.fallback import Stopped, tell
@@ -158,7 +159,10 @@ class Simulator:
         Of a limit of C's own it is called before numpy starts, else once numpy has not refused it, too.
         """
         times = checked_times(time)
-        given = signals_for({} if inputs is None else inputs, self.inputs, self.whence)
+        wanted_inputs = {} if inputs is None else inputs
+        if self.located is None:
+            wanted_inputs = followed(wanted_inputs, times)
+        given = signals_for(wanted_inputs, self.inputs, self.whence)
         signals = [*given, *self.sources(float(times[0]), float(times[-1]))]
         settings = settings_of(method, rtol, atol)
         refuse_impulses(self.closed, signals, times)

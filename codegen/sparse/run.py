@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bondgraph.errors import SignalError, SimulationError
+from codegen.called.function import followed
 from codegen.energy.audit import Audit
 from codegen.inputs.signal import Signal
 from codegen.numbers.arrays import Array, read_only
@@ -105,7 +106,8 @@ def run_sparse(
         raise SignalError("sparse models are integrated; let method be auto, DOP853 or Radau")
     state = initial_values(_by_states(model, {} if initial is None else initial), model.states)
     asked = tuple(name for name in model.inputs if name not in model.known)
-    given = dict(zip(asked, signals_for({} if inputs is None else inputs, asked), strict=True))
+    told = followed({} if inputs is None else inputs, times)
+    given = dict(zip(asked, signals_for(told, asked), strict=True))
     signals = [given[name] if name in given else model.known[name] for name in model.inputs]
     _check_steps(model, signals, times)
     with np.errstate(all="ignore"):

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from bondgraph.errors import SignalError
 from codegen.batch.asked import Given
+from codegen.called.function import followed
 from codegen.engine.fallback import tell_all
 from codegen.record.measures import Measure
 from codegen.record.result import Result
@@ -108,8 +109,12 @@ def sweep(
     settings = MappingProxyType({"method": method, "rtol": rtol, "atol": atol})
     asked = MappingProxyType(checked_measures(measures))
     on = checked_switches(model, initially_on)
-    given = by_states_of(model, initial, runs.names), inputs, settings, on, events, len(runs)
-    job = Job(model, runs.names, checked_times(time), asked, *given)
+    times = checked_times(time)
+    # Once for all runs and processes, which need not have the functions.
+    in_numpy = getattr(model, "backend", "numpy") == "numpy"
+    told = followed(inputs, times) if in_numpy else inputs
+    given = by_states_of(model, initial, runs.names), told, settings, on, events, len(runs)
+    job = Job(model, runs.names, times, asked, *given)
     check(job, initial)
     _check_count(workers, "workers", 0)
     _check_count(chunk, "chunk", 1)
