@@ -28,7 +28,8 @@ def told(events: Sequence[Event]) -> list[tuple[Hashable, str]]:
 
 
 def check(
-    ready: Simulator | SwitchedSimulator, initial: Mapping[str, float], inputs: Mapping[str, Signal], on: Sequence[Hashable],
+    ready: Simulator | SwitchedSimulator, initial: Mapping[str, float],
+    inputs: Mapping[str, Signal], on: Sequence[Hashable],
     rng: np.random.Generator,
 ) -> None:  # fmt: skip
     """Steps against a run; what cannot run cannot be stepped."""
