@@ -87,7 +87,8 @@ def test_a_law_that_reads_only_what_it_gives_is_refused() -> None:
 def test_a_graph_in_place_of_equations_is_refused(ask) -> None:
     graph = bg.graph([bg.Se("push", "F"), bg.One("cart"), bg.I("m", 1)], "push > cart > m")
     with pytest.raises(
-        bg.StructureError, match=r"bondgraph.derive.* not a BondGraph|not BondGraph; .*bondgraph.derive"
+        bg.StructureError,
+        match=r"bondgraph.derive.* not a BondGraph|not BondGraph; .*bondgraph.derive",
     ):
         ask(graph)
 
