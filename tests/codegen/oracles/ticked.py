@@ -23,13 +23,13 @@ INSTANTS = tuple((EVERY * k + LATE) / UNIT for k in range(40))
 """The correctly rounded quotients, up to the end."""
 
 
-def case() -> Case:
+def case(offset: object = "1/100") -> Case:
     """The loop; ``stamp`` keeps the time of the latest instant."""
     nodes = [
         bg.Se("source", "1*V"), bg.One("coil"), bg.I("L", "L", flow="i"), bg.R("R", "R"),
         bg.GY("motor", "k"), bg.One("shaft"), bg.I("J", "J", flow="omega"), bg.R("b", "b"),
         bg.Controller(
-            "pi", every="3/100", offset="1/100", states={"z": 0.0},
+            "pi", every="3/100", offset=offset, states={"z": 0.0},
             update={"z": "z + T*K_i*(ref - omega)"},
             gives={"V": "K*(ref - omega) + z", "stamp": "t"},
         ),
