@@ -177,6 +177,7 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
     c->at = (bg_instant){.t = t, .s = s};
     c->began = t;
     c->goes_on = 0;
+    c->done = -INFINITY;
     c->end = end;
     c->span = (bg_span){0, -INFINITY, INFINITY};
     c->log.count = c->rounds.next = c->rounds.full = 0;
@@ -192,7 +193,7 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
 int bg_run(const bg_engine *e, bg_course *c)
 {
     const double most = 16.0 * c->log.capacity + 1000.0;
-    int status = BG_OK, started = 0, due = !c->goes_on && are_due(e->sight.clocks, c);
+    int status = BG_OK, started = 0, due = c->at.t > c->done && are_due(e->sight.clocks, c);
     /* Breakpoints lie ahead one after the other: a turn that ends at one gets somewhere. */
     for (double turns = 0.0; turns < most; turns += c->at.t < c->at.following) {
         int undecided = 1;

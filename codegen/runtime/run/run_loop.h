@@ -8,13 +8,14 @@
 #include "run_pace.h"
 
 /* Where a run is. `began`, `end` [s]: of all of it; `span`: the pieces of its inputs;
- * `goes_on`: whether it goes on with one before, so that its begin may have events. */
+ * `goes_on`: whether it goes on with one before, so that its begin may have events; `done` [s]: up
+ * to when tasks have set what they set. */
 typedef struct {
     bg_instant at;
     double began, end;
     bg_span span;
     int goes_on;
-    double tick; /* the next instant of a task, and whose it is or was */
+    double done, tick; /* the next instant of a task, and whose it is or was */
     int due[BG_MOST_CLOCKS];
     int mode[BG_MOST_PORTS];
     bg_log log;

@@ -38,6 +38,17 @@ def case(offset: object = "1/100") -> Case:
     return Case(bg.derive(graph), NUMBERS, None, {}, {"ref": REF}, END)
 
 
+def counter() -> Case:
+    """What counts its own instants, 0.1 s apart, beside a mass that goes on."""
+    nodes = [
+        bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"),
+        bg.Controller("count", every="1/10", states={"n": 0}, update={"n": "n + 1"},
+                      gives={"seen": "v", "stamp": "t"}),
+    ]  # fmt: skip
+    equations = bg.derive(bond_graph(nodes, "push>n>m"))
+    return Case(equations, {"m": 2.0}, None, {"v": 3.0}, {"P": 0.0}, 1.0)
+
+
 def segments(times: Sequence[float]) -> dict[str, np.ndarray]:
     """States at these times, of matrix exponentials from instant to instant; just after at an instant."""
     p = NUMBERS
