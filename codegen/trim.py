@@ -2,6 +2,7 @@
 
 from collections.abc import Hashable, Mapping
 
+from bondgraph.errors import StructureError
 from codegen.instants.equilibrium import equilibrium
 from codegen.model.snapshot import Snapshot
 from codegen.modes.closed import ClosedModel
@@ -38,6 +39,10 @@ def trim(
     >>> round(point["q"], 9)
     3.0
     """
+    if not isinstance(simulator, Simulator):
+        raise StructureError(
+            f"trim takes what codegen.simulator returns, not a {type(simulator).__name__}"
+        )
     model = simulator.closed
     choices(model, mode)
     pieces, start = simulator.steady(inputs or {}, initial or {})

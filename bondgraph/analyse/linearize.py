@@ -17,11 +17,11 @@ from bondgraph.analyse.instant import Instant
 from bondgraph.analyse.linear_model import LinearModel
 from bondgraph.analyse.modes import ToldModes, held_rows, told_modes
 from bondgraph.analyse.moving_hold import turns
-from bondgraph.analyse.sampled import SampledModel, sampled
+from bondgraph.analyse.sampled import SampledModel, check_told, sampled
 from bondgraph.analyse.slopes import Point, operating_point, with_given
 from bondgraph.analyse.turned import turned
 from bondgraph.analyse.unknowns import Unknowns, unknowns_in
-from bondgraph.derive import derive_again
+from bondgraph.derive import check_derived, derive_again
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, SingularStorageError
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw, Law, slides
@@ -84,6 +84,7 @@ def linearize(
     >>> linearize(bg.derive(g), at={"q": 3}).J
     Matrix([[-6*c]])
     """
+    check_derived(equations)
     stuck = tuple(stuck) if isinstance(stuck, Iterable) and not isinstance(stuck, str) else stuck
     equations = turned(_opened(equations, inputs), _with_held(equations, laws, stuck, mode))
     merged = merged_laws(equations, {} if laws is None else laws)
@@ -119,6 +120,7 @@ def linearize(
     A, balances = system.dynamics()
     ys = tuple(system.put_in(system.signal(name)) for name in shown)
     if period is not None:
+        check_told(equations.tasks)
         ys += tuple(system.value(reset.value, task.name) for reset, task in sets)
         shown += [reset.state for reset, _ in sets]
     model = Rows(system.states, tuple(map(fixed, A)), tuple(balances), ys)

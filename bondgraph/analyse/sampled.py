@@ -18,6 +18,13 @@ class SampledModel:
 
     ``between``: its last outputs are the values that tasks set, in the order of ``sets``: how long into a
     period [s], and which state.
+
+    >>> import bondgraph as bg
+    >>> loop = bg.graph([bg.Se("F", "1*u"), bg.One("n"), bg.I("m", "m", flow="v"),
+    ...                  bg.Controller("brake", every=0.1, gives={"u": "-K*v"})], "F > n > m")
+    >>> model = bg.linearize(bg.derive(loop), period=0.1)
+    >>> model.period, model.states, model.sets, model.between.F
+    (1/10, (v, u), ((0, u),), Matrix([[-K, 0]]))
     """
 
     between: LinearModel
@@ -72,6 +79,19 @@ class SampledModel:
         return SampledSpace(
             space.states, space.inputs, space.outputs[:count], float(self.period), *found
         )
+
+
+def check_told(tasks: Sequence[Task]) -> None:
+    """Refuse what only a Python function tells: it has no slopes.
+
+    Raises `SignalError`, naming the controller.
+    """
+    for task in tasks:
+        if task.step is not None:
+            raise SignalError(
+                f"the step of controller {task.name!r} is a Python function, which has no slopes; write what "
+                "it does as expressions, or linearize without a period"
+            )
 
 
 def sampled(between: LinearModel, tasks: Sequence[Task], period: object) -> SampledModel:

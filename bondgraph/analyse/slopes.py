@@ -6,13 +6,13 @@ from itertools import product
 import sympy as sp
 
 from bondgraph.algebra.atoms import normal
+from bondgraph.algebra.called import unguarded
 from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.algebra.residues import is_zero
 from bondgraph.algebra.table_corners import check_tables
 from bondgraph.algebra.whole import Below, Floor
 from bondgraph.analyse.unknowns import still
 from bondgraph.errors import SignalError
-from bondgraph.inverses.guarding import unguarded
 from bondgraph.nodes.laws import SLIP, DryFriction, ExpressionLaw, Law
 
 Point = Mapping[sp.Symbol, sp.Expr]

@@ -12,12 +12,18 @@ from bondgraph.show.display import (
     counted,
     equations_text,
     listed,
-    wrapped,
     written,
 )
+from bondgraph.show.lines import words, wrapped
 from bondgraph.show.putting_in import closed
-from bondgraph.show.statements import Statement, Statements, statements
-from bondgraph.show.ways import rubbing, switching
+from bondgraph.show.statements import (
+    Statement,
+    Statements,
+    statements,
+    without_functions,
+    without_idle,
+)
+from bondgraph.show.ways import rubbing, switching, working
 
 PUT_IN = "with laws and sources put in"
 
@@ -42,19 +48,23 @@ def whole_text(model: StateEquations) -> str:
       m*v' = -k*q_k^3
       q_k' = v
     """
+    model = without_functions(model)
     found = statements(model)
-    parts = (equations_text(model), *map("\n".join, (_beside(model, found), _put_in(model, found))))
+    parts = (
+        equations_text(without_idle(model)),
+        *map("\n".join, (_beside(model, found), _put_in(model, found))),
+    )
     return "\n\n".join(part for part in parts if part)
 
 
 def ways(model: StateEquations) -> list[str]:
-    """A sentence for each dry friction and each switch: both of its ways."""
+    """A sentence for each dry friction and each switch, both of its ways; and for each controller."""
     frictions = [
         rubbing(port, law)
         for port in model.ports
         if isinstance(law := model.laws.get(port.element.name), DryFriction)
     ]
-    return [*frictions, *map(switching, model.switches)]
+    return [*frictions, *map(switching, model.switches), *map(working, model.tasks)]
 
 
 def together(loop: Sequence[sp.Symbol]) -> str:
@@ -81,7 +91,7 @@ def _beside(model: StateEquations, found: Statements) -> Iterator[str]:
     lines = [line for one in (*found.given, *found.rates) for line in _lines(one)]
     sentences = [*map(together, found.loops), *ways(model)]
     for text in sentences:
-        first, *rest = text.split()
+        first, *rest = words(text)
         lines += wrapped([f"  {first}", *rest], WIDTH, "    ")
     if lines and (model.states or model.outputs):
         yield "where"
