@@ -10,6 +10,7 @@ from oracles.routes.kind import Kind
 from oracles.routes.kinds import KINDS
 from oracles.routes.lawful import LAWFUL
 from oracles.routes.plain import PLAIN
+from oracles.routes.signals import SIGNALS
 from oracles.routes.sloped import SLOPED
 from oracles.routes.switches import SWITCHES
 from oracles.routes.table import REFUSALS, REFUSED
@@ -50,6 +51,7 @@ def page() -> str:
         ("Switches", (*SWITCHES, *EXCHANGING)),
         ("No port that switches", (*PLAIN, *LAWFUL)),
         ("Lookup tables", TABLED),
+        ("Signals", SIGNALS),
     ):
         plain = [route for route in ROUTES if route not in COMPILED]
         parts += [f"\n## {title}\n", *_table(kinds, plain), "", *_table(kinds, COMPILED)]

@@ -171,8 +171,8 @@ def thermostat() -> Kind:
 
     nodes = [bg.Sf("power", "P"), bg.Zero("n"), bg.One("pass"), bg.R("vent", "R_v"), bg.R("wall", "R"),
              bg.Sw("relay", on="gate - 1/2"), bg.C("room", "C", effort="theta"),
-             bg.Controller("thermostat", every=every, gives={"gate": "Piecewise((1, theta > 25), (0, True))"}),
-             ]  # fmt: skip
+             bg.Controller("thermostat", every=every,
+                           gives={"gate": "Piecewise((1, theta > 25), (0, True))"})]  # fmt: skip
     graph = bond_graph(nodes, "power>n n>room n>wall n>pass pass>vent pass>relay")
     return Kind("switch that a sampled controller turns", graph, {"C": C, "R": R, "R_v": vent}, {"P": f"{P}"},
                 known, 2.05, {"theta": 24.5}, at=0.05, mode={"relay": "off"},
@@ -180,12 +180,13 @@ def thermostat() -> Kind:
 
 
 def braked() -> Kind:
-    """A brake of 3 N for the first four of a controller's instants, then of 1/2: it stops at 1/4 s, until 0.4 s."""
+    """A brake of 3 N for four of a controller's instants, then of 1/2: a rest from 1/4 to 0.4 s."""
 
     def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
         return {"v": np.where(t < 0.4, np.maximum(0.5 - 2 * t, 0), 0.5 * (t - 0.4))}
 
-    nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"), bg.R("brake", law=bg.DryFriction("N")),
+    nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"),
+             bg.R("brake", law=bg.DryFriction("N")),
              bg.Controller("sequence", every="1/10", states={"k": 0}, update={"k": "Min(k + 1, 9)"},
                            gives={"N": "Piecewise((3, k < 4), (most, True))"})]  # fmt: skip
     return Kind("brake that a sampled controller sets", bond_graph(nodes, "push>n>m n>brake"),
