@@ -14,7 +14,7 @@ from bondgraph.declare.tables import TABLES, tables_in
 from bondgraph.declare.validate import validate
 from bondgraph.errors import ExpressionError, FileFormatError
 from bondgraph.files.tables import plain_table
-from bondgraph.nodes.kinds import EXPRESSIONS, Kind
+from bondgraph.nodes.kinds import EXPRESSIONS, INSTANTS, NAMED, Kind
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 
 FRICTION = ("breakaway", "curve", "level")
@@ -90,10 +90,16 @@ def _plain(key: str, value: Any, kind: object, where: str) -> Any:
         if isinstance(rows, Sequence) and not isinstance(rows, str):
             return [[_written(entry, where) for entry in row] for row in rows]
         return _written(rows, where)
+    if key in INSTANTS:
+        return _written(value, where)
+    if key in NAMED and isinstance(value, Mapping):
+        return {
+            _name(one, where): _written(told, f"{where} of {one}") for one, told in value.items()
+        }
     if key == "reset" and isinstance(value, Mapping):
         return {_name(state, where): _become(state, told, where) for state, told in value.items()}
-    if key == "ports":
-        return [_name(port, where) for port in value]
+    if key in ("ports", "reads"):
+        return [_name(one, where) for one in value]
     if key in ("effort", "flow", "gives") and isinstance(value, Mapping):
         names = {_name(port, where): _name(given, where) for port, given in value.items()}
         return dict(sorted(names.items()))

@@ -17,6 +17,9 @@ EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", *_BOUNDED)
 NAMED = ("states", "update", "outputs")
 """The attributes that map names to expressions."""
 
+INSTANTS = ("every", "offset")
+"""The attributes that are numbers of seconds."""
+
 _SWITCHED = frozenset({"on", "off", "reset"})
 _NAMED = frozenset({"value", "effort", "flow", "law", "unit", "ports"})
 _STORED = _NAMED | {"inverse", "energy", "priority", "start"}
@@ -82,7 +85,7 @@ class Kind(StrEnum):
     STATE = "State", Nature("signal", frozenset({"rate", "start", "low", "high", "unit"}), place=10)
     CONTROLLER = (
         "Controller",
-        Nature("signal", frozenset({"every", "offset", "reads", "step", *NAMED}), place=11),
+        Nature("signal", frozenset({*INSTANTS, "reads", "step", *NAMED}), place=11),
     )
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":
