@@ -85,18 +85,12 @@ def _plain(key: str, value: Any, kind: object, where: str) -> Any:
         return dict(sorted(told.items()))
     if key == "law":
         return _law(value, kind, where)
-    if key in EXPRESSIONS:
+    if key in (*EXPRESSIONS, *INSTANTS):
         rows = value.tolist() if isinstance(value, sp.MatrixBase) else value
         if isinstance(rows, Sequence) and not isinstance(rows, str):
             return [[_written(entry, where) for entry in row] for row in rows]
         return _written(rows, where)
-    if key in INSTANTS:
-        return _written(value, where)
-    if key in NAMED and isinstance(value, Mapping):
-        return {
-            _name(one, where): _written(told, f"{where} of {one}") for one, told in value.items()
-        }
-    if key == "reset" and isinstance(value, Mapping):
+    if key in ("reset", *NAMED) and isinstance(value, Mapping):
         return {_name(state, where): _become(state, told, where) for state, told in value.items()}
     if key in ("ports", "reads"):
         return [_name(one, where) for one in value]
@@ -109,7 +103,7 @@ def _plain(key: str, value: Any, kind: object, where: str) -> Any:
 
 
 def _become(state: object, told: Any, where: str) -> Any:
-    """What a state is reset to, or the states of an event by what each is reset to."""
+    """What a name stands for, or by an event what each of its states is reset to."""
     if isinstance(told, Mapping):
         return {
             _name(one, where): _written(value, f"{where} of {one}") for one, value in told.items()
