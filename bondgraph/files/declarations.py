@@ -22,7 +22,7 @@ FRICTION = ("breakaway", "curve", "level")
 
 NAMES = frozenset(
     {"kind", "effort", "flow", "gives", "integrate", "unit", "port", "tail_port", "head_port"}
-) | {"stroke"}
+) | {"stroke", "signal"}
 """Attributes of nodes and bonds that are mere names."""
 
 

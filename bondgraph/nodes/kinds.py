@@ -81,11 +81,14 @@ class Kind(StrEnum):
     )
     STOP = "Stop", Nature("switch", frozenset({"flow", "reset", *_BOUNDED}), place=8)
     SW = "Sw", Nature("switch", frozenset({"effort", "flow", *_SWITCHED}), place=2)
-    FUNCTION = "Function", Nature("signal", frozenset({"value", "unit"}), place=9)
-    STATE = "State", Nature("signal", frozenset({"rate", "start", "low", "high", "unit"}), place=10)
+    FUNCTION = "Function", Nature("signal", frozenset({"value", "unit", "ports"}), place=9)
+    STATE = (
+        "State",
+        Nature("signal", frozenset({"rate", "start", "low", "high", "unit", "ports"}), place=10),
+    )
     CONTROLLER = (
         "Controller",
-        Nature("signal", frozenset({*INSTANTS, "reads", "step", *NAMED}), place=11),
+        Nature("signal", frozenset({*INSTANTS, "reads", "step", "ports", *NAMED}), place=11),
     )
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":
@@ -182,3 +185,7 @@ class Kind(StrEnum):
     def letter(self) -> str:
         """The letter of a storage's own state, p or q; else an empty text."""
         return self.nature.letter
+
+
+SIGNALS = frozenset(str(kind) for kind in Kind if kind.signals)
+"""The kinds of node without power, as texts."""
