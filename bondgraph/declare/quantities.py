@@ -71,9 +71,8 @@ def _of_signals(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str
 
 def kept_names(attributes: Mapping[str, Any]) -> Iterator[str]:
     """What a controller keeps: its states, then what it gives, each once."""
-    named = [attributes.get(key) for key in ("states", "outputs")]
-    found = [str(name_text(one)) for told in named if isinstance(told, Mapping) for one in told]
-    yield from dict.fromkeys(found)
+    named = [attributes.get(key) or () for key in ("states", "outputs")]
+    yield from dict.fromkeys(str(name_text(one)) for told in named for one in told)
 
 
 def _kind(name: Hashable, attributes: Mapping[str, Any]) -> Kind:

@@ -1,6 +1,7 @@
 """Names in a declared graph: what its nodes read, and the same attributes under other names."""
 
 from collections.abc import Callable, Hashable, Mapping
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import networkx as nx
@@ -11,6 +12,7 @@ from bondgraph.declare.quantities import name_text
 from bondgraph.declare.tables import READ
 from bondgraph.nodes.kinds import SIGNALS
 from bondgraph.nodes.laws import SLIP, DryFriction, ExpressionLaw
+from bondgraph.nodes.tasks import Called
 
 Part: TypeAlias = "nx.DiGraph[Hashable]"
 """A bond graph whose terminals may still lack their attributes."""
@@ -20,6 +22,27 @@ Names = Mapping[str, str]
 
 _OWN_SLIP = sp.Dummy("slip of a curve")
 """Stands for ``slip`` in friction curves while the graph's names change."""
+
+
+@dataclass(frozen=True)
+class RenamedStep:
+    """A controller's function where ``names`` are others, old and new: it is told those that it knows."""
+
+    step: Called
+    names: tuple[tuple[str, str], ...]
+
+    def __call__(self, values: Mapping[str, float]) -> dict[str, float]:
+        """What the function makes of the values, by the new names.
+
+        >>> twice = RenamedStep(lambda now: {"u": 2 * now["x"]}, (("u", "left_u"), ("x", "left_x")))
+        >>> twice({"left_x": 3, "t": 0})
+        {'left_u': 6}
+        """
+        new = dict(self.names)
+        known = {old: values[now] for old, now in self.names if now in values}
+        others = {name: value for name, value in values.items() if name not in new.values()}
+        told = self.step({**others, **known})
+        return {new.get(name, name): value for name, value in told.items()}
 
 
 def names_read(graph: Part) -> set[str]:
@@ -70,6 +93,8 @@ def with_names(name: Hashable, attributes: Mapping[str, Any], names: Names) -> d
     for key in READ:
         if key in result:
             result[key] = _mapped_at(result, key, rewrite, f"node {name!r}, {key}")
+    if result.get("step") is not None:
+        result["step"] = RenamedStep(result["step"], tuple(sorted(names.items())))
     return result
 
 

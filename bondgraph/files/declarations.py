@@ -72,6 +72,11 @@ def _all_plain(attributes: Mapping[str, Any], kind: object, where: str) -> dict[
     given = {key: value for key, value in attributes.items() if value is not None}
     if kind is not None:
         given["kind"] = Kind(str(kind))
+    if given.get("step") is not None:
+        raise FileFormatError(
+            f"{where}: its step is a Python function, which no file can hold; tell update and gives as "
+            "expressions"
+        )
     keys = sorted(given, key=lambda key: (key != "kind", key))
     return {key: _plain(key, given[key], kind, f"{where}, {key}") for key in keys}
 
