@@ -97,7 +97,7 @@ def _level(
             for part, found, item in zip(parts, done, (one.source, one.reader), strict=False):
                 box = found.nodes[part.index(item)].box
                 downs.append((box.top + box.bottom) / 2 - found.box.top)
-            down = round(downs[1] - downs[0])
+            down = round(downs[1] - downs[0], 2)
             return {0: max(down, 0.0), 1: max(-down, 0.0)}
     return {}
 

@@ -18,7 +18,8 @@ COLUMN_GAP, ROW_GAP = 46.0, 26.0
 _INNER = (9.0, 5.0)
 """From a block's text to its frame, aside and up or down."""
 
-_LINE = 1.3 * SMALLER
+_LINE, _APART = 1.3 * SMALLER, 1.0
+"""From line to line of what a block does, and from its name to the first."""
 
 
 def block_shape(item: Item) -> NodeShape:
@@ -27,7 +28,7 @@ def block_shape(item: Item) -> NodeShape:
     top = -high / 2
     first = top + SIZE / 2 + SIZE * MIDDLE
     labels = [Label(item.beside, -width(item.beside, SIZE) / 2, first, SIZE)]
-    below = first + DESCENT * SIZE
+    below = first + DESCENT * SIZE + _APART
     for at, rich in enumerate(item.lines):
         x = -width(rich, SMALLER) / 2
         labels.append(Label(rich, x, below + ASCENT * SMALLER + at * _LINE, SMALLER, QUIET))
