@@ -59,7 +59,7 @@ def _into_all_sources(graph: "nx.DiGraph[Hashable]") -> Iterator[Finding]:
 def _sources(graph: "nx.DiGraph[Hashable]") -> list[Hashable]:
     """The sources of power; what gives a signal is none."""
     elements = [_element(graph, name) for name in graph]
-    return [one.name for one in elements if one.kind.supplies and one.whole is None]
+    return [one.name for one in elements if one.kind.supplies and not one.of_signals]
 
 
 def _from_nowhere(graph: "nx.DiGraph[Hashable]") -> Iterator[Finding]:

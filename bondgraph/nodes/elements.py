@@ -90,6 +90,11 @@ class Element:
         return self.declared is Kind.FUNCTION and self.kind.supplies
 
     @property
+    def of_signals(self) -> bool:
+        """Whether it is a part of a node of signals, and carries no power."""
+        return self.declared is not None and self.declared.signals
+
+    @property
     def one_port(self) -> bool:
         """True for everything but transformers, gyrators and junctions."""
         return self.kind.one_port
