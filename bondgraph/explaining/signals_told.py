@@ -29,7 +29,7 @@ def signals_step(equations: StateEquations) -> Step:
 def _lines(element: Element, elements: Mapping[Hashable, Element]) -> Iterator[Equation]:
     """A law's value by its name; the rate of what is integrated, by the name that its value has."""
     if isinstance(element.law, ExpressionLaw) and element.given is not None:
-        yield equation(element.given, element.law.expression, node=element.whole)
+        yield equation(element.given, element.law.expression, node=element.name)
     if element.integral is not None:
         first = elements[element.whole]
         value = first.given if first.kind.supplies else element.received
