@@ -7,7 +7,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.explaining.records import Equation, Step, equation
 from bondgraph.nodes.elements import Element
 from bondgraph.nodes.laws import ExpressionLaw
-from bondgraph.show.sums import rate
+from bondgraph.show.sums import rate, signed_terms
 from bondgraph.show.ways import switching, working
 
 
@@ -29,7 +29,7 @@ def signals_step(equations: StateEquations) -> Step:
 def _lines(element: Element, elements: Mapping[Hashable, Element]) -> Iterator[Equation]:
     """A law's value by its name; the rate of what is integrated, by the name that its value has."""
     if isinstance(element.law, ExpressionLaw) and element.given is not None:
-        yield equation(element.given, element.law.expression, node=element.name)
+        yield equation(element.given, signed_terms(element.law.expression), node=element.name)
     if element.integral is not None:
         first = elements[element.whole]
         value = first.given if first.kind.supplies else element.received

@@ -149,7 +149,7 @@ def test_a_wire_tells_whose_a_signal_is() -> None:
 def test_blocks_say_what_they_do() -> None:
     assert inside(drawn("pi_loop"), "tau") == ["τ", "K·error + z"]
     assert inside(drawn("pi_loop"), "z") == ["z", "∫ Kᵢ·error"]
-    assert inside(drawn("limited"), "z") == ["z", "∫ (Kᵢ·(−ω + ref) − 1)", "0 ≤ z ≤ z_max"]
+    assert inside(drawn("limited"), "z") == ["z", "∫ (Kᵢ·(ref − ω) − 1)", "0 ≤ z ≤ z_max"]
     assert inside(drawn("two_controllers"), "slow") == ["slow", "every 1/10 s from 1/25 s on"]
     names = bg.drawing(GRAPHS["limited"](), values=False)
     assert inside(names, "z") == ["z"]
@@ -195,13 +195,12 @@ def test_blocks_are_listed_with_what_they_do() -> None:
         "Function: error   ┄┄→   State: z         error",
         "Function: error   ┄┄→   Function: τ      error",
         "State: z          ┄┄→   Function: τ      z",
-        "Function: error    =    −ω + ref",
+        "Function: error    =    ref − ω",
         "State: z           =    ∫ Kᵢ·error",
         "Function: τ        =    K·error + z",
     ]
     assert (
-        str(limited()).splitlines()[-2]
-        == "State: z       =    ∫ (Kᵢ·(−ω + ref) − 1), 0 ≤ z ≤ z_max"
+        str(limited()).splitlines()[-2] == "State: z       =    ∫ (Kᵢ·(ref − ω) − 1), 0 ≤ z ≤ z_max"
     )
 
 
