@@ -54,7 +54,7 @@ def test_instants_of_controllers_and_bounds_of_states_are_told() -> None:
     )  # fmt: skip
     controller, low, high = _step(told, "signals").sentences
     assert controller.startswith(
-        "c: every 1/10 s from 1/20 s on n becomes n + 1 and tau becomes -n + z"
+        "c: every 1/10 s from 1/20 s on n becomes n + 1 and tau becomes z - n"
     )
     assert low.endswith("so z is never negative and e_z_low never positive")
     assert "so top - z is never negative" in high
