@@ -7,6 +7,7 @@ from typing import Any
 import networkx as nx
 
 from bondgraph.declare.quantities import kept_names, name_text, quantities
+from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import kind_of
 from bondgraph.nodes.elements import OTHER
 from bondgraph.nodes.kinds import Kind
@@ -50,7 +51,9 @@ def _of_signals(name: Hashable, kind: Kind, attributes: Mapping[str, Any]) -> Ca
     if kind is not Kind.CONTROLLER:
         own = str(name_text(name))
         return Carried((own,), own)
-    gives = [str(name_text(one)) for one in attributes.get("outputs") or ()]
+    gives = list(kept_names({"outputs": attributes.get("outputs")}))
+    if not gives:
+        raise StructureError(f"node {name!r} gives nothing; name what it gives, gives={{'u': ...}}")
     names = dict.fromkeys((*gives, *kept_names(attributes)))
     return Carried(tuple(names), gives[0] if len(gives) == 1 else None)
 

@@ -156,12 +156,17 @@ def _check_arrow(result: BondGraph, text: str, where: str) -> None:
 
 def _inputs(result: BondGraph, name: Hashable) -> tuple[Hashable, ...]:
     """The ports that a path may name at a node: of a field, and those that wires lead to."""
-    return tuple(result.nodes[name].get("ports") or ())
+    return _names_at(result, name, "ports")
 
 
 def _outputs(result: BondGraph, name: Hashable) -> tuple[Hashable, ...]:
     """What a controller gives, which a path may name where it leads on."""
-    return tuple(result.nodes[name].get("outputs") or ())
+    return _names_at(result, name, "outputs")
+
+
+def _names_at(result: BondGraph, name: Hashable, key: str) -> tuple[Hashable, ...]:
+    given = result.nodes[name].get(key)
+    return tuple(given) if isinstance(given, list | tuple | Mapping) else ()
 
 
 def _check_outer(result: BondGraph, ends: Sequence[End], where: str) -> None:
@@ -178,7 +183,7 @@ def _check_outer(result: BondGraph, ends: Sequence[End], where: str) -> None:
 
 
 def _signals(result: BondGraph, name: Hashable) -> bool:
-    return result.nodes[name].get("kind") in SIGNALS
+    return str(result.nodes[name].get("kind")) in SIGNALS
 
 
 def _add_edge(result: BondGraph, tail: End, head: End, where: str) -> None:

@@ -71,8 +71,9 @@ def _of_signals(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str
 
 def kept_names(attributes: Mapping[str, Any]) -> Iterator[str]:
     """What a controller keeps: its states, then what it gives, each once."""
-    named = [attributes.get(key) or () for key in ("states", "outputs")]
-    yield from dict.fromkeys(str(name_text(one)) for told in named for one in told)
+    named = [attributes.get(key) for key in ("states", "outputs")]
+    lists = [told for told in named if isinstance(told, Mapping | list | tuple)]
+    yield from dict.fromkeys(str(name_text(one)) for told in lists for one in told)
 
 
 def _kind(name: Hashable, attributes: Mapping[str, Any]) -> Kind:

@@ -10,6 +10,7 @@ import sympy as sp
 from bondgraph.algebra.expressions import expression
 from bondgraph.declare.quantities import name_text
 from bondgraph.declare.tables import READ
+from bondgraph.nodes.fields import port_names
 from bondgraph.nodes.kinds import SIGNALS
 from bondgraph.nodes.laws import SLIP, DryFriction, ExpressionLaw
 from bondgraph.nodes.tasks import Called
@@ -60,18 +61,18 @@ def names_read_at(name: Hashable, attributes: Mapping[str, Any]) -> set[str]:
 
     for key in READ:
         _mapped_at(attributes, key, note, f"node {name!r}, {key}")
-    return found - {_OWN_SLIP.name} - _inputs(attributes)
+    return found - {_OWN_SLIP.name} - _inputs(name, attributes)
 
 
-def _inputs(attributes: Mapping[str, Any]) -> set[str]:
+def _inputs(name: Hashable, attributes: Mapping[str, Any]) -> frozenset[str]:
     """The names that stand for what wires bring to a node of signals; nobody else knows them."""
     ports = attributes.get("ports") if str(attributes.get("kind")) in SIGNALS else None
-    return {str(name_text(port)) for port in ports or ()}
+    return frozenset(() if ports is None else port_names(ports, f"node {name!r}"))
 
 
 def renamed(name: Hashable, attributes: Mapping[str, Any], names: Names) -> dict[str, Any]:
     """A node's attributes with new names in them; what holds none of the old is as it was."""
-    own = _inputs(attributes)
+    own = _inputs(name, attributes)
     names = {old: new for old, new in names.items() if old not in own}
     result = with_names(name, attributes, names)
     for key in ("effort", "flow", "integrate"):

@@ -49,5 +49,5 @@ def _ending(attributes: Mapping[str, Any], end: str, names: Names) -> str:
 def _signals_of_elsewhere(graph: Part) -> set[Hashable]:
     """Terminals without attributes that are read by their own names, where a wire leads on from them."""
     read = names_read(graph)
-    found = {tail for tail, head in graph.edges if graph.nodes[head].get("kind") in SIGNALS}
+    found = {tail for tail, head in graph.edges if str(graph.nodes[head].get("kind")) in SIGNALS}
     return {one for one in found if not graph.nodes[one] and name_text(one) in read}

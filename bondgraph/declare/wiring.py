@@ -51,7 +51,7 @@ def ports_of(graph: Any, name: Hashable) -> tuple[str, ...]:
     """The names that stand for what wires bring to a node."""
     attributes = graph.nodes[name]
     if not has_ports(attributes):
-        waits = attributes.get("kind") in FED and attributes.get(VALUE) is None
+        waits = str(attributes.get("kind")) in FED and attributes.get(VALUE) is None
         return (VALUE,) if waits else ()
     found = port_names(attributes["ports"], f"node {name!r}")
     kept = [one for one in kept_names(attributes) if one in found]
@@ -103,10 +103,7 @@ def _check_edge(wire: Wire, told: Mapping[str, Any]) -> None:
 
 def _ends(graph: Any, wire: Wire, told: Mapping[str, Any]) -> tuple[str | None, str | None]:
     """The ports that an edge names, of the field at its tail and of the reader."""
-    known = {
-        end: tuple(str(name_text(one)) for one in graph.nodes[end].get("ports") or ())
-        for end in (wire.reader, wire.source)
-    }
+    known = {end: _named_ports(graph, end) for end in (wire.reader, wire.source)}
     given = {wire.source: told.get("tail_port"), wire.reader: told.get("head_port")}
     if (port := name_text(told.get("port"))) is not None:
         end = next((end for end in known if port in known[end] and given[end] is None), None)
@@ -124,6 +121,12 @@ def _ends(graph: Any, wire: Wire, told: Mapping[str, Any]) -> tuple[str | None, 
             "brings what it is or gives"
         )
     return name_text(given[wire.source]), name_text(given[wire.reader])
+
+
+def _named_ports(graph: Any, name: Hashable) -> tuple[str, ...]:
+    """The ports that an edge may name at a node, of a field, too."""
+    ports = graph.nodes[name].get("ports")
+    return () if ports is None else port_names(ports, f"node {name!r}")
 
 
 def _chosen(can: Carried, signal: object, wire: Wire) -> Carried:

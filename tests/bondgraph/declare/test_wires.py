@@ -258,3 +258,55 @@ def test_paths_begin_with_what_gives_and_end_with_what_reads() -> None:
         bg.graph(nodes, "x > c.u")
     with pytest.raises(bg.StructureError, match="'e' is where a signal comes in at 'c'"):
         bg.graph(nodes, "c.e > x")
+
+
+@pytest.mark.parametrize(
+    ("told", "message"),
+    [
+        ({"outputs": 5}, "node 'c' gives nothing; name what it gives"),
+        ({"outputs": "tau"}, "node 'c' gives nothing; name what it gives"),
+        ({"outputs": {"u": "1"}, "ports": 5}, "node 'c': ports must be a list of 1 to 64 names, not 5"),
+        ({"outputs": {"u": "1"}, "ports": []}, r"node 'c': ports must be a list of 1 to 64 names, not \[\]"),
+        ({"outputs": {"u": "1"}, "reads": 3}, "Controller 'c' does not read y"),
+        ({"kind": "Memristor"}, "node 'c': unknown kind 'Memristor'"),
+        ({"kind": ["R"]}, "node 'c': unknown kind"), ({"kind": None}, "node 'c': unknown kind None"),
+    ],
+)  # fmt: skip
+def test_nodes_at_wires_are_checked(told: Mapping[str, object], message: str) -> None:
+    node = ("c", {"kind": "Controller", "every": 1, **told})
+    graph = bg.graph([node, bg.Function("x", "2*u"), bg.State("y", "x")], "c > x > y > c")
+    with pytest.raises(bg.BondGraphError, match=message):
+        bg.validate(graph)
+
+
+def test_a_terminal_without_attributes_has_no_kind() -> None:
+    with pytest.raises(bg.StructureError, match="node 'a' has no kind; give one of"):
+        bg.validate(bg.graph(["a", bg.Function("x", "2*a")], "a > x"))
+
+
+@pytest.mark.parametrize(
+    ("own", "other", "message"),
+    [
+        (
+            '"target": "x"',
+            '"target": "x", "signal": 1',
+            "bond 'y' -> 'x', signal: 1 must be of type str",
+        ),
+        ('"target": "x"', '"target": "x", "signal": "k"', "'y' has no signal 'k'; there are y"),
+        ('"target": "x"', '"target": "x", "port": "r"', "'x' has no port 'r'; there are q"),
+        ('"ports": ["q"]', '"ports": [1]', "node 'x', ports: 1 must be of type str"),
+        ('"ports": ["q"]', '"ports": ["q", "q"]', "two ports have one name"),
+    ],
+)
+def test_wires_of_files_are_checked(own: str, other: str, message: str) -> None:
+    text = bg.to_json(bg.graph([bg.Function("y", "t"), bg.State("x", "q", ports=["q"])], "y > x"))
+    assert own in text
+    with pytest.raises(bg.BondGraphError, match=message):
+        bg.from_json(text.replace(own, other))
+
+
+def test_a_wire_from_a_node_to_itself_is_refused() -> None:
+    graph = bg.graph([bg.State("y", "-y")])
+    graph.add_edge("y", "y")
+    with pytest.raises(bg.StructureError, match="node 'y' is wired to itself; remove that edge"):
+        bg.validate(graph)
