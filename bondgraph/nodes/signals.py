@@ -103,7 +103,7 @@ def state_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Elemen
         f"{name}.{POSITION}", Kind.DF, None, symbol(f"e_{name}_{POSITION}", where), flow,
         gives="effort", integral=place, start=start, whole=name,
     )  # fmt: skip
-    return [junction, source, follows, reads, *rigid(name, {}, bounds, place, signal=True)]
+    return [junction, source, follows, reads, *rigid(name, {}, bounds, place)]
 
 
 def _pair(
