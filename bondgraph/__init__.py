@@ -46,9 +46,11 @@ from bondgraph.files.graphml import from_graphml, to_graphml
 from bondgraph.files.nodelink import from_json, to_json
 from bondgraph.nodes.controllers import Controller
 from bondgraph.nodes.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
+from bondgraph.nodes.hysteresis import Hysteresis
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 from bondgraph.nodes.one_way import CheckValve, Diode, Freewheel
+from bondgraph.nodes.rate_limiter import RateLimiter
 from bondgraph.nodes.signals import Function, State
 from bondgraph.nodes.stops import Stop
 from bondgraph.rates.explicit import explicit
@@ -90,6 +92,7 @@ __all__ = [
     "Formula",
     "Freewheel",
     "Function",
+    "Hysteresis",
     "I",
     "JunctionStructure",
     "Kind",
@@ -101,6 +104,7 @@ __all__ = [
     "One",
     "ParameterError",
     "R",
+    "RateLimiter",
     "Se",
     "Sf",
     "SignalError",

@@ -11,7 +11,7 @@ Role = Literal[
 
 _BOUNDED = ("low", "high", "restitution", "start", "stiffness", "damping")
 
-EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", *_BOUNDED)
+EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", "falling", *_BOUNDED)
 """The attributes that are numbers or expressions."""
 
 NAMED = ("states", "update", "outputs")
@@ -83,6 +83,14 @@ class Kind(StrEnum):
     CONTROLLER = (
         "Controller",
         Nature("signal", frozenset({"every", "offset", "reads", *NAMED}), place=11),
+    )
+    HYSTERESIS = (
+        "Hysteresis",
+        Nature("signal", frozenset({"value", "low", "high", "off", "on", "unit"}), place=12),
+    )
+    RATE_LIMITER = (
+        "RateLimiter",
+        Nature("signal", frozenset({"value", "rate", "falling", "start", "unit"}), place=13),
     )
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":
