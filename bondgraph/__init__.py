@@ -6,6 +6,9 @@ from bondgraph.analyse.linear_model import LinearModel
 from bondgraph.analyse.linearize import linearize
 from bondgraph.analyse.loops import Loop, loops
 from bondgraph.analyse.sticking import holding_efforts
+from bondgraph.blocks.linear import Integrator, StateSpace, TransferFunction
+from bondgraph.blocks.pid import PID
+from bondgraph.blocks.static import DeadZone, Gain, Limiter, LookUp, Sum
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.assignments import Assignment, assignments
 from bondgraph.causality.causal_graph import CausalGraph
@@ -62,6 +65,7 @@ from bondgraph.show.latex import latex
 
 __all__ = [
     "GY",
+    "PID",
     "TF",
     "AlgebraicLoopError",
     "Assignment",
@@ -76,6 +80,7 @@ __all__ = [
     "CheckValve",
     "Controller",
     "De",
+    "DeadZone",
     "DependentSourceError",
     "Df",
     "Diode",
@@ -92,11 +97,15 @@ __all__ = [
     "Formula",
     "Freewheel",
     "Function",
+    "Gain",
     "Hysteresis",
     "I",
+    "Integrator",
     "JunctionStructure",
     "Kind",
+    "Limiter",
     "LinearModel",
+    "LookUp",
     "LookupTable",
     "Loop",
     "MissingExtraError",
@@ -112,15 +121,18 @@ __all__ = [
     "SingularStorageError",
     "State",
     "StateEquations",
+    "StateSpace",
     "Step",
     "Stop",
     "StoreError",
     "StrokeVerdict",
     "StructureError",
+    "Sum",
     "Sw",
     "Switch",
     "SwitchPort",
     "TableError",
+    "TransferFunction",
     "WriteError",
     "Zero",
     "assemble",

@@ -23,7 +23,7 @@ def Hysteresis(
     name: Hashable, input: object, low: object, high: object, off: object = 0, on: object = 1,
     **more: object,
 ) -> Node:  # fmt: skip
-    """A signal of two values with a memory: ``on`` once the input is above ``high``, ``off`` once below ``low``.
+    """A signal of two values: ``on`` once its input is above ``high``, ``off`` once that is below ``low``.
 
     Between the two it stays what it is; a run begins off, or on where the input is above ``high`` or
     ``initially_on=["<name>.switch"]`` tells so. Both instants are located. ``off`` and ``on`` are numbers,
@@ -36,9 +36,9 @@ def Hysteresis(
     ...                  bg.R("wall", "R"), Hysteresis("heat", "T", low=19, high=21, off=1, on=0)],
     ...                 "heater > air > air_heat, air > wall")
     >>> ready = codegen.simulator(bg.derive(room), {"P": 3000, "C": 1e5, "R": 0.01})
-    >>> run = ready.run([0, 600, 1200, 1800, 2400], initial={"T": 15})
+    >>> run = ready.run([0, 400, 550, 700], initial={"T": 15})
     >>> run["T"].round(2).tolist(), run["heat"].tolist()
-    ([15.0, 21.0, 19.0, 20.25, 19.75], [1.0, 0.0, 1.0, 1.0, 0.0])
+    ([15.0, 19.95, 20.19, 19.94], [1.0, 1.0, 0.0, 1.0])
     """
     told = {"value": input, "low": low, "high": high, **more}
     told |= {key: value for key, value in {"off": off, "on": on}.items() if value is not None}
@@ -46,7 +46,7 @@ def Hysteresis(
 
 
 def hysteresis_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element]:
-    """A divider whose effort is the signal: a key that is off leaves it ``off``, one that is on makes it ``on``."""
+    """A junction whose effort is the signal: ``off`` by its load, ``on`` by a source behind a switch."""
     where = f"node {name!r}"
     for key, word in (("value", "input"), ("low", "lower bound low"), ("high", "upper bound high")):
         if attributes.get(key) is None:
@@ -63,14 +63,13 @@ def hysteresis_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[E
         )
     switch = Switch(f"{name}.{KEY}", read - told["high"], told["low"] - read, "effort")
     effort, flow = _variables(name, KEY)
-    key = Element(f"{name}.{KEY}", Kind.SW, None, effort, flow, switch=switch, whole=name)
     return [
         Element(name, Kind.ZERO, None, own, None, whole=name, unit=unit_of(attributes, where)),
         Element(f"{name}.load", Kind.R, sp.Integer(1), *_variables(name, "load"), whole=name),
         _source(name, "off", Kind.SF, told["off"]),
         Element(f"{name}.branch", Kind.ONE, None, None, _variables(name, "branch")[1], whole=name),
         _source(name, "on", Kind.SE, told["on"]),
-        key,
+        Element(f"{name}.{KEY}", Kind.SW, None, effort, flow, switch=switch, whole=name),
     ]
 
 

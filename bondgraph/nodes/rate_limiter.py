@@ -24,8 +24,8 @@ def RateLimiter(
     Both are rates per second, not negative; it falls as fast as it rises unless told. It is dry friction: an
     input in motion drags a mass along, which sticks to it while the input is slow enough and else slips, at
     the rate. So the instants at which it leaves its input and meets it again are located events, "slip" and
-    "stick" of ``<name>.clutch``, and while it follows, it does so exactly. It begins at ``start``, unless told at
-    the input's value where that holds numbers and the time alone, and else at 0.
+    "stick" of ``<name>.clutch``, and while it follows, it does so exactly. It begins at ``start``; unless
+    told at what its input is then, if that holds numbers and the time alone, else at 0.
 
     To follow its input it needs the input's rate: one of inputs, states and the time has one, one that
     reads what laws give of states (a `Function` of a state) has none, and a run is refused as it comes to
@@ -36,7 +36,8 @@ def RateLimiter(
     >>> import bondgraph as bg, codegen
     >>> ramp = bg.derive(bg.graph([RateLimiter("r", "ref", rate=2, falling=1)]))
     >>> step = codegen.Pulse(0, 2, 3)
-    >>> codegen.simulator(ramp).run([0, 1, 2, 3, 4], inputs={"ref": step})["r"].round(9).tolist()
+    >>> run = codegen.simulator(ramp, {}).run([0, 1, 2, 3, 4], inputs={"ref": step})
+    >>> run["r"].round(9).tolist()
     [0.0, 2.0, 3.0, 2.0, 1.0]
     """
     told = {"value": input, "rate": rate, "falling": falling, "start": start, **more}

@@ -1,4 +1,4 @@
-"""The affine maps of a model's modes, made from that in which friction slips forwards where that tells all."""
+"""The affine maps of a model's modes: where that tells all, from the one in which friction slips forwards."""
 
 import numpy as np
 
