@@ -5,7 +5,7 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.algebra.atoms import symbol
+from bondgraph.algebra.atoms import number, symbol
 from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import start_of, unit_of
@@ -89,7 +89,11 @@ def rate_limiter_elements(name: Hashable, attributes: Mapping[str, Any]) -> list
 def _start(attributes: Mapping[str, Any], read: sp.Expr, where: str) -> sp.Expr | None:
     """Where it begins: as told, or at what the input is then, where its expression tells that."""
     told = start_of(attributes, where)
-    return read.subs(TIME, 0) if told is None and read.free_symbols <= {TIME} else told
+    if told is not None or not read.free_symbols <= {TIME}:
+        return told
+    found = read.subs(TIME, 0)
+    # Of a table there is no exact number.
+    return found if found.is_finite and found.is_real else number(found.evalf(), where)
 
 
 def _source(name: Hashable, part: str, kind: Kind, given: sp.Expr) -> Element:
