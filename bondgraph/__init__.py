@@ -5,6 +5,7 @@ from bondgraph.algebra.lookup_table import LookupTable
 from bondgraph.analyse.linear_model import LinearModel
 from bondgraph.analyse.linearize import linearize
 from bondgraph.analyse.loops import Loop, loops
+from bondgraph.analyse.sampled import SampledModel
 from bondgraph.analyse.sticking import holding_efforts
 from bondgraph.blocks.linear import Integrator, StateSpace, TransferFunction
 from bondgraph.blocks.pid import PID
@@ -61,6 +62,7 @@ from bondgraph.rates.record import ExplicitRates
 from bondgraph.reduce.junction import junction_structure
 from bondgraph.reduce.structure import JunctionStructure
 from bondgraph.reduce.switch_port import SwitchPort
+from bondgraph.sampling.space import SampledSpace
 from bondgraph.show.latex import latex
 
 __all__ = [
@@ -114,6 +116,8 @@ __all__ = [
     "ParameterError",
     "R",
     "RateLimiter",
+    "SampledModel",
+    "SampledSpace",
     "Se",
     "Sf",
     "SignalError",

@@ -18,6 +18,7 @@ from bondgraph.algebra.tidy import tidy_matrices
 from bondgraph.causality.assign import assign_causality
 from bondgraph.declare.validate import graph_of
 from bondgraph.equations import StateEquations
+from bondgraph.errors import StructureError
 from bondgraph.nodes.elements import Element
 from bondgraph.reduce.impulses import bound_by_switches, check_impulses
 from bondgraph.reduce.inertia import check_regular, inertia
@@ -157,3 +158,18 @@ def _equations(
         laws=MappingProxyType(laws), ports=imposed, readings=MappingProxyType(readings),
         signals=MappingProxyType(signals), switches=switches, reduction=reduction,
     )  # fmt: skip
+
+
+def check_derived(given: object) -> None:
+    """Refuse what is no equations where these are asked for: a graph is derived first.
+
+    >>> check_derived("a > b")
+    Traceback (most recent call last):
+        ...
+    bondgraph.errors.StructureError: this takes equations, what bondgraph.derive(graph) returns, not a str
+    """
+    if not isinstance(given, StateEquations):
+        raise StructureError(
+            "this takes equations, what bondgraph.derive(graph) returns, not a "
+            f"{type(given).__name__}"
+        )

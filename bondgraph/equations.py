@@ -6,9 +6,9 @@ from types import MappingProxyType
 
 import sympy as sp
 
+from bondgraph.algebra.called import unguarded
 from bondgraph.algebra.expressions import TIME, callable_in_text
 from bondgraph.errors import StructureError
-from bondgraph.inverses.guarding import unguarded
 from bondgraph.nodes.elements import Element
 from bondgraph.nodes.laws import ExpressionLaw, Law
 from bondgraph.nodes.tasks import Task

@@ -29,6 +29,7 @@ from codegen.record.columns import named_columns, with_switches
 from codegen.record.replay import Run
 from codegen.record.resting import tell_resting
 from codegen.record.result import Result
+from codegen.record.whence import whence
 from codegen.runs.arguments import (
     checked_times,
     initial_values,
@@ -150,8 +151,7 @@ class Simulator:
         Of a limit of C's own it is called before numpy starts, else once numpy has not refused it, too.
         """
         times = checked_times(time)
-        known = (name.name for name in self.closed.equations.signals)
-        given = signals_for({} if inputs is None else inputs, self.inputs, known)
+        given = signals_for({} if inputs is None else inputs, self.inputs, self.whence)
         signals = [*given, *self.sources(float(times[0]), float(times[-1]))]
         settings = settings_of(method, rtol, atol)
         refuse_impulses(self.closed, signals, times)
@@ -198,6 +198,10 @@ class Simulator:
         refuse_beyond(self.closed, result)
         return result
 
+    def whence(self, name: str) -> str:
+        """Who reads an input, and what else its name may have been meant to be, as messages say it."""
+        return whence(name, self.closed.equations, self.laws or {}, self.closed.parameters)
+
     def _ledger(self, run: Run) -> Ledger:
         program = self.closed.program
         names = (*program.states, *program.law_states, *program.inputs, *program.asked)
@@ -207,7 +211,7 @@ class Simulator:
         self, inputs: Mapping[str, float], initial: Mapping[str, float]
     ) -> tuple[list[Piece], Array]:
         """Constant inputs as pieces, and the integrated vector at these states."""
-        signals = signals_for(inputs, self.inputs)
+        signals = signals_for(inputs, self.inputs, self.whence)
         pieces = [constant_piece(0.0, signal(0.0)) for signal in signals]
         pieces += [signal.piece(0.0) for signal in self.sources(0.0, 0.0)]
         given = np.array([piece(0.0) for piece in pieces])

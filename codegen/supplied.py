@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import sympy as sp
 
 from bondgraph.analyse.turned import turned
-from bondgraph.derive import derive_again
+from bondgraph.derive import check_derived, derive_again
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, nearest
 
@@ -26,6 +26,7 @@ def supplied(equations: StateEquations, laws: object, parameters: Iterable[str])
     >>> supplied(bg.derive(g), {}, ["b"]).inputs
     (F, opening)
     """
+    check_derived(equations)
     equations, given = turned(equations, laws), set(parameters)
     missing = [name for name in equations.parameters if name.name not in given]
     if not missing:

@@ -2,6 +2,7 @@
 
 from collections.abc import Hashable, Mapping
 
+from bondgraph.errors import StructureError
 from codegen.instants.equilibrium import equilibrium
 from codegen.model.snapshot import Snapshot
 from codegen.modes.closed import ClosedModel
@@ -16,6 +17,8 @@ def trim(
     mode: Mapping[Hashable, str] | None = None,
 ) -> dict[str, float]:
     """A point at which all states rest under constant inputs: every signal's value by name.
+
+    What sampled controllers keep rests where they set it to what it is.
 
     ``initial``: states to start the search from. ``mode``: what friction and switches do there, in the
     words of events, such as ``{"dog": "off", "brake": "stick"}``; of others a mode is found that is
@@ -36,6 +39,10 @@ def trim(
     >>> round(point["q"], 9)
     3.0
     """
+    if not isinstance(simulator, Simulator):
+        raise StructureError(
+            f"trim takes what codegen.simulator returns, not a {type(simulator).__name__}"
+        )
     model = simulator.closed
     choices(model, mode)
     pieces, start = simulator.steady(inputs or {}, initial or {})

@@ -1,6 +1,10 @@
 """Draws the pictures of this folder: ``python docs/draw.py``."""
 
+import doctest
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
+from typing import Any
 
 import networkx as nx
 
@@ -18,6 +22,7 @@ PICTURES = {
 
 
 PENDULUM = "pendulum.svg"
+DRIVE = "quarter_car.svg"
 
 
 def pendulum() -> "nx.DiGraph[str]":
@@ -43,6 +48,21 @@ def picture(file: str) -> str:
     return bg.drawing(differentials.graph(name), title=title).svg()
 
 
+def drive() -> Any:
+    """The figure that the first example of `tour.md` makes."""
+    text = (FOLDER.parent / "tour.md").read_text(encoding="utf-8").partition("savefig")[0]
+    names: dict[str, Any] = {}
+    with redirect_stdout(StringIO()):
+        for example in doctest.DocTestParser().get_examples(text):
+            exec(compile(example.source, "tour.md", "exec"), names)
+    return names["picture"]
+
+
 if __name__ == "__main__":
+    import matplotlib
+
+    # The versions of matplotlib write other bytes for the same curves.
+    matplotlib.rcParams["svg.hashsalt"] = "pictures"
+    drive().savefig(FOLDER / DRIVE, metadata={"Date": None})
     for file in (*PICTURES, PENDULUM):
         write_text(FOLDER / file, picture(file))

@@ -12,6 +12,7 @@ pytest_plugins = [
     "rig.guard",
     "rig.compilers",
     "rig.closely",
+    "rig.walked",
     "rig.summary",
 ]
 

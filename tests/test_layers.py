@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 
 ORDER = {
     "bondgraph": "errors named writing searching tables algebra solving inverses nodes declare blocks "
-    "causality reduce equations derive analyse show rates explaining checking layout drawing files",
+    "causality reduce equations derive sampling analyse show rates explaining checking layout drawing files",
     "codegen": "tuning standalone fixed stops numbers inputs targets supplied program model ports straight "
     "modes corners instants energy runs pictures record plots analysis c engine simulator simulate trim "
     "packing family batch abreast sweeps python switched sparse fmu exports",

@@ -3,6 +3,7 @@
 ``pytest tests/test_notebooks.py --update-golden`` stores what runs show now.
 """
 
+import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -40,11 +41,20 @@ BEGIN = """__import__('gc').freeze()
 %reset -f
 __import__('warnings').filterwarnings('default', 'no such warning')
 __import__('os').chdir({!r})
+_gathering = __import__('references.gathered').gathered.gathered()
+_derived = _gathering.__enter__()
 """
 """No names, an empty folder, and warnings that were shown are shown again, as filters have changed.
 
 What is imported stays, and need not be searched for garbage each time.
 """
+
+END = """_gathering.__exit__(None, None, None)
+_misfits = __import__('oracles.stated').stated.misfits_somewhere
+assert _derived or not {!r}
+assert [text for one in _derived for text in _misfits(one)] == []
+"""
+"""What is shown of equations is what the simulator computes, as `rig/walked.py` has it of guides."""
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +62,8 @@ def kernel(tmp_path_factory: pytest.TempPathFactory) -> Iterator[KernelManager]:
     """One process for all notebooks: to start it and to import takes as long as what most of them do."""
     manager = KernelManager(kernel_name="python3")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PYTHONPATH", str(ROOT))
+        places = [ROOT, ROOT / "tests", ROOT / "tests" / "codegen"]
+        patch.setenv("PYTHONPATH", os.pathsep.join(map(str, places)))
         patch.setenv("IPYTHONDIR", str(tmp_path_factory.mktemp("ipython")))
         manager.start_kernel()
     yield manager
@@ -60,9 +71,10 @@ def kernel(tmp_path_factory: pytest.TempPathFactory) -> Iterator[KernelManager]:
     manager.cleanup_resources()
 
 
-def run(notebook: NotebookNode, kernel: KernelManager, folder: Path) -> None:
-    """From clean: without a name of those that ran before."""
+def run(notebook: NotebookNode, kernel: KernelManager, folder: Path, graphs: bool = False) -> None:
+    """From clean: without a name of those that ran before; ``graphs``: whether some have to be derived."""
     cells = [new_code_cell(BEGIN.format(str(folder))), *notebook.cells]
+    cells += [new_code_cell(END.format(graphs))]
     client = NotebookClient(new_notebook(cells=cells), timeout=None, km=kernel, record_timing=False)
     try:
         client.execute()
@@ -76,7 +88,7 @@ def test_shows_what_is_stored(
 ) -> None:
     """Texts, formulas and drawings of a run are those in the file; other pictures are there."""
     notebook, stored = read(path), read(path)
-    run(notebook, kernel, tmp_path)
+    run(notebook, kernel, tmp_path, graphs=True)
     for count, cell in enumerate(code(notebook), 1):
         cell.outputs, cell.execution_count = kept(cell.outputs, count), count
     if update_golden:

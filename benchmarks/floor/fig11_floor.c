@@ -631,7 +631,18 @@ static void begin(const fig11_context *c, progress *g, double *row)
     g->mode = (row[SLIP] > 0) - (row[SLIP] < 0);
 }
 
-/* Steps on from rows[0], sample `at` of the run; returns how many rows it made, -1 on failure. */
+/* Steps on from rows[0], sample `at` of the run, under constant demands; how many rows it made, -1
+ * on failure. */
+static int go_on(const fig11_context *c, progress *g, long at, int count, double (*rows)[N])
+{
+    const int made = g->mode ? slip_steps(c, g, count, rows) : stuck_steps(c, g, count, rows);
+    if (made == count)
+        return made;
+    const double start = (double)(at + made) * c->h;
+    return event_step(c, g, start, rows[made], rows[made + 1]) ? made + 1 : -1;
+}
+
+/* The same as the demands step. */
 static int advance(const fig11_context *c, progress *g, long at, int count, double (*rows)[N])
 {
     if (at < c->index_e)
@@ -640,11 +651,7 @@ static int advance(const fig11_context *c, progress *g, long at, int count, doub
         count = at + count < c->index_h ? count : (int)(c->index_h - at);
     g->demand[0] = at >= c->index_h ? c->demand_h : 0.0;
     g->demand[1] = at >= c->index_e ? c->demand_e : 0.0;
-    const int made = g->mode ? slip_steps(c, g, count, rows) : stuck_steps(c, g, count, rows);
-    if (made == count)
-        return made;
-    const double start = (double)(at + made) * c->h;
-    return event_step(c, g, start, rows[made], rows[made + 1]) ? made + 1 : -1;
+    return go_on(c, g, at, count, rows);
 }
 
 int fig11_run(const fig11_context *c, int samples, double *out, fig11_event *events, int capacity)
@@ -654,6 +661,35 @@ int fig11_run(const fig11_context *c, int samples, double *out, fig11_event *eve
     begin(c, &g, rows[0]);
     for (int n = 0; n < samples - 1;) {
         const int made = advance(c, &g, n, samples - 1 - n, rows + n);
+        if (made < 0)
+            return -1;
+        n += made;
+    }
+    return g.count;
+}
+
+int fig11_run_closed(const fig11_parameters *p, const fig11_controller *pi, double h, int samples,
+                     double *out, fig11_event *events, int capacity)
+{
+    progress g = {.events = events, .capacity = capacity};
+    double(*rows)[N] = (double(*)[N])out, sum = pi->start;
+    fig11_context context, *const c = &context;
+    fig11_prepare(p, h, c);
+    begin(c, &g, rows[0]);
+    g.tau_h = pi->start;
+    rows[0][TF] = g.mode * pi->start;
+    for (int n = 0; n < samples - 1;) {
+        if (n % pi->every == 0) {
+            const double wrong = rows[n][W2] - rows[n][W1] - pi->wanted;
+            g.demand[0] = pi->gain * wrong + sum;
+            sum += pi->every * h * pi->reset * wrong;
+        }
+        int count = pi->every - n % pi->every;
+        if (n < c->index_e && n + count > c->index_e)
+            count = (int)(c->index_e - n);
+        g.demand[1] = n >= c->index_e ? c->demand_e : 0.0;
+        const int left = samples - 1 - n;
+        const int made = go_on(c, &g, n, count < left ? count : left, rows + n);
         if (made < 0)
             return -1;
         n += made;

@@ -48,6 +48,17 @@ int fig11_run(const fig11_context *c, int samples, double *out, fig11_event *eve
 int fig11_run_anew(const fig11_parameters *p, double h, int samples, double *out,
                    fig11_event *events, int capacity);
 
+/* A sampled PI that sets the demand on the clutch's torque, every so many samples; it asks for a
+ * difference of the wheels' speeds. */
+typedef struct {
+    double gain, reset, wanted, start;
+    int every;
+} fig11_controller;
+
+/* The same in a closed loop, the clutch's torque at `start` first. */
+int fig11_run_closed(const fig11_parameters *p, const fig11_controller *pi, double h, int samples,
+                     double *out, fig11_event *events, int capacity);
+
 /* Runs `count` times with k[n], tau_h[n]; peak |halfshaft torque| over the samples and the first
  * instant of lock (NaN: none). Returns how many failed. */
 int fig11_sweep(const fig11_parameters *base, double h, int samples, int count, const double *k,

@@ -6,6 +6,15 @@ from typing import Any
 import sympy as sp
 
 
+def has_value(found: sp.Expr) -> bool:
+    """Whether what was asked for in numbers is one: sympy's zero in digits is an integer.
+
+    >>> has_value(sp.Float(0.5)), has_value(sp.Integer(0)), has_value(sp.nan), has_value(sp.Symbol("x"))
+    (True, True, False, False)
+    """
+    return bool(found.is_Number and found.is_finite)
+
+
 class Called(sp.Function):  # type: ignore[misc]
     """A function whose first arguments say which one it is, the others being its arguments.
 
@@ -14,6 +23,9 @@ class Called(sp.Function):  # type: ignore[misc]
 
     FIXED = 1
     """So many arguments come before those that have numbers."""
+
+    GUARDS = False
+    """Whether it is its argument, and there for refusing what is outside alone."""
 
     @property
     def places(self) -> tuple[sp.Expr, ...]:
@@ -38,7 +50,7 @@ class Called(sp.Function):  # type: ignore[misc]
     def _eval_is_finite(self) -> bool | None:
         """A number, wherever it has one; nothing is told of others."""
         found = self.evalf() if self.is_number else None
-        return True if found is not None and found.is_Float else None
+        return True if found is not None and has_value(found) else None
 
     _eval_is_extended_real = _eval_is_finite
 
@@ -51,3 +63,10 @@ class Called(sp.Function):  # type: ignore[misc]
 
     def _numpycode(self, printer: Any) -> str:
         return f"{self.code}({', '.join(map(printer._print, self.places))})"
+
+
+def unguarded(expr: sp.Expr) -> sp.Expr:
+    """The same without what is there for its ends alone."""
+    return expr.replace(
+        lambda part: isinstance(part, Called) and part.GUARDS, lambda part: part.places[0]
+    )

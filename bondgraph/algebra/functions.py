@@ -55,3 +55,21 @@ ALLOWED = (
     f"{', '.join(sorted(FUNCTIONS))}, and Piecewise((value, condition), ..., (value, True))"
 )
 """What a refusal names as the way out."""
+
+
+def without_logarithms(expr: sp.Expr) -> sp.Expr:
+    """An expression in which an exponential of a sum of logarithms is a product, as mass action is.
+
+    It is the same where the logarithms are numbers.
+
+    >>> a, b, RT = sp.symbols("a b RT")
+    >>> without_logarithms(sp.exp((RT*sp.log(a) + 2*RT*sp.log(b))/RT))
+    a*b**2
+    """
+
+    def product(part: sp.Expr) -> sp.Expr:
+        inside = part.args[0]
+        found = sp.exp(sp.expand_mul(inside))
+        return found if len(found.atoms(sp.log)) < len(inside.atoms(sp.log)) else part
+
+    return expr.replace(lambda part: isinstance(part, sp.exp) and part.has(sp.log), product)

@@ -93,9 +93,6 @@ class Look(Tabled):
     those of `looked_up`.
     """
 
-    GUARDS = False
-    """Whether it is there for its ends alone."""
-
     @property
     def numeric(self) -> Callable[..., float]:
         """Of its arguments."""
@@ -126,7 +123,7 @@ class Look(Tabled):
 
     def _latex(self, printer: Any, exp: str | None = None) -> str:
         inside = ", ".join(map(printer._print, self.places))
-        name = printer._print(sp.Symbol(self.handle.table.name))
+        name = printer._hprint_Function(self.handle.table.name)
         marks = _marks(self.handle)
         text = rf"{name}{f'_{{{marks}}}' if marks else ''}\left({inside}\right)"
         return text if exp is None else rf"{{{text}}}^{{{exp}}}"

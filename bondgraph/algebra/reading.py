@@ -60,6 +60,9 @@ def read(text: str, where: str, functions: Functions = FUNCTIONS) -> sp.Expr:
 
 def _spelling(text: str) -> str:
     """What an operator of another language is called here, after a text that is no syntax."""
+    equation = re.fullmatch(r"\s*\w+\s*=(?!=)\s*(.+)", text, re.DOTALL)
+    if equation is not None:
+        return f"; write what stands on the right alone, {shortened(equation[1].strip())}"
     for theirs, ours in _SYMBOLS:
         if re.search(rf"(?<![<>=!]){re.escape(theirs)}(?!=)", text):
             return f"; {theirs} is written {ours} here"
@@ -111,9 +114,18 @@ def _leaf(node: ast.AST, where: str, depth: int, functions: Functions) -> sp.Exp
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
         return _call(node.func.id, node.args, where, depth, functions)
     kind = type(node.op) if isinstance(node, ast.BinOp | ast.UnaryOp) else type(node)
-    raise ExpressionError(
-        f"{where}: {shortened(ast.unparse(node))} is not allowed; {_SPELLED.get(kind, ALLOWED)}"
-    )
+    way = _of_module(node, functions) or _SPELLED.get(kind, ALLOWED)
+    raise ExpressionError(f"{where}: {shortened(ast.unparse(node))} is not allowed; {way}")
+
+
+def _of_module(node: ast.AST, functions: Functions) -> str:
+    """How a function or number of a module is called here, of `np.sqrt(x)`; nothing for what is none."""
+    whole = node.func if isinstance(node, ast.Call) else node
+    if not isinstance(whole, ast.Attribute) or not isinstance(whole.value, ast.Name):
+        return ""
+    if whole.attr in functions and isinstance(node, ast.Call):
+        return f"functions stand without their module, as in {whole.attr}(x)"
+    return f"a constant is called {whole.attr} here" if whole.attr in CONSTANTS else ""
 
 
 def _call(

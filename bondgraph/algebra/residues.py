@@ -16,6 +16,8 @@ from typing import Any
 import sympy as sp
 from sympy.ntheory import factorint, sqrt_mod
 
+from bondgraph.algebra.called import unguarded
+
 PRIME = 2874246 * 802241960520 + 1
 """The largest prime below 2**61 of the form ``8 * 3 * 5 * ... * 29 * 31 * k + 1``."""
 
@@ -167,8 +169,16 @@ def is_zero(expr: sp.Expr) -> bool:
 
 @lru_cache(maxsize=1_024)
 def _vanishes(expr: sp.Expr) -> bool:
-    """What sympy says, which takes long; graphs that are derived again ask for the same."""
-    return not _differs(expr) and bool(expr.equals(0))
+    """What sympy says, which takes long; graphs that are derived again ask for the same.
+
+    Where a guard has no value, what it stands in has none, zero or not.
+    """
+    expr = unguarded(expr)
+    try:
+        return not _differs(expr) and bool(expr.equals(0))
+    except TypeError:
+        # Sympy puts numbers in, and compares what a table refuses.
+        return False
 
 
 def _differs(expr: sp.Expr) -> bool:

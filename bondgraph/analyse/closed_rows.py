@@ -119,6 +119,14 @@ class ClosedRows:
             result.add(self.signal(name), factor)
         return result.whole()
 
+    def value(self, expression: sp.Expr, node: Hashable) -> Reading:
+        """An expression that a node reads as a row over states and inputs, by its slopes."""
+        law = ExpressionLaw(expression)
+        point = self.completed(self.point, set(law.free_symbols))
+        return self.put_in(
+            self._combined(slopes(law, node, sp.Dummy("nothing"), self.signals, point))
+        )
+
     def put_in(self, row: Reading) -> Reading:
         """A row with what laws give replaced by the signals they read."""
         if any(j in self._given for j in row.K):

@@ -4,13 +4,13 @@ from collections.abc import Callable, Sequence
 
 import sympy as sp
 
+from bondgraph.algebra.called import unguarded
 from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.table_corners import check_tables
 from bondgraph.analyse.slopes import Point
 from bondgraph.analyse.unknowns import Moment, Unknowns
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError
-from bondgraph.inverses.guarding import unguarded
 from bondgraph.reduce.motion import slope_of
 from bondgraph.reduce.record import Reading, ReadingSum
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, overload
 
 import sympy as sp
 
@@ -17,16 +17,35 @@ from bondgraph.analyse.instant import Instant
 from bondgraph.analyse.linear_model import LinearModel
 from bondgraph.analyse.modes import ToldModes, held_rows, told_modes
 from bondgraph.analyse.moving_hold import turns
+from bondgraph.analyse.sampled import SampledModel, check_told, sampled
 from bondgraph.analyse.slopes import Point, operating_point, with_given
 from bondgraph.analyse.turned import turned
 from bondgraph.analyse.unknowns import Unknowns, unknowns_in
-from bondgraph.derive import derive_again
+from bondgraph.derive import check_derived, derive_again
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, SingularStorageError
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw, Law, slides
 from bondgraph.reduce.rates import resolved
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import Port
+
+
+@overload
+def linearize(
+    equations: StateEquations, at: Mapping[Any, object] | None = None,
+    laws: Mapping[Any, object] | None = None, inputs: Iterable[str] = (), stuck: Iterable[Hashable] = (),
+    outputs: Iterable[str] | None = None, mode: Mapping[Any, str] | None = None,
+    rates: Mapping[Any, object] | None = None, period: None = None,
+) -> LinearModel: ...  # fmt: skip
+
+
+@overload
+def linearize(
+    equations: StateEquations, at: Mapping[Any, object] | None = None,
+    laws: Mapping[Any, object] | None = None, inputs: Iterable[str] = (), stuck: Iterable[Hashable] = (),
+    outputs: Iterable[str] | None = None, mode: Mapping[Any, str] | None = None,
+    rates: Mapping[Any, object] | None = None, *, period: float | str | sp.Rational,
+) -> SampledModel: ...  # fmt: skip
 
 
 def linearize(
@@ -38,7 +57,8 @@ def linearize(
     outputs: Iterable[str] | None = None,
     mode: Mapping[Any, str] | None = None,
     rates: Mapping[Any, object] | None = None,
-) -> LinearModel:
+    period: float | str | sp.Rational | None = None,
+) -> LinearModel | SampledModel:
     """The equations for small deviations, every law replaced by its slopes, every switch in one mode.
 
     ``at``: signal to value at the operating point, as far as slopes depend on it. Where A or what is held
@@ -49,7 +69,8 @@ def linearize(
     names of signals, else the equations' outputs. ``mode``: node to its mode: "on" or "off" for every
     switch and controlled junction, of a stop also "apart" or "touch"; "stick" or "slip" for dry friction,
     which slips unless told, to the side that ``at`` tells. ``stuck``: nodes that stick. What is held takes
-    a state with it, of the storage of lowest priority, earlier ones first.
+    a state with it, of the storage of lowest priority, earlier ones first. ``period`` [s]: of a loop with
+    sampled controllers, for the model from one instant to the next; without one what they keep stays.
 
     Raises `SignalError` where a slope needs a value that ``at`` lacks or the law has a corner there,
     `StructureError` for a switch without a mode and for one that there is not, `DependentSourceError`
@@ -63,6 +84,7 @@ def linearize(
     >>> linearize(bg.derive(g), at={"q": 3}).J
     Matrix([[-6*c]])
     """
+    check_derived(equations)
     stuck = tuple(stuck) if isinstance(stuck, Iterable) and not isinstance(stuck, str) else stuck
     equations = turned(_opened(equations, inputs), _with_held(equations, laws, stuck, mode))
     merged = merged_laws(equations, {} if laws is None else laws)
@@ -70,11 +92,13 @@ def linearize(
     closed = {name: law for name, law in merged.items() if name not in told.names}
     read = {name for law in closed.values() for name in law.free_symbols}
     read |= {name for port in told.held for name in _level(merged.get(port.element.name), port)}
+    sets = [(reset, task) for task in equations.tasks for reset in task.resets]
+    read |= {name for reset, _ in sets for name in reset.value.free_symbols}
     shown = _shown(equations, closed, outputs)
     equations = equations.with_readings({*read, *shown, *equations.integrals.values()})
     outer = _outer(equations, closed, read, inputs, told)
     # A point may tell what a law or a condition reads that the mode leaves out.
-    told_of = {name for law in merged.values() for name in law.free_symbols}
+    told_of = {name for law in merged.values() for name in law.free_symbols} | read
     told_of |= {
         name for one in equations.switches for name in one.on.free_symbols | one.off.free_symbols
     }
@@ -95,6 +119,10 @@ def linearize(
         held, bends = instant.hold.held, instant.hold.bends
     A, balances = system.dynamics()
     ys = tuple(system.put_in(system.signal(name)) for name in shown)
+    if period is not None:
+        check_told(equations.tasks)
+        ys += tuple(system.value(reset.value, task.name) for reset, task in sets)
+        shown += [reset.state for reset, _ in sets]
     model = Rows(system.states, tuple(map(fixed, A)), tuple(balances), ys)
     model, bound, bends = _filled(instant, model, held.bound, bends)
     if bound:
@@ -102,7 +130,8 @@ def linearize(
         model = locked(model, bound, bends, tied, order, told.holding)
     columns = {equations.inputs.index(port.given) for port in told.held}
     left = [j for j in system.left if j not in columns]
-    return _model(model, left, system.columns, tuple(shown))
+    found = _model(model, left, system.columns, tuple(shown))
+    return found if period is None else sampled(found, equations.tasks, period)
 
 
 def _opened(equations: StateEquations, inputs: Iterable[str]) -> StateEquations:

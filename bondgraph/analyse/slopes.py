@@ -6,13 +6,13 @@ from itertools import product
 import sympy as sp
 
 from bondgraph.algebra.atoms import normal
+from bondgraph.algebra.called import unguarded
 from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.algebra.residues import is_zero
 from bondgraph.algebra.table_corners import check_tables
 from bondgraph.algebra.whole import Below, Floor
 from bondgraph.analyse.unknowns import still
 from bondgraph.errors import SignalError
-from bondgraph.inverses.guarding import unguarded
 from bondgraph.nodes.laws import SLIP, DryFriction, ExpressionLaw, Law
 
 Point = Mapping[sp.Symbol, sp.Expr]
@@ -54,7 +54,8 @@ def with_given(point: Point, closed: Mapping[sp.Symbol, Law], moving: set[sp.Sym
         for name in ready:
             law = left.pop(name)
             value = law.expression.subs({s: found[s] for s in law.free_symbols & moving})
-            if not law.free_symbols & moving and not is_zero(found.setdefault(name, value) - value):
+            off = (found.setdefault(name, value) - value).subs(point)
+            if not law.free_symbols & moving and not is_zero(off):
                 raise SignalError(
                     f"at: {name} is {found[name]}, but its law gives {value}; leave it out"
                 )

@@ -96,6 +96,10 @@ def _paths(result: BondGraph, path: Any) -> list[tuple[str, list[Hashable]]]:
     if isinstance(path, str):
         found = [(f"path {part.strip()!r}", _names(part)) for part in path.split(",")]
     elif isinstance(path, Sequence):
+        if path and all(isinstance(one, tuple | list) and len(one) > 1 for one in path):
+            raise StructureError(
+                f"path {path!r} is a list of paths; give them one by one, graph(nodes, *paths)"
+            )
         found = [(f"path {path!r}", list(path))]
     else:
         raise StructureError(

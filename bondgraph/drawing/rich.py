@@ -10,6 +10,8 @@ import sympy as sp
 from sympy.core.alphabets import greeks
 from sympy.printing.conventions import split_super_sub
 
+from bondgraph.show.plain import one_line
+
 
 @dataclass(frozen=True)
 class Run:
@@ -72,7 +74,7 @@ def formula(value: sp.Expr) -> Rich:
     'ω₁²·r/2'
     """
     runs: list[Run] = []
-    for token in _TOKEN.findall(str(value)):
+    for token in _TOKEN.findall(one_line(value)):
         if token.isidentifier():
             runs.extend(named(token))
         elif token.startswith("**") and token != "**":

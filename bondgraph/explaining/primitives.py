@@ -13,7 +13,7 @@ from bondgraph.explaining.records import Equation, Step, equation
 from bondgraph.nodes.elements import OTHER
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 from bondgraph.reduce.sorting import Reduction, detects
-from bondgraph.show.sums import rate, split
+from bondgraph.show.sums import rate, signed_terms, split
 from bondgraph.show.ways import rubbing, switching
 
 
@@ -56,7 +56,8 @@ def laws_step(equations: StateEquations, signals: Sequence[Assignment]) -> Step:
     for port in equations.ports:
         law = port.element.law
         if isinstance(law, ExpressionLaw):
-            lines.append(equation(port.given, law.expression, node=port.element.name))
+            right = signed_terms(law.expression)
+            lines.append(equation(port.given, right, node=port.element.name))
         elif isinstance(law, DryFriction):
             sentences.append(rubbing(port, law))
     sentences += map(switching, equations.switches)

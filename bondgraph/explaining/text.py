@@ -6,7 +6,8 @@ from bondgraph.equations import StateEquations
 from bondgraph.explaining.layout import first_few, fits, heading, shortened
 from bondgraph.explaining.records import Equation, Factor, Formula, Step
 from bondgraph.show.blocks import Block, beside, matrix_block
-from bondgraph.show.display import WIDTH, counted, equations_shown, wrapped
+from bondgraph.show.display import WIDTH, counted, equations_shown
+from bondgraph.show.lines import words, wrapped
 from bondgraph.show.sums import Sum, text_pieces
 
 WIDEST_MATRIX = 120
@@ -38,7 +39,8 @@ def _ending(result: StateEquations) -> Iterator[str]:
 def _step(step: Step, matrices: bool, limit: int | None) -> Iterator[str]:
     sentences, more = first_few(step.sentences, limit)
     for sentence in sentences:
-        yield from wrapped([f"  - {sentence.split()[0]}", *sentence.split()[1:]], WIDTH, "    ")
+        first, *rest = words(sentence)
+        yield from wrapped([f"  - {first}", *rest], WIDTH, "    ")
     if more:
         yield f"  ... and {more} more"
     equations, more = first_few(step.equations, limit)

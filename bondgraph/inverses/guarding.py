@@ -66,8 +66,3 @@ def guarded(inverse: sp.Expr, given: sp.Symbol, node: Hashable) -> sp.Expr:
         return part.func(Guard(Handle(table, (0,)), part.args[0]), *part.args[1:])
 
     return inverse.replace(lambda part: ends(part) is not None, kept)
-
-
-def unguarded(expr: sp.Expr) -> sp.Expr:
-    """The same without guards."""
-    return expr.replace(lambda part: isinstance(part, Guard), lambda part: part.places[0])

@@ -7,7 +7,7 @@ from typing import Any, Self
 
 import sympy as sp
 
-from bondgraph.algebra.called import Called
+from bondgraph.algebra.called import Called, has_value
 from bondgraph.inverses.rising import Rising, rising
 from bondgraph.searching import place_where
 
@@ -104,7 +104,7 @@ class Inverse(Called):
     @property
     def is_number(self) -> bool:
         """Whether it has a value: not where the law never comes to that."""
-        return super().is_number and self.evalf().is_Float
+        return super().is_number and has_value(self.evalf())
 
     def _eval_evalf(self, prec: int) -> sp.Expr | None:
         found = super()._eval_evalf(prec)

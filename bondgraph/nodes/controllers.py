@@ -11,8 +11,7 @@ from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.errors import ExpressionError, StructureError
 from bondgraph.nodes.elements import Element, Node
 from bondgraph.nodes.kinds import Kind
-from bondgraph.nodes.laws import ExpressionLaw
-from bondgraph.nodes.tasks import TICK, Reset, Task
+from bondgraph.nodes.tasks import TICK, Called, Reset, Task
 
 LARGEST = 2**40
 """No instant of a run of a thousand million periods is beyond what a double counts exactly."""
@@ -21,7 +20,7 @@ LARGEST = 2**40
 def Controller(
     name: Hashable, every: object, offset: object = 0, reads: object = None,
     states: Mapping[str, object] | None = None, update: Mapping[str, object] | None = None,
-    gives: Mapping[str, object] | None = None, **more: object,
+    gives: Mapping[str, object] | Iterable[str] | None = None, step: Called | None = None, **more: object,
 ) -> Node:  # fmt: skip
     """A controller that works at the instants ``offset + k*every`` [s], k = 0, 1, ..., and holds between.
 
@@ -31,6 +30,10 @@ def Controller(
     states before their update, and controllers that work at one instant do not see one another's new values.
     What it gives is 0 before its first instant, or what ``states`` tells of it. ``reads``: the signals that
     the expressions may read; any unless told.
+
+    ``step``: a Python function instead of expressions, called at each instant with the values of ``reads``,
+    of its states and of ``t`` by name; it returns what its states become and what it gives, by name.
+    ``gives`` are then names. Runs in numpy call it, and no other way can.
 
     Raises nothing: `validate` looks at nodes.
 
@@ -44,7 +47,7 @@ def Controller(
     """
     given = {
         "every": every, "offset": offset, "reads": reads, "states": states, "update": update,
-        "outputs": gives, **more,
+        "outputs": gives, "step": step, **more,
     }  # fmt: skip
     told = {key: value for key, value in given.items() if value is not None}
     if told.get("offset") == 0:
@@ -55,29 +58,31 @@ def Controller(
 def controller_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element]:
     """A junction that carries nothing, and at it a detector for each value that is kept."""
     where = f"node {name!r}"
+    told = _of_function(attributes, where) if attributes.get("step") is not None else attributes
     starts, updates, gives = (
-        _by_name(attributes.get(key), f"{where}, {word}")
+        _by_name(told.get(key), f"{where}, {word}")
         for key, word in (("states", "states"), ("update", "update"), ("outputs", "gives"))
     )
     _check(starts, updates, gives, where)
     kept = [*starts, *(one for one in gives if one not in starts)]
     becomes = {**updates, **gives}
-    _check_read(becomes, kept, attributes.get("reads"), where)
+    reads = _names(told.get("reads"), f"{where}, reads")
     resets = tuple(Reset(one, becomes[one], TICK) for one in kept)
-    task = Task(name, *_instants(attributes, where), resets)
+    step = attributes.get("step")
+    if step is None:
+        _check_read(becomes, reads, where)
+    task = Task(name, *_instants(attributes, where), resets, step, reads if step else ())
     effort, flow = (symbol(f"{letter}_{name}", where) for letter in "ef")
-    still = ExpressionLaw(sp.Integer(0))
     found = [
         Element(name, Kind.ZERO, None, effort, None, whole=name, task=task),
-        Element(
-            f"{name}.still", Kind.SE, None, effort, flow, law=still, gives="effort", whole=name
-        ),
+        # No flow passes it, so that its effort, the rate of all that is kept, is zero.
+        Element(f"{name}.still", Kind.R, sp.Integer(1), effort, flow, whole=name),
     ]
     for one in kept:
-        own = [symbol(f"{letter}_{name}_{one}", where) for letter in "ef"]
+        effort, flow = (symbol(f"{letter}_{name}_{one}", where) for letter in "ef")
         found.append(
             Element(
-                f"{name}.{one}", Kind.DE, None, *own, gives="flow", integral=one,
+                f"{name}.{one}", Kind.DE, None, effort, flow, gives="flow", integral=one,
                 start=starts.get(one), whole=name,
             )
         )  # fmt: skip
@@ -125,15 +130,36 @@ def _check(
             )
 
 
+def _of_function(attributes: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """The attributes of a controller whose values a function tells: each keeps what it is until then."""
+    if not callable(attributes["step"]):
+        raise StructureError(
+            f"{where}: step is {attributes['step']!r}; it must be a Python function"
+        )
+    gives = attributes.get("outputs")
+    if isinstance(gives, Mapping) or attributes.get("update") is not None:
+        raise StructureError(
+            f"{where}: with a step, gives is a list of names, and there is no update: the function tells "
+            "what all becomes"
+        )
+    states = attributes.get("states") or {}
+    update = {one: one for one in states} if isinstance(states, Mapping) else None
+    given = {str(one): str(one) for one in _names(gives, f"{where}, gives")}
+    return {**attributes, "update": update, "outputs": given}
+
+
+def _names(given: Any, where: str) -> tuple[sp.Symbol, ...]:
+    if given is None:
+        return ()
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise StructureError(f"{where} must be a list of names, not {given!r}")
+    return tuple(symbol(getattr(one, "name", one), where) for one in given)
+
+
 def _check_read(
-    becomes: Mapping[sp.Symbol, sp.Expr], kept: Iterable[sp.Symbol], reads: Any, where: str
+    becomes: Mapping[sp.Symbol, sp.Expr], names: Iterable[sp.Symbol], where: str
 ) -> None:
     """Every signal that it is to read is read; that nothing else is, is checked among all names."""
-    if reads is None:
-        return
-    if isinstance(reads, str) or not isinstance(reads, Iterable):
-        raise StructureError(f"{where}: reads must be a list of names, not {reads!r}")
-    names = [symbol(getattr(one, "name", one), f"{where}, reads") for one in reads]
     used = {name for value in becomes.values() for name in value.free_symbols}
     for one in names:
         if one not in used:

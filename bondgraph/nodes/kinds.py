@@ -82,7 +82,7 @@ class Kind(StrEnum):
     STATE = "State", Nature("signal", frozenset({"rate", "start", "low", "high", "unit"}), place=10)
     CONTROLLER = (
         "Controller",
-        Nature("signal", frozenset({"every", "offset", "reads", *NAMED}), place=11),
+        Nature("signal", frozenset({"every", "offset", "reads", "step", *NAMED}), place=11),
     )
     HYSTERESIS = (
         "Hysteresis",
@@ -155,8 +155,8 @@ class Kind(StrEnum):
 
     @property
     def one_port(self) -> bool:
-        """True for everything but transformers, gyrators and junctions."""
-        return not self.two_port and not self.joins
+        """True for everything but transformers, gyrators, junctions and signals."""
+        return not (self.two_port or self.joins or self.signals)
 
     @property
     def absorbs(self) -> bool:

@@ -1,6 +1,6 @@
 """What is set at an instant: a `Reset` at an event, a `Task` at instants of its own, which are exact."""
 
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 
 import sympy as sp
@@ -19,13 +19,17 @@ class Reset:
     event: str
 
 
+Called = Callable[[Mapping[str, float]], Mapping[str, float]]
+"""A Python function that works at a task's instants: from values by name to values by name."""
+
+
 @dataclass(frozen=True)
 class Task:
     """What a sampled controller does at the instants ``(k*every + offset)/unit`` [s], k = 0, 1, ...
 
     ``resets``: what it sets, all told by what stood before it. The three numbers of an instant are
     integers below 2^53, so each of its instants is one division, rounded once and the same wherever it
-    is worked out.
+    is worked out. ``step``: a Python function that tells instead what all becomes, of what it ``reads``.
     """
 
     name: Hashable
@@ -33,6 +37,8 @@ class Task:
     offset: int
     unit: int
     resets: tuple[Reset, ...]
+    step: Called | None = None
+    reads: tuple[sp.Symbol, ...] = ()
 
     @property
     def period(self) -> float:
@@ -42,6 +48,16 @@ class Task:
         0.01
         """
         return self.every / self.unit
+
+    @property
+    def instants(self) -> str:
+        """Its instants in words.
+
+        >>> Task("c", 1, 5, 100, ()).instants, Task("c", 2, 0, 1, ()).instants
+        ('every 1/100 s from 1/20 s on', 'every 2 s')
+        """
+        every, offset = (sp.Rational(part, self.unit) for part in (self.every, self.offset))
+        return f"every {every} s" + (f" from {offset} s on" if offset else "")
 
     @property
     def states(self) -> tuple[sp.Symbol, ...]:

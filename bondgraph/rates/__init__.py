@@ -1,1 +1,1 @@
-"""Every state's rate as an expression: rates resolved, laws put in, loops of laws solved."""
+"""Every state's rate as an expression: rates resolved, laws put in."""

@@ -6,14 +6,16 @@ from typing import Any
 
 import sympy as sp
 
+from bondgraph.algebra.functions import without_logarithms
 from bondgraph.algebra.tidy import tidy
 from bondgraph.analyse.input_rates import rate_symbol
 from bondgraph.analyse.turned import turned
+from bondgraph.derive import check_derived
 from bondgraph.equations import StateEquations
-from bondgraph.rates.closing import closed
 from bondgraph.rates.energy import in_energy_states
 from bondgraph.rates.record import ExplicitRates
 from bondgraph.rates.signals import Signals
+from bondgraph.solving.loops import closed
 from bondgraph.solving.steps import size, told
 
 MOST_TIDIED = 40
@@ -44,6 +46,7 @@ def explicit(
     v' = (F - k*q_k**3)/m
     q_k' = v
     """
+    check_derived(equations)
     signals = Signals(turned(equations, laws), laws)
     solution = closed(signals.told, signals.owners)
     parts, rates = solution.told, signals.rates
@@ -61,6 +64,7 @@ def explicit(
 
 def _tidy(expr: sp.Expr) -> sp.Expr:
     """What is not long by itself in its shortest form; the rest is over few denominators already."""
+    expr = without_logarithms(expr)
     return tidy(expr) if size(expr, {}) <= MOST_TIDIED else expr
 
 

@@ -1,6 +1,6 @@
 """Every signal that rates are over, told by other signals: one expression for each name."""
 
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Hashable, Mapping
 from typing import Any
 
 import sympy as sp
@@ -14,6 +14,7 @@ from bondgraph.analyse.input_rates import rate_symbol
 from bondgraph.equations import StateEquations
 from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.reduce.motion import slope_of
+from bondgraph.show.sums import over_common
 from bondgraph.solving.blocks import solved
 from bondgraph.solving.steps import Steps
 
@@ -79,17 +80,3 @@ class Signals:
             slopes += [slope_of(law, TIME)] if TIME in law.free_symbols else []
             self.told[self._slopes[name]] = sp.Add(*slopes)
         return self._slopes[name]
-
-
-def over_common(terms: Iterable[tuple[sp.Expr, sp.Expr]]) -> sp.Expr:
-    """The sum of products, those whose factors have the same denominator over it once.
-
-    >>> a, b, x, y = sp.symbols("a b x y")
-    >>> over_common([(a/(a + b), x), (-b/(a + b), y), (b, x)])
-    b*x + (a*x - b*y)/(a + b)
-    """
-    found: dict[sp.Expr, list[sp.Expr]] = {}
-    for factor, name in terms:
-        over, under = sp.fraction(factor)
-        found.setdefault(under, []).append(over * name)
-    return sp.Add(*(sp.Add(*over) / under for under, over in found.items()))

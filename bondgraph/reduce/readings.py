@@ -7,6 +7,7 @@ import sympy as sp
 
 from bondgraph.algebra.exact import FixedRow
 from bondgraph.errors import DependentSourceError, StructureError
+from bondgraph.nodes.elements import OTHER
 from bondgraph.nodes.inverting import why_unturned
 from bondgraph.nodes.laws import DryFriction, Law, check_slider
 from bondgraph.reduce.record import Reading
@@ -37,10 +38,11 @@ def check_laws(
         if law is None or not depends_on_signals(law, signals):
             continue
         _check_friction(law, port, known)
+        _check_own(law, port, signals)
         column = inputs.index(port.given)
         reading = readings[port.received]
         if reading.H or reading.K or any(column in row for row in E):
-            other = "flow" if port.gives == "effort" else "effort"
+            other = OTHER[port.gives]
             way = f"let it give its {other} (gives={other!r}), by a law of its {port.gives}"
             if port.element.kind.supplies:
                 way = "let it read the time, parameters and inputs alone"
@@ -51,6 +53,16 @@ def check_laws(
                 f"would be needed; {way}, or put a storage that can be independent beside it"
                 f"{why_unturned(replace(port.element, law=law))}"
             )
+
+
+def _check_own(law: Law, port: Port, signals: Collection[sp.Symbol]) -> None:
+    """Refuse a resistance whose law reads what it gives itself and nothing else that moves."""
+    if port.element.kind.resists and {*law.free_symbols} & {*signals} == {port.given}:
+        raise StructureError(
+            f"law at {port.element.name!r}: it gives its {port.gives} {port.given} and reads nothing else; "
+            f"a law of the {port.gives} gives the {OTHER[port.gives]} (gives={OTHER[port.gives]!r}), "
+            f"one that gives the {port.gives} reads {port.received}"
+        )
 
 
 def _check_friction(law: Law, port: Port, known: Mapping[sp.Symbol, PortRow]) -> None:

@@ -7,9 +7,9 @@ from types import MappingProxyType
 
 import sympy as sp
 
+from bondgraph.algebra.called import unguarded
 from bondgraph.algebra.exact import combined
 from bondgraph.declare.names import energy_name
-from bondgraph.inverses.guarding import unguarded
 from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.reduce.motion import Motion
 from bondgraph.reduce.record import Reading

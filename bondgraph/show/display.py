@@ -7,6 +7,7 @@ import sympy as sp
 
 from bondgraph.algebra.exact import rows_of
 from bondgraph.show.blocks import Block, beside, column_block, matrix_block, sketch
+from bondgraph.show.lines import wrapped
 from bondgraph.show.sums import Term, rate, text_pieces
 
 WIDTH = 100
@@ -146,17 +147,6 @@ def written(left: Sequence[Term], right: Sequence[Term]) -> list[str]:
     pieces = text_pieces(left) + [f"= {piece}" if at == 0 else piece
                                   for at, piece in enumerate(text_pieces(right))]  # fmt: skip
     return wrapped(pieces, WIDTH, "    ")
-
-
-def wrapped(pieces: Sequence[str], width: int, indent: str) -> list[str]:
-    """Pieces joined by spaces into lines that end before one that would be too long."""
-    lines: list[str] = []
-    for piece in pieces:
-        if lines and len(lines[-1]) + len(piece) < width:
-            lines[-1] += f" {piece}"
-        else:
-            lines.append((indent if lines else "") + piece)
-    return lines
 
 
 def summary(equations: Matrices) -> str:

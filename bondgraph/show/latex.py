@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
+from bondgraph.derive import check_derived
 from bondgraph.equations import StateEquations
 from bondgraph.show.display import MOST_SIGNS
 from bondgraph.show.latex_matrices import is_readable, matrices_latex, notebook_matrices
@@ -29,6 +30,7 @@ def latex(equations: StateEquations) -> str:
     >>> print(left.replace("begin{matrix}", "").replace("end{matrix}", ""))
     \left[\J\\right]\frac{d}{dt}\left[\\omega\\right]
     """
+    check_derived(equations)
     return " \\\\\n".join(part for part in (matrices_latex(equations), *beside(equations)) if part)
 
 

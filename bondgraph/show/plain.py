@@ -1,10 +1,18 @@
 """Expressions as one line of text, as a person would write them."""
 
 import decimal
+from collections.abc import Mapping
 from typing import Any
 
 import sympy as sp
+from sympy.printing.latex import LatexPrinter
 from sympy.printing.str import StrPrinter
+
+from bondgraph.algebra.called import unguarded
+from bondgraph.algebra.expressions import TIME
+
+LATE = sp.Symbol("\U0010ffff")
+"""The time, by a name that comes after all others: ``w*t``, not ``t*w``."""
 
 LONG = 1000
 """Fractions with denominators from here on are read more easily as decimals."""
@@ -20,11 +28,52 @@ def plain(expr: sp.Expr) -> str:
     ('x^2/4', '0.12345*x', '3*x*|x|')
     >>> plain(sp.Piecewise((2*x, x < 0), (x, x < 1), (0, True)))
     '{2*x if x < 0, x if x < 1, else 0}'
+    >>> plain(-x + sp.Symbol("x_0")), plain(sp.sin(sp.Symbol("w")*sp.Symbol("t")))
+    ('x_0 - x', 'sin(w*t)')
     """
-    return str(_Plain().doprint(decimals(expr))).replace("**", "^")
+    return one_line(decimals(expr)).replace("**", "^")
 
 
-class _Plain(StrPrinter):  # type: ignore[misc]
+def one_line(expr: sp.Expr) -> str:
+    """The same with powers, and with numbers, as sympy writes them.
+
+    >>> one_line(sp.Symbol("x")**2/1024)
+    'x**2/1024'
+    """
+    return str(_Plain().doprint(_ready(expr))).replace(LATE.name, TIME.name)
+
+
+def typed(expr: Any, names: Mapping[sp.Symbol, str]) -> str:
+    r"""An expression or a matrix as LaTeX, symbols by these names.
+
+    >>> x, y = sp.symbols("x y")
+    >>> typed(y - x, {x: r"\dot{x}"})
+    'y - \\dot{x}'
+    """
+    told = {**names, LATE: names.get(TIME, TIME.name)}
+    return str(_Typed({"symbol_names": told}).doprint(_ready(decimals(expr))))
+
+
+def _ready(expr: Any) -> Any:
+    return unguarded(expr).xreplace({TIME: LATE})
+
+
+class _PositiveFirst:
+    """Sums that would begin with a minus sign begin with what has none, if anything has."""
+
+    def _as_ordered_terms(self, expr: sp.Expr, order: Any = None) -> list[sp.Expr]:
+        terms: list[sp.Expr] = super()._as_ordered_terms(expr, order=order)  # type: ignore[misc]
+        signs = [term.could_extract_minus_sign() for term in terms]
+        if not signs[0] or all(signs):
+            return terms
+        return sorted(terms, key=lambda term: bool(term.could_extract_minus_sign()))
+
+
+class _Typed(_PositiveFirst, LatexPrinter):  # type: ignore[misc]
+    pass
+
+
+class _Plain(_PositiveFirst, StrPrinter):  # type: ignore[misc]
     def _print_Abs(self, expr: sp.Abs) -> str:
         return f"|{self._print(expr.args[0])}|"
 

@@ -13,7 +13,7 @@ import sympy as sp
 from bondgraph.equations import StateEquations
 from bondgraph.nodes.laws import SLIP, DryFriction, ExpressionLaw
 from bondgraph.reduce.record import Reading
-from bondgraph.show.sums import Sum, rate, signed_terms, split, total
+from bondgraph.show.sums import Sum, positive_first, rate, signed_terms, split, total
 
 
 @dataclass(frozen=True)
@@ -23,10 +23,14 @@ class Statement:
     left: sp.Expr
     right: Sum
     node: Hashable | None = None
+    #: The left side as it is to be written, if not by the names' order.
+    left_sum: Sum = ()
 
     @property
     def left_terms(self) -> Sum:
         """The left side as factors times names: of rates the rates."""
+        if self.left_sum:
+            return self.left_sum
         names = self.left.free_symbols
         return split(self.left, {n for n in names if n.name.endswith("'")} or names)
 
@@ -100,11 +104,11 @@ def _received(model: StateEquations, name: sp.Symbol) -> Sum:
 
 def _over_columns(model: StateEquations, name: sp.Symbol) -> Sum:
     reading = model.readings.get(name) or model.reduction.reading(model.signals[name])
-    return reading_sum(model.states, model.inputs, reading)
+    return positive_first(reading_sum(model.states, model.inputs, reading))
 
 
 def _read(model: StateEquations) -> set[sp.Symbol]:
-    """What matrices, dry friction and switches read, beside what is received at their ports."""
+    """What matrices, dry friction, switches and controllers read, beside what is received at their ports."""
     used: set[sp.Symbol] = set()
     for matrix in (model.A, model.J, model.B, model.E, model.F, model.D, model.G):
         used |= matrix.free_symbols
@@ -114,6 +118,8 @@ def _read(model: StateEquations) -> set[sp.Symbol]:
             used |= {*law.free_symbols} - {SLIP} | {port.received}
     for switch in model.switches:
         used |= {switch.port.received}.union(*(part.free_symbols for part in switch.read))
+    for task in model.tasks:
+        used |= {*task.reads}.union(*(one.value.free_symbols for one in task.resets))
     return used
 
 
@@ -122,14 +128,15 @@ def _add_readings(
 ) -> None:
     """Of every signal that something reads and that is neither a state, an input nor an output."""
     known = {*model.states, *model.inputs, *model.outputs}
-    waiting = sorted({*wanted}.union(*(s.value.free_symbols for s in stated.values())), key=str)
+    read = {*wanted}.union(*(one.value.free_symbols for one in stated.values()))
+    waiting = sorted(read, key=str, reverse=True)
     while waiting:
         name = waiting.pop()
         if name in known or name not in model.signals:
             continue
         known.add(name)
         stated[name] = Statement(name, _over_columns(model, name))
-        waiting += sorted(stated[name].value.free_symbols - known, key=str)
+        waiting += sorted(stated[name].value.free_symbols - known, key=str, reverse=True)
 
 
 def reading_sum(x: Sequence[sp.Symbol], u: Sequence[sp.Symbol], reading: Reading) -> Sum:
@@ -145,16 +152,20 @@ def reading_sum(x: Sequence[sp.Symbol], u: Sequence[sp.Symbol], reading: Reading
 def _in_causal_order(
     stated: Mapping[sp.Symbol, Statement],
 ) -> tuple[list[sp.Symbol], tuple[tuple[sp.Symbol, ...], ...]]:
-    """Names after those that they need, else as declared; those that need one another side by side."""
+    """Names as declared, each right after what only it needs; those that need one another side by side."""
     needs: nx.DiGraph[sp.Symbol] = nx.DiGraph()
     needs.add_nodes_from(stated)
-    for name, one in stated.items():
-        read = sorted(one.value.free_symbols & {*stated}, key=str)
-        needs.add_edges_from((other, name) for other in read)
     place = {name: at for at, name in enumerate(stated)}
+    for name, one in stated.items():
+        read = sorted(one.value.free_symbols & {*stated}, key=place.__getitem__)
+        needs.add_edges_from((name, other) for other in read)
     parts = nx.condensation(needs)
     members = {k: sorted(parts.nodes[k]["members"], key=place.__getitem__) for k in parts}
-    order = nx.lexicographical_topological_sort(parts, key=lambda k: place[members[k][0]])
-    groups = [members[k] for k in order]
-    loops = [tuple(g) for g in groups if len(g) > 1 or needs.has_edge(g[0], g[0])]
-    return [name for group in groups for name in group], tuple(loops)
+    first = sorted(parts, key=lambda k: place[members[k][0]])
+    groups: dict[int, list[sp.Symbol]] = {}
+    for start in first:
+        # What is needed is told before; what is told already, once.
+        for k in nx.dfs_postorder_nodes(parts, start):
+            groups.setdefault(k, members[k])
+    loops = [tuple(g) for g in groups.values() if len(g) > 1 or needs.has_edge(g[0], g[0])]
+    return [name for group in groups.values() for name in group], tuple(loops)

@@ -5,7 +5,7 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.show.plain import decimals, plain
+from bondgraph.show.plain import plain, typed
 
 Term = tuple[sp.Expr, sp.Expr]
 """A factor and the signal it stands at; the signal is 1 where there is none."""
@@ -27,6 +27,20 @@ def total(terms: Sum) -> sp.Expr:
     return sp.Add(*(factor * signal for factor, signal in terms))
 
 
+def over_common(terms: Iterable[Term]) -> sp.Expr:
+    """The sum of products, those whose factors have the same denominator over it once.
+
+    >>> a, b, x, y = sp.symbols("a b x y")
+    >>> over_common([(a/(a + b), x), (-b/(a + b), y), (b, x)])
+    b*x + (a*x - b*y)/(a + b)
+    """
+    found: dict[sp.Expr, list[sp.Expr]] = {}
+    for factor, name in terms:
+        over, under = sp.fraction(factor)
+        found.setdefault(under, []).append(over * name)
+    return sp.Add(*(sp.Add(*over) / under for under, over in found.items()))
+
+
 def split(expr: sp.Expr, signals: Collection[sp.Symbol]) -> Sum:
     """An expression as factors times signals, as far as it is a sum of such; positive terms first.
 
@@ -38,7 +52,7 @@ def split(expr: sp.Expr, signals: Collection[sp.Symbol]) -> Sum:
     for term in sp.Add(expr).as_ordered_terms():
         used = sorted(term.free_symbols & set(signals), key=str)
         terms.append(term.as_independent(*used, as_Add=False) if used else (term, sp.Integer(1)))
-    return tuple(sorted(terms, key=lambda term: _sign_and_size(term[0])[0]))
+    return positive_first(terms)
 
 
 def signed_terms(expr: sp.Expr) -> Sum:
@@ -48,10 +62,14 @@ def signed_terms(expr: sp.Expr) -> Sum:
     >>> signed_terms(3*y - x**2)
     ((1, 3*y), (-1, x**2))
     """
-    one = sp.Integer(1)
     terms = expr.as_ordered_terms() if expr != 0 else []
-    signed = [(-one, -term) if term.could_extract_minus_sign() else (one, term) for term in terms]
-    return tuple(sorted(signed, key=lambda term: bool(term[0] < 0)))
+    signs = [_sign_and_size(term) for term in terms]
+    return positive_first((sp.Integer(-1 if negative else 1), size) for negative, size in signs)
+
+
+def positive_first(terms: Iterable[Term]) -> Sum:
+    """The same sum, terms with a minus sign last."""
+    return tuple(sorted(terms, key=lambda term: _sign_and_size(term[0])[0]))
 
 
 def typeset(expr: Any) -> str:
@@ -61,7 +79,7 @@ def typeset(expr: Any) -> str:
     \dot{\omega}_{1} e_{left,J}
     """
     names = {name: _typeset_name(name.name) for name in expr.free_symbols}
-    return str(sp.latex(decimals(expr), symbol_names=names))
+    return typed(expr, names)
 
 
 def _typeset_name(name: str) -> str:
@@ -74,8 +92,8 @@ def text_pieces(terms: Iterable[Term]) -> list[str]:
     """Each term with its sign, to be joined by spaces.
 
     >>> i, a, b = sp.symbols("i a b")
-    >>> text_pieces([(i/2, a), (-1/i, b), (1 - i, a)])
-    ['i/2*a', '- b/i', '+ (1 - i)*a']
+    >>> text_pieces([(i/2, a), (-1/i, b), (1 - i, a), (a*i, a)])
+    ['i/2*a', '- b/i', '+ (1 - i)*a', '+ a^2*i']
     """
     return _signed(terms, _text_product)
 
@@ -108,7 +126,16 @@ def _sign_and_size(factor: sp.Expr) -> tuple[bool, sp.Expr]:
     return negative, -factor if negative else factor
 
 
+def _one_power(factor: sp.Expr, signal: sp.Expr) -> Term:
+    """A factor that has the signal as a factor itself, multiplied with it."""
+    twice = signal.is_Symbol and any(
+        part.as_base_exp()[0] == signal for part in sp.Mul.make_args(factor)
+    )
+    return (factor * signal, sp.Integer(1)) if twice else (factor, signal)
+
+
 def _text_product(factor: sp.Expr, signal: sp.Expr) -> str:
+    factor, signal = _one_power(factor, signal)
     if signal == 1:
         return _bracketed(factor, plain(factor), "()")
     own = _bracketed(signal, plain(signal), "()")
@@ -122,6 +149,7 @@ def _text_product(factor: sp.Expr, signal: sp.Expr) -> str:
 
 def _latex_product(factor: sp.Expr, signal: sp.Expr) -> str:
     brackets = (r"\left(", r"\right)")
+    factor, signal = _one_power(factor, signal)
     if signal == 1:
         return _bracketed(factor, typeset(factor), brackets)
     own = _bracketed(signal, typeset(signal), brackets)

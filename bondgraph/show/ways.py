@@ -3,10 +3,11 @@
 import sympy as sp
 
 from bondgraph.nodes.laws import SLIP, DryFriction
-from bondgraph.nodes.tasks import Reset
+from bondgraph.nodes.tasks import Reset, Task
 from bondgraph.reduce.structure import Port
 from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.show.plain import plain
+from bondgraph.show.sums import signed_terms
 
 
 def rubbing(port: Port, law: DryFriction) -> str:
@@ -33,8 +34,8 @@ def switching(one: SwitchPort) -> str:
     on, off = (holds, free) if one.held == "on" else (free, holds)
     what = "an ideal switch" if one.gap is None else "a stop"
     text = (
-        f"{one.name}: {what}; on, {on}, and turns off as {plain(one.off)} rises above zero; "
-        f"off, {off}, and turns on as {plain(one.on)} rises above zero"
+        f"{one.name}: {what}; on, {on}, and turns off as {_passes(one.off)} zero; "
+        f"off, {off}, and turns on as {_passes(one.on)} zero"
     )
     text += "".join(map(_reset, one.switch.resets))
     if not one.side:
@@ -43,6 +44,32 @@ def switching(one: SwitchPort) -> str:
     if one.gap is not None:
         return f"{text}; {_bound(one)}"
     return f"{text}; so {received} is never {least} and {given} never {most}"
+
+
+def working(task: Task) -> str:
+    """What a sampled controller sets, and when."""
+    if task.step is not None:
+        reads = ", ".join(map(str, task.reads)) or "nothing"
+        sets = " and ".join(map(str, task.states))
+        return f"{task.name}: {task.instants} a Python function sets {sets}; it reads {reads}"
+    sets = " and ".join(f"{one.state} becomes {plain(one.value)}" for one in task.resets)
+    return f"{task.name}: {task.instants} {sets}, by what there was before; between, these stay"
+
+
+def positive(condition: sp.Expr) -> tuple[bool, sp.Expr]:
+    """Whether a condition that has to rise above zero is told by what has to fall below it, and by what.
+
+    >>> f, g = sp.symbols("f g")
+    >>> positive(-f), positive(f), positive(g - f)
+    ((True, f), (False, f), (False, -f + g))
+    """
+    (sign, size), *more = signed_terms(condition) or ((sp.Integer(1), condition),)
+    return (True, size) if not more and sign < 0 else (False, condition)
+
+
+def _passes(condition: sp.Expr) -> str:
+    falls, told = positive(condition)
+    return f"{plain(told)} {'falls below' if falls else 'rises above'}"
 
 
 def _reset(one: Reset) -> str:

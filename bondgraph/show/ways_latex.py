@@ -9,10 +9,11 @@ from bondgraph.nodes.laws import SLIP, DryFriction
 from bondgraph.reduce.structure import Port
 from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.show.sums import typeset
+from bondgraph.show.ways import positive
 
 
 def ways_latex(model: StateEquations) -> Iterator[str]:
-    """A formula for each dry friction and each switch."""
+    """A formula for each dry friction and each switch, and for all that controllers set."""
     for port in model.ports:
         law = model.laws.get(port.element.name)
         if isinstance(law, DryFriction):
@@ -22,6 +23,9 @@ def ways_latex(model: StateEquations) -> Iterator[str]:
         for reset in one.switch.resets:
             when = "at each impact" if reset.event == "hit" else f"as it turns {reset.event}"
             yield rf"{typeset(reset.state)} := {typeset(reset.value)} \quad \text{{{when}}}"
+    for task in model.tasks:
+        for reset in task.resets if task.step is None else ():
+            yield rf"{typeset(reset.state)} := {typeset(reset.value)} \quad \text{{{task.instants}}}"
 
 
 def _cases(rows: Iterator[tuple[str, str]]) -> str:
@@ -47,5 +51,10 @@ def _friction(port: Port, law: DryFriction) -> Iterator[tuple[str, str]]:
 def _switch(one: SwitchPort) -> Iterator[tuple[str, str]]:
     given, received = f"{typeset(one.port.given)} = 0", f"{typeset(one.port.received)} = 0"
     on, off = (received, given) if one.held == "on" else (given, received)
-    yield on, rf"\text{{on, until }} {typeset(one.off)} > 0"
-    yield off, rf"\text{{off, until }} {typeset(one.on)} > 0"
+    yield on, rf"\text{{on, until }} {_passed(one.off)}"
+    yield off, rf"\text{{off, until }} {_passed(one.on)}"
+
+
+def _passed(condition: sp.Expr) -> str:
+    falls, told = positive(condition)
+    return f"{typeset(told)} {'<' if falls else '>'} 0"

@@ -12,12 +12,12 @@ from bondgraph.show.display import (
     counted,
     equations_text,
     listed,
-    wrapped,
     written,
 )
+from bondgraph.show.lines import words, wrapped
 from bondgraph.show.putting_in import closed
 from bondgraph.show.statements import Statement, Statements, statements
-from bondgraph.show.ways import rubbing, switching
+from bondgraph.show.ways import rubbing, switching, working
 
 PUT_IN = "with laws and sources put in"
 
@@ -48,13 +48,13 @@ def whole_text(model: StateEquations) -> str:
 
 
 def ways(model: StateEquations) -> list[str]:
-    """A sentence for each dry friction and each switch: both of its ways."""
+    """A sentence for each dry friction and each switch, both of its ways; and for each controller."""
     frictions = [
         rubbing(port, law)
         for port in model.ports
         if isinstance(law := model.laws.get(port.element.name), DryFriction)
     ]
-    return [*frictions, *map(switching, model.switches)]
+    return [*frictions, *map(switching, model.switches), *map(working, model.tasks)]
 
 
 def together(loop: Sequence[sp.Symbol]) -> str:
@@ -81,7 +81,7 @@ def _beside(model: StateEquations, found: Statements) -> Iterator[str]:
     lines = [line for one in (*found.given, *found.rates) for line in _lines(one)]
     sentences = [*map(together, found.loops), *ways(model)]
     for text in sentences:
-        first, *rest = text.split()
+        first, *rest = words(text)
         lines += wrapped([f"  {first}", *rest], WIDTH, "    ")
     if lines and (model.states or model.outputs):
         yield "where"

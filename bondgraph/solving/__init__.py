@@ -1,1 +1,1 @@
-"""Systems of expressions solved as a person would write them: small inverses, blocks, steps by name."""
+"""Systems of expressions solved as a person would write them: blocks, loops of laws, steps by name."""

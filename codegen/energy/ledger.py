@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from bondgraph.equations import StateEquations
-from bondgraph.errors import SignalError
+from bondgraph.errors import SignalError, nearest
 from codegen.energy.accounts import Account, Accounts, Product, accounts, with_signals
 from codegen.energy.audit import Audit, turned_over
 from codegen.numbers.arrays import Array
@@ -105,7 +105,9 @@ class Ledger:
     def _integral(self, name: str) -> Array:
         known = {*self.names, *map(str, self.equations.signals)}
         if name not in known:
-            raise SignalError(f"no signal {name!r}; there are {', '.join(sorted(known))}")
+            raise SignalError(
+                f"no signal {name!r}{nearest(name, known)}; there are {', '.join(sorted(known))}"
+            )
         made = with_signals(self._accounts, [name])
         return self.again(made.equations, [(Product(1.0, name, ""),)]).totals[:, 0]
 

@@ -11,6 +11,7 @@ from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
+from codegen.program.records import stepped_in_python
 from codegen.record.snapshots import snapshots
 from codegen.runs.completion import Beginning
 from codegen.runs.hybrid import run_hybrid
@@ -49,6 +50,8 @@ def in_c(
     """The run in C, or why it cannot go on there."""
     method, first = asked.settings.method, asked.begun.mode
     stopped = Stopped(f"C has no method {method!r}", limit=method != EXACT)
+    if model.program.steps:
+        return Stopped(f"{stepped_in_python(model.program)}, which C cannot call", limit=True)
     if engine is not None and method in ("auto", EXACT):
         found = engine.run(
             asked.times, asked.begun.s, asked.signals, first, asked.events, patient=method == EXACT

@@ -34,6 +34,7 @@ from codegen.program.records import Program
 from codegen.runs.arguments import initial_values, named_numbers
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.legs import Leg
+from codegen.runs.start import check_exported
 from codegen.runs.track import Settings
 from codegen.simulate import bare_simulator
 from codegen.simulator import Simulator
@@ -117,6 +118,7 @@ def _model(
 ) -> FmuModel:
     """Everything about the unit but its sources."""
     ready = bare_simulator(equations, parameters, laws, timed=False)
+    check_exported(ready.closed.program)
     told = bare_simulator(equations, parameters, laws)
     program, exact = ready.closed.program, ready.closed.parameters
     signals = _signals(ready, inputs)

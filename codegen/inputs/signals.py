@@ -11,6 +11,9 @@ from codegen.inputs.pieces import Piece, collected, constant_piece, lagged_terms
 from codegen.inputs.signal import Signal
 from codegen.numbers.arrays import is_finite, is_number
 
+LONGEST = 60
+"""What is no signal is told in so many characters."""
+
 
 @dataclass(frozen=True)
 class Constant(Signal):
@@ -187,9 +190,13 @@ def as_signal(value: object, name: str) -> Signal:
         if not is_finite(value):
             raise SignalError(f"input {name!r}: {value!r} is not a finite number")
         return Constant(float(value))
+    told = repr(value).replace("\n", "")
+    told = told if len(told) <= LONGEST else told[: LONGEST - 3] + "..."
+    points = "; values at times are Sampled(times, values)"
     raise SignalError(
-        f"input {name!r}: {value!r} is neither a signal nor a number; use Constant, Step, Pulse, Ramp, "
+        f"input {name!r}: {told} is neither a signal nor a number; use Constant, Step, Pulse, Ramp, "
         "Sine, Square, Sawtooth, PWM, Sampled, ZeroOrderHold or Lag"
+        f"{points if callable(value) or hasattr(value, '__len__') else ''}"
     )
 
 

@@ -119,7 +119,7 @@ def _rest(model: ClosedModel, pieces: Sequence[Piece], mode: Mode, start: Array)
 def _residual(
     model: ClosedModel, pieces: Sequence[Piece], mode: Mode, s: Array
 ) -> tuple[Array, Array]:
-    """Rates and held slips, and what they are small against."""
+    """Rates, held slips and closed gaps, and what these are small against."""
     now = model.at(0.0, s, pieces, mode)
     held = [i for i, sign in enumerate(mode) if sign == 0]
     stuck = [model.friction_readings[i] for i in held]
@@ -131,8 +131,22 @@ def _residual(
         if i in model.hung:
             row = np.abs(model.hung_rows(now))[[*model.hung].index(i)]
             slips[at] = row @ np.append(np.abs(s), 1.0)
-    left = np.concatenate([now.rate, model.hangs_on(0.0, now)[held]])
-    return left, np.concatenate([rates, slips]) + TUNING.trim_floor
+    rate, gaps = _settled(model, mode, now, s)
+    left = np.concatenate([rate, model.hangs_on(0.0, now)[held], gaps])
+    return left, np.concatenate([rates, slips, np.ones(len(gaps))]) + TUNING.trim_floor
+
+
+def _settled(model: ClosedModel, mode: Mode, now: Snapshot, s: Array) -> tuple[Array, Array]:
+    """Rates, in place of those of what tasks set how these change it; and the gaps of stops that touch."""
+    stops = [(one, mode[i]) for i in model.stopping if (one := model.switching[i]) is not None]
+    touching = [one for one, sign in stops if not one.is_on(sign)]
+    if not model.ticked and not touching:
+        return now.rate, np.zeros(0)
+    told, rate = model.guards(0.0, now), now.rate.copy()
+    for reset in model.program.resets:
+        if reset.port < 0:
+            rate[reset.place] = told[reset.value] - s[reset.place]
+    return rate, np.array([told[one.guard] for one in touching])
 
 
 def _slopes(

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bondgraph.errors import SimulationError
+from codegen.instants.called import told_by_steps
 from codegen.model.snapshot import Impact, Mode
 from codegen.modes.choices import Decision, Occasion
 from codegen.modes.closed import ClosedModel
@@ -111,7 +112,9 @@ def _fired(model: ClosedModel, part: Part) -> list[Reset]:
 def _reset(here: Sight, mode: Mode, fired: Sequence[Reset], peaks: Peaks | None) -> Array:
     """The integrated vector with what these resets set."""
     model, now = here.model, here.at(mode)
-    values, x = model.guards(here.t, now), np.concatenate((now.x, now.z))
+    due = {-1 - one.port for one in fired if one.port < 0}
+    values = told_by_steps(model.program, here.t, due, model.guards(here.t, now))
+    x = np.concatenate((now.x, now.z))
     s, owners = here.s.copy(), dict[int, Reset]()
     for one in fired:
         value = float(values[one.value])

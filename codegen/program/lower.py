@@ -22,8 +22,10 @@ from codegen.program.sections import (
     group,
     hung_on,
     known_rates,
+    read_by_steps,
     reset_values,
     resets,
+    steps,
     switches,
     uses,
 )
@@ -63,8 +65,8 @@ def lower(
     guards = [*switches(closing)[1], *hung_on(closing)]
     first = len(guards)
     told = reset_values(closing)
-    guards += told
-    own = len(guards) - sum(len(task.resets) for task in equations.tasks)
+    guards += [*told, *read_by_steps(closing)]
+    own = first + len(told) - sum(len(task.resets) for task in equations.tasks)
     if timed:
         expressions = [sources.parted(entry) for entry in expressions]
         guards = [sources.parted(guard) for guard in guards]
@@ -73,6 +75,7 @@ def lower(
     varying = any(name.name not in given for entry in expressions for name in entry.free_symbols)
     rubbing, values = friction(closing, moving, tangents.along, tangents.shapes)
     readings = tuple(equations.readings)
+    found = resets(closing, rubbing, first)
     exchanged = exchanges(declared, equations.readings)
     external_rates = _rate_names(closing.external, taken)
     program = Program(
@@ -99,7 +102,8 @@ def lower(
         joint=closing.joint,
         read=_read(closing),
         guards=block(guards, taken),
-        resets=resets(closing, rubbing, first),
+        resets=found,
+        steps=steps(closing, found, first + len(told)),
         clocks=clocks(closing),
         momenta=block([*exchanged.states, *exchanged.readings.values()], taken),
         momenta_rows=tuple(readings.index(name) for name in exchanged.readings),
@@ -123,7 +127,8 @@ def _watched(equations: StateEquations) -> frozenset[sp.Symbol]:
         value for p in equations.ports if (s := p.element.switch)
         for value in (s.on, s.off, s.restitution, *(one.value for one in s.resets))
     )  # fmt: skip
-    set_by_tasks = (reset.value for task in equations.tasks for reset in task.resets)
+    tasks = equations.tasks
+    set_by_tasks = (value for t in tasks for value in (*(r.value for r in t.resets), *t.reads))
     return frozenset[sp.Symbol]().union(*(value.free_symbols for value in (*told, *set_by_tasks)))
 
 

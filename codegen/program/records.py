@@ -10,6 +10,7 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.lookups import Handle
 from bondgraph.equations import StateEquations
 from bondgraph.inverses.inverse import Turning
+from bondgraph.nodes.tasks import Called
 from bondgraph.tables.record import Sampled
 from codegen.standalone.switchings import Clock, Reset, Switching
 
@@ -162,6 +163,19 @@ class Corners:
 
 
 @dataclass(frozen=True)
+class Step:
+    """A Python function that tells what the task of a clock sets: from values by name to values by name.
+
+    ``reads`` and ``sets``: the places among the guards of what it reads, and of what it tells.
+    """
+
+    clock: int
+    function: Called
+    reads: Mapping[str, int]
+    sets: Mapping[str, int]
+
+
+@dataclass(frozen=True)
 class Program:
     """Everything a simulator needs, as assignments; numbered as in the tuples of names.
 
@@ -209,6 +223,8 @@ class Program:
     resets: tuple[Reset, ...]
     #: The instants at which tasks set what they set.
     clocks: tuple[Clock, ...]
+    #: Python functions that tell what tasks set; only numpy calls them.
+    steps: tuple[Step, ...]
     #: What impulses exchange where they move slopes in A: of each state, then of these readings.
     momenta: Block
     momenta_rows: tuple[int, ...]
@@ -399,3 +415,18 @@ def block(expressions: Sequence[sp.Expr], taken: Iterable[sp.Symbol] = ()) -> Bl
     assignments, results = sp.cse(expressions, symbols=temporaries, order="none")
     arguments = tuple(sorted(used, key=str))
     return Block(arguments, tuple(assignments), tuple(results))
+
+
+def stepped_in_python(program: Program) -> str:
+    """Which task a Python function steps, for a refusal; an empty text where none does.
+
+    >>> from codegen import lower
+    >>> import bondgraph as bg
+    >>> graph = bg.graph([bg.Function("r", "u"), bg.Controller("c", every=1, gives=["u"], step=dict)])
+    >>> stepped_in_python(lower(bg.derive(graph)))
+    "the step of controller 'c' is a Python function"
+    """
+    for step in program.steps:
+        name = program.equations.tasks[step.clock].name
+        return f"the step of controller {name!r} is a Python function"
+    return ""

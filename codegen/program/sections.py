@@ -12,7 +12,7 @@ from bondgraph.nodes.laws import SLIP, DryFriction, ExpressionLaw, Law
 from bondgraph.reduce.impulses import Momenta, momenta
 from bondgraph.reduce.record import Reading
 from codegen.program.closing import Closing
-from codegen.program.records import FrictionPort, Group, Pattern, block
+from codegen.program.records import FrictionPort, Group, Pattern, Step, block
 from codegen.program.sliding import Slider, halves_of
 from codegen.program.slopes import slope
 from codegen.standalone.switchings import Clock, Reset, Switching
@@ -196,6 +196,25 @@ def reset_values(closing: Closing) -> list[sp.Expr]:
     return [one.value for group in told for one in group]
 
 
+def steps(closing: Closing, found: Sequence[Reset], first: int) -> tuple[Step, ...]:
+    """The Python functions of tasks; what they read stands among the guards from ``first`` on."""
+    made: list[Step] = []
+    for clock, task in enumerate(closing.equations.tasks):
+        if task.step is None:
+            continue
+        own = [one for one in found if one.port == -1 - clock]
+        sets = {state.name: r.value for state, r in zip(task.states, own, strict=True)}
+        reads = {name.name: first + at for at, name in enumerate(task.reads)}
+        first += len(task.reads)
+        made.append(Step(clock, task.step, MappingProxyType(reads), MappingProxyType(sets)))
+    return tuple(made)
+
+
+def read_by_steps(closing: Closing) -> list[sp.Expr]:
+    """What they read, in the order of `steps`."""
+    return [name for task in closing.equations.tasks if task.step for name in task.reads]
+
+
 def resets(closing: Closing, ports: Sequence[FrictionPort], first: int) -> tuple[Reset, ...]:
     """Which state becomes which of these values, the ``first`` of which stands there, and when."""
     states = [*closing.equations.states, *closing.law_states]
@@ -209,9 +228,9 @@ def resets(closing: Closing, ports: Sequence[FrictionPort], first: int) -> tuple
             sign = switching.sign(reset.event == "on")
             value = first + len(found)
             found.append(Reset(place, sign, states.index(reset.state), value))
-    for at, task in enumerate(closing.equations.tasks):
+    for clock, task in enumerate(closing.equations.tasks):
         for reset in task.resets:
-            found.append(Reset(-1 - at, 0, states.index(reset.state), first + len(found)))
+            found.append(Reset(-1 - clock, 0, states.index(reset.state), first + len(found)))
     return tuple(found)
 
 

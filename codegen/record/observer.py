@@ -8,7 +8,7 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.equations import StateEquations
-from bondgraph.errors import ParameterError, StructureError
+from bondgraph.errors import ParameterError, StructureError, nearest
 from bondgraph.reduce.record import Reading
 from codegen.energy.stored import stored_energy
 from codegen.model.exact_values import at_parameters
@@ -49,7 +49,7 @@ class Observer:
         if sp.Symbol(name) in held:
             return self._at(held[sp.Symbol(name)])
         known = dict.fromkeys([*self.columns, *self.names()])
-        raise KeyError(f"no signal {name!r}; there are {', '.join(known)}")
+        raise KeyError(f"no signal {name!r}{nearest(name, known)}; there are {', '.join(known)}")
 
     def bond(self, tail: Hashable, head: Hashable) -> tuple[Array, Array]:
         """Effort and flow of a bond; `StructureError` if there is none."""

@@ -177,21 +177,26 @@ class Result:
         return list(dict.fromkeys([*self.columns, *self.observer.names()]))
 
     def plot(
-        self, *names: str, title: str | None = None, ax: Any = None,
+        self, *names: str | Sequence[str], title: str | None = None, ax: Any = None,
         units: Mapping[str, str] | None = None,
     ) -> Any:  # fmt: skip
         """A `matplotlib.figure.Figure` of signals, the states if none are named, with events marked.
 
+        Names share one panel; with a list among them each name or list has its own, as of `panels`.
         ``ax``: an axis to draw into. ``units``: of signals of which elements tell none.
 
         Raises `SignalError` for unknown names, `MissingExtraError` without matplotlib.
         """
-        panel = panel_of(self, names or self.states, units=units)
-        marks = marks_of(self)
+        groups, marks = _grouped(names, self.states), marks_of(self)
+        shown = [panel_of(self, group, units=units) for group in groups]
         if ax is None:
-            return stacked([panel], marks, title or "", tall=3.0)
-        fill(ax, panel)
-        height = along([ax], [panel], marks)
+            return stacked(shown, marks, title or "", *([3.0] if len(shown) == 1 else []))
+        if len(shown) > 1:
+            raise SignalError(
+                f"{len(shown)} panels do not go into one axis; leave out ax, or the lists"
+            )
+        fill(ax, shown[0])
+        height = along([ax], shown, marks)
         if title:
             ax.set_title(title, pad=6 + height)
         return ax.figure
@@ -203,6 +208,14 @@ def values_of(result: Result, name: str) -> Array:
         return result[name]
     except KeyError as error:
         raise SignalError(error.args[0]) from None
+
+
+def _grouped(names: Sequence[str | Sequence[str]], states: Sequence[str]) -> list[list[str]]:
+    """The signals of each panel: of one where there are names alone."""
+    lists = [[one] if isinstance(one, str) else list(one) for one in names]
+    if all(isinstance(one, str) for one in names):
+        return [[name for one in lists for name in one] or [*states]]
+    return lists
 
 
 def panel_of(

@@ -1,6 +1,6 @@
 """What a run is given: times, initial values, inputs and settings, checked and as arrays and signals."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -63,11 +63,11 @@ def named_numbers(initial: Mapping[str, float], states: Sequence[str]) -> dict[s
 
 
 def signals_for(
-    inputs: Mapping[str, object], names: Sequence[str], known: Iterable[str] = ()
+    inputs: Mapping[str, object], names: Sequence[str], whence: Callable[[str], str] | None = None
 ) -> list[Signal]:
     """A signal for each input in turn; `SignalError` for missing and unknown ones.
 
-    ``known``: other names of the model, any of which a missing one may have been meant to be.
+    ``whence``: what a message says after a missing name, of who reads it and what was meant.
     """
     if not isinstance(inputs, Mapping):
         raise SignalError(f"inputs must map names to values, not be {inputs!r}")
@@ -80,8 +80,7 @@ def signals_for(
             )
     missing = [name for name in names if name not in inputs]
     if missing:
-        others = {*known, *inputs} - {*names}
-        told = ", ".join(name + nearest(name, sorted(others)) for name in missing)
+        told = ", ".join(name + ("" if whence is None else whence(name)) for name in missing)
         raise SignalError(
             f"missing input(s) {told}: give each a signal or a number in inputs, "
             "a law in laws, or, if it is a parameter, a number in parameters"

@@ -6,7 +6,7 @@ from typing import Any
 
 from bondgraph.declare.switching import checked_modes
 from bondgraph.equations import StateEquations
-from bondgraph.errors import ParameterError
+from bondgraph.errors import ParameterError, StructureError
 from codegen.corners.located import with_corners
 from codegen.inputs.signal import Signal
 from codegen.model.starts import by_states, told_starts
@@ -14,8 +14,18 @@ from codegen.modes.closed import ClosedModel
 from codegen.modes.steps import step_at_start
 from codegen.numbers.arrays import Array
 from codegen.program.lower import lower
+from codegen.program.records import Program, stepped_in_python
 from codegen.runs.arguments import initial_values, signals_for
 from codegen.supplied import supplied
+
+
+def check_exported(program: Program) -> None:
+    """Refuse what only Python can call."""
+    if told := stepped_in_python(program):
+        raise StructureError(
+            f"{told}, which only runs in numpy can call; write what it does as expressions, update={{...}} "
+            "and gives={...}"
+        )
 
 
 @dataclass(frozen=True)
@@ -53,6 +63,7 @@ def start_of(
     equations = supplied(equations, laws, parameters)
     program = lower(equations, laws, parameters)
     program = with_corners(program) if located else program
+    check_exported(program)
     closed = ClosedModel(program, equations, parameters)
     names = [symbol.name for symbol in (*program.states, *program.law_states)]
     external = [symbol.name for symbol in program.external]

@@ -9,8 +9,11 @@ import sympy as sp
 from references import alsd
 from references.build import Graph, renamed, shuffled, turned
 from references.matrices import differences, leading_minors, rationals
+from rig.walked import WALKED
 
 import bondgraph as bg
+
+pytestmark = WALKED
 
 #: Bonds between junctions, none at a transformer. Three of them close the loop over the clutch.
 LEFT, RIGHT = ("sum", "left"), ("sum", "right")

@@ -6,9 +6,12 @@ import sympy as sp
 from references.build import bond_graph
 from references.cases import CASES, Case
 from references.matrices import differences, numbers
+from rig.walked import WALKED
 from scipy.linalg import expm
 
 import bondgraph as bg
+
+pytestmark = WALKED
 
 
 def _values(case: Case) -> dict[str, sp.Expr]:

@@ -5,12 +5,13 @@ import inspect
 import pytest
 
 import bondgraph as bg
-from bondgraph.nodes import elements, stops
+from bondgraph.nodes import controllers, elements, signals, stops
 from bondgraph.nodes.kinds import Kind
 
 ROLES = {
     "supplies": "Se Sf", "stores": "I C", "resists": "R", "two_port": "TF GY", "gyrates": "GY",
     "joins": "Zero One", "detects": "De Df", "switches": "Stop Sw",
+    "signals": "Function State Controller",
     "one_port": "Se Sf I C R De Df Stop Sw", "absorbs": "I C R De Df Stop Sw",
 }  # fmt: skip
 
@@ -49,13 +50,21 @@ def test_no_two_one_ports_have_one_place_beside_their_junction() -> None:
     assert sorted(places) == list(range(len(places)))
 
 
+HOMES = {"Stop": stops, "Function": signals, "State": signals, "Controller": controllers}
+"""Where constructors are that are not with the elements."""
+
+CALLED = {"m": "value", "r": "value", "gives": "outputs"}
+"""Attributes by names that constructors have for them; a controller gives what an attribute lists."""
+
+
 @pytest.mark.parametrize("kind", list(Kind))
 def test_each_kind_has_a_constructor_of_its_own_attributes(kind: Kind) -> None:
     """What it takes by name is what a node of the kind may carry; its value may have another name."""
-    make = stops.Stop if kind is Kind.STOP else getattr(elements, str(kind))
+    make = getattr(HOMES.get(str(kind), elements), str(kind))
     assert make is getattr(bg, str(kind))
     taken = set(inspect.signature(make).parameters) - {"name", "more"}
-    assert {"value" if name in ("m", "r") else name for name in taken} <= kind.nature.keys
+    own = {name if name in kind.nature.keys else CALLED[name] for name in taken}
+    assert own <= kind.nature.keys
 
 
 def test_a_kind_is_made_by_a_row_of_the_table_alone() -> None:

@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 import sympy as sp
 from references.build import bond_graph
+from rig.walked import WALKED
 
 import bondgraph as bg
 from codegen import simulator
+
+pytestmark = WALKED
 
 
 def _rhs(equations: bg.StateEquations, numbers: dict, state: dict, inputs: tuple = ()) -> dict:

@@ -7,8 +7,11 @@ import pytest
 import sympy as sp
 from references.build import Node, bond_graph
 from references.matrices import differences
+from rig.walked import WALKED
 
 import bondgraph as bg
+
+pytestmark = WALKED
 
 s, t = sp.symbols("s t")
 

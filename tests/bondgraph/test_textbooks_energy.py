@@ -7,8 +7,11 @@ import sympy as sp
 from references.build import Node, bond_graph
 from references.matrices import differences
 from references.textbook import agree, rates, s, transfer
+from rig.walked import WALKED
 
 import bondgraph as bg
+
+pytestmark = WALKED
 
 
 def _with_ports(

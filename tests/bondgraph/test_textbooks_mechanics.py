@@ -6,8 +6,11 @@ import sympy as sp
 from references.build import Node, bond_graph
 from references.matrices import differences
 from references.textbook import agree, rates, transfer
+from rig.walked import WALKED
 
 import bondgraph as bg
+
+pytestmark = WALKED
 
 
 def _rates(nodes: list[Node], bonds: str, energy: bool = True) -> dict[str, sp.Expr]:

@@ -47,7 +47,10 @@ def test_time_must_be_increasing_finite_points(time, message: str) -> None:
 @pytest.mark.parametrize(
     ("inputs", "message"),
     [
-        (None, r"missing input\(s\) V: give each a signal or a number in inputs"),
+        (
+            None,
+            r"missing input\(s\) V \(of Se 'source'\): give each a signal or a number in inputs",
+        ),
         ({}, r"missing input\(s\) V"),
         ({"W": 1.0}, "unknown input 'W'; the model's inputs are V"),
         ({"V": 1.0, "i": 1.0}, "unknown input 'i'; the model's inputs are V"),
@@ -71,7 +74,7 @@ def test_inputs_must_be_the_models_own(inputs, message: str) -> None:
 @pytest.mark.parametrize(
     ("parameters", "inputs", "message"),
     [
-        ({"mass": 1, "k": 1}, {"F": 1}, r"missing input\(s\) f_bb \(did you mean 'f_b'\?\): give each"),
+        ({"mass": 1, "k": 1}, {"F": 1}, r"missing input\(s\) f_bb \(did you mean 'f_b'\?; in"),
         ({"mas": 1, "k": 1}, {"F": 1}, r"missing parameter\(s\) mass \(did you mean 'mas'\?\); give each"),
         ({"mass": 1, "k": 1}, {"F": 1, "f_bc": 1}, r"unknown input 'f_bc' \(did you mean 'f_bb'\?\); the"),
     ],

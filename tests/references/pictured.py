@@ -98,11 +98,11 @@ def coupled_coils() -> Any:
 
 def reaction() -> Any:
     """A + B to C, the rate of a resistance of two ports (Oster, Perelson, Katchalsky)."""
-    rate = "kappa*(exp(e_re_forward/RT) - exp(e_re_reverse/RT))"
+    rate = "kappa*(exp(e_re_forward/RT) - exp(-e_re_reverse/RT))"
     return made(
         [*(bg.Zero(s) for s in "ABC"), *(bg.C(f"c_{s}", law=f"RT*log(K_{s}*q_c_{s})") for s in "ABC"),
          bg.One("left"), bg.One("right"),
-         bg.R("re", ports=["forward", "reverse"], law={"forward": rate, "reverse": f"-{rate}"},
+         bg.R("re", ports=["forward", "reverse"], law={"forward": rate, "reverse": rate},
               gives={"forward": "flow", "reverse": "flow"})],
         [*((s, f"c_{s}") for s in "ABC"), ("A", "left"), ("B", "left"), ("right", "C"),
          ("left", "re", {"port": "forward"}), ("right", "re", {"port": "reverse"})],

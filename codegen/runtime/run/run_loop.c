@@ -165,6 +165,15 @@ static int are_due(const bg_clock *clocks, bg_course *c)
     return any;
 }
 
+/* Whether nothing but tasks makes an instant: no port has come to an event, no input to a breakpoint. */
+static int is_plain(const bg_engine *e, const bg_course *c)
+{
+    int touched = c->span.begin == c->at.t;
+    for (int i = 0; i < e->sight.ports; i++)
+        touched |= c->at.touched[i];
+    return !touched;
+}
+
 /* What is due is set once no event is left, and the mode decided anew. */
 static int strike(const bg_engine *e, bg_course *c)
 {
@@ -203,7 +212,8 @@ int bg_run(const bg_engine *e, bg_course *c)
             status = come_to_end(e, c, &undecided);
         if (status || !(undecided || due))
             return status;
-        status = settle(e, c, started);
+        if (!started || !due || !is_plain(e, c))
+            status = settle(e, c, started);
         started = 1;
         if (due && status == BG_OK)
             status = strike(e, c);

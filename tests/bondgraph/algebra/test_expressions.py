@@ -227,3 +227,16 @@ def test_nothing_is_evaluated(tmp_path: Path) -> None:
 def test_what_is_spelled_otherwise_is_told_with_its_spelling(text: object, told: str) -> None:
     with pytest.raises(bg.ExpressionError, match=rf"^node 'q': .*{told}"):
         bg.expression(text, "node 'q'")
+
+
+@pytest.mark.parametrize(
+    ("text", "way"),
+    [
+        ("q = c*sqrt(dp)", r"write what stands on the right alone, 'c\*sqrt\(dp\)'"),
+        ("np.sqrt(x)", r"functions stand without their module, as in sqrt\(x\)"),
+        ("2*math.pi*x", "a constant is called pi here"),
+    ],
+)
+def test_what_python_writes_otherwise_has_its_way_out(text: str, way: str) -> None:
+    with pytest.raises(bg.ExpressionError, match=way):
+        bg.expression(text, "law")

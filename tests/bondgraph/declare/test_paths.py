@@ -177,3 +177,8 @@ def test_what_makes_graphs_makes_those_that_are_drawn() -> None:
         bg.from_json(bg.to_json(made)),
     ):
         assert isinstance(one, bg.BondGraph)
+
+
+def test_a_list_of_bonds_in_one_path_is_refused() -> None:
+    with pytest.raises(bg.StructureError, match=r"list of paths; give them one by one"):
+        bg.graph([bg.Se("F", "F"), bg.One("o"), bg.I("m", "m")], [("F", "o"), ("o", "m")])

@@ -324,8 +324,8 @@ def test_both_ways_of_a_switch_are_told() -> None:
     )
     told = dict(sentence.split(": ", 1) for sentence in step.sentences)
     assert told["clamp"] == (
-        "an ideal switch; on, it keeps e_clamp = 0 by what f_clamp that takes, and turns off as -f_clamp "
-        "rises above zero; off, it gives f_clamp = 0, and turns on as e_clamp rises above zero; so e_clamp "
+        "an ideal switch; on, it keeps e_clamp = 0 by what f_clamp that takes, and turns off as f_clamp "
+        "falls below zero; off, it gives f_clamp = 0, and turns on as e_clamp rises above zero; so e_clamp "
         "is never positive and f_clamp never negative"
     )
     forms = {one.name: one.gives for one in bg.derive(_boost()).switches}

@@ -33,6 +33,14 @@ def test_an_amplifier_of_finite_gain_is_solved() -> None:
     assert sp.cancel(found[v] - ((u - v / (1 + a)) / R1 - v / R2) / C) == 0
 
 
+def test_an_amplifier_of_finite_gain_has_the_transfer_function_of_its_nodes() -> None:
+    """``v_m = (u/R1) / ((1 + a) (C s + 1/R2 + 1/(R1 (1 + a))))``."""
+    model = bg.linearize(bg.derive(amplifier("-a*v_m")), outputs=["v_m"])
+    s = sp.Symbol("s")
+    right = 1 / R1 / (1 + a) / (C * s + 1 / R2 + 1 / (R1 * (1 + a)))
+    assert sp.cancel(model.transfer_function()[0] - right) == 0
+
+
 def test_an_amplifier_that_saturates_is_left_as_an_equation_by_name() -> None:
     found = bg.explicit(bg.derive(amplifier("-V*tanh(a*v_m/V)")))
     ((name, right),) = found.implicit.items()

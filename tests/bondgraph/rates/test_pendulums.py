@@ -7,8 +7,11 @@ import pytest
 import sympy as sp
 from references.build import bond_graph
 from references.resolved import rationals
+from rig.walked import WALKED
 
 import bondgraph as bg
+
+pytestmark = WALKED
 
 t, g = sp.symbols("t g")
 Coordinates = Mapping[str, str]
@@ -83,6 +86,11 @@ def test_double_pendulum_is_as_short_as_in_a_textbook(two_arms: bg.ExplicitRates
     assert last == (
         "  Delta = -l1**2*l2**2*m2**2*cos(th1 - th2)**2 + (J_2 + l2**2*m2)*(J_1 + l1**2*m1 + l1**2*m2)"
     )
+
+
+def test_double_pendulum_is_shown_whole() -> None:
+    text = str(bg.derive(double_pendulum()))
+    assert [name for name in ("w1", "w2", "th1", "th2") if f"{name}'" not in text] == []
 
 
 def cart_pendulum() -> nx.DiGraph:

@@ -116,6 +116,24 @@ def test_panels_share_the_time_and_every_mark() -> None:
     assert upper.get_xlabel() == ""
 
 
+def test_a_list_among_the_names_of_a_plot_makes_panels() -> None:
+    run = slide()
+    upper, lower = run.plot(["v", "w"], "F_r", title="Both").axes
+    assert [len(_curves(axis)) for axis in (upper, lower)] == [2, 1]
+    assert (_curves(upper)[1].get_ydata() == run["w"]).all()
+    assert (_curves(lower)[0].get_ydata() == run["F_r"]).all()
+    assert len(run.plot(["v", "w"]).axes) == 1
+    with pytest.raises(bg.SignalError, match="2 panels do not go into one axis"):
+        run.plot(["v"], ["w"], ax=upper)
+    with pytest.raises(bg.SignalError, match="at least one signal"):
+        run.plot([])
+
+
+def test_panels_without_groups_are_one_for_each_state() -> None:
+    run = slide()
+    assert [axis.get_ylabel() for axis in panels(run).axes] == ["$v$ [m/s]"]
+
+
 def test_what_cannot_be_drawn_is_refused() -> None:
     run = slide()
     with pytest.raises(bg.SignalError, match=r"no signal 'x'; there are v"):

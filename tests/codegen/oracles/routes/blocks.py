@@ -192,7 +192,7 @@ def two_valued() -> Kind:
         return {"omega": w, "tau": pushed}
 
     graph = _motor(bg.Hysteresis("tau", "omega", "low", high, off="push", on=0))
-    return Kind("hysteresis", graph, {**MOTOR, "low": low}, {"push": f"{push}"}, known, 3.0, at=0.2,
+    return Kind("hysteresis", graph, {**MOTOR, "low": low}, {"push": f"{push}"}, known, 2.0, at=0.2,
                 mode={"tau.switch": "off"}, rest={"inputs": {"push": 0.1}})  # fmt: skip
 
 

@@ -99,7 +99,7 @@ def controller() -> Kind:
         gives={"tau": "K*(ref - omega) + z"},
     )  # fmt: skip
     return Kind("sampled controller", _motor(pi), {"J": J, "b": B, "T": T, "K": K, "K_i": Ki},
-                {"ref": f"{REF}"}, known, 1.0, at=0.31)  # fmt: skip
+                {"ref": f"{REF}"}, known, 1.0, at=0.31, rest={"inputs": {"ref": REF}})  # fmt: skip
 
 
 def saturating() -> Kind:
@@ -125,7 +125,7 @@ def saturating() -> Kind:
     )  # fmt: skip
     return Kind("sampled controller that saturates", _motor(pi),
                 {"J": J, "b": B, "T": T, "K": K, "K_i": Ki, "most": most}, {"ref": f"{REF}"}, known, 1.0,
-                at=0.31)  # fmt: skip
+                at=0.31, rest={"inputs": {"ref": REF}})  # fmt: skip
 
 
 def cascade() -> Kind:
@@ -150,7 +150,7 @@ def cascade() -> Kind:
                       gives={"wanted": "ref - omega/4"}),
     )  # fmt: skip
     return Kind("two controllers at two rates", graph, {"J": J, "b": B, "K": K}, {"ref": f"{REF}"}, known,
-                1.0, at=0.31)  # fmt: skip
+                1.0, at=0.31, rest={"inputs": {"ref": REF}})  # fmt: skip
 
 
 SIGNALS = (function, state, bounded, controller, saturating, cascade)

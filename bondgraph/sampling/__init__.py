@@ -1,0 +1,1 @@
+"""Sampled loops in numbers: what a period makes of small deviations."""
