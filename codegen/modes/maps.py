@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from codegen.model.affine_modes import LetGo, in_mode, let_go
+from codegen.model.affine_modes import LetGo, in_mode, let_go, told
 from codegen.model.snapshot import Mode
 from codegen.numbers.arrays import Array
 from codegen.numbers.latest import Latest, room_for
@@ -59,7 +59,9 @@ class AffineMaps:
         if hold is not None and hold.shares:
             return None
         if self._program.late:
-            return self._probed(inputs, mode)
+            assert self._numbers is not None
+            probed = self._probed(inputs, mode)
+            return told(probed, self._numbers, hold, self._program.law_rates)
         return in_mode(self._base(inputs), mode, hold, self._program.law_rates)
 
     def _hold(self, mode: Mode) -> Hold | None:
