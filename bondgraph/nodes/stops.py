@@ -88,7 +88,10 @@ def stop_parts(attributes: Mapping[str, Any]) -> tuple[str, ...]:
 def rigid(
     name: Hashable, attributes: Mapping[str, Any], bounds: Mapping[str, sp.Expr], place: sp.Symbol
 ) -> list[Element]:
-    """At each bound a switch that holds as long as its effort pushes, and lets go what has left."""
+    """At each bound a switch that holds as long as its effort pushes, and lets go what has left.
+
+    A stop of one bound calls it by its own name, unless that is the place's.
+    """
     where = f"node {name!r}"
     if attributes.get("damping") is not None:
         raise StructureError(
@@ -102,7 +105,7 @@ def rigid(
     for key, bound in bounds.items():
         effort, flow = _own(name, key)
         way = BOUNDS[key]
-        own = name if len(bounds) == 1 else f"{name}.{key}"
+        own = name if len(bounds) == 1 and name != place.name else f"{name}.{key}"
         switch = Switch(
             own, way * effort, way * (bound - place), "effort", restitution=bounce, stops=True,
             resets=resets,
