@@ -95,6 +95,11 @@ class Element:
         return self.declared is not None and self.declared.signals
 
     @property
+    def is_effort_told(self) -> bool:
+        """Whether its effort is a signal that was declared as a node of two values."""
+        return self.declared is Kind.HYSTERESIS and self.name == self.whole
+
+    @property
     def one_port(self) -> bool:
         """True for everything but transformers, gyrators and junctions."""
         return self.kind.one_port

@@ -17,7 +17,7 @@ BOUNDS = {"low": 1, "high": -1}
 POSITION = "position"
 """The part of a stop that integrates its flow."""
 
-EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", *_BOUNDED)
+EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", "falling", *_BOUNDED)
 """The attributes that are numbers or expressions."""
 
 NAMED = ("states", "update", "outputs")
@@ -95,6 +95,18 @@ class Kind(StrEnum):
     CONTROLLER = (
         "Controller",
         Nature("signal", frozenset({*INSTANTS, "reads", "step", "ports", *NAMED}), place=11),
+    )
+    HYSTERESIS = (
+        "Hysteresis",
+        Nature(
+            "signal", frozenset({"value", "low", "high", "off", "on", "unit", "ports"}), place=12
+        ),
+    )
+    RATE_LIMITER = (
+        "RateLimiter",
+        Nature(
+            "signal", frozenset({"value", "rate", "falling", "start", "unit", "ports"}), place=13
+        ),
     )
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":

@@ -253,6 +253,11 @@ class Program:
         return max(len(self.states) + len(self.law_states), 1)
 
     @property
+    def late(self) -> bool:
+        """Whether laws read what friction and switches give, which do not need these laws."""
+        return self.early < len(self.groups)
+
+    @property
     def blocks(self) -> tuple[Block, ...]:
         """Every block that a target evaluates."""
         laws = (group.values for group in (self.known, *self.groups, self.coupled))

@@ -154,8 +154,11 @@ def _newton(residual: Residual, amounts: Array) -> Array:
         if not now.any():
             return amounts
         slopes = np.empty((len(amounts), len(amounts)))
+        size = float(np.abs(now).max())
+        # A smaller step than that would be lost in the rounding of what is left.
+        floor = TUNING.loop_floor * max(1.0, size)
         for j in range(len(amounts)):
-            step = TUNING.loop_difference * (abs(amounts[j]) + TUNING.loop_floor)
+            step = TUNING.loop_difference * (abs(amounts[j]) + floor)
             moved = amounts.copy()
             moved[j] += step
             slopes[:, j] = (residual(moved) - now) / step
@@ -163,7 +166,6 @@ def _newton(residual: Residual, amounts: Array) -> Array:
             change = np.linalg.solve(slopes, -now)
         except np.linalg.LinAlgError:
             return amounts
-        size = float(np.abs(now).max())
         for _ in range(ITERATIONS):
             tried = residual(amounts + change)
             if np.abs(tried).max() < size:

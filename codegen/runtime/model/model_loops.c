@@ -56,8 +56,10 @@ static int newton_change(search *s, double *values, const double *now, double *c
     double moved[LOOPS];
     double *const slopes = s->m->work.slopes;
     const int n = s->loop->count;
+    /* A smaller step than that would be lost in the rounding of what is left. */
+    const double floor_of_steps = BG_LOOP_FLOOR * fmax(1.0, bg_largest(n, now));
     for (int j = 0; j < n; j++) {
-        const double kept = values[j], step = BG_LOOP_DIFFERENCE * (fabs(kept) + BG_LOOP_FLOOR);
+        const double kept = values[j], step = BG_LOOP_DIFFERENCE * (fabs(kept) + floor_of_steps);
         values[j] = kept + step;
         left_over(s, values, moved);
         values[j] = kept;

@@ -1,5 +1,6 @@
 """All kinds, in the order of the table."""
 
+from oracles.routes.blocks import BLOCKS
 from oracles.routes.cornered import CORNERED
 from oracles.routes.exchanging import EXCHANGING
 from oracles.routes.friction import FRICTION
@@ -18,7 +19,7 @@ from oracles.routes.tabled import TABLED
 
 EVERY = (
     *FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL, *LOOPED,
-    *SUPPLIED, *TABLED, *SEARCHED, *EXCHANGING, *SIGNALS,
+    *SUPPLIED, *TABLED, *SEARCHED, *EXCHANGING, *SIGNALS, *BLOCKS,
 )  # fmt: skip
 
 KINDS = {make.__name__: make for make in EVERY}
