@@ -24,6 +24,7 @@ from bondgraph.explaining.typesetting import latex_of, markdown_of
 from bondgraph.explaining.whole import whole_steps
 from bondgraph.reduce.junction import junction_structure
 from bondgraph.reduce.opened import opened
+from bondgraph.show.powers import powers, without_functions
 
 
 @dataclass(frozen=True)
@@ -39,11 +40,11 @@ class Explanation:
 
     def text(self, limit: int | None = MOST_LINES) -> str:
         """Aligned text for a terminal."""
-        return text_of(self.steps, self.result, limit)
+        return text_of(self.steps, powers(self.result), limit)
 
     def latex(self, limit: int | None = MOST_LINES) -> str:
         """The body of a LaTeX document: paragraphs and ``align*`` environments of amsmath."""
-        return latex_of(self.steps, self.result, limit)
+        return latex_of(self.steps, powers(self.result), limit)
 
     def __str__(self) -> str:
         return self.text()
@@ -53,7 +54,7 @@ class Explanation:
         return f"<Explanation: {len(self.steps)} steps, {count} equations>"
 
     def _repr_markdown_(self) -> str:
-        return markdown_of(self.steps, self.result, MOST_LINES)
+        return markdown_of(self.steps, powers(self.result), MOST_LINES)
 
 
 def explain(
@@ -87,20 +88,20 @@ def _steps(causal: CausalGraph, result: StateEquations) -> Iterator[Step]:
     for part in (*result.laws.values(), *(c for one in result.switches for c in one.read)):
         taken |= part.free_symbols
     held = momenta(reduction, taken)
-    shown = [(name, result.signals[name]) for name in result.outputs]
-    powers = (
+    shown = [(name, result.signals[name]) for name in without_functions(result).outputs]
+    own = (
         storages_step(reduction, held),
         laws_step(result, signals),
         junctions_step(strokes, causal_equations(strokes), signals, reduction),
         loops_step(reduction, causal_equations(strokes), signals),
         received_step(reduction, shown),
         resistances_step(reduction),
+        dependent_step(reduction, held),
+        balances_step(reduction, held, shown),
     )
     yield causality_step(causal, signals, reduction)
     yield signals_step(result)
-    for step in powers:
+    for step in own:
         yield without_signals(step, reduction.structure.elements)
-    yield dependent_step(reduction, held)
-    yield balances_step(reduction, held, shown)
     yield inertia_step(result)
     yield from whole_steps(result)

@@ -10,6 +10,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.explaining.records import Factor, Formula, Step
 from bondgraph.reduce.sorting import Reduction, field_row
 from bondgraph.reduce.storages import stored_rate
+from bondgraph.show.powers import powers
 
 
 def inertia_step(equations: StateEquations) -> Step:
@@ -18,15 +19,17 @@ def inertia_step(equations: StateEquations) -> Step:
     M_x: what the states' own storages hold per unit of x'; S_xd: what they receive from dependent
     storages; M_d: what those hold; Z_d: what they give per unit of x'.
     """
-    reduction, n = equations.reduction, len(equations.states)
-    if not n:
+    reduction, shown = equations.reduction, powers(equations)
+    if not shown.states:
         return Step("inertia", "")
     d = len(reduction.dependent)
     own = [dict(stored_rate(reduction, port).H) for port in reduction.states]
-    A, M_x = Factor("A", "A", equations.A), Factor("M_x", "M_{x}", matrix_of(own, n))
+    kept = [equations.states.index(name) for name in shown.states]
+    A = Factor("A", "A", shown.A)
+    M_x = Factor("M_x", "M_{x}", _part(own, len(own), kept, kept))
     if not any(_from_dependent(reduction)):
         return Step("inertia", "The matrix A", (), (), (Formula(A, ((M_x,),)),))
-    S_xd = Factor("S_xd", "S_{xd}", matrix_of(_from_dependent(reduction), d))
+    S_xd = Factor("S_xd", "S_{xd}", _part(_from_dependent(reduction), d, kept, [*range(d)]))
     given = [dict(reduction.columns[port].H) for port in reduction.dependent]
     M_d = _constant(reduction, given)
     turned = Factor("S_xd^T", "S_{xd}^{T}", S_xd.matrix.T)
@@ -38,9 +41,18 @@ def inertia_step(equations: StateEquations) -> Step:
         )
     else:
         minus = Factor("(-S_xd)", "(-S_{xd})", -S_xd.matrix)
-        formula = Formula(A, ((M_x,), (minus, Factor("Z_d", "Z_{d}", matrix_of(given, n)))))
+        Z_d = Factor("Z_d", "Z_{d}", _part(given, len(own), [*range(d)], kept))
+        formula = Formula(A, ((M_x,), (minus, Z_d)))
         text = "S_xd: what the states' storages receive from the dependent ones; Z_d: what these give per x'"
     return Step("inertia", "The matrix A", (text,), (), (formula,))
+
+
+def _part(
+    found: list[Row], columns: int, kept_rows: list[int], kept_columns: list[int]
+) -> sp.ImmutableSparseMatrix:
+    """Rows as a matrix, without those of signals' states."""
+    whole = matrix_of(found, columns)
+    return sp.ImmutableSparseMatrix(whole.extract(kept_rows, kept_columns))
 
 
 def _from_dependent(reduction: Reduction) -> list[Row]:

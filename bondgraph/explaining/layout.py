@@ -8,6 +8,7 @@ import sympy as sp
 from bondgraph.equations import StateEquations
 from bondgraph.show.display import counted, listed
 from bondgraph.show.display import structure as formula
+from bondgraph.show.signal_nodes import signal_states
 from bondgraph.show.sums import Sum
 
 MOST_LINES = 40
@@ -61,8 +62,9 @@ def heading(equations: StateEquations) -> tuple[str, ...]:
     """What is derived, and the names that the derivation is about."""
     structure = equations.reduction.structure
     dependent = [structure.ports[port].element.name for port in equations.reduction.dependent]
-    further = equations.further_states
-    goal = formula(equations) or _rates_of(len(further))
+    inside = [name for name in signal_states(equations) if name not in equations.states]
+    further = [name for name in equations.further_states if name not in inside]
+    goal = formula(equations) or _rates_of(len(further) + len(inside))
     elements = structure.elements
     signals = {one.whole for one in elements.values() if one.of_signals}
     nodes = [one for one in elements.values() if not one.of_signals]
@@ -79,6 +81,7 @@ def heading(equations: StateEquations) -> tuple[str, ...]:
     for count, what, names in (
         (len(equations.states), "state", equations.states),
         (len(further), "state of laws and detectors", further),
+        (len(inside), "state of signals", inside),
         (len(equations.inputs), "input", equations.inputs),
         (len(equations.outputs), "output", equations.outputs),
         (len(dependent), "dependent storage", dependent),

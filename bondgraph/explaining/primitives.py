@@ -55,6 +55,8 @@ def laws_step(equations: StateEquations, signals: Sequence[Assignment]) -> Step:
     sentences = []
     for port in equations.ports:
         law = port.element.law
+        if port.element.of_signals:
+            continue
         if isinstance(law, ExpressionLaw):
             right = signed_terms(law.expression)
             lines.append(equation(port.given, right, node=port.element.name))

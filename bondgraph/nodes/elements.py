@@ -26,7 +26,8 @@ class Switch:
     zero effort, or zero flow, as ``gives`` says; while off it has zero of the other.
 
     ``stops``: whether it is a bound of a `Stop`; ``restitution``: the part of its speed that what meets the
-    bound keeps. ``resets``: what it sets states to at its events.
+    bound keeps. ``resets``: what it sets states to at its events. ``reads``: of a
+    hysteresis what it compares with its thresholds.
     """
 
     name: Hashable
@@ -36,6 +37,7 @@ class Switch:
     restitution: sp.Expr = sp.S.Zero
     stops: bool = False
     resets: tuple[Reset, ...] = ()
+    reads: sp.Expr | None = None
 
 
 @dataclass(frozen=True)

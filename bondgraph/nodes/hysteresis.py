@@ -61,7 +61,7 @@ def hysteresis_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[E
         raise StructureError(
             f"{where}: its input reads {own} itself, which jumps as it turns; let it read a state between"
         )
-    switch = Switch(f"{name}.{KEY}", read - told["high"], told["low"] - read, "effort")
+    switch = Switch(f"{name}.{KEY}", read - told["high"], told["low"] - read, "effort", reads=read)
     effort, flow = _variables(name, KEY)
     return [
         Element(name, Kind.ZERO, None, own, None, whole=name, unit=unit_of(attributes, where)),

@@ -1,6 +1,6 @@
 """`explicit`: every state's rate as one expression, laws put in; in co-energy or energy states."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import count
 from typing import Any
 
@@ -15,6 +15,8 @@ from bondgraph.equations import StateEquations
 from bondgraph.rates.energy import in_energy_states
 from bondgraph.rates.record import ExplicitRates
 from bondgraph.rates.signals import Signals
+from bondgraph.show.ruled import Ruled
+from bondgraph.show.signal_nodes import signal_nodes
 from bondgraph.solving.loops import closed
 from bondgraph.solving.steps import size, told
 
@@ -27,8 +29,9 @@ def explicit(
 ) -> ExplicitRates:
     """``x' = f(x, u, t)``: each state, those of laws and detectors included, to its rate.
 
-    ``laws``: as for a simulator. Ports with dry friction and switches stay inputs, by what they give. The
-    rate of an input u is the symbol ``d_u``. ``energy``: in momenta ``p_<node>`` and displacements
+    ``laws``: as for a simulator. Ports with dry friction and switches stay inputs, by what they give,
+    relays by their names; of nodes of signals `ExplicitRates.ruled` has both ways. The rate of an input u
+    is the symbol ``d_u``. ``energy``: in momenta ``p_<node>`` and displacements
     ``q_<node>`` instead of the flows and efforts of linear storages, whose values must then be constant.
 
     Laws that determine one another at once and are linear are solved. Of others the equations that are
@@ -54,12 +57,23 @@ def explicit(
     if energy:
         results, put_in = in_energy_states(signals.equations, rates)
         parts = {name: expr.xreplace(put_in) for name, expr in parts.items()}
-    whole = told([*results.values(), *solution.implicit.values()], parts)
+    ruled = {n: one for n, one in _ruled(signals) if n in results or n == one.left}
+    inner = [expr for one in ruled.values() for expr in one.expressions]
+    whole = told([*results.values(), *solution.implicit.values(), *inner], parts)
     names = _names(whole.parts, {name: rate_symbol(s) for s, name in rates.items()}, whole.results)
     found = [_tidy(result.xreplace(names)) for result in whole.results]
-    implicit = dict(zip(solution.implicit, found[len(results) :], strict=True))
+    implicit = dict(zip(solution.implicit, found[len(results) :], strict=False))
+    put = iter(found[len(results) + len(implicit) :])
+    ways = {name: one.put(lambda _: next(put)) for name, one in ruled.items()}
     where = {names.get(name, name): _tidy(e.xreplace(names)) for name, e in whole.parts.items()}
-    return ExplicitRates(dict(zip(results, found, strict=False)), implicit, where)
+    return ExplicitRates(dict(zip(results, found, strict=False)), implicit, where, ways)
+
+
+def _ruled(signals: Signals) -> Iterator[tuple[sp.Symbol, Ruled]]:
+    """What nodes of signals with several ways come to, by their states, relays by their own names."""
+    for node in signal_nodes(signals.equations):
+        if node.ruled is not None:
+            yield node.state or node.ruled.left, node.ruled
 
 
 def _tidy(expr: sp.Expr) -> sp.Expr:

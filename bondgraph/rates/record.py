@@ -9,6 +9,7 @@ import sympy as sp
 
 from bondgraph.named import Named
 from bondgraph.show.rates import rates_latex, rates_text
+from bondgraph.show.ruled import Ruled
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -26,15 +27,18 @@ class ExplicitRates(Mapping[sp.Symbol, sp.Expr]):
     implicit: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     #: Long parts by name, each over earlier ones: in rates and in the equations above.
     where: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    #: What nodes of signals with several ways are when: by their states, relays by their names.
+    ruled: Mapping[sp.Symbol, Ruled] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "rates", Named(dict(self.rates)))
-        for name in ("implicit", "where"):
+        for name in ("implicit", "where", "ruled"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Copied and pickled by what it maps, as read-only mappings by themselves cannot be."""
-        return ExplicitRates, (dict(self.rates), dict(self.implicit), dict(self.where))
+        parts = (self.rates, self.implicit, self.where, self.ruled)
+        return ExplicitRates, tuple(map(dict, parts))
 
     def __getitem__(self, state: sp.Symbol | str) -> sp.Expr:
         """The rate of a state, or of the one of that name; `KeyError` naming what there is."""
@@ -57,11 +61,11 @@ class ExplicitRates(Mapping[sp.Symbol, sp.Expr]):
 
     def __str__(self) -> str:
         """One line for each rate, then equations that are left to be solved, then what names stand for."""
-        return rates_text(self.rates, self.implicit, self.where)
+        return rates_text(self.rates, self.implicit, self.where, self.ruled)
 
     def latex(self) -> str:
         r"""The same in LaTeX, lines with ``&=`` for an ``aligned`` environment."""
-        return rates_latex(self.rates, self.implicit, self.where)
+        return rates_latex(self.rates, self.implicit, self.where, self.ruled)
 
     def _repr_latex_(self) -> str | None:
         if not self.rates:

@@ -14,6 +14,8 @@ from bondgraph.analyse.input_rates import rate_symbol
 from bondgraph.equations import StateEquations
 from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.reduce.motion import slope_of
+from bondgraph.show.ruled import Turning
+from bondgraph.show.signal_nodes import signal_nodes
 from bondgraph.show.sums import over_common
 from bondgraph.solving.blocks import solved
 from bondgraph.solving.steps import Steps
@@ -44,6 +46,10 @@ class Signals:
         for name, row in self.equations.readings.items():
             if name not in known:
                 self.told[name] = self._sum(row.F, row.D, row.K, row.H)
+        for node in signal_nodes(self.equations):
+            if isinstance(node.ruled, Turning):
+                # It stays under its name, as what switches give does.
+                self.told.pop(node.ruled.left, None)
         self._tell_rates()
         self.told |= {self.rates[state]: name for state, name in own.items()}
         self.told |= self._steps.parts

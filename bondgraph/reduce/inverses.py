@@ -97,4 +97,5 @@ def _switch(switch: Switch, told: Mapping[sp.Symbol, sp.Expr]) -> Switch:
     resets = tuple(replace(one, value=one.value.xreplace(told)) for one in switch.resets)
     on, off = switch.on.xreplace(told), switch.off.xreplace(told)
     bounce = switch.restitution.xreplace(told)
-    return replace(switch, on=on, off=off, restitution=bounce, resets=resets)
+    reads = None if switch.reads is None else switch.reads.xreplace(told)
+    return replace(switch, on=on, off=off, restitution=bounce, resets=resets, reads=reads)

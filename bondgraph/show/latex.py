@@ -5,8 +5,9 @@ from collections.abc import Iterable, Iterator
 from bondgraph.equations import StateEquations
 from bondgraph.show.display import MOST_SIGNS
 from bondgraph.show.latex_matrices import is_readable, matrices_latex, notebook_matrices
-from bondgraph.show.statements import Statement, statements, without_functions, without_idle
-from bondgraph.show.sums import latex_pieces
+from bondgraph.show.powers import without_functions, without_idle
+from bondgraph.show.statements import Statement, statements
+from bondgraph.show.sums import latex_pieces, typeset
 from bondgraph.show.ways_latex import ways_latex
 from bondgraph.show.whole import PUT_IN, TOO_LONG, put_in
 
@@ -42,6 +43,9 @@ def aligned(stated: Iterable[Statement]) -> str:
 
 
 def _rows(one: Statement) -> Iterator[str]:
+    if one.ruled is not None:
+        yield f"{typeset(one.left)} &= {one.ruled.latex()}"
+        return
     pieces = latex_pieces(one.right)
     first, *more = (
         " ".join(pieces[at : at + LONGEST_LINE]) for at in range(0, len(pieces), LONGEST_LINE)

@@ -1,6 +1,7 @@
 """Equations with laws and sources put into one another: what each state's rate comes to."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 import sympy as sp
 
@@ -41,9 +42,15 @@ def closed(model: StateEquations, found: Statements) -> tuple[Statement, ...]:
         for left, right in rows_of_terms(model)
     ]
     n = len(model.states)
-    # A function that is shown is stated as what it is.
-    shown = [one for one in rows[n:] if one.left not in model.inputs]
-    return tuple(put.into_both(one) for one in (*rows[:n], *found.rates, *shown))
+    ruled = [one for one in (*found.given, *found.rates) if one.ruled is not None]
+    own = {one.left for one in ruled}
+    powers = [
+        one for name, one in zip(model.states, rows[:n], strict=True) if rate(name) not in own
+    ]
+    # What is shown and a node of signals is stated as what it is.
+    shown = [one for one in rows[n:] if one.left not in {*model.inputs, *own}]
+    turning = [one for one in found.given if one.ruled is not None]
+    return tuple(put.into_both(one) for one in (*powers, *found.rates, *turning, *shown))
 
 
 class _PuttingIn:
@@ -57,6 +64,8 @@ class _PuttingIn:
         stated = {one.left: one for one in found.given}
         self._plain = {rate(name): name for name in (*model.inputs, *(s.left for s in found.given))}
         for one in found.given:
+            if one.ruled is not None:
+                continue
             if one.left not in loops:
                 self._keep({one.left: self._value(one)})
             elif one.left == loops[one.left][0]:
@@ -64,6 +73,8 @@ class _PuttingIn:
                 self._keep(_solved(members, [self._value(member) for member in members]))
         for one in found.rates:
             self._plain.pop(one.left, None)
+            if one.ruled is not None:
+                continue
             value = self._value(one)
             if _short(value):
                 self._rates[one.left] = value
@@ -77,6 +88,8 @@ class _PuttingIn:
 
     def into_both(self, one: Statement) -> Statement:
         """An equation with names, and rates of what is given, put in on both sides."""
+        if one.ruled is not None:
+            return replace(one, ruled=one.ruled.put(self.into))
         left = tuple((self.into(factor), self.into(name)) for factor, name in one.left_sum)
         right = without_logarithms(self.into(over_common(one.right)))
         return Statement(self.into(one.left), signed_terms(right), one.node, left)

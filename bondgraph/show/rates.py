@@ -7,6 +7,7 @@ from itertools import count
 
 import sympy as sp
 
+from bondgraph.show.ruled import Ruled
 from bondgraph.show.sums import rate, typeset
 from bondgraph.solving.steps import size
 
@@ -81,10 +82,15 @@ def _in_order(where: Told, names: Mapping[sp.Expr, sp.Symbol]) -> dict[sp.Symbol
     return found
 
 
-def rates_text(rates: Told, implicit: Told, where: Told) -> str:
+def rates_text(
+    rates: Told, implicit: Told, where: Told, ruled: Mapping[sp.Symbol, Ruled] | None = None
+) -> str:
     """``v' = ...`` for each state, equations that are left by name, and below what names stand for."""
-    shown = once(rates, implicit, where)
-    lines = [f"{rate(state)} = {expr}" for state, expr in shown.rates.items()]
+    ruled = ruled or {}
+    shown = once({name: e for name, e in rates.items() if name not in ruled}, implicit, where)
+    told = {name: f"{rate(name)} = {expr}" for name, expr in shown.rates.items()}
+    told |= {name: f"{one.left} = {one.text()}" for name, one in ruled.items()}
+    lines = _by_states(told, rates)
     if shown.implicit:
         lines += [LEFT, *(f"  {name} = {expr}" for name, expr in shown.implicit.items())]
     if shown.where:
@@ -92,15 +98,25 @@ def rates_text(rates: Told, implicit: Told, where: Told) -> str:
     return "\n".join(lines)
 
 
-def rates_latex(rates: Told, implicit: Told, where: Told) -> str:
+def _by_states(told: Mapping[sp.Symbol, str], rates: Told) -> list[str]:
+    """States in their order, then what has a value."""
+    return [told[name] for name in (*rates, *(one for one in told if one not in rates))]
+
+
+def rates_latex(
+    rates: Told, implicit: Told, where: Told, ruled: Mapping[sp.Symbol, Ruled] | None = None
+) -> str:
     r"""The same in LaTeX, each line with ``&=``.
 
     >>> v, F, m = sp.symbols("v F m")
     >>> print(rates_latex({v: F/m}, {}, {}))
     \dot{v} &= \frac{F}{m}
     """
-    shown = once(rates, implicit, where)
-    lines = [f"{typeset(rate(state))} &= {typeset(e)}" for state, e in shown.rates.items()]
+    ruled = ruled or {}
+    shown = once({name: e for name, e in rates.items() if name not in ruled}, implicit, where)
+    told = {name: f"{typeset(rate(name))} &= {typeset(e)}" for name, e in shown.rates.items()}
+    told |= {name: f"{typeset(one.left)} &= {one.latex()}" for name, one in ruled.items()}
+    lines = _by_states(told, rates)
     if shown.implicit:
         lines.append(rf"&\text{{{LEFT}}}")
         lines += [f"{typeset(name)} &= {typeset(e)}" for name, e in shown.implicit.items()]

@@ -5,7 +5,7 @@ a switch or dry friction gives, or stated.
 """
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import networkx as nx
 import sympy as sp
@@ -13,6 +13,8 @@ import sympy as sp
 from bondgraph.equations import StateEquations
 from bondgraph.nodes.laws import SLIP, DryFriction, ExpressionLaw
 from bondgraph.reduce.record import Reading
+from bondgraph.show.ruled import Ruled, Turning
+from bondgraph.show.signal_nodes import SignalNode, signal_nodes
 from bondgraph.show.sums import Sum, positive_first, rate, signed_terms, split, total
 
 
@@ -25,6 +27,8 @@ class Statement:
     node: Hashable | None = None
     #: The left side as it is to be written, if not by the names' order.
     left_sum: Sum = ()
+    #: Of what has several ways these, instead of a right side.
+    ruled: Ruled | None = None
 
     @property
     def left_terms(self) -> Sum:
@@ -39,47 +43,29 @@ class Statement:
         """The right side as one expression."""
         return total(self.right)
 
+    @property
+    def reads(self) -> set[sp.Symbol]:
+        """The names on the right side."""
+        return {*self.value.free_symbols} if self.ruled is None else self.ruled.reads
+
+    @property
+    def right_text(self) -> str:
+        """The right side as sympy writes it; of what has several ways in words."""
+        return str(self.value) if self.ruled is None else self.ruled.text()
+
 
 @dataclass(frozen=True)
 class Statements:
     """``given``: laws, sources and what they read, each after what it needs; ``rates``: of further states.
 
-    ``loops``: names that determine one another at once, which are solved together.
+    ``loops``: names that determine one another at once, which are solved together. ``kept``: the rates, zero,
+    of what controllers hold between their instants.
     """
 
     given: tuple[Statement, ...]
     rates: tuple[Statement, ...]
     loops: tuple[tuple[sp.Symbol, ...], ...]
-
-
-def without_functions(model: StateEquations) -> StateEquations:
-    """The equations whose outputs are none of their inputs: a function is stated as what it is."""
-    kept = [at for at, name in enumerate(model.outputs) if name not in model.inputs]
-    if len(kept) == len(model.outputs):
-        return model
-    rows = {letter: _part(model, letter, rows=kept) for letter in "FDG"}
-    return replace(model, outputs=tuple(model.outputs[at] for at in kept), **rows)
-
-
-def without_idle(model: StateEquations) -> StateEquations:
-    """The equations for their matrices alone: without the columns of signals that move no state."""
-    own = {p.given for p in model.ports if p.element.declared and p.element.declared.signals}
-    used = {j for letter in "BEDG" for _, j in getattr(model, letter).todok()}
-    kept = [j for j, name in enumerate(model.inputs) if j in used or name not in own]
-    if len(kept) == len(model.inputs):
-        return model
-    columns = {letter: _part(model, letter, columns=kept) for letter in "BEDG"}
-    return replace(model, inputs=tuple(model.inputs[j] for j in kept), **columns)
-
-
-def _part(
-    model: StateEquations, letter: str, rows: Sequence[int] | None = None,
-    columns: Sequence[int] | None = None,
-) -> sp.ImmutableSparseMatrix:  # fmt: skip
-    whole = getattr(model, letter)
-    every = [list(range(size)) if kept is None else list(kept)
-             for size, kept in zip(whole.shape, (rows, columns), strict=True)]  # fmt: skip
-    return sp.ImmutableSparseMatrix(whole.extract(*every))
+    kept: tuple[Statement, ...] = ()
 
 
 def statements(model: StateEquations) -> Statements:
@@ -94,34 +80,55 @@ def statements(model: StateEquations) -> Statements:
     >>> [(one.left, one.value) for one in (*found.given, *found.rates)]
     [(e_k, k*q_k**3), (q_k', v)]
     """
-    laws, rates = _laws(model), _rates(model)
-    stated = {law.left: law for law in laws}
-    wanted = _read(model) | {name for one in rates for name in one.value.free_symbols}
-    _add_readings(model, stated, wanted)
+    nodes = signal_nodes(model)
+    rates = _rates(model, nodes)
+    kept = {rate(name) for task in model.tasks for name in task.states}
+    stated, hidden = _laws(model, nodes)
+    wanted = _read(model, nodes).union(*(one.reads for one in rates if one.left not in kept))
+    _add_readings(model, stated, hidden, wanted)
     order, loops = _in_causal_order(stated)
-    return Statements(tuple(stated[name] for name in order), tuple(rates), loops)
+    return Statements(
+        tuple(stated[name] for name in order), tuple(one for one in rates if one.left not in kept),
+        loops, tuple(one for one in rates if one.left in kept),
+    )  # fmt: skip
 
 
-def _laws(model: StateEquations) -> list[Statement]:
-    """What ports give by an expression."""
-    found = []
+Stated = dict[sp.Symbol, Statement]
+
+
+def _laws(model: StateEquations, nodes: Iterable[SignalNode]) -> tuple[Stated, Stated]:
+    """What ports give by an expression, and what nodes of signals come to; and what parts of these give."""
+    inner = {name for node in nodes for name in node.given - {node.stated}}
+    stated: Stated = {}
+    hidden: Stated = {}
     for port in model.ports:
         law = model.laws.get(port.element.name)
         if isinstance(law, ExpressionLaw):
-            found.append(Statement(port.given, signed_terms(law.expression), port.element.name))
-    return found
+            one = Statement(port.given, signed_terms(law.expression), port.element.name)
+            (hidden if port.given in inner else stated)[port.given] = one
+    for node in nodes:
+        if isinstance(node.ruled, Turning):
+            stated[node.ruled.left] = Statement(node.ruled.left, (), node.name, ruled=node.ruled)
+    return stated, hidden
 
 
-def _rates(model: StateEquations) -> list[Statement]:
-    """Of the states that laws own, and of those that detectors make."""
+def _rates(model: StateEquations, nodes: Iterable[SignalNode]) -> list[Statement]:
+    """Of the states that laws own, and of those that detectors and nodes of signals make."""
     found = []
+    own = {node.state: node for node in nodes if node.state is not None}
     for port in model.ports:
         law = model.laws.get(port.element.name)
         if isinstance(law, ExpressionLaw) and law.state is not None:
             right = _received(model, port.received)
             found.append(Statement(rate(law.state), right, port.element.name))
-    for state, signal in model.integrals.items():
-        found.append(Statement(rate(state), _received(model, signal)))
+    for state in (*model.integrals, *(one for one in own if one not in model.integrals)):
+        node = own.get(state)
+        if node is None:
+            found.append(Statement(rate(state), _received(model, model.integrals[state])))
+        elif node.ruled is not None:
+            found.append(Statement(rate(state), (), node.name, ruled=node.ruled))
+        elif node.rate is not None:
+            found.append(Statement(rate(state), signed_terms(node.rate), node.name))
     return found
 
 
@@ -137,16 +144,19 @@ def _over_columns(model: StateEquations, name: sp.Symbol) -> Sum:
     return positive_first(reading_sum(model.states, model.inputs, reading))
 
 
-def _read(model: StateEquations) -> set[sp.Symbol]:
+def _read(model: StateEquations, nodes: Iterable[SignalNode]) -> set[sp.Symbol]:
     """What matrices, dry friction, switches and controllers read, beside what is received at their ports."""
+    told = {name for node in nodes for name in node.given}
     used: set[sp.Symbol] = set()
     for matrix in (model.A, model.J, model.B, model.E, model.F, model.D, model.G):
         used |= matrix.free_symbols
     for port in model.ports:
         law = model.laws.get(port.element.name)
-        if isinstance(law, DryFriction):
+        if isinstance(law, DryFriction) and port.given not in told:
             used |= {*law.free_symbols} - {SLIP} | {port.received}
     for switch in model.switches:
+        if switch.port.given in told:
+            continue
         used |= {switch.port.received}.union(*(part.free_symbols for part in switch.read))
     for task in model.tasks:
         used |= {*task.reads}.union(*(one.value.free_symbols for one in task.resets))
@@ -154,19 +164,19 @@ def _read(model: StateEquations) -> set[sp.Symbol]:
 
 
 def _add_readings(
-    model: StateEquations, stated: dict[sp.Symbol, Statement], wanted: Iterable[sp.Symbol]
+    model: StateEquations, stated: Stated, hidden: Stated, wanted: Iterable[sp.Symbol]
 ) -> None:
     """Of every signal that something reads and that is neither a state, an input nor an output."""
-    known = {*model.states, *model.inputs, *model.outputs}
-    read = {*wanted}.union(*(one.value.free_symbols for one in stated.values()))
+    known = {*model.states, *model.inputs, *model.outputs, *stated} - hidden.keys()
+    read = {*wanted}.union(*(one.reads for one in stated.values()))
     waiting = sorted(read, key=str, reverse=True)
     while waiting:
         name = waiting.pop()
-        if name in known or name not in model.signals:
+        if name in known or (name not in model.signals and name not in hidden):
             continue
         known.add(name)
-        stated[name] = Statement(name, _over_columns(model, name))
-        waiting += sorted(stated[name].value.free_symbols - known, key=str, reverse=True)
+        stated[name] = hidden.get(name) or Statement(name, _over_columns(model, name))
+        waiting += sorted(stated[name].reads - known, key=str, reverse=True)
 
 
 def reading_sum(x: Sequence[sp.Symbol], u: Sequence[sp.Symbol], reading: Reading) -> Sum:
@@ -187,7 +197,7 @@ def _in_causal_order(
     needs.add_nodes_from(stated)
     place = {name: at for at, name in enumerate(stated)}
     for name, one in stated.items():
-        read = sorted(one.value.free_symbols & {*stated}, key=place.__getitem__)
+        read = sorted(one.reads & {*stated}, key=place.__getitem__)
         needs.add_edges_from((name, other) for other in read)
     parts = nx.condensation(needs)
     members = {k: sorted(parts.nodes[k]["members"], key=place.__getitem__) for k in parts}

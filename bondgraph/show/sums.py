@@ -75,8 +75,12 @@ def positive_first(terms: Iterable[Term]) -> Sum:
 def typeset(expr: Any) -> str:
     r"""An expression or a matrix as LaTeX; names that are Greek letters become these, rates have a dot.
 
+    Names of several letters stand upright, as words do.
+
     >>> print(typeset(rate(sp.Symbol("omega_1"))), typeset(sp.Symbol("e_left_J")))
     \dot{\omega}_{1} e_{left,J}
+    >>> print(typeset(sp.Symbol("ref") - sp.Symbol("rate_z")))
+    \mathrm{ref} - \mathrm{rate}_{z}
     """
     names = {name: _typeset_name(name.name) for name in expr.free_symbols}
     return typed(expr, names)
@@ -84,6 +88,8 @@ def typeset(expr: Any) -> str:
 
 def _typeset_name(name: str) -> str:
     base, line, index = sp.latex(sp.Symbol(name.rstrip("'"))).partition("_")
+    if len(base) > 1 and base.isalnum():
+        base = rf"\mathrm{{{base}}}"
     head = rf"\dot{{{base}}}" if name.endswith("'") else base
     return f"{head}{line}{index.replace(' ', ',')}"
 

@@ -6,26 +6,43 @@ import sympy as sp
 
 from bondgraph.equations import StateEquations
 from bondgraph.nodes.laws import SLIP, DryFriction
+from bondgraph.nodes.tasks import Task
 from bondgraph.reduce.structure import Port
 from bondgraph.reduce.switch_port import SwitchPort
+from bondgraph.show.signal_nodes import given_inside
 from bondgraph.show.sums import typeset
 from bondgraph.show.ways import positive
 
 
 def ways_latex(model: StateEquations) -> Iterator[str]:
     """A formula for each dry friction and each switch, and for all that controllers set."""
+    told = given_inside(model)
     for port in model.ports:
         law = model.laws.get(port.element.name)
-        if isinstance(law, DryFriction):
+        if isinstance(law, DryFriction) and port.given not in told:
             yield _cases(_friction(port, law))
     for one in model.switches:
+        if one.port.given in told:
+            continue
         yield _cases(_switch(one))
         for reset in one.switch.resets:
             when = "at each impact" if reset.event == "hit" else f"as it turns {reset.event}"
             yield rf"{typeset(reset.state)} := {typeset(reset.value)} \quad \text{{{when}}}"
-    for task in model.tasks:
-        for reset in task.resets if task.step is None else ():
-            yield rf"{typeset(reset.state)} := {typeset(reset.value)} \quad \text{{{task.instants}}}"
+    if rows := [row for task in model.tasks for row in _set(task)]:
+        body = " \\\\\n".join(rows)
+        yield rf"\begin{{aligned}} {body} \end{{aligned}}"
+
+
+def _set(task: Task) -> Iterator[str]:
+    """What a controller sets, below one another; its instants at the first."""
+    when = rf" && \text{{{task.instants}, by what there was before}}"
+    if task.step is not None:
+        names = ", ".join(map(typeset, task.states))
+        yield rf"{names} &:= \text{{by a Python function}}{when}"
+        return
+    for reset in task.resets:
+        yield f"{typeset(reset.state)} &:= {typeset(reset.value)}{when}"
+        when = ""
 
 
 def _cases(rows: Iterator[tuple[str, str]]) -> str:

@@ -15,14 +15,10 @@ from bondgraph.show.display import (
     written,
 )
 from bondgraph.show.lines import words, wrapped
+from bondgraph.show.powers import without_functions, without_idle
 from bondgraph.show.putting_in import closed
-from bondgraph.show.statements import (
-    Statement,
-    Statements,
-    statements,
-    without_functions,
-    without_idle,
-)
+from bondgraph.show.signal_nodes import given_inside
+from bondgraph.show.statements import Statement, Statements, statements
 from bondgraph.show.ways import rubbing, switching, working
 
 PUT_IN = "with laws and sources put in"
@@ -59,12 +55,15 @@ def whole_text(model: StateEquations) -> str:
 
 def ways(model: StateEquations) -> list[str]:
     """A sentence for each dry friction and each switch, both of its ways; and for each controller."""
+    told = given_inside(model)
     frictions = [
         rubbing(port, law)
         for port in model.ports
         if isinstance(law := model.laws.get(port.element.name), DryFriction)
+        and port.given not in told
     ]
-    return [*frictions, *map(switching, model.switches), *map(working, model.tasks)]
+    switches = [one for one in model.switches if one.port.given not in told]
+    return [*frictions, *map(switching, switches), *map(working, model.tasks)]
 
 
 def together(loop: Sequence[sp.Symbol]) -> str:
@@ -83,8 +82,10 @@ def put_in(model: StateEquations, found: Statements) -> tuple[Statement, ...]:
     """Every state's and output's equation with laws and sources put in; none where that changes none."""
     if not found.given:
         return ()
-    rows, bare = closed(model, found), closed(model, Statements((), found.rates, ()))
-    return () if rows == bare else rows
+    turning = tuple(one for one in found.given if one.ruled is not None)
+    rows, bare = closed(model, found), closed(model, Statements(turning, found.rates, ()))
+    changed = tuple(one for one in rows if one not in turning)
+    return () if rows == bare else changed
 
 
 def _beside(model: StateEquations, found: Statements) -> Iterator[str]:
@@ -107,7 +108,7 @@ def _beside(model: StateEquations, found: Statements) -> Iterator[str]:
 
 
 def _put_in(model: StateEquations, found: Statements) -> Iterator[str]:
-    lines = [line for one in put_in(model, found) for line in _lines(one)]
+    lines = [line for one in put_in(model, found) for line in _lines(one, whole=False)]
     if sum(map(len, lines)) > MOST_SIGNS:
         yield TOO_LONG
     elif lines:
@@ -115,5 +116,8 @@ def _put_in(model: StateEquations, found: Statements) -> Iterator[str]:
         yield from lines
 
 
-def _lines(one: Statement) -> list[str]:
+def _lines(one: Statement, whole: bool = True) -> list[str]:
+    if one.ruled is not None:
+        first, *rest = words(f"{one.left} = {one.ruled.text(whole)}")
+        return wrapped([f"  {first}", *rest], WIDTH, "    ")
     return [f"  {line}" for line in written(one.left_terms, one.right)]

@@ -12,6 +12,7 @@ import numpy as np
 import sympy as sp
 
 import bondgraph as bg
+from bondgraph.show.powers import without_functions
 from bondgraph.show.putting_in import closed
 from bondgraph.show.statements import statements
 from bondgraph.show.whole import ways
@@ -66,13 +67,14 @@ def equations_data(equations: bg.StateEquations) -> dict[str, object]:
 
 def _beside(equations: bg.StateEquations) -> dict[str, object]:
     """What stands beside the matrices, and all equations with laws and sources put in."""
+    equations = without_functions(equations)
     found = statements(equations)
     return {
-        "given": {str(one.left): str(one.value) for one in found.given},
-        "rates": {str(one.left): str(one.value) for one in found.rates},
+        "given": {str(one.left): one.right_text for one in found.given},
+        "rates": {str(one.left): one.right_text for one in (*found.rates, *found.kept)},
         "together": [list(map(str, loop)) for loop in found.loops],
         "ways": ways(equations),
-        "put_in": {str(one.left): str(one.value) for one in closed(equations, found)},
+        "put_in": {str(one.left): one.right_text for one in closed(equations, found)},
     }
 
 

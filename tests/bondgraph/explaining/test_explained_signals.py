@@ -1,5 +1,6 @@
 """Nodes of signals in explanations: told as functions, states and controllers, not as their parts."""
 
+import re
 from typing import Any
 
 import sympy as sp
@@ -18,12 +19,11 @@ def _step(told: bg.Explanation, topic: str) -> Any:
 
 def test_functions_and_states_are_told_by_their_names() -> None:
     told = _told(bg.Function("tau", "K*(ref - omega) + z"), bg.State("z", "K_i*(ref - omega)"))
-    z, e_z, omega, ref, K, K_i = sp.symbols("z e_z omega ref K K_i")
+    z, omega, ref, K, K_i = sp.symbols("z omega ref K K_i")
     lines = {str(one.left): one.right for one in _step(told, "signals").equations}
     assert sp.expand(lines["tau"] - K * (ref - omega) - z) == 0
-    assert sp.expand(lines["e_z"] - K_i * (ref - omega)) == 0
-    assert lines["z'"] == e_z
-    assert [one.node for one in _step(told, "signals").equations] == ["tau", "z", "z"]
+    assert sp.expand(lines["z'"] - K_i * (ref - omega)) == 0
+    assert [one.node for one in _step(told, "signals").equations] == ["tau", "z"]
     assert str(told).startswith(
         "From a bond graph of 4 nodes and 3 bonds with 2 nodes of signals to A x'"
     )
@@ -52,12 +52,11 @@ def test_instants_of_controllers_and_bounds_of_states_are_told() -> None:
         bg.Controller("c", every="1/10", offset="1/20", states={"n": 0}, update={"n": "n + 1"},
                       gives={"tau": "z - n"}),
     )  # fmt: skip
-    controller, low, high = _step(told, "signals").sentences
+    state, controller = _step(told, "signals").sentences
     assert controller.startswith(
         "c: every 1/10 s from 1/20 s on n becomes n + 1 and tau becomes z - n"
     )
-    assert low.endswith("so z is never negative and e_z_low never positive")
-    assert "so top - z is never negative" in high
+    assert state == "z' = rate_z within 0 <= z <= top: at a bound z' = 0 while rate_z leads beyond"
 
 
 def test_equations_are_as_of_the_graph_without_functions() -> None:
@@ -67,3 +66,27 @@ def test_equations_are_as_of_the_graph_without_functions() -> None:
     last = told.steps[-1].equations[0]
     assert sp.expand(last.right + (K + b) * omega) == 0
     assert last.left.coeff(J).free_symbols == {sp.Symbol("omega'")}
+
+
+def test_what_blocks_are_made_of_is_told_nowhere() -> None:
+    """A motor behind all kinds of nodes that have several ways: the steps are those of the motor alone."""
+    told = _told(
+        bg.Hysteresis("relay", "omega", 1, 2), bg.RateLimiter("r", "ref", 2, falling=1),
+        bg.State("z", "ref - omega", low=0), bg.Function("tau", "K*r - relay - z"),
+    )  # fmt: skip
+    text, latex = str(told), told.latex()
+    inner = re.compile(r"(?<![a-z])[ef]_\{?(z|relay|r[_,])|z\.low|relay\.|r\.[a-z]")
+    assert inner.search(text) is None, text
+    assert inner.search(latex) is None, latex
+    head = ["1 state: omega", "2 states of signals: r, z", "1 input: e_motor"]
+    assert [line.strip() for line in text.splitlines()[1:4]] == head
+    numbers = [one.number for step in told.steps for one in (*step.equations, *step.formulas)]
+    assert numbers == [*range(1, len(numbers) + 1)]
+    assert _step(told, "inertia").formulas[0].left.matrix.shape == (1, 1)
+    signals = _step(told, "signals")
+    assert [str(one.left) for one in signals.equations] == ["rate_z", "tau"]
+    assert signals.sentences == (
+        "relay = 1 once omega > 2, 0 once omega < 1",
+        "r' = 2 while ref > r, -1 while ref < r; r = ref while -1 <= ref' <= 2",
+        "z' = rate_z within 0 <= z: at the bound z' = 0 while rate_z leads beyond",
+    )

@@ -10,11 +10,13 @@ import sympy as sp
 
 import bondgraph as bg
 from bondgraph.algebra.expressions import TIME
+from bondgraph.show.powers import without_functions
 from bondgraph.show.putting_in import closed
 from bondgraph.show.statements import Statement, statements
 from codegen import Constant, Result, Signal, Simulator, Sine, simulator
 from codegen.modes.rates import rates
 from codegen.numbers.lambdified import lambdified
+from oracles.ruled import ruled_misfit
 
 CLOSE, BY_PIECES, BY_DIFFERENCES = 1e-9, 1e-6, 1e-4
 """How far both sides may be apart, of their largest term; where runs take known sources, and so their
@@ -58,6 +60,12 @@ class Instant:
 
     def misfit(self, one: Statement) -> str:
         """Both sides of a statement that differ, else nothing."""
+        if one.ruled is not None:
+            self.value(one.left)
+            names = {name.name for name in one.left.free_symbols | one.reads}
+            slopes = names | {f"{name}'" for name in names}
+            loose = bool(slopes & self.differences)
+            return ruled_misfit(one, self.value, BY_DIFFERENCES if loose else self.within)
         left, right = self.value(one.left), self.value(one.value)
         size = max([1.0, *(abs(self.value(factor * part)) for factor, part in one.right)])
         names = {name.name for name in one.left.free_symbols | one.value.free_symbols}
@@ -68,8 +76,9 @@ class Instant:
 
 def misfits(equations: bg.StateEquations, at: Instant) -> list[str]:
     """What is stated, and does not hold: beside the matrices, in their rows, with laws and sources put in."""
+    equations = without_functions(equations)
     found = statements(equations)
-    told = (*found.given, *found.rates, *closed(equations, found))
+    told = (*found.given, *found.rates, *found.kept, *closed(equations, found))
     return [text for one in told if (text := at.misfit(one))]
 
 
@@ -117,7 +126,8 @@ def _begun(
     run = ready.run(times if end == t else [t, *times], states, signals)
     if any(event.time > end for event in run.events):
         raise bg.SimulationError("no rate is told across an event")
-    numbers = {TIME.name: end, **{str(name): float(v) for name, v in parameters.items()}}
+    told = {str(name): float(value) for name, value in parameters.items()}
+    numbers = {TIME.name: end, **told, **{f"{name}'": 0.0 for name in told}}
     for name, signal in signals.items():
         numbers[name], numbers[f"{name}'"] = signal(end), signal.piece(end).derivative(end)
     if not ready.switches:

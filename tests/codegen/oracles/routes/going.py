@@ -7,6 +7,7 @@ import csv
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from types import MappingProxyType
 
 import numpy as np
@@ -15,6 +16,7 @@ from click.testing import CliRunner
 
 import bondgraph as bg
 import codegen
+from bondgraph.show.powers import without_functions
 from bondgraph.show.putting_in import closed
 from bondgraph.show.statements import statements
 from codegen.numbers.lambdified import lambdified
@@ -33,17 +35,23 @@ from oracles.routes.bench import (
     same,
     stepped,
 )
+from oracles.ruled import ruled_misfit
 from oracles.units import sampled, simulated
 
 Route = Callable[[Bench], None]
 
 
 def explain(bench: Bench) -> None:
-    """Every state, every switch and every law is told; of many states, how many there are."""
+    """Every state, every switch and every law is told; of many states, how many there are.
+
+    Switches and laws of nodes of signals are told with the node.
+    """
     kind = bench.kind
     text = str(bg.explain(kind.graph, inputs=kind.read))
     states = [*map(str, kind.equations.states)]
-    told = [*states, *kind.switches, *map(str, kind.equations.laws)]
+    nodes = {str(e.name): str(e.whole) for e in kind.equations.elements.values() if e.of_signals}
+    parts = [*kind.switches, *map(str, kind.equations.laws)]
+    told = [*states, *(nodes.get(name, name) for name in parts)]
     untold = [name for name in told if name not in text]
     if len(states) > 100:
         first, last = ", ".join(states[:5]), ", ".join(states[-2:])
@@ -90,14 +98,19 @@ def _value(run: codegen.Result, name: str, source: str, h: float) -> float:
 
 def whole(bench: Bench) -> None:
     """All states are shown, of many how many; what is stated holds at one instant, rates by differences."""
-    equations = bench.kind.equations
+    equations = without_functions(bench.kind.equations)
     states, found = [*equations.states, *equations.further_states], statements(equations)
+    kept = [name for task in equations.tasks for name in task.states]
     text = str(equations)
     if "entries that are not zero" in text:
         assert f"{len(equations.states)} states" in text
     else:
-        assert [name for name in states if f"{name}'" not in text] == []
-    for one in (*found.given, *found.rates, *closed(equations, found)):
+        assert [name for name in states if f"{name}'" not in text and name not in kept] == []
+        assert [name for name in kept if f"{name} becomes" not in text] == []
+    for one in (*found.given, *found.rates, *found.kept, *closed(equations, found)):
+        if one.ruled is not None:
+            assert ruled_misfit(one, partial(_number, bench), 1e-3) == ""
+            continue
         sizes = [
             abs(_number(bench, factor * part)) for factor, part in (*one.left_terms, *one.right)
         ]
@@ -112,6 +125,7 @@ def _number(bench: Bench, expr: sp.Expr) -> float:
     known = {**kind.numbers, "t": kind.at}
     values = [
         known[name.name] if name.name in known
+        else 0.0 if name.name.removesuffix("'") in known
         else _value(bench.about, name.name, name.name.removesuffix("'"), h)
         for name in names
     ]  # fmt: skip
