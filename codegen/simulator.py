@@ -26,7 +26,7 @@ from codegen.modes.rates import rates
 from codegen.numbers.arrays import Array, is_finite, is_number, read_only
 from codegen.program.units import told_units
 from codegen.record.beyond import refuse_all_beyond
-from codegen.record.columns import named_columns, with_switches
+from codegen.record.columns import listed_columns, named_columns, with_switches
 from codegen.record.replay import Run
 from codegen.record.resting import tell_resting
 from codegen.record.result import Result
@@ -183,7 +183,8 @@ class Simulator:
             columns, observer = named_columns(self.closed, times, found.shots)
             if stopped is not None and not stopped.limit:
                 tell(stopped)
-        columns = with_switches(columns, self.closed.program, found.modes)
+        program = self.closed.program
+        shown, inner = listed_columns(with_switches(columns, program, found.modes), program)
         laws, numbers, start = self.laws, self.closed.parameters, read_only(begun.s)
         run = Run(laws, numbers, times, start, tuple(given), settings, begun.mode)
         result = Result(
@@ -192,12 +193,13 @@ class Simulator:
             self.inputs,
             self.outputs,
             found.events,
-            columns,
+            shown,
             observer,
             self._ledger(run),
             told_units(self.closed.equations),
             found.backend,
             begun.completed,
+            inner,
         )
         refuse_all_beyond(self.closed, result)
         return result

@@ -46,24 +46,29 @@ def names_of(program: Program) -> dict[str, tuple[int, int]]:
 
 
 class RunColumns(Mapping[str, Array]):
-    """The columns of one run; each is worked out when it is asked for."""
+    """The columns of one run; each is worked out when it is asked for.
 
-    def __init__(self, shared: Shared, run: int) -> None:
+    ``inner``: those of parts of nodes of signals, instead of all others.
+    """
+
+    def __init__(self, shared: Shared, run: int, inner: bool = False) -> None:
         self._shared, self._run, self._known = shared, run, dict[str, Array]()
+        own = shared.modes.model.program.inner
+        self._names = {name: at for name, at in shared.names.items() if (name in own) == inner}
 
     def __getitem__(self, name: str) -> Array:
         if name not in self._known:
-            self._known[name] = read_only(self._made(*self._shared.names[name]))
+            self._known[name] = read_only(self._made(*self._names[name]))
         return self._known[name]
 
     def __contains__(self, name: object) -> bool:
-        return name in self._shared.names
+        return name in self._names
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._shared.names)
+        return iter(self._names)
 
     def __len__(self) -> int:
-        return len(self._shared.names)
+        return len(self._names)
 
     def _made(self, part: int, at: int) -> Array:
         shared, run = self._shared, self._run
@@ -138,4 +143,7 @@ def result_of(
     again, columns = Again(alone, shared.modes.model.program), RunColumns(shared, run)
     happened = tuple(shared.fleet.events[run]) if events else ()
     states, inputs, outputs = names
-    return Result(times, states, inputs, outputs, happened, columns, again, again, units)
+    return Result(
+        times, states, inputs, outputs, happened, columns, again, again, units,
+        inner=RunColumns(shared, run, inner=True),
+    )  # fmt: skip

@@ -10,6 +10,7 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.lookups import Handle
 from bondgraph.equations import StateEquations
 from bondgraph.inverses.inverse import Turning
+from bondgraph.nodes.inner import inner_names
 from bondgraph.nodes.tasks import Called
 from bondgraph.tables.record import Sampled
 from codegen.standalone.switchings import Clock, Reset, Switching
@@ -345,6 +346,11 @@ class Program:
         hidden |= {*self.beyond, *self.smooth}
         hidden |= {at for p in self.friction if p.jumps for at in (p.input, p.offset)}
         return tuple(at for at in range(len(self.inputs)) if at not in hidden)
+
+    @cached_property
+    def inner(self) -> frozenset[str]:
+        """Names of parts of nodes of signals: results give them by name and do not list them."""
+        return inner_names(self.equations.elements.values())
 
     @property
     def switches(self) -> tuple[FrictionPort, ...]:

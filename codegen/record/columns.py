@@ -93,6 +93,16 @@ def _check_finite(times: Array, columns: Mapping[str, Array], states: Collection
         )
 
 
+def listed_columns(
+    columns: Mapping[str, Array], program: Program
+) -> tuple[Mapping[str, Array], Mapping[str, Array]]:
+    """What a table of a run holds; and what parts of nodes of signals have, which has to be asked for."""
+    inner = program.inner
+    shown = {name: column for name, column in columns.items() if name not in inner}
+    rest = {name: column for name, column in columns.items() if name in inner}
+    return MappingProxyType(shown), MappingProxyType(rest)
+
+
 def with_switches(
     columns: Mapping[str, Array], program: Program, modes: Sequence[Mode]
 ) -> Mapping[str, Array]:

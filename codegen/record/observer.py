@@ -37,8 +37,9 @@ class Observer:
         return self.model.equations
 
     def names(self) -> tuple[str, ...]:
-        """Every named effort and flow of the graph, and what its storages hold."""
-        return tuple(map(str, (*self._equations.signals, *self._equations.held)))
+        """Every named effort and flow of the graph, and what its storages hold; not of parts of signals."""
+        names = map(str, (*self._equations.signals, *self._equations.held))
+        return tuple(name for name in names if name not in self.model.program.inner)
 
     def nodes(self) -> tuple[Hashable, ...]:
         """The nodes of the graph and the ports of its fields."""
@@ -52,7 +53,8 @@ class Observer:
         held = self._equations.held
         if sp.Symbol(name) in held:
             return self._at(held[sp.Symbol(name)])
-        known = dict.fromkeys([*self.columns, *self.names()])
+        inner = self.model.program.inner
+        known = [*dict.fromkeys([*(n for n in self.columns if n not in inner), *self.names()])]
         raise KeyError(f"no signal {name!r}{nearest(name, known)}; there are {', '.join(known)}")
 
     def bond(self, tail: Hashable, head: Hashable) -> tuple[Array, Array]:

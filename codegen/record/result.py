@@ -24,6 +24,10 @@ def _no_units() -> Mapping[str, str]:
     return MappingProxyType({})
 
 
+def _no_columns() -> Mapping[str, Array]:
+    return MappingProxyType({})
+
+
 def _nothing() -> Mapping[str, float]:
     return MappingProxyType({})
 
@@ -34,9 +38,11 @@ class Result:
 
     ``events``: what happened at friction ports and switches, in order. At a step or an event a sample
     shows the instant just after. ``columns``: the signals that a table of the run holds: states, inputs,
-    outputs and what laws read; they and ``time`` are read-only arrays. ``units``: of those signals of which
-    elements tell it. ``backend``: what ran it; what the C of a simulator cannot go on with is run by "numpy"
-    from the start. ``completed``: the states that were not named and followed what switches held at first.
+    outputs and what laws read; they and ``time`` are read-only arrays. ``inner``: those of the parts that
+    functions, states and controllers are made of, which no table holds and ``result[...]`` gives.
+    ``units``: of those signals of which elements tell it. ``backend``: what ran it; what the C of a
+    simulator cannot go on with is run by "numpy" from the start. ``completed``: the states that were not
+    named and followed what switches held at first.
     """
 
     time: Array = field(repr=False)
@@ -50,11 +56,14 @@ class Result:
     units: Mapping[str, str] = field(repr=False, default_factory=_no_units)
     backend: str = "numpy"
     completed: Mapping[str, float] = field(repr=False, default_factory=_nothing)
+    inner: Mapping[str, Array] = field(repr=False, compare=False, default_factory=_no_columns)
 
     def __getitem__(self, name: str) -> Array:
         """The values of one signal; `KeyError` naming what there is."""
         if name in self.columns:
             return self.columns[name]
+        if name in self.inner:
+            return self.inner[name]
         return self.observer.signal(name)
 
     def __iter__(self) -> Iterator[str]:

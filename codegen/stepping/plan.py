@@ -58,7 +58,8 @@ class Plan:
             for at, port in enumerate(model.program.friction)
             if port.switch is not None and not port.slides
         }
-        self.names = (*self.places, *self.switches)
+        inner = model.program.inner
+        self.names = tuple(name for name in (*self.places, *self.switches) if name not in inner)
         self.turned = turned_storages(model)
 
     def check(self, row: Row) -> None:
