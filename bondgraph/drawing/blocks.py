@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import networkx as nx
 
 from bondgraph.drawing.marks import MIDDLE, SIZE, SMALLER, moved
-from bondgraph.drawing.metrics import ASCENT, DESCENT, width
+from bondgraph.drawing.metrics import depth, height, width
 from bondgraph.drawing.places import Room
 from bondgraph.drawing.shapes import QUIET, Label, NodeShape
 from bondgraph.drawing.subject import Item, Subject
@@ -28,10 +28,12 @@ def block_shape(item: Item) -> NodeShape:
     top = -high / 2
     first = top + SIZE / 2 + SIZE * MIDDLE
     labels = [Label(item.beside, -width(item.beside, SIZE) / 2, first, SIZE)]
-    below = first + DESCENT * SIZE + _APART
-    for at, rich in enumerate(item.lines):
-        x = -width(rich, SMALLER) / 2
-        labels.append(Label(rich, x, below + ASCENT * SMALLER + at * _LINE, SMALLER, QUIET))
+    below = line = first + depth(item.beside, SIZE) + _APART
+    for rich in item.lines:
+        # Subscripts and exponents take room of their own.
+        line = max(line, below + height(rich, SMALLER))
+        labels.append(Label(rich, -width(rich, SMALLER) / 2, line, SMALLER, QUIET))
+        below, line = line + depth(rich, SMALLER) + _APART, line + _LINE
     wide = max(label.width for label in labels) / 2 + _INNER[0]
     bottom = max(label.box.bottom for label in labels) + _INNER[1]
     box = Box(-wide, labels[0].box.top - _INNER[1], wide, bottom)

@@ -22,7 +22,7 @@ _BY_WIDTH = {
     615: "e", 632: "EΕΞΣ", 634: "hnuησ", 635: "Sbdgpqρ", 636: "$0123456789{}μ", 637: "√", 638: "β",
     656: "KΚ", 659: "α", 660: "φψ", 684: "AVΑΔΛ", 685: "XZΖΧ", 686: "BΒ", 695: "R", 698: "C",
     732: "U", 748: "NΝ", 752: "HΗΠ", 764: "Ω", 770: "D", 775: "G", 780: "&", 787: "OQΘΟΦΨ",
-    818: "w", 837: "ω", 838: "#+<=>^~−", 863: "MΜ", 950: "%", 974: "m", 989: "W", 1000: "@…",
+    818: "w", 837: "ω", 838: "#+<=>^~−≤≥", 863: "MΜ", 950: "%", 974: "m", 989: "W", 1000: "@…",
 }  # fmt: skip
 
 ADVANCES = MappingProxyType(
@@ -35,6 +35,22 @@ def run_width(text: str, level: int, size: float) -> float:
     """Width of a run, in the units of the size of its line."""
     scale = size * (SMALL if level else 1.0)
     return sum(ADVANCES.get(letter, 1000) for letter in text) * scale / 1000
+
+
+def depth(rich: Rich, size: float) -> float:
+    """How far a line of text reaches below where it stands: a subscript farther than letters."""
+    return max(
+        ((SHIFT[run.level] + DESCENT * (SMALL if run.level else 1.0)) * size for run in rich),
+        default=DESCENT * size,
+    )
+
+
+def height(rich: Rich, size: float) -> float:
+    """How far a line of text reaches above where it stands: an exponent farther than letters."""
+    return max(
+        ((ASCENT * (SMALL if run.level else 1.0) - SHIFT[run.level]) * size for run in rich),
+        default=ASCENT * size,
+    )
 
 
 def width(rich: Rich, size: float) -> float:

@@ -7,7 +7,7 @@ import sympy as sp
 from bondgraph.drawing.rich import MOST, Rich, Run, formula, joined, length, named
 from bondgraph.nodes.elements import OTHER, Element, Switch
 from bondgraph.nodes.kinds import Kind
-from bondgraph.nodes.laws import ExpressionLaw
+from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 
 IN_BLOCK = 36
 """Letters of a line in a block, which are small, at most."""
@@ -40,12 +40,39 @@ def does(ports: Sequence[Element]) -> tuple[Rich, ...]:
     lines: list[Rich] = []
     if (task := ports[0].task) is not None:
         lines.append((Run(task.instants),))
+    elif (switch := ports[-1].switch) is not None and switch.reads is not None:
+        lines += _turning(switch, switch.reads, *told)
+    elif isinstance(clutch := ports[-1].law, DryFriction):
+        lines += _following(ports, clutch)
     elif ports[0].declared is Kind.STATE:
         begin, end = ("∫ (", ")") if told[0].is_Add else ("∫ ", "")
         lines += [joined([Run(begin), *formula(told[0]), Run(end)]), bounds(ports)]
     else:
         lines.append(formula(told[0]))
     return tuple(line for line in lines if line and length(line) <= IN_BLOCK)
+
+
+def _turning(switch: Switch, read: sp.Expr, off: sp.Expr, on: sp.Expr) -> list[Rich]:
+    """Both values of a hysteresis, each with the threshold beyond which it is that."""
+    return [
+        (*formula(value), Run(" once "), *formula(read), Run(sign), *formula(bound))
+        for value, sign, bound in (
+            (on, " > ", read - switch.on), (off, " < ", read + switch.off),
+        )
+    ]  # fmt: skip
+
+
+def _following(ports: Sequence[Element], clutch: DryFriction) -> list[Rich]:
+    """What a limited rate follows, and between which rates."""
+    laws = {port.kind: port.law for port in ports if isinstance(port.law, ExpressionLaw)}
+    drift = laws[Kind.SE].expression if Kind.SE in laws else sp.Integer(0)
+    rise, fall = clutch.level + drift, clutch.level - drift
+    rate = (*named(ports[0].whole), Run("'"))
+    led = (
+        (Run("|"), *rate, Run("| ≤ "), *formula(rise)) if rise == fall
+        else (*formula(-fall), Run(" ≤ "), *rate, Run(" ≤ "), *formula(rise))
+    )  # fmt: skip
+    return [formula(laws[Kind.SF].expression), led]
 
 
 def switched(element: Element) -> str:

@@ -2,7 +2,7 @@
 
 import random
 from functools import cache
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import Any
 
 import pytest
@@ -225,3 +225,44 @@ def test_the_picture_in_words_counts_blocks() -> None:
     kinds = "1 1, 1 Df, 2 Function, 1 I, 1 MSe, 1 R, 1 State"
     assert words.startswith(f"A bond graph of 8 nodes ({kinds}) and 4 bonds.")
     assert "error reads ω of tacho" in words
+
+
+def test_blocks_of_several_ways_tell_their_thresholds_and_rates() -> None:
+    graph = bg.graph(
+        _motor(
+            bg.Hysteresis("relay", "omega - ref", 1, "high", off=2, on=0), bg.RateLimiter("r", "ref", "rate"),
+            bg.RateLimiter("s_1", "2*ref", 2, falling=1), bg.Function("tau", "relay + r + s_1"),
+            bg.Controller("c", every="1/50", gives={"u": "omega"}),
+        ),
+        BONDS, "tau > motor",
+    )  # fmt: skip
+    lines = {one.name: [*map(plain, one.lines)] for one in bg.drawing(graph).subject.items}
+    assert lines["relay"] == ["0 once ω − ref > high", "2 once ω − ref < 1"]
+    assert lines["r"] == ["ref", "|r'| ≤ rate"]
+    assert lines["s_1"] == ["2·ref", "−1 ≤ s₁' ≤ 2"]
+    assert lines["c"] == ["every 1/50 s"]
+
+
+def _runs(label: Any) -> Any:
+    """Top and bottom of each run: letters stand 0.76 above and 0.24 below their line, of their own size.
+
+    Runs below or above the line have 0.72 of its size, and lie 0.2 of it lower or 0.36 higher.
+    """
+    for run in label.rich:
+        size = label.size * (0.72 if run.level else 1.0)
+        line = label.y + label.size * {0: 0.0, -1: 0.2, 1: -0.36}[run.level]
+        yield line - 0.76 * size, line + 0.24 * size
+
+
+def test_no_line_of_a_block_touches_the_line_above_it_subscripts_and_exponents_too() -> None:
+    graph = bg.graph(
+        _motor(
+            bg.State("x_ref", "omega_ref**2 - omega", low="x_min", high="x_max"), bg.Function("tau", "x_ref"),
+        ),
+        BONDS, "tau > motor",
+    )  # fmt: skip
+    shapes = {one.name: one for one in bg.drawing(graph).scene.nodes}
+    labels = shapes["x_ref"].labels
+    assert len(labels) == 3
+    for upper, lower in pairwise(labels):
+        assert max(bottom for _, bottom in _runs(upper)) < min(top for top, _ in _runs(lower))
