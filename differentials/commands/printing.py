@@ -12,7 +12,7 @@ import numpy as np
 import sympy as sp
 
 import bondgraph as bg
-from bondgraph.show.powers import without_functions
+from bondgraph.show.powers import powers, without_functions
 from bondgraph.show.putting_in import closed
 from bondgraph.show.statements import statements
 from bondgraph.show.whole import ways
@@ -55,11 +55,12 @@ def plain(value: object) -> Any:
 
 
 def equations_data(equations: bg.StateEquations) -> dict[str, object]:
-    """Names and matrices of state equations; entries are expressions as text."""
-    names = {part: [str(n) for n in getattr(equations, part)] for part in
+    """Names and matrices of state equations, signals apart; entries are expressions as text."""
+    shown = powers(equations)
+    names = {part: [str(n) for n in getattr(shown, part)] for part in
              ("states", "inputs", "outputs", "parameters")}  # fmt: skip
     matrices = {
-        name: [[str(entry) for entry in row] for row in getattr(equations, name).tolist()]
+        name: [[str(entry) for entry in row] for row in getattr(shown, name).tolist()]
         for name in MATRICES
     }
     return {**names, **matrices, **_beside(equations)}

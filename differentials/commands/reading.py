@@ -6,6 +6,8 @@ import click
 
 import bondgraph as bg
 import differentials.commands.options as options
+from bondgraph.algebra.expressions import TIME
+from bondgraph.nodes.laws import SLIP
 from differentials.commands.printing import causality_data, equations_data, headed, print_json
 from differentials.commands.subject import Subject, causality_of, mode_text
 from differentials.identification import linear_model
@@ -109,16 +111,28 @@ def _open_text(subject: Subject, derived: bg.StateEquations) -> str:
     needed = ", ".join(map(str, derived.parameters)) or "none"
     given = [f"{port.given} from {port.element.name}" for port in derived.ports
              if port.element.name not in derived.laws and port.element.switch is None]  # fmt: skip
+    either = ", ".join(sorted(_read_by_laws(derived)))
     given += [f"{name} in values" for name in derived.reduction.structure.opened]
     begun = (*derived.states, *derived.further_states)
     return "\n".join(
         [
             headed("To run it"),
             f"numbers (--set NAME=NUMBER):              {needed}",
+            *([f"numbers or signals (--set, --input):       {either}"] if either else []),
             f"signals or laws (--input, --law):         {', '.join(given) or 'none'}",
             f"starts (--initial STATE=NUMBER, else 0):  {', '.join(map(str, begun))}",
         ]
     )
+
+
+def _read_by_laws(derived: bg.StateEquations) -> set[str]:
+    """What laws, switches and controllers read that nothing in the graph gives."""
+    parts = [part for one in derived.switches for part in one.read]
+    parts += [reset.value for task in derived.tasks for reset in task.resets]
+    used = [*(law.free_symbols for law in derived.laws.values()), *(p.free_symbols for p in parts)]
+    known = {*derived.signals, *derived.states, *derived.inputs, *derived.further_states}
+    known |= {*derived.held, *derived.parameters, TIME, SLIP}
+    return {str(name) for name in set().union(*used) - known}
 
 
 def _ratios_text(derived: bg.StateEquations, values: dict[str, float]) -> str:

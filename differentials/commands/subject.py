@@ -123,11 +123,11 @@ class SubjectType(click.ParamType):  # type: ignore[type-arg]
 
 def mode_text(subject: Subject, on: Iterable[str], derived: bg.StateEquations) -> str:
     """Which mode of the switches is shown, or what they do in equations of all; empty without switches."""
+    # What relays and bounds of signals are made of is told with their equations.
+    switches = [one for one in derived.switches if not one.port.element.of_signals]
     if derived.switches:
-        each = ", ".join(
-            f"{one.name} (held while {one.held}, {one.guard})" for one in derived.switches
-        )
-        return f"switches, each let go or held: {each}\n"
+        each = ", ".join(f"{one.name} (held while {one.held}, {one.guard})" for one in switches)
+        return f"switches, each let go or held: {each}\n" if each else ""
     if not subject.switches():
         return ""
     told = ", ".join(on) or "none"

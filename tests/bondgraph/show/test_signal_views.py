@@ -215,3 +215,26 @@ def test_the_command_line_tells_the_same(tmp_path: Any) -> None:
     data = json.loads(CliRunner().invoke(app, ["derive", str(path), "--json"]).output)
     told = json.dumps(data)
     assert "rate_z within -1 <= z <= top: at a bound z' = 0 while rate_z leads beyond" in told
+
+
+def test_what_a_run_of_a_file_needs_names_what_signals_read(tmp_path: Any) -> None:
+    path = tmp_path / "relay.json"
+    bg.write_json(RELAY, path)
+    found = CliRunner().invoke(app, ["show", str(path)])
+    assert found.exit_code == 0, found.output
+    lines = [
+        line.split(":", 1) for line in found.output.splitlines() if "--" in line and ":" in line
+    ]
+    told = {what.split(" (")[0]: names.strip() for what, names in lines}
+    assert told["numbers"] == "J, b"
+    assert told["numbers or signals"] == "T"
+    assert "switch" not in found.output
+
+
+def test_json_has_the_matrices_that_are_printed(tmp_path: Any) -> None:
+    path = tmp_path / "limiter.json"
+    bg.write_json(LIMITER, path)
+    data = json.loads(CliRunner().invoke(app, ["derive", str(path), "--json"]).output)
+    assert (data["states"], data["inputs"]) == (["omega"], ["e_motor"])
+    assert (data["A"], data["J"], data["B"]) == ([["J"]], [["-b"]], [["1"]])
+    assert data["rates"]["r'"].startswith("rate while step > r")
