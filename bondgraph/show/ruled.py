@@ -1,4 +1,4 @@
-"""What nodes of signals with several ways come to: states within bounds, relays, signals of a bounded rate.
+"""What nodes of signals with several ways come to: states within bounds and relays; `following` has more.
 
 Each is one equation with a value for each way, and with when it is that: as text, as LaTeX, and as sympy.
 """
@@ -9,8 +9,6 @@ from typing import Protocol, Self
 
 import sympy as sp
 
-from bondgraph.algebra.expressions import TIME
-from bondgraph.reduce.motion import slope_of
 from bondgraph.show.plain import plain
 from bondgraph.show.sums import rate, typeset
 
@@ -50,7 +48,7 @@ class Ruled(Protocol):
         """The right side in LaTeX."""
 
 
-class _Read:
+class Read:
     """What such records have in common: their expressions are their fields but the first, their name."""
 
     @property
@@ -73,7 +71,7 @@ class _Read:
 
 
 @dataclass(frozen=True)
-class Bounded(_Read):
+class Bounded(Read):
     """A state that stays within bounds: at one it rests while its rate leads beyond.
 
     >>> z, u = sp.symbols("z u")
@@ -98,11 +96,11 @@ class Bounded(_Read):
         found: list[Way] = []
         free: list[sp.Basic] = []
         if self.low is not None:
-            found.append((zero, sp.And(_le(z, self.low), _le(led, zero))))
-            free.append(sp.Or(_lt(self.low, z), _le(zero, led)))
+            found.append((zero, sp.And(at_most(z, self.low), at_most(led, zero))))
+            free.append(sp.Or(below(self.low, z), at_most(zero, led)))
         if self.high is not None:
-            found.append((zero, sp.And(_le(self.high, z), _le(zero, led))))
-            free.append(sp.Or(_lt(z, self.high), _le(led, zero)))
+            found.append((zero, sp.And(at_most(self.high, z), at_most(zero, led))))
+            free.append(sp.Or(below(z, self.high), at_most(led, zero)))
         return (*found, (led, sp.And(*free)))
 
     def text(self, whole: bool = True) -> str:
@@ -118,7 +116,7 @@ class Bounded(_Read):
         led = typeset(self.rate)
         within = self._within(typeset, r"\leq")
         at = rf"\text{{at {self._where}, while this leads beyond}}"
-        return _cases((led, rf"\text{{within }} {within}"), ("0", at))
+        return cases((led, rf"\text{{within }} {within}"), ("0", at))
 
     @property
     def _where(self) -> str:
@@ -130,7 +128,7 @@ class Bounded(_Read):
 
 
 @dataclass(frozen=True)
-class Turning(_Read):
+class Turning(Read):
     """A signal of two values that remembers: one once it reads more than ``high``, one once less.
 
     >>> relay, omega = sp.symbols("relay omega")
@@ -153,7 +151,7 @@ class Turning(_Read):
     @property
     def ways(self) -> tuple[Way, ...]:
         """Between the thresholds both may be."""
-        return (self.on, _le(self.low, self.read)), (self.off, _le(self.read, self.high))
+        return (self.on, at_most(self.low, self.read)), (self.off, at_most(self.read, self.high))
 
     def text(self, whole: bool = True) -> str:
         """``on once read > high, off once read < low``."""
@@ -165,72 +163,23 @@ class Turning(_Read):
 
     def latex(self) -> str:
         """Cases: on and off."""
-        return _cases(
+        return cases(
             (typeset(self.on), rf"\text{{once }} {typeset(self.read)} > {typeset(self.high)}"),
             (typeset(self.off), rf"\text{{once }} {typeset(self.read)} < {typeset(self.low)}"),
         )
 
 
-@dataclass(frozen=True)
-class Following(_Read):
-    """A state that goes to what it reads at a bounded rate, and follows it where that is slower.
-
-    >>> r, step = sp.symbols("r step")
-    >>> print(Following(r, step, sp.Integer(2), sp.Integer(2)).text())
-    2 while step > r, -2 while step < r; r = step while |step'| <= 2
-    """
-
-    state: sp.Symbol
-    read: sp.Expr
-    rise: sp.Expr
-    fall: sp.Expr
-
-    @property
-    def left(self) -> sp.Symbol:
-        """Its rate."""
-        return rate(self.state)
-
-    @property
-    def ways(self) -> tuple[Way, ...]:
-        """Up, down, and along with what it reads."""
-        r, read = self.state, self.read
-        names = sorted(read.free_symbols, key=str)
-        slope = sp.Add(*(slope_of(read, n) * (1 if n == TIME else rate(n)) for n in names))
-        along = sp.Max(-self.fall, sp.Min(self.rise, slope))
-        met = sp.And(_le(read, r), _le(r, read))
-        return (self.rise, _lt(r, read)), (-self.fall, _lt(read, r)), (along, met)
-
-    def text(self, whole: bool = True) -> str:
-        """``rise while read > r, -fall while read < r; r = read while slow enough``."""
-        r, read, rise, fall = map(plain, (self.state, self.read, self.rise, -self.fall))
-        led = f"{read}'" if self.read.is_Symbol else f"({read})'"
-        slow = f"|{led}| <= {rise}" if self.rise == self.fall else f"{fall} <= {led} <= {rise}"
-        return f"{rise} while {read} > {r}, {fall} while {read} < {r}; {r} = {read} while {slow}"
-
-    def latex(self) -> str:
-        """Cases: up, down and along."""
-        r, read, rise, fall = map(typeset, (self.state, self.read, self.rise, -self.fall))
-        led = (
-            typeset(rate(self.read)) if self.read.is_Symbol
-            else rf"\frac{{d}}{{dt}}\left({read}\right)"
-        )  # fmt: skip
-        slow = (
-            rf"|{led}| \leq {rise}" if self.rise == self.fall
-            else rf"{fall} \leq {led} \leq {rise}"
-        )  # fmt: skip
-        along = rf"{r} = {read},\ \text{{while }} {slow}"
-        return _cases((rise, f"{read} > {r}"), (fall, f"{read} < {r}"), (led, along))
-
-
-def _le(low: sp.Expr, high: sp.Expr) -> sp.Basic:
+def at_most(low: sp.Expr, high: sp.Expr) -> sp.Basic:
     """That one is not above the other, unsolved."""
     return sp.Le(low, high, evaluate=False)
 
 
-def _lt(low: sp.Expr, high: sp.Expr) -> sp.Basic:
+def below(low: sp.Expr, high: sp.Expr) -> sp.Basic:
+    """That one is below the other, unsolved."""
     return sp.Lt(low, high, evaluate=False)
 
 
-def _cases(*rows: tuple[str, str]) -> str:
+def cases(*rows: tuple[str, str]) -> str:
+    """Values and when they are so, in LaTeX."""
     body = r" \\ ".join(f"{value} & {when}" for value, when in rows)
     return rf"\begin{{cases}} {body} \end{{cases}}"

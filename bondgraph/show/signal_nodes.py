@@ -9,7 +9,8 @@ from bondgraph.equations import StateEquations
 from bondgraph.nodes.elements import Element
 from bondgraph.nodes.kinds import BOUNDS, Kind
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw
-from bondgraph.show.ruled import Bounded, Following, Ruled, Turning
+from bondgraph.show.following import Following
+from bondgraph.show.ruled import Bounded, Ruled, Turning
 
 
 @dataclass(frozen=True)
