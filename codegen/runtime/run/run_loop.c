@@ -165,7 +165,7 @@ static int are_due(const bg_clock *clocks, bg_course *c)
     return any;
 }
 
-/* Whether nothing but tasks makes an instant: no port has come to an event, no input to a breakpoint. */
+/* Whether nothing but tasks makes an instant: no event of a port, no breakpoint of an input. */
 static int is_plain(const bg_engine *e, const bg_course *c)
 {
     int touched = c->span.begin == c->at.t;
