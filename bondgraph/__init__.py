@@ -50,6 +50,7 @@ from bondgraph.files.disk import read_graphml, read_json, write_graphml, write_j
 from bondgraph.files.graphml import from_graphml, to_graphml
 from bondgraph.files.nodelink import from_json, to_json
 from bondgraph.nodes.controllers import Controller
+from bondgraph.nodes.delays import Delay
 from bondgraph.nodes.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
 from bondgraph.nodes.hysteresis import Hysteresis
 from bondgraph.nodes.kinds import Kind
@@ -83,6 +84,7 @@ __all__ = [
     "Controller",
     "De",
     "DeadZone",
+    "Delay",
     "DependentSourceError",
     "Df",
     "Diode",

@@ -45,6 +45,7 @@ class Tuning:
     least_cap: float = _told(
         1e-15, "of the largest effort: the least that a port's limit counts as"
     )
+    delayed: float = _told(1e-12, "of what a delay reads: how far its polynomials may be off")
     tiny: float = _told(1e-300, "larger than nothing")
     exchanged: float = _told(1e-14, "of its terms, by which a shared effort may be above its share")
     exchanges: int = _told(10_000, "ports exchanged beyond which rounding alone would go on")

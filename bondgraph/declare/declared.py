@@ -27,6 +27,7 @@ from bondgraph.nodes.attributes import (
     variable,
 )
 from bondgraph.nodes.controllers import controller_elements
+from bondgraph.nodes.delays import delay_elements
 from bondgraph.nodes.elements import OTHER, Element
 from bondgraph.nodes.hysteresis import hysteresis_elements
 from bondgraph.nodes.kinds import Kind
@@ -42,6 +43,7 @@ COMPOSITE: Mapping[str, Callable[[Hashable, Mapping[str, Any]], list[Element]]] 
     Kind.CONTROLLER: controller_elements,
     Kind.HYSTERESIS: hysteresis_elements,
     Kind.RATE_LIMITER: rate_limiter_elements,
+    Kind.DELAY: delay_elements,
 }
 """What nodes of several elements are made of, by their kind; the first of them stands for the node.
 

@@ -40,6 +40,8 @@ def does(ports: Sequence[Element]) -> tuple[Rich, ...]:
     lines: list[Rich] = []
     if (task := ports[0].task) is not None:
         lines.append((Run(task.instants),))
+    elif (late := ports[0].late) is not None:
+        lines += [formula(late.value), joined([*formula(late.time), Run(" s ago")])]
     elif ports[0].declared is Kind.STATE:
         begin, end = ("∫ (", ")") if told[0].is_Add else ("∫ ", "")
         lines += [joined([Run(begin), *formula(told[0]), Run(end)]), bounds(ports)]

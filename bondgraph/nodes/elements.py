@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.lagging import Lagging
 from bondgraph.nodes.laws import DryFriction, Law
 from bondgraph.nodes.tasks import Reset, Task
 
@@ -50,6 +51,7 @@ class Element:
     state as a function of what the law gives, so that it may have derivative causality. ``switch``: of an
     ideal switch, when it turns on and off. ``whole``: of a part of a node of several, a stop or a signal,
     that node, and ``declared`` its kind. ``task``: of a sampled controller, what it does at its instants.
+    ``late``: of a delay, of what and how late it is.
     ``start``: of what keeps or makes a state, the value with which runs begin. ``by_inverse``: whether the
     law counts by its inverse alone, what it gives being the state. ``turned``: whether its law is turned
     round by what is known of it: a resistance then gives what its law, as it was written, receives.
@@ -77,6 +79,7 @@ class Element:
     turned: bool = False
     task: Task | None = None
     declared: Kind | None = None
+    late: Lagging | None = None
     needed: frozenset[sp.Symbol] = frozenset()
 
     @property

@@ -17,7 +17,7 @@ BOUNDS = {"low": 1, "high": -1}
 POSITION = "position"
 """The part of a stop that integrates its flow."""
 
-EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", "falling", *_BOUNDED)
+EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", "falling", "time", *_BOUNDED)
 """The attributes that are numbers or expressions."""
 
 NAMED = ("states", "update", "outputs")
@@ -107,6 +107,10 @@ class Kind(StrEnum):
         Nature(
             "signal", frozenset({"value", "rate", "falling", "start", "unit", "ports"}), place=13
         ),
+    )
+    DELAY = (
+        "Delay",
+        Nature("signal", frozenset({"value", "time", "start", "unit", "ports"}), place=14),
     )
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":

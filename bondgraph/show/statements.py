@@ -148,6 +148,8 @@ def _read(model: StateEquations) -> set[sp.Symbol]:
             used |= {*law.free_symbols} - {SLIP} | {port.received}
     for switch in model.switches:
         used |= {switch.port.received}.union(*(part.free_symbols for part in switch.read))
+    for late in model.delays:
+        used |= late.value.free_symbols
     for task in model.tasks:
         used |= {*task.reads}.union(*(one.value.free_symbols for one in task.resets))
     return used

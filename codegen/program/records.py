@@ -416,8 +416,19 @@ class Program:
 
     @property
     def asked(self) -> tuple[sp.Symbol, ...]:
-        """The external inputs that a run is given by its user."""
+        """The external inputs that are no known sources."""
         return self.external[: len(self.external) - len(self.sources)]
+
+    @property
+    def delayed(self) -> tuple[sp.Symbol, ...]:
+        """Those of them that delays give, which a run finds."""
+        return tuple(one.given for one in self.equations.delays if one.given in self.asked)
+
+    @property
+    def wanted(self) -> tuple[sp.Symbol, ...]:
+        """The others, which a run is given by its user."""
+        delayed = self.delayed
+        return tuple(name for name in self.asked if name not in delayed)
 
 
 def block(expressions: Sequence[sp.Expr], taken: Iterable[sp.Symbol] = ()) -> Block:
