@@ -83,6 +83,10 @@ class Tuning:
     residual_floor: float = _told(1e-3, "added to that magnitude")
     loop_difference: float = _told(1e-7, "relative difference for the slopes of laws")
     loop_floor: float = _told(1e-6, "added to what that is relative to")
+    loop_lost: float = _told(
+        2.0**-44, "of what is left: where it changes by less, rounding has the slope .."
+    )
+    loop_wider: float = _told(1024.0, ".. and the difference is so many times as large")
     root_turns: int = _told(
         1000, "steps of a root's search: four times as many as halve to nothing"
     )
@@ -185,6 +189,7 @@ class Tuning:
     reach_part: float = _told(1e-3, "of all states' magnitude: the least of each")
     reach_floor: float = _told(1e-10, "the same where all are zero")
     bracket: float = _told(1e-3, "by which the boundary of stability is searched farther")
+    cuts: int = _told(1000, "parts that instants of tasks may cut a step of exported C into")
     whole_steps: float = _told(1e-9, "part by which a stretch may be longer than whole steps")
 
     # Many runs, and sources
