@@ -148,7 +148,7 @@ def _bracketed(residual: Residual, end: float) -> Iterator[Array]:
 
 
 def _slope(residual: Residual, amounts: Array, now: Array, j: int, size: float) -> Array:
-    """How what is left, ``now``, changes with one amount: by a step that its rounding does not swallow."""
+    """How what is left, ``now``, changes with one amount, by a step that rounding does not lose."""
     step = TUNING.loop_difference * (abs(amounts[j]) + TUNING.loop_floor)
     while True:
         moved = amounts.copy()

@@ -50,9 +50,10 @@ static double one(void *self, double value)
     return left[0];
 }
 
-/* What is left where one value is more, by a step that the rounding of what is left does not swallow;
- * the step. */
-static double move_on(search *s, double *values, const double *now, int j, double size, double *moved)
+/* What is left where one value is more, by a step that the rounding of what is left does not
+ * swallow; the step. */
+static double move_on(search *s, double *values, const double *now, int j, double size,
+                      double *moved)
 {
     const double kept = values[j];
     double step = BG_LOOP_DIFFERENCE * (fabs(kept) + BG_LOOP_FLOOR);
