@@ -6,7 +6,7 @@ from typing import Any
 from bondgraph.algebra.atoms import normal
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import bare_name
-from bondgraph.nodes.kinds import BOUNDS, PARTS, POSITION, Kind
+from bondgraph.nodes.kinds import BOUNDS, POSITION, Kind
 
 
 def quantities(
@@ -71,6 +71,13 @@ def _of_signals(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str
         parts += [POSITION, *bounds] if bounds else []
     for part in parts:
         yield from (("e_", f"_{part}", None), ("f_", f"_{part}", None))
+
+
+PARTS: Mapping[Kind, tuple[str, ...]] = {
+    Kind.HYSTERESIS: ("load", "off", "branch", "on", "switch"),
+    Kind.RATE_LIMITER: ("mass", "drift", "slip", "input", "clutch"),
+}
+"""The parts of nodes that are the same whatever their attributes."""
 
 
 def kept_names(attributes: Mapping[str, Any]) -> Iterator[str]:

@@ -90,14 +90,14 @@ class Element:
         return self.declared is Kind.FUNCTION and self.kind.supplies
 
     @property
-    def is_effort_told(self) -> bool:
-        """Whether its effort is a signal that was declared as a node of two values."""
-        return self.declared is Kind.HYSTERESIS and self.name == self.whole
-
-    @property
     def of_signals(self) -> bool:
         """Whether it is a part of a node of signals, and carries no power."""
         return self.declared is not None and self.declared.signals
+
+    @property
+    def is_effort_told(self) -> bool:
+        """Whether its effort is a signal that was declared as a node of two values."""
+        return self.declared is Kind.HYSTERESIS and self.name == self.whole
 
     @property
     def one_port(self) -> bool:

@@ -98,11 +98,15 @@ class Kind(StrEnum):
     )
     HYSTERESIS = (
         "Hysteresis",
-        Nature("signal", frozenset({"value", "low", "high", "off", "on", "unit"}), place=12),
+        Nature(
+            "signal", frozenset({"value", "low", "high", "off", "on", "unit", "ports"}), place=12
+        ),
     )
     RATE_LIMITER = (
         "RateLimiter",
-        Nature("signal", frozenset({"value", "rate", "falling", "start", "unit"}), place=13),
+        Nature(
+            "signal", frozenset({"value", "rate", "falling", "start", "unit", "ports"}), place=13
+        ),
     )
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":
@@ -200,12 +204,6 @@ class Kind(StrEnum):
         """The letter of a storage's own state, p or q; else an empty text."""
         return self.nature.letter
 
-
-PARTS = {
-    Kind.HYSTERESIS: ("load", "off", "branch", "on", "switch"),
-    Kind.RATE_LIMITER: ("mass", "drift", "slip", "input", "clutch"),
-}
-"""The parts of kinds of signals that have the same ones always, beside the node itself."""
 
 SIGNALS = frozenset(str(kind) for kind in Kind if kind.signals)
 """The kinds of node without power, as texts."""
