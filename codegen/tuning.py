@@ -84,6 +84,8 @@ class Tuning:
     residual_floor: float = _told(1e-3, "added to that magnitude")
     loop_difference: float = _told(1e-7, "relative difference for the slopes of laws")
     loop_floor: float = _told(1e-6, "added to what that is relative to")
+    loop_lost: float = _told(2.0**-44, "of what is left: a smaller change is lost ..")
+    loop_wider: float = _told(1024.0, ".. and the difference is made so much larger")
     root_turns: int = _told(
         1000, "steps of a root's search: four times as many as halve to nothing"
     )

@@ -45,6 +45,11 @@ def does(ports: Sequence[Element]) -> tuple[Rich, ...]:
     elif ports[0].declared is Kind.STATE:
         begin, end = ("∫ (", ")") if told[0].is_Add else ("∫ ", "")
         lines += [joined([Run(begin), *formula(told[0]), Run(end)]), bounds(ports)]
+    elif ports[0].declared is Kind.HYSTERESIS:
+        lines += [_conditions(port.switch) for port in ports if port.switch is not None]
+    elif ports[0].declared is Kind.RATE_LIMITER:
+        dragged = [port.law for port in ports if port.kind is Kind.SF]
+        lines += [formula(law.expression) for law in dragged if isinstance(law, ExpressionLaw)]
     else:
         lines.append(formula(told[0]))
     return tuple(line for line in lines if line and length(line) <= IN_BLOCK)
