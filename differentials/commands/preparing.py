@@ -14,7 +14,8 @@ from differentials.commands.names import check_names
 from differentials.commands.options import Asked
 from differentials.commands.subject import Subject, nodes_called
 from differentials.model import model
-from differentials.scenarios import SAMPLE, Prepared, named, prepared
+from differentials.prepared import SAMPLE, Prepared
+from differentials.scenarios import named, prepared
 
 LARGEST = 10_000_000
 """Samples of a run beyond which a typing error is more likely than a wish."""

@@ -27,7 +27,7 @@ from differentials.commands.preparing import prepare
 from differentials.commands.printing import print_json, with_folder, written
 from differentials.commands.subject import Subject
 from differentials.report import table
-from differentials.scenarios import Prepared
+from differentials.prepared import Prepared
 
 SHOWN = 50
 """Rows of a table on the screen."""
