@@ -6,7 +6,7 @@ from bondgraph.derive import check_derived
 from bondgraph.equations import StateEquations
 from bondgraph.show.display import MOST_SIGNS
 from bondgraph.show.latex_matrices import is_readable, matrices_latex, notebook_matrices
-from bondgraph.show.statements import Statement, statements
+from bondgraph.show.statements import Statement, statements, without_functions, without_idle
 from bondgraph.show.sums import latex_pieces
 from bondgraph.show.ways_latex import ways_latex
 from bondgraph.show.whole import PUT_IN, TOO_LONG, put_in
@@ -31,7 +31,9 @@ def latex(equations: StateEquations) -> str:
     \left[\J\\right]\frac{d}{dt}\left[\\omega\\right]
     """
     check_derived(equations)
-    return " \\\\\n".join(part for part in (matrices_latex(equations), *beside(equations)) if part)
+    equations = without_functions(equations)
+    parts = (matrices_latex(without_idle(equations)), *beside(equations))
+    return " \\\\\n".join(part for part in parts if part)
 
 
 def beside(equations: StateEquations) -> list[str]:
@@ -65,6 +67,7 @@ def _rows(one: Statement) -> Iterator[str]:
 
 def notebook_latex(equations: StateEquations) -> str:
     """The equations for a notebook's display; of large systems the sizes alone."""
+    equations = without_functions(equations)
     if is_readable(equations):
         text = latex(equations)
         if len(text) <= 4 * MOST_SIGNS:
