@@ -1,6 +1,6 @@
 """The paper's simulations as data, and `simulate`, which runs a differential through one."""
 
-from collections.abc import Container, Hashable, Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,6 +13,7 @@ from differentials.control.manoeuvres import Manoeuvre, manoeuvres
 from differentials.model import Model, model
 from differentials.parameters import checked
 from differentials.prepared import SAMPLE, Prepared
+
 
 @dataclass(frozen=True)
 class Scenario:
@@ -127,10 +128,15 @@ def named(scenario: str | Scenario | Manoeuvre) -> Scenario | Manoeuvre:
     """A scenario as it is, or the one of that name; `SignalError` with the names there are."""
     if not isinstance(scenario, str):
         return scenario
-    known: Mapping[str, Scenario | Manoeuvre] = {**scenarios, **manoeuvres}
+    known = named_cases()
     if scenario not in known:
         raise bg.SignalError(f"no scenario is called {scenario!r}; there is {', '.join(known)}")
     return known[scenario]
+
+
+def named_cases() -> dict[str, Scenario | Manoeuvre]:
+    """Everything that a differential can be run through by name: the paper's scenarios, then manoeuvres."""
+    return {**scenarios, **manoeuvres}
 
 
 def _speeds(full: Model, case: Scenario) -> list[float]:

@@ -49,10 +49,11 @@ def single_track() -> Part:
 def contact(number: int) -> Part:
     """A wheel on the road, between its shaft ``wheel_<number>`` and the car.
 
-    The tire ``tire_<number>`` gives a force ``F_x<number>`` [N] ahead at the speed ``s_x<number> = r omega_t -
-    v_hub`` [m/s] at which it slips, eqs. (18), (19) of the paper: ``F_x = k_t/v s_x``, with a slope ``k_t``
-    [N] of its own, so that one wheel may stand on ice. The hub moves at ``v -+ track/2 omega_z``,
-    less on the left, more on the right; so force times speed is the wheel's power, less the heat of slip.
+    The tire ``tire_<number>`` gives a force ``F_x<number>`` [N] ahead at the speed [m/s] at which it slips,
+    ``s_x<number> = r omega_t - v_hub``, eqs. (18), (19) of the paper: ``F_x = k_t/v s_x``. The slope
+    ``k_t<number>`` [N] is its own, so that one wheel may stand on ice. The hub moves at ``v -+ track/2
+    omega_z``, less on the left, more on the right; so force times speed is the wheel's power, less the heat
+    of slip.
 
     Raises nothing.
     """
@@ -63,9 +64,8 @@ def contact(number: int) -> Part:
             bg.TF(radius, "r"), bg.Zero(road),
             bg.R(
                 tire, law=f"k_t{number}/v*s_x{number}", effort=f"F_x{number}", flow=f"s_x{number}"
-            ), bg.TF(arm, f"{side}track/2"),
+            ), bg.TF(arm, f"{side}2/track"),
         ],
         (f"wheel_{number}", radius), (radius, road), (road, tire),
         (road, "forward"), (road, arm), (arm, "yaw"),
     )  # fmt: skip
-

@@ -31,7 +31,7 @@ ALONG, AHEAD = "omega_t1 - omega_t2", "(omega_t3 + omega_t4)/2 - (omega_t1 + ome
 BEND = "track*omega_z/r"
 """By how much the right wheel is faster than the left one in a bend, without slip."""
 
-_RATIOS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+RATIOS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "alsd": ("1",),
         "superposition_tvd": ("1", "1"),
@@ -39,6 +39,7 @@ _RATIOS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "four_wheel_drive_tvd": ("(1 + h1)", "(1 + h2)"),
     }
 )
+"""Of each differential whose clutches move torque between wheels: `Law.ratio`."""
 
 CONTROLS = ("yaw_rate", "slip")
 """What is controlled."""
@@ -48,8 +49,9 @@ def law(name: str, control: str) -> Law:
     """What a differential's controller of the yaw rate or of the slip goes by.
 
     A limited slip differential holds a turn back, whichever way it goes; the others turn the car either way.
-    Slip is how much faster the left wheel is than the right one, beyond the bend's own; of the four wheel
-    drive, whose rear wheels get torque by the clutches alone, how far the front axle is ahead of the rear.
+    Slip ``dw`` is how much faster the left wheel is than the right one, beyond the bend's own; of the four
+    wheel drive, whose rear wheels get torque by the clutches alone, how far the front axle is ahead of the
+    rear. What only holds back, or drives the rear alone, leaves ``dw_ref`` of it.
 
     Raises `StructureError` for a differential without a clutch behind its case, and for another control.
 
@@ -57,30 +59,25 @@ def law(name: str, control: str) -> Law:
     'omega_ref - omega_z'
     """
     differential(name)
-    if name not in _RATIOS:
+    if name not in RATIOS:
         raise bg.StructureError(
-            f"{name} has no clutch that moves torque between wheels; there is {', '.join(_RATIOS)}"
+            f"{name} has no clutch that moves torque between wheels; there is {', '.join(RATIOS)}"
         )
     if control not in CONTROLS:
-        raise bg.StructureError(
-            f"no control is called {control!r}; there is {', '.join(CONTROLS)}"
-        )
+        raise bg.StructureError(f"no control is called {control!r}; there is {', '.join(CONTROLS)}")
     limited, four = name == "alsd", name == "four_wheel_drive_tvd"
     if control == "yaw_rate":
         error = "abs(omega_z) - abs(omega_ref)" if limited else "omega_ref - omega_z"
     else:
-        error = "abs(dw) - dw_ref"
-        if not (limited or four):
-            error = "max(dw - dw_ref, min(dw + dw_ref, 0))"
-        elif four:
-            error = "dw - dw_ref"
+        error = "abs(dw) - dw_ref" if limited else "dw - dw_ref" if four else "dw"
     both = not (limited or (four and control == "slip"))
-    return Law(error, both, _RATIOS[name])
+    return Law(error, both, RATIOS[name])
 
 
 def demands(name: str) -> tuple[str, ...]:
     """The signals that the actuators follow, by clutch."""
-    return tuple(level.replace("tau_h", "demand") for level in differential(name).clutches.values())
+    count = len(differential(name).clutches)
+    return ("demand",) if count == 1 else tuple(f"demand_{j}" for j in range(1, count + 1))
 
 
 def actuators(name: str) -> Part:
@@ -90,40 +87,38 @@ def actuators(name: str) -> Part:
         bg.State(level, f"({demand} - {level})/T_a")
         for level, demand in zip(levels, demands(name), strict=True)
     ]
-    return part([*lags, bg.Function("dw", _slip(name))])
+    slip = AHEAD if name == "four_wheel_drive_tvd" else f"{ALONG} + {BEND}"
+    return part([*lags, bg.Function("dw", slip)])
 
 
 FOLLOWED = "(v*delta/(l_f + l_r + K_ref*v**2) - omega_ref)/T_ref"
 """The rate of the yaw rate that is followed: a car's of understeer K_ref, by a first-order lag."""
 
 
-def _slip(name: str) -> str:
-    return AHEAD if name == "four_wheel_drive_tvd" else f"{ALONG} + {BEND}"
-
-
 def controller(name: str, control: str, period: str, error: str | None = None) -> Part:
     """A PI law, sampled every ``period`` [s], within bounds and a rate; ``error``: another one to go by.
 
-    The sum is told back by what the bounds left of the demand, so that it does not wind up (K. J. Astrom and
-    B. Wittenmark, Computer-Controlled Systems, 3rd ed., 1997, section 8.5: back-calculation, here at once).
+    ``asked`` [N m] is the difference of the wheels' torques that it asks for. What the bounds left of it is
+    told back to the sum, which so does not wind up (back-calculation: K. J. Astrom and T. Hagglund, PID
+    Controllers, 2nd ed., 1995, section 3.5; here within one period).
     """
     by = law(name, control)
     e = f"({by.error if error is None else error})"
-    names = demands(name)
-    last = f"{by.ratio[-1]}*{names[-1]}"
-    low = "0"
-    if by.both:
-        last, low = f"({last} - {by.ratio[0]}*{names[0]})", "-tau_max"
-    step = f"rate_max*({period})"
-    near = f"max({last} - {step}, min({last} + {step}, K_p*{e} + integral))"
-    wish = f"max({low}, min(tau_max, {near}))"
-    signs = ("-", "") if by.both else ("",) * len(names)
-    gives = {
-        demand: f"max(0, {sign}{wish})/({ratio})" if by.both else f"{wish}/({ratio})"
-        for demand, sign, ratio in zip(names, signs, by.ratio, strict=True)
-    }
-    told = {"integral": f"{wish} - K_p*{e} + K_i*({period})*{e}"}
+    low, step, free = "-tau_max" if by.both else "0", f"rate_max*({period})", f"K_p*{e} + integral"
+    asked = f"max({low}, asked - {step}, min(tau_max, asked + {step}, {free}))"
+    signs = ("-", "") if by.both else ("",) * len(by.ratio)
+    shares = [f"max(0, {sign}{asked})" if by.both else asked for sign in signs]
     node = bg.Controller(
-        "controller", every=period, states={"integral": 0}, update=told, gives=gives
+        "controller",
+        every=period,
+        states={"integral": 0},
+        update={"integral": f"{asked} - K_p*{e} + K_i*({period})*{e}"},
+        gives={
+            "asked": asked,
+            **{
+                demand: f"{share}/({ratio})"
+                for demand, share, ratio in zip(demands(name), shares, by.ratio, strict=True)
+            },
+        },
     )
     return part([node, bg.State("omega_ref", FOLLOWED)] if control == "yaw_rate" else [node])

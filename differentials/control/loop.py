@@ -129,7 +129,10 @@ def parameters_of(
     for node, value in {**equations.laws, **laws}.items():
         read |= law_of(value, f"law at {node!r}").free_symbols
     read |= {
-        symbol for task in equations.tasks for one in task.resets for symbol in one.value.free_symbols
+        symbol
+        for task in equations.tasks
+        for one in task.resets
+        for symbol in one.value.free_symbols
     }
     return numbers(name, case.control, sorted({symbol.name for symbol in read}))
 

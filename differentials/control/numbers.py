@@ -44,7 +44,7 @@ CONTROL: Mapping[str, Parameter] = Named(
         ),
         "K_ref": Parameter(0.001, "s^2/m", _FOLLOWS, _ASSUMED),
         "T_ref": Parameter(0.1, "s", "lag of the car to be followed", _ASSUMED),
-        "dw_ref": Parameter(1.0, "rad/s", "difference of the wheels' speeds to be kept", _ASSUMED),
+        "dw_ref": Parameter(1.0, "rad/s", "slip that is left", _ASSUMED),
     }
 )
 """Of actuators and controllers; `GAINS` has those of the PI laws."""
@@ -52,8 +52,8 @@ CONTROL: Mapping[str, Parameter] = Named(
 GAINS: Mapping[str, Mapping[str, Parameter]] = MappingProxyType(
     {
         "yaw_rate": {
-            "K_p": Parameter(6000, "N m s/rad", "torque difference over yaw rate", _TUNED),
-            "K_i": Parameter(60_000, "N m/rad", "the same over its integral", _TUNED),
+            "K_p": Parameter(10_000, "N m s/rad", "torque difference over yaw rate", _TUNED),
+            "K_i": Parameter(100_000, "N m/rad", "the same over its integral", _TUNED),
         },
         "slip": {
             "K_p": Parameter(20, "N m s/rad", "torque difference over wheels' speeds", _TUNED),
@@ -64,7 +64,7 @@ GAINS: Mapping[str, Mapping[str, Parameter]] = MappingProxyType(
 """Of a PI law, by what it controls."""
 
 UNDERSTEERING: Mapping[str, Parameter] = MappingProxyType(
-    {"K_ref": Parameter(0.0055, "s^2/m", _FOLLOWS, _ASSUMED)}
+    {"K_ref": Parameter(0.004, "s^2/m", _FOLLOWS, _ASSUMED)}
 )
 """Of a differential that can only hold a turn back."""
 
