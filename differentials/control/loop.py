@@ -106,7 +106,7 @@ def _checked(equations: bg.StateEquations, laws: Mapping[str, object]) -> dict[H
             raise bg.StructureError(
                 f"there is no clutch or tire {node!r}{nearest(node, known)}; there are {', '.join(known)}"
             )
-    return dict(laws)
+    return {node: value for node, value in laws.items()}  # noqa: C416
 
 
 def _values(
