@@ -11,11 +11,20 @@ Role = Literal[
 
 _BOUNDED = ("low", "high", "restitution", "start", "stiffness", "damping")
 
+BOUNDS = {"low": 1, "high": -1}
+"""The bounds of a stop, and which way its flow leads off each."""
+
+POSITION = "position"
+"""The part of a stop that integrates its flow."""
+
 EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", *_BOUNDED)
 """The attributes that are numbers or expressions."""
 
 NAMED = ("states", "update", "outputs")
 """The attributes that map names to expressions."""
+
+INSTANTS = ("every", "offset")
+"""The attributes that are numbers of seconds."""
 
 _SWITCHED = frozenset({"on", "off", "reset"})
 _NAMED = frozenset({"value", "effort", "flow", "law", "unit", "ports"})
@@ -78,11 +87,14 @@ class Kind(StrEnum):
     )
     STOP = "Stop", Nature("switch", frozenset({"flow", "reset", *_BOUNDED}), place=8)
     SW = "Sw", Nature("switch", frozenset({"effort", "flow", *_SWITCHED}), place=2)
-    FUNCTION = "Function", Nature("signal", frozenset({"value", "unit"}), place=9)
-    STATE = "State", Nature("signal", frozenset({"rate", "start", "low", "high", "unit"}), place=10)
+    FUNCTION = "Function", Nature("signal", frozenset({"value", "unit", "ports"}), place=9)
+    STATE = (
+        "State",
+        Nature("signal", frozenset({"rate", "start", "low", "high", "unit", "ports"}), place=10),
+    )
     CONTROLLER = (
         "Controller",
-        Nature("signal", frozenset({"every", "offset", "reads", "step", *NAMED}), place=11),
+        Nature("signal", frozenset({*INSTANTS, "reads", "step", "ports", *NAMED}), place=11),
     )
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":
@@ -179,3 +191,7 @@ class Kind(StrEnum):
     def letter(self) -> str:
         """The letter of a storage's own state, p or q; else an empty text."""
         return self.nature.letter
+
+
+SIGNALS = frozenset(str(kind) for kind in Kind if kind.signals)
+"""The kinds of node without power, as texts."""

@@ -15,16 +15,17 @@ from bondgraph.algebra.expressions import expression
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import start_of, unit_of
 from bondgraph.nodes.elements import Element, Node
-from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.kinds import BOUNDS, POSITION, Kind
 from bondgraph.nodes.laws import ExpressionLaw, law
-from bondgraph.nodes.stops import BOUNDS, POSITION, check_order, rigid
+from bondgraph.nodes.stops import check_order, rigid
 
 
 def Function(name: Hashable, value: object, **more: object) -> Node:
     """A signal of this name: an expression of signals, inputs, parameters and the time.
 
     It has no bonds and takes no power; whatever reads a name may read it, and it may read any. Where
-    functions determine one another, or by way of the graph themselves, they are solved together.
+    functions determine one another, or by way of the graph themselves, they are solved together. ``ports=``:
+    names in the expression that stand for what wires bring, as arguments do, ``ports=["plus", "minus"]``.
 
     Raises nothing: `validate` looks at nodes.
 

@@ -10,15 +10,9 @@ from bondgraph.algebra.expressions import expression
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import variable
 from bondgraph.nodes.elements import Element, Node, Switch
-from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.kinds import BOUNDS, POSITION, Kind
 from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.nodes.resets import resets_of
-
-BOUNDS = {"low": 1, "high": -1}
-"""The bounds of a stop, and which way its flow leads off each."""
-
-POSITION = "position"
-"""The part of a stop that integrates its flow."""
 
 
 def Stop(
@@ -80,15 +74,13 @@ def stop_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element
     return [junction, position, *made(name, attributes, bounds, place)]
 
 
-def stop_parts(attributes: Mapping[str, Any]) -> tuple[str, ...]:
-    """The names of a stop's parts beside its junction."""
-    return (POSITION, *(key for key in BOUNDS if attributes.get(key) is not None))
-
-
 def rigid(
     name: Hashable, attributes: Mapping[str, Any], bounds: Mapping[str, sp.Expr], place: sp.Symbol
 ) -> list[Element]:
-    """At each bound a switch that holds as long as its effort pushes, and lets go what has left."""
+    """At each bound a switch that holds as long as its effort pushes, and lets go what has left.
+
+    A stop of one bound calls it by its own name, unless that is the place's.
+    """
     where = f"node {name!r}"
     if attributes.get("damping") is not None:
         raise StructureError(
@@ -102,7 +94,7 @@ def rigid(
     for key, bound in bounds.items():
         effort, flow = _own(name, key)
         way = BOUNDS[key]
-        own = name if len(bounds) == 1 else f"{name}.{key}"
+        own = name if len(bounds) == 1 and name != place.name else f"{name}.{key}"
         switch = Switch(
             own, way * effort, way * (bound - place), "effort", restitution=bounce, stops=True,
             resets=resets,

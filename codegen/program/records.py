@@ -288,6 +288,12 @@ class Program:
         corners = () if self.corners is None else self.corners.nodes
         return (*(port.name for port in self.friction), *corners)
 
+    @cached_property
+    def nodes(self) -> tuple[Hashable, ...]:
+        """Where events may be asked for: the graph's nodes, and the ports of its fields."""
+        ports = (port.element.name for port in self.equations.reduction.structure.ports)
+        return tuple(dict.fromkeys([*self.equations.elements, *ports, *self.happening]))
+
     @property
     def corners_told(self) -> bool:
         """Whether states, external inputs and the time alone tell what corners hang on."""
@@ -369,6 +375,16 @@ class Program:
             1 if (one := port.switch) is None else one.sign(one.stops or port.name in on)
             for port in self.friction
         )
+
+    @property
+    def events(self) -> tuple[Reset, ...]:
+        """What ports set as they change over, or as stops are hit."""
+        return tuple(one for one in self.resets if one.port >= 0)
+
+    @property
+    def ticks(self) -> tuple[Reset, ...]:
+        """What tasks set at instants of their own."""
+        return tuple(one for one in self.resets if one.port < 0)
 
     @property
     def restitution_given(self) -> bool:

@@ -1,11 +1,14 @@
 """The end of generated Python: the formulas put together with what is the same for every model."""
 
 from codegen.corners.refusing import refusals
+from codegen.energy.holdings import Holdings
 from codegen.program.records import Group, Program
+from codegen.python.beginning import beginning, held_table
 from codegen.python.blocks import bound, law_names
 from codegen.python.looking import model_words, table_shapes
 from codegen.python.tables import slip_rows
 from codegen.python.text import RULE, listing, quoted
+from codegen.python.ticking import clocks, reset_rows, ticking
 from codegen.standalone.ranks import SlipRows
 from codegen.standalone.switchings import Switching
 
@@ -70,20 +73,20 @@ class Model({base}):
 def simulate(time, initial, inputs, parameters=None, step=STEP, dead_band=1e-6{also}{tables}):
     """Integrate with steps of at most ``step`` [s] and sample at the times given.
 
-    ``initial``: states by name, the rest start at {rest}. ``inputs``: a number or a function of time for
-    each of INPUTS. ``dead_band``: slips below it may stick. {told}The work of a step is bounded: nothing
-    is located inside it. Returns arrays by name: t, states, inputs, outputs, {what}.{values}
+    ``initial``: states{also_held} by name, the rest start at {rest}. ``inputs``: a number or a
+    function of time for each of INPUTS. ``dead_band``: slips below it may stick. {told}The
+    work of a step is bounded: nothing is located inside it. Returns arrays by name: t, states,
+    inputs, outputs, {what}.{values}
 
     Raises `UnstableStep` for a step beyond the stability of its method, with the longest that is
     stable; LONGEST_STEP is that of the start.
     """
-    return run(Model(parameters{other}), time, {initial}, inputs, step, dead_band{given})'''
+    {begin}return run({model}, time, {initial}, inputs, step, dead_band{given})'''
 
 
-_FROM_ZERO = {"rest": "0", "initial": "initial"}
-_TOLD = {"rest": "STARTS, or 0", "initial": "{**STARTS, **initial}"}
+_FROM_ZERO = {"rest": "0", "initial": "begun"}
+_TOLD = {"rest": "STARTS, or 0", "initial": "{**STARTS, **begun}"}
 """Where no start is declared, and where some are."""
-
 
 _PLAIN = {"also": "", "given": "", "told": "", "what": "friction efforts"}
 
@@ -101,14 +104,15 @@ _SWITCHED = {
 }
 
 
-def needed(program: Program, slips: SlipRows | None, implicit: bool) -> list[str]:
+def needed(program: Program, slips: SlipRows | None, implicit: bool, held: bool) -> list[str]:
     """The modules that a program's model works with, beside those that these import.
 
-    ``slips``: what ports receive; None where every set's slips bind the states, each by itself.
+    ``slips``: what ports receive; None where every set's slips bind the states, each by itself. ``held``:
+    whether a start may tell what storages hold.
     """
     also = {
         "settling": bool(program.friction) and not program.guarded,
-        "switched": program.guarded and not (program.stopped or program.resets or program.hanging),
+        "switched": program.guarded and not (program.stopped or program.events or program.hanging),
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
         "ranks": slips is not None,
@@ -116,9 +120,11 @@ def needed(program: Program, slips: SlipRows | None, implicit: bool) -> list[str
     }
     folders = dict.fromkeys(also, "standalone") | {"settling": "fixed", "switched": "fixed"}
     names = [f"codegen.{folders[name]}.{name}" for name, wanted in also.items() if wanted]
-    events = {"stopping": program.stopped, "resetting": program.resets, "hanging": program.hanging}
+    events = {"stopping": program.stopped, "resetting": program.events, "hanging": program.hanging}
     names += [f"codegen.stops.{name}" for name, wanted in events.items() if wanted]
+    names += ["codegen.fixed.ticking"] if program.clocks else []
     names += ["codegen.fixed.tabled"] if program.tables else []
+    names += ["codegen.fixed.starting"] if held else []
     back = any(table.turned for table in program.tables)
     names += ["bondgraph.tables.backward"] if back else []
     names += ["bondgraph.searching"] if program.turnings else []
@@ -126,12 +132,12 @@ def needed(program: Program, slips: SlipRows | None, implicit: bool) -> list[str
 
 
 def closing(
-    program: Program, slips: SlipRows | None, told: bool, implicit: bool = False
+    program: Program, slips: SlipRows | None, told: bool, held: Holdings, implicit: bool = False
 ) -> list[str]:
     """Functions that bind formulas and tables to the rest, the class `Model`, and `simulate`.
 
-    ``slips``: as `needed` takes them. ``told``: whether there is a table STARTS;
-    ``implicit``: whether steps are linearly implicit.
+    ``slips``: as `needed` takes them. ``told``: whether there is a table STARTS; ``held``: what a start may
+    tell of storages; ``implicit``: whether steps are linearly implicit.
     """
     names = "STATES, INPUTS, SHOWN, SWITCHES" if program.guarded else "STATES, INPUTS, SHOWN"
     lines = [RULE, "# How this model is put together.", "", f"NAMES = Names({names})"]
@@ -145,17 +151,24 @@ def closing(
         arguments = f"{arguments}, switches({taken})"
         lines += _switching(program)
     base = f"Rosenbrock, {base}" if implicit else base
+    if program.clocks:
+        base = f"TickingSteps, {base}"
+        lines += clocks(program)
     if program.tables:
         lines += ["", *table_shapes(program)]
     base = f"InsideTables, {base}" if refusals(program) else base
+    lines += held_table(held)
     lines += ["", "", *_form(program)]
     lines += _friction(program, slips) if program.friction else []
     if program.guarded:
         lines += _switches(program)
     words = (_SWITCHED if program.guarded else _PLAIN) | (_TOLD if told else _FROM_ZERO)
-    resets = "\n    resets = RESETS\n" if program.resets else ""
+    resets = "\n    resets = RESETS\n" if program.events else ""
+    resets += "\n    clocks, ticks = CLOCKS, TICKS\n" if program.clocks else ""
     resets += "\n    refusing = REFUSING\n" if refusals(program) else ""
     words |= model_words(program)
+    words |= beginning(words, held)
+    words["own"] += ticking(program)
     model = _MODEL.format(base=base, arguments=arguments, resets=resets, **words)
     return [*lines, *model.splitlines()]
 
@@ -166,7 +179,7 @@ def _given(program: Program) -> str:
 
 def _base(program: Program) -> str:
     """The classes of fixed steps that a model with switches, stops or jumps of second order is of."""
-    bases = ["ResettingSteps"] if program.resets else []
+    bases = ["ResettingSteps"] if program.events else []
     bases += ["HangingSteps"] if program.hanging else []
     bases += ["StoppedSteps"] if program.stopped else []
     return ", ".join(bases or ["SwitchedSteps"])
@@ -190,11 +203,9 @@ def _switching(program: Program) -> list[str]:
         f"    {None if port.switch is None else _told(port.switch)}," for port in program.friction
     ]
     lines = ["", f"# {note}", "SWITCHING = (", *rows, ")"]
-    if not program.resets:
+    if not program.events:
         return lines
-    rows = [
-        f"    Reset({one.port}, {one.sign}, {one.place}, {one.value})," for one in program.resets
-    ]
+    rows = reset_rows(program.events)
     note = "What resets states: the port and the mode it comes to; places of state and value."
     return [*lines, "", f"# {note}", "RESETS = (", *rows, ")"]
 

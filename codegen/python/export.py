@@ -7,6 +7,7 @@ from typing import Any
 
 from bondgraph.equations import StateEquations
 from codegen.corners.refusing import arguments, refusals
+from codegen.energy.holdings import holdings
 from codegen.model.commands import conditions_told
 from codegen.model.doubts import warn_of_doubts
 from codegen.model.starts import told_starts
@@ -14,6 +15,7 @@ from codegen.modes.steps import is_implicit
 from codegen.ports.holds import all_plain, check_sets
 from codegen.program.records import Program
 from codegen.program.units import units
+from codegen.python.beginning import held_function
 from codegen.python.blocks import (
     Names,
     coefficients_function,
@@ -27,6 +29,7 @@ from codegen.python.looking import lookup_tables
 from codegen.python.modules import written_out
 from codegen.python.tables import friction_tables, places, public, step_settings
 from codegen.python.text import RULE, filled, plain, table
+from codegen.python.ticking import set_by_tasks
 from codegen.python.turnings import turned_laws
 from codegen.runs.start import start_of
 
@@ -87,7 +90,8 @@ def to_python(
     starts = told_starts(equations, exact)
     check_sets(program, closed.slips)
     slips = None if all_plain(program, closed.slips) else closed.slips
-    imports, fixed = written_out(needed(program, slips, implicit))
+    held = holdings(program)
+    imports, fixed = written_out(needed(program, slips, implicit, bool(held.names)))
     lines = [
         *_head(program, equations, name, imports),
         *("", *table("PARAMETERS", used)),
@@ -98,9 +102,10 @@ def to_python(
         *(friction_tables(program, closed.slips) if program.friction else ()),
         *step_settings(longest, len(program.friction)),
         *_functions(program, names),
+        *held_function(held, program, names),
     ]
     same = [RULE, "# What follows is the same for every model.", "", "", fixed]
-    tail = closing(program, slips, bool(starts), implicit)
+    tail = closing(program, slips, bool(starts), held, implicit)
     return "\n".join([*lines, "", "", *same, "", "", *tail]) + "\n"
 
 
@@ -150,17 +155,8 @@ def _functions(program: Program, names: Names) -> list[str]:
         rows = [f"{plain(str(port.name))}: {part}" for port in program.friction for part in what]
         doc = "For each friction port u = level * curve(|slip|) * sign(slip)."
         lines += values_function("friction_values", doc, program.friction_values, rows, names)
-    if program.guarded:
-        rows = [f"{plain(str(p.name))}: {way}" for p in program.switches
-                if p.switch is not None for way in p.switch.guards]  # fmt: skip
-        rows += [
-            f"{plain(str(program.friction[i].name))}: what it jumps by" for i, _ in program.hanging
-        ]
-        states = (*program.states, *program.law_states)
-        rows += [f"{plain(str(states[one.place]))} reset by {plain(str(program.friction[one.port].name))}"
-                 for one in program.resets]  # fmt: skip
-        doc = "Conditions of switches: to turn on and to turn off in turn, each above zero."
-        lines += values_function("switch_conditions", doc, program.guards, rows, names)
+    if program.guarded or program.clocks:
+        lines += _conditions(program, names)
     if program.momenta.results:
         rows = [f"moving {plain(state.name)}" for state in program.states]
         rows += [f"behind {plain(program.readings[at].name)}" for at in program.momenta_rows]
@@ -173,3 +169,22 @@ def _functions(program: Program, names: Names) -> list[str]:
         doc = "Arguments of tables that refuse what is outside."
         lines += values_function("table_places", doc, arguments(program), rows, names)
     return lines
+
+
+def _conditions(program: Program, names: Names) -> list[str]:
+    """What switches change over by, and what states become with them, or as tasks set them."""
+    rows = [
+        f"{plain(str(p.name))}: {way}" for p in program.switches
+        if p.switch is not None for way in p.switch.guards
+    ]  # fmt: skip
+    rows += [
+        f"{plain(str(program.friction[i].name))}: what it jumps by" for i, _ in program.hanging
+    ]
+    states = (*program.states, *program.law_states)
+    rows += [f"{plain(str(states[one.place]))} reset by {plain(str(program.friction[one.port].name))}"
+             for one in program.events]  # fmt: skip
+    rows += [plain(one) for one in set_by_tasks(program)]
+    doc = "Conditions of switches: to turn on and to turn off in turn, each above zero."
+    if not program.guarded:
+        doc = "What tasks set."
+    return values_function("switch_conditions", doc, program.guards, rows, names)

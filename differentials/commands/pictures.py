@@ -15,7 +15,7 @@ from differentials.control.manoeuvres import manoeuvres
 from differentials.figures import Figure, draw, panels, save_picture
 from differentials.loop_figures import loop_panels
 
-FORMATS = (".csv", ".nc", ".png")
+FORMATS = (".csv", ".nc", ".parquet", ".mat", ".png")
 """What a run may be written as."""
 
 
@@ -52,6 +52,10 @@ def save(result: Result, target: Path, paint: Callable[[Path], None]) -> None:
             result.write_csv(target)
         case ".nc":
             result.write_netcdf(target)
+        case ".parquet":
+            result.write_parquet(target)
+        case ".mat":
+            result.write_mat(target)
         case _:
             paint(target)
 

@@ -31,6 +31,7 @@
 #define BG_STOPPING 0
 #define BG_GUARDS 0
 #define BG_RESETS 0
+#define BG_CLOCKS 0
 #define BG_MOMENTA 0
 #define BG_COUPLED 0
 #define BG_HOLDS 2
@@ -48,6 +49,8 @@
 #define BG_TABLE_FACTORS 0
 #define BG_TABLE_WORK 0
 #define BG_REFUSING 0
+#define BG_HOLDINGS 6
+#define BG_HOLDING_VALUES 6
 #define BG_ROSENBROCK 0
 
 /* The longest step [s] that is stable at the default start, parameters and inputs, in every

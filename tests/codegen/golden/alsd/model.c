@@ -45,6 +45,7 @@ const char *const bg_parameter_names[] = {
     "I_1", "I_2", "I_i", "I_w", "b", "i", "k", "k_t", "omega_t1_0", "omega_t2_0", "r"
 };
 const char *const bg_friction_names[] = {"clutch"};
+const char *const bg_task_names[] = {""};
 const bg_table bg_tables[] = {{0}};
 const char *const bg_lookup_names[] = {""};
 
@@ -65,6 +66,7 @@ const int bg_differentiable[] = {1, 1, 0, 0};
 const int bg_output_readings[] = {1, 4, 5, 6, 7};
 const bg_switch bg_switches[] = {{BG_RUBS, 0, 0, 0, 0, 0, 0, 0, 0}};
 const bg_reset bg_resets[] = {{0, 0, 0, 0}};
+const bg_clock bg_clocks[] = {{0.0, 0.0, 0.0}};
 
 static const int rows_A[] = {0, 0, 1, 1, 2, 3, 4, 5};
 static const int columns_A[] = {0, 1, 0, 1, 2, 3, 4, 5};
@@ -95,6 +97,12 @@ const int bg_moved_begins[] = {0, 0};
 const int bg_moved[] = {0};
 const unsigned long long bg_prime = 2305840746056767921u;
 const unsigned long long bg_prime_inverse = 2899849368476528815u;
+const char *const bg_held_names[] = {
+    "p_I_1", "p_I_2", "q_halfshaft_1_spring", "q_halfshaft_2_spring", "p_I_w1", "p_I_w2"
+};
+const int bg_held_begins[] = {0, 1, 2, 3, 4, 5, 6};
+const int bg_held_states[] = {0, 1, 2, 3, 4, 5};
+const int bg_held_by_law[] = {0, 0, 0, 0, 0, 0};
 
 /* Nonzero entries of A, J, B, E, F, D, H, K: 22 operations. */
 void bg_coefficients(const bg_values *v, double *out)
@@ -189,6 +197,21 @@ void bg_momenta(const bg_values *v, double *out)
     (void)out;
 }
 
+/* How states follow from what storages hold at a start: 2 operations. */
+void bg_held_values(const bg_values *v, double *out)
+{
+    const double I_1 = v->p[0];
+    const double I_2 = v->p[1];
+    const double I_w = v->p[3];
+    const double k = v->p[6];
+    out[0] = I_1;
+    out[1] = I_2;
+    out[2] = 1.0/k;
+    out[3] = 1.0/k;
+    out[4] = I_w;
+    out[5] = I_w;
+}
+
 /* What corners hang on, and for each whether it counts: 0 operations. */
 void bg_corners(const bg_values *v, double *out)
 {
@@ -230,7 +253,7 @@ static void coupled_values(const bg_values *v, double *out)
     (void)out;
 }
 
-const bg_refusing bg_refusings[] = {{0, 0, 0}};
+const bg_refusing bg_refusings[] = {{0, 0, 0, 0}};
 
 /* Arguments of tables that refuse what is outside: 0 operations. */
 void bg_refused(const bg_values *v, double *out)
