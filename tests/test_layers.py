@@ -21,7 +21,7 @@ ORDER = {
     "ports straight modes corners instants energy runs pictures record plots analysis c engine stepping "
     "delays simulator simulate trim packing family batch abreast sweeps python switched sparse fmu exports",
     "differentials": "laws parts pieces passive active topologies parameters model identification speeds "
-    "scenarios exporting figures report commands",
+    "prepared control scenarios exporting figures loop_figures report commands",
 }
 """Each imports only earlier ones."""
 
