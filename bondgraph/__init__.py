@@ -49,6 +49,7 @@ from bondgraph.nodes.controllers import Controller
 from bondgraph.nodes.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw
+from bondgraph.nodes.machines import StateMachine
 from bondgraph.nodes.one_way import CheckValve, Diode, Freewheel
 from bondgraph.nodes.signals import Function, State
 from bondgraph.nodes.stops import Stop
@@ -112,6 +113,7 @@ __all__ = [
     "SingularStorageError",
     "State",
     "StateEquations",
+    "StateMachine",
     "Step",
     "Stop",
     "StoreError",

@@ -107,6 +107,12 @@ class StateEquations:
         return self.reduction.structure.states_of_laws
 
     @property
+    def kept(self) -> frozenset[sp.Symbol]:
+        """The states that stay as they are but at instants: what detectors make of nothing at all."""
+        rows = {name: self.reduction.reading(self.signals[rate]) for name, rate in self.integrals.items()}
+        return frozenset(name for name, row in rows.items() if not any(row.parts))
+
+    @property
     def held(self) -> Mapping[sp.Symbol, sp.Expr]:
         """What storages hold that are no states: ``p_m``, ``q_C``, over their flows and efforts."""
         taken = {*self.signals, *self.states, *self.inputs, *self.further_states, *self.parameters}

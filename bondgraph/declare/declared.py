@@ -30,6 +30,7 @@ from bondgraph.nodes.controllers import controller_elements
 from bondgraph.nodes.elements import OTHER, Element
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw, law
+from bondgraph.nodes.machines import machine_elements
 from bondgraph.nodes.signals import function_elements, state_elements
 from bondgraph.nodes.stops import stop_elements
 
@@ -38,6 +39,7 @@ COMPOSITE: Mapping[str, Callable[[Hashable, Mapping[str, Any]], list[Element]]] 
     Kind.FUNCTION: function_elements,
     Kind.STATE: state_elements,
     Kind.CONTROLLER: controller_elements,
+    Kind.MACHINE: machine_elements,
 }
 """What nodes of several elements are made of, by their kind; the first of them stands for the node."""
 

@@ -122,6 +122,9 @@ def _add_elements(result: _Validated, graph: Any) -> tuple[set[Hashable], list[B
             _add(result, own, element)
             if element.owner is not None:
                 fields.add(name)
+            elif element.at is not None:
+                if element.at != own:
+                    controls.append((element.at, own))
             elif own != name:
                 # What a source gives counts into the rest.
                 controls.append((own, name) if element.kind.supplies else (name, own))

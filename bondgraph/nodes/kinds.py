@@ -84,6 +84,10 @@ class Kind(StrEnum):
         "Controller",
         Nature("signal", frozenset({"every", "offset", "reads", "step", *NAMED}), place=11),
     )
+    MACHINE = (
+        "StateMachine",
+        Nature("signal", frozenset({"modes", "initially", "transitions", "states"}), place=12),
+    )
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":
         """One of the rows above; ``Kind("I")`` looks one up and makes none."""

@@ -151,7 +151,7 @@ def _functions(program: Program, names: Names) -> list[str]:
         doc = "For each friction port u = level * curve(|slip|) * sign(slip)."
         lines += values_function("friction_values", doc, program.friction_values, rows, names)
     if program.guarded:
-        rows = [f"{plain(str(p.name))}: {way}" for p in program.switches
+        rows = [f"{plain(str(p.name))}: {way}" for p in program.told_by_guards
                 if p.switch is not None for way in p.switch.guards]  # fmt: skip
         rows += [
             f"{plain(str(program.friction[i].name))}: what it jumps by" for i, _ in program.hanging

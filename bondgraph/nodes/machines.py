@@ -1,0 +1,240 @@
+"""State machines: `StateMachine` as a user writes it, and the elements that it is made of."""
+
+from collections.abc import Hashable, Iterable, Mapping
+from typing import Any
+
+import sympy as sp
+
+from bondgraph.algebra.atoms import symbol
+from bondgraph.algebra.expressions import TIME, expression
+from bondgraph.errors import StructureError, nearest
+from bondgraph.nodes.elements import Element, Node, Switch
+from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.laws import ExpressionLaw
+from bondgraph.nodes.resets import resets_of
+from bondgraph.nodes.tasks import Machine, Reset, Transition
+
+ARROW = ">"
+"""Between the mode that a transition leaves and the one that it comes to."""
+
+NUMBER = "in"
+"""The part of a machine that keeps the number of its mode; no name that a state can have."""
+
+
+def StateMachine(
+    name: Hashable, modes: Iterable[str], transitions: Mapping[str, object],
+    start: str | None = None, states: Mapping[str, object] | None = None, **more: object,
+) -> Node:  # fmt: skip
+    """A machine that is in one of its ``modes`` at any time, and goes from one to another at once.
+
+    ``transitions``: by the modes, ``"idle > launch"``, the guard, an expression of any signals, or a pair of
+    guard and action. A transition is taken as its guard rises above zero while the machine is in its mode,
+    or if the guard is above zero where that is entered, or a run begins in it; of several the first, as they
+    are written. The action maps states to what each becomes, told by what stood before: those in ``states``,
+    which keep what they are in between and map to where they begin, or any of the graph. What ticks at the
+    same instant comes after all transitions, and may lead to others.
+
+    The signal ``<name>`` is the number of the mode, 0, 1, ... in order, and a state, so that ``initial`` may
+    have another than ``start``, the first unless told. For each mode the signal ``<name>_<mode>`` is 1 in
+    it and 0 otherwise. A transition from a mode to itself is taken each time its guard rises above zero.
+
+    Raises nothing: `validate` looks at nodes.
+
+    >>> import bondgraph as bg, codegen
+    >>> tank = bg.graph(
+    ...     [bg.Sf("pump", "Q*valve_fill"), bg.Zero("node"), bg.C("tank", "A", effort="h"), bg.R("leak", "R"),
+    ...      bg.StateMachine("valve", ["fill", "rest"], states={"fills": 1}, transitions={
+    ...          "fill > rest": "h - 2", "rest > fill": ("1 - h", {"fills": "fills + 1"})})],
+    ...     "pump > node > tank", "node > leak")
+    >>> run = codegen.simulator(bg.derive(tank), {"Q": 5, "A": 1, "R": 1}).run([0, 1, 2])
+    >>> [(event.port, event.kind) for event in run.events], run["valve"].tolist(), run["fills"][-1]
+    ([('valve', 'fill > rest'), ('valve', 'rest > fill'), ('valve', 'fill > rest')], [0.0, 0.0, 1.0], 2.0)
+    """
+    given = {"modes": modes, "transitions": transitions, "initially": start, "states": states, **more}
+    told = {key: value for key, value in given.items() if value is not None}
+    return name, {"kind": str(Kind.MACHINE), **told}
+
+
+def machine_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element]:
+    """What keeps the mode and the states, a source for the signal of each mode, a switch for each transition.
+
+    A switch has a port of its own that carries nothing; its condition is the guard, in the mode alone.
+    """
+    where = f"node {name!r}"
+    if not isinstance(name, str):
+        raise StructureError(
+            f"{where}: a machine's node has the name of the signal that is its mode, a text, not {name!r}"
+        )
+    number = symbol(name, where)
+    modes = _modes(attributes.get("modes"), name, where)
+    first = attributes.get("initially", modes[0])
+    _check_mode(first, modes, f"{where}, start")
+    machine = Machine(name, number, modes, str(first))
+    starts = _starts(attributes.get("states"), where)
+    found = _transitions(attributes.get("transitions"), machine, where)
+    _check_set(starts, found, number, where)
+    effort, flow = (symbol(f"{letter}_{name}", where) for letter in "ef")
+    made = [
+        Element(name, Kind.ZERO, None, effort, None, whole=name, machine=machine),
+        # No flow passes it, so that its effort, the rate of all that is kept, is zero.
+        Element(f"{name}.still", Kind.R, sp.Integer(1), effort, flow, whole=name),
+        _kept(name, NUMBER, number, sp.Integer(modes.index(str(first)))),
+    ]
+    made += [_kept(name, one.name, one, value) for one, value in starts.items()]
+    for mode in modes:
+        made += _shown(machine, mode)
+    for transition, resets in found:
+        made += _taken(transition, resets)
+    return made
+
+
+def _kept(name: str, part: str, state: sp.Symbol, start: sp.Expr) -> Element:
+    """A detector that integrates zero."""
+    effort, flow = (symbol(f"{letter}_{name}_{part}", f"node {name!r}") for letter in "ef")
+    return Element(
+        f"{name}.{part}", Kind.DE, None, effort, flow, gives="flow", integral=state, start=start,
+        whole=name,
+    )  # fmt: skip
+
+
+def _shown(machine: Machine, mode: str) -> list[Element]:
+    """The signal that is 1 in a mode: a source, and the detector that it ends at."""
+    name, where = str(machine.name), f"node {machine.name!r}"
+    effort, flow = symbol(f"{name}_{mode}", where), symbol(f"f_{name}_is_{mode}", where)
+    told = ExpressionLaw(machine.chosen(mode, sp.Integer(1), sp.Integer(0)))
+    own = f"{name}_{mode}"
+    return [
+        Element(own, Kind.SE, None, effort, flow, law=told, gives="effort", whole=name, at=own),
+        Element(f"{own}.end", Kind.DE, None, effort, flow, gives="flow", whole=name, at=own),
+    ]
+
+
+def _taken(transition: Transition, resets: tuple[Reset, ...]) -> list[Element]:
+    """The switch that a transition turns on, and off again where that has led away; what it ends at."""
+    machine = transition.machine
+    name, where = str(machine.name), f"node {machine.name!r}"
+    ends = f"{name}_{transition.source}_{transition.target}"
+    sides = ([symbol(f"{letter}_{ends}{end}", where) for letter in "ef"] for end in ("", "_end"))
+    own, one = f"{name}.{transition.words}", sp.Integer(1)
+    on = machine.chosen(transition.source, transition.guard, -one)
+    off = machine.chosen(transition.source, -transition.guard, one)
+    target = sp.Integer(machine.modes.index(transition.target))
+    if transition.source != transition.target:
+        resets = (Reset(machine.number, target, "on"), *resets)
+    switch = Switch(own, on, off, "effort", resets=resets, transition=transition)
+    return [
+        Element(own, Kind.SW, None, *next(sides), switch=switch, whole=name, at=own),
+        Element(f"{own}.end", Kind.R, one, *next(sides), whole=name, at=own),
+    ]
+
+
+def _modes(given: Any, name: str, where: str) -> tuple[str, ...]:
+    """The modes, each of which makes a signal's name."""
+    if given is None or isinstance(given, str | Mapping) or not isinstance(given, Iterable):
+        raise StructureError(f"{where}: modes is {given!r}; give a list of names, ['idle', 'drive']")
+    modes = tuple(given)
+    if not modes:
+        raise StructureError(f"{where} has no modes; give their names, modes=['idle', 'drive']")
+    for mode in modes:
+        if not isinstance(mode, str) or not f"_{mode}".isidentifier():
+            raise StructureError(
+                f"{where}: {mode!r} cannot be a mode; use letters, digits and underscores: "
+                f"the signal that is 1 in it is called {name}_{mode}"
+            )
+        if modes.count(mode) > 1:
+            raise StructureError(f"{where}: the mode {mode!r} is there twice")
+    return modes
+
+
+def _check_mode(mode: Any, modes: tuple[str, ...], where: str) -> None:
+    if mode not in modes:
+        raise StructureError(
+            f"{where}: there is no mode {mode!r}{nearest(str(mode), modes)}; there are {', '.join(modes)}"
+        )
+
+
+def _starts(given: Any, where: str) -> dict[sp.Symbol, sp.Expr]:
+    """The states of a machine, and where they begin."""
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
+        raise StructureError(
+            f"{where}, states must map names to where they begin, not be {given!r}"
+        )
+    found: dict[sp.Symbol, sp.Expr] = {}
+    for key, value in given.items():
+        one = symbol(key.name if isinstance(key, sp.Symbol) else key, f"{where}, states")
+        if one in found:
+            raise StructureError(f"{where}: {one} is there twice")
+        found[one] = expression(value, f"{where}, start of {one}")
+        if TIME in found[one].free_symbols:
+            raise StructureError(
+                f"{where}: the start of {one} reads the time; give numbers and parameters"
+            )
+    return found
+
+
+def _transitions(
+    given: Any, machine: Machine, where: str
+) -> list[tuple[Transition, tuple[Reset, ...]]]:
+    """The transitions, with what their actions set."""
+    if not isinstance(given, Mapping) or not given:
+        raise StructureError(
+            f"{where}: transitions is {given!r}; it must map the modes of each to its guard, "
+            "{'idle > drive': 'speed - 1'}"
+        )
+    found: dict[str, tuple[Transition, tuple[Reset, ...]]] = {}
+    for words, told in given.items():
+        ends = [part.strip() for part in words.split(ARROW)] if isinstance(words, str) else []
+        if len(ends) != 2:
+            raise StructureError(
+                f"{where}: {words!r} is no transition; name the mode that it leaves and the one that it comes "
+                f"to, '{machine.modes[0]} > {machine.modes[-1]}'"
+            )
+        for end in ends:
+            _check_mode(end, machine.modes, f"{where}, {words!r}")
+        guard, action = _pair(told, f"{where}, {words!r}")
+        one = Transition(machine, *ends, expression(guard, f"{where}, guard of {words!r}"))
+        if one.words in found:
+            raise StructureError(
+                f"{where}: {one.words!r} is there twice; one guard is above zero where either is, max(a, b)"
+            )
+        found[one.words] = one, resets_of(action, f"{where}, action of {words!r}", ("on",))
+    return list(found.values())
+
+
+def _pair(told: Any, where: str) -> tuple[Any, Any]:
+    """The guard and the action, None where there is none."""
+    if not isinstance(told, list | tuple):
+        return told, None
+    if len(told) != 2 or not isinstance(told[1], Mapping):
+        raise StructureError(
+            f"{where} is {told!r}; it must be a guard, or a guard and what states become, "
+            "('speed - 1', {'gear': 1})"
+        )
+    return told[0], told[1]
+
+
+def _check_set(
+    starts: Mapping[sp.Symbol, sp.Expr], found: list[tuple[Transition, tuple[Reset, ...]]],
+    number: sp.Symbol, where: str,
+) -> None:  # fmt: skip
+    """Every state is set by some action, none sets the mode, and no transition is without any effect."""
+    if number in starts:
+        raise StructureError(f"{where}: {number} is its mode; give the state another name")
+    for one, resets in found:
+        if number in [reset.state for reset in resets]:
+            raise StructureError(
+                f"{where}, action of {one.words!r} sets {number}, the mode; a transition comes to "
+                f"{one.target!r}, write another one"
+            )
+        if one.source == one.target and not resets:
+            raise StructureError(
+                f"{where}: {one.words!r} stays in its mode and sets nothing; give it an action, or remove it"
+            )
+    acted = {reset.state for _, resets in found for reset in resets}
+    for state in starts:
+        if state not in acted:
+            raise StructureError(
+                f"{where}: the state {state} is never set; set it in an action, or give a parameter"
+            )
