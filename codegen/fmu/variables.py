@@ -163,7 +163,7 @@ class _Listing:
                 kind = "FMU_SLIDES" if port.slides else "FMU_MODE"
                 if port.way >= 0:
                     self._made(f"mode({port.name})", kind, at, variability="discrete")
-            else:
+            elif port.transition is None:
                 self._made(str(port.name), "FMU_SWITCH", at, variability="discrete")
         for at in range(indicators):
             self._made(f"event_indicator({at + 1})", "FMU_INDICATOR", at)

@@ -288,9 +288,20 @@ class Program:
 
     @property
     def happening(self) -> tuple[Hashable, ...]:
-        """Where events happen, as C counts it: at ports, then at nodes whose laws have corners."""
+        """Where events happen, as C counts it: at ports or state machines, then at nodes with corners."""
         corners = () if self.corners is None else self.corners.nodes
-        return (*(port.name for port in self.friction), *corners)
+        ports = (port.name if one is None else one.machine.name for port, one in self._ports_taken)
+        return (*ports, *corners)
+
+    @property
+    def taken(self) -> Mapping[int, str]:
+        """By the places of ports the transitions of state machines that are taken as these turn on."""
+        found = enumerate(self._ports_taken)
+        return {at: one.words for at, (_, one) in found if one is not None}
+
+    @property
+    def _ports_taken(self) -> list[tuple[FrictionPort, Transition | None]]:
+        return [(port, port.transition) for port in self.friction]
 
     @property
     def corners_told(self) -> bool:

@@ -115,7 +115,10 @@ def latex(bench: Bench) -> None:
 
 def drawing(bench: Bench) -> None:
     """Every node is drawn, a switch as one, every bond with its stroke, every signal."""
-    switches = [one for one in bench.kind.equations.switches if not one.switch.stops]
+    switches = [
+        one for one in bench.kind.equations.switches
+        if not one.switch.stops and one.switch.transition is None
+    ]  # fmt: skip
     stops = [node for node, kind in bench.kind.graph.nodes(data="kind") if kind == "Stop"]
     drawn = bg.drawing(bench.kind.graph)
     drawn.save(bench.folder / "kind.svg")

@@ -5,6 +5,7 @@ from oracles.routes.exchanging import EXCHANGING
 from oracles.routes.friction import FRICTION
 from oracles.routes.jumping import JUMPING
 from oracles.routes.lawful import LAWFUL
+from oracles.routes.machines import MACHINES
 from oracles.routes.plain import PLAIN
 from oracles.routes.resetting import RESETTING
 from oracles.routes.searched import SEARCHED
@@ -18,6 +19,7 @@ from oracles.routes.tabled import TABLED
 EVERY = (
     *FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL, *SUPPLIED,
     *TABLED, *SEARCHED, *EXCHANGING, *SIGNALS,
+    *MACHINES,
 )  # fmt: skip
 
 KINDS = {make.__name__: make for make in EVERY}
