@@ -72,6 +72,7 @@ bench-speed: $(READY)
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/switchings.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/nonlinear.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/cycle.py
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/stepping.py
 	$(BIN)/python benchmarks/rhs.py
 
 bench-agreement: $(READY)

@@ -41,6 +41,7 @@ from bondgraph.errors import (
     WriteError,
 )
 from bondgraph.explaining.explanation import Explanation, explain
+from bondgraph.explaining.latex import latex
 from bondgraph.explaining.records import Equation, Factor, Formula, Step
 from bondgraph.files.disk import read_graphml, read_json, write_graphml, write_json
 from bondgraph.files.graphml import from_graphml, to_graphml
@@ -59,7 +60,6 @@ from bondgraph.reduce.junction import junction_structure
 from bondgraph.reduce.structure import JunctionStructure
 from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.sampling.space import SampledSpace
-from bondgraph.show.latex import latex
 
 __all__ = [
     "GY",

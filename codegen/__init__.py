@@ -3,6 +3,7 @@
 from codegen.analysis.comparison import Comparison, compare
 from codegen.analysis.spectrum import Spectrum, spectrum
 from codegen.c.export import to_c
+from codegen.called.function import TimeFunction
 from codegen.energy.audit import Audit
 from codegen.engine.fallback import BackendWarning
 from codegen.family import Family
@@ -38,6 +39,8 @@ from codegen.simulate import simulator
 from codegen.simulator import Simulator
 from codegen.sparse.model import SparseModel, sparse_model
 from codegen.sparse.run import run_sparse
+from codegen.stepping.state import StepperState
+from codegen.stepping.stepper import Stepper
 from codegen.sweeps.design import Grid, Samples, Table
 from codegen.sweeps.result import Failure, Sweep, SweepInterrupted
 from codegen.sweeps.sweep import sweep
@@ -70,11 +73,14 @@ __all__ = [
     "Spectrum",
     "Square",
     "Step",
+    "Stepper",
+    "StepperState",
     "Sweep",
     "SweepInterrupted",
     "Swept",
     "SwitchedSimulator",
     "Table",
+    "TimeFunction",
     "ZeroOrderHold",
     "balance",
     "bode",

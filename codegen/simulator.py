@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from bondgraph.declare.switching import checked_modes
 from bondgraph.errors import SignalError
+from codegen.called.function import followed
 from codegen.energy.ledger import Ledger
 from codegen.engine.backends import Request, in_c, in_numpy
 from codegen.engine.fallback import Stopped, tell
@@ -24,7 +25,7 @@ from codegen.modes.closed import ClosedModel
 from codegen.modes.rates import rates
 from codegen.numbers.arrays import Array, is_finite, is_number, read_only
 from codegen.program.units import told_units
-from codegen.record.beyond import refuse_beyond
+from codegen.record.beyond import refuse_all_beyond
 from codegen.record.columns import named_columns, with_switches
 from codegen.record.replay import Run
 from codegen.record.resting import tell_resting
@@ -33,12 +34,19 @@ from codegen.record.whence import whence
 from codegen.runs.arguments import (
     checked_times,
     initial_values,
+    named_numbers,
     numbers_of,
     settings_of,
     signals_for,
 )
-from codegen.runs.completion import beginning, tell_completed
+from codegen.runs.completion import started, tell_completed
 from codegen.runs.impulses import refuse_impulses
+from codegen.stepping.in_numpy import NumpyGoing
+from codegen.stepping.known import Sources
+from codegen.stepping.plan import Plan
+from codegen.stepping.state import Start
+from codegen.stepping.stepper import Origin, Stepper
+from codegen.stepping.ways import going_of
 from codegen.tuning import TUNING
 
 EQUILIBRIUM = "equilibrium"
@@ -151,23 +159,19 @@ class Simulator:
         Of a limit of C's own it is called before numpy starts, else once numpy has not refused it, too.
         """
         times = checked_times(time)
-        given = signals_for({} if inputs is None else inputs, self.inputs, self.whence)
+        wanted_inputs = {} if inputs is None else inputs
+        if self.located is None:
+            wanted_inputs = followed(wanted_inputs, times)
+        given = signals_for(wanted_inputs, self.inputs, self.whence)
         signals = [*given, *self.sources(float(times[0]), float(times[-1]))]
         settings = settings_of(method, rtol, atol)
         refuse_impulses(self.closed, signals, times)
-        at_start = np.array([signal(times[0]) for signal in signals])
         on = checked_modes(self.switches, initially_on)
         begin = float(times[0])
-        wanted: Any = {} if initial is None else initial
-        if initial == EQUILIBRIUM:
-            wanted = self._resting(signals, begin)
-        told = self.starting(wanted)
-        states = initial_values(told, self.states)
-        start = self.vector(begin, states, at_start)
+        told = self._told(initial, signals, begin)
         with np.errstate(all="ignore"):
-            pieces = [signal.piece(begin) for signal in signals]
-            begun = beginning(self.closed, begin, start, pieces, on, {str(n) for n in told})
-            asked = Request(times, states + begun.moved, begun, signals, settings, events, corners)
+            states, begun = started(self.closed, begin, told, signals, on)
+            asked = Request(times, states, begun, signals, settings, events, corners)
             found = stopped = None
             if self.located is not None:
                 found = in_c(self.closed, asked, self.engine, self.located)
@@ -195,8 +199,61 @@ class Simulator:
             found.backend,
             begun.completed,
         )
-        refuse_beyond(self.closed, result)
+        refuse_all_beyond(self.closed, result)
         return result
+
+    def stepper(
+        self,
+        initial: Mapping[str, float] | str | None = None,
+        inputs: Mapping[str, object] | None = None,
+        *,
+        time: float = 0.0,
+        method: str = "auto",
+        rtol: float = TUNING.rtol,
+        atol: float = TUNING.atol,
+        initially_on: Iterable[Hashable] = (),
+    ) -> Stepper:
+        """The model at ``time`` [s], to be stepped from outside under inputs that may change at each step.
+
+        Arguments as of `run`; ``inputs`` are those that hold until others are told. What backend "c" cannot
+        step is stepped by numpy, and a `BackendWarning` tells why.
+
+        Raises what `run` raises of a start, and `SignalError` for a time that is no finite number.
+        """
+        made = self.stepping(initial, inputs, time, method, rtol, atol, initially_on)
+        tell_completed(made.completed)
+        return made
+
+    def stepping(
+        self,
+        initial: Mapping[str, float] | str | None,
+        inputs: Mapping[str, object] | None,
+        time: float,
+        method: str,
+        rtol: float,
+        atol: float,
+        initially_on: Iterable[Hashable],
+    ) -> Stepper:
+        """As `stepper`, without a word on states that were completed."""
+        if not is_number(time) or not is_finite(time):
+            raise SignalError(f"the time must be a finite number, not {time!r}")
+        given = signals_for({} if inputs is None else inputs, self.inputs, self.whence)
+        sources = Sources(self.sources, float(time))
+        told = named_numbers(
+            self._told(initial, [*given, *sources.signals], float(time)), self.states
+        )
+        on = checked_modes(self.switches, initially_on)
+        start = Start(tuple(told.items()), on)
+        plan = Plan(self.closed)
+        settings = settings_of(method, rtol, atol)
+        going = going_of(plan, settings, self.engine, self.located, NumpyGoing)
+        origin = Origin(self.closed, self.inputs, plan, going, float(time), start)
+        return Stepper(origin, given, sources)
+
+    def _told(self, initial: Any, signals: Sequence[Signal], begin: float) -> Any:
+        """Initial values by states, as told for a run under these signals."""
+        wanted: Any = {} if initial is None else initial
+        return self.starting(self._resting(signals, begin) if initial == EQUILIBRIUM else wanted)
 
     def whence(self, name: str) -> str:
         """Who reads an input, and what else its name may have been meant to be, as messages say it."""
@@ -205,7 +262,8 @@ class Simulator:
     def _ledger(self, run: Run) -> Ledger:
         program = self.closed.program
         names = (*program.states, *program.law_states, *program.inputs, *program.asked)
-        return Ledger(self.closed.declared, tuple(name.name for name in names), run.again)
+        told = tuple(name.name for name in names)
+        return Ledger(self.closed.declared, told, run.again, self.closed.parameters)
 
     def steady(
         self, inputs: Mapping[str, float], initial: Mapping[str, float]

@@ -226,6 +226,7 @@ class Tuning:
     nothing_there: float = _told(1e-40, "expressions of time below are zero")
     narrowest: float = _told(2.0**-40, "of a run: segments of a source are no shorter")
     least_span: float = _told(1e-6, "s, the least span that segments are made for")
+    called: float = _told(2.0**-40, "of a Python function, by which polynomials may miss it")
     energy_rounding: float = _told(1e-12, "of the entries of a storage: an energy below is zero")
     searched: float = _told(1e-13, "tolerance of a search for what laws give")
     beside: float = _told(1e-8, "of a root, by which one looks beside it")

@@ -18,6 +18,13 @@ class SampledModel:
 
     ``between``: its last outputs are the values that tasks set, in the order of ``sets``: how long into a
     period [s], and which state.
+
+    >>> import bondgraph as bg
+    >>> loop = bg.graph([bg.Se("F", "1*u"), bg.One("n"), bg.I("m", "m", flow="v"),
+    ...                  bg.Controller("brake", every=0.1, gives={"u": "-K*v"})], "F > n > m")
+    >>> model = bg.linearize(bg.derive(loop), period=0.1)
+    >>> model.period, model.states, model.sets, model.between.F
+    (1/10, (v, u), ((0, u),), Matrix([[-K, 0]]))
     """
 
     between: LinearModel

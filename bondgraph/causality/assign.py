@@ -55,7 +55,7 @@ def assign_causality(graph: Any, derivative: bool | Collection[Hashable] = False
     """
     checked = validate(graph)
     if derivative is not False:
-        return _asked(checked, derivative)
+        return _assigned(checked, asked_derivative(checked, derivative))
     try:
         found = _assigned(checked)
     except AlgebraicLoopError as error:
@@ -70,12 +70,19 @@ def assign_causality(graph: Any, derivative: bool | Collection[Hashable] = False
     return _with_fewest(checked, found) or found
 
 
-def _asked(checked: "nx.DiGraph[Hashable]", derivative: bool | Collection[Hashable]) -> CausalGraph:
-    """Strokes with derivative causality of these storages, or of all, wherever that is possible."""
+def asked_derivative(
+    checked: "nx.DiGraph[Hashable]", derivative: bool | Collection[Hashable]
+) -> frozenset[Hashable]:
+    """The storages of a validated graph, a field's ports each, that should have derivative causality.
+
+    Raises `StructureError` for what is no list of the graph's storages.
+    """
+    if derivative is False:
+        return frozenset()
     storages = [name for name in checked if checked.nodes[name]["element"].kind.stores]
     owners = [checked.nodes[name]["element"].owner for name in storages]
     if derivative is True:
-        return _assigned(checked, frozenset(storages))
+        return frozenset(storages)
     if isinstance(derivative, str) or not isinstance(derivative, Collection):
         raise StructureError(f"derivative must be True or a list of storages, not {derivative!r}")
     for name in derivative:
@@ -84,8 +91,7 @@ def _asked(checked: "nx.DiGraph[Hashable]", derivative: bool | Collection[Hashab
                 f"derivative: {name!r} is no storage of the graph{nearest(str(name), map(str, storages))}"
             )
     pairs = zip(storages, owners, strict=True)
-    chosen = (name for name, owner in pairs if name in derivative or owner in derivative)
-    return _assigned(checked, frozenset(chosen))
+    return frozenset(name for name, owner in pairs if name in derivative or owner in derivative)
 
 
 def _with_fewest(graph: "nx.DiGraph[Hashable]", found: CausalGraph | None) -> CausalGraph | None:

@@ -1,9 +1,9 @@
 """`check`: a graph judged as a teacher would, with the way out of each finding."""
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Collection, Hashable, Iterator, Mapping
 from typing import Any
 
-from bondgraph.causality.assign import assign_causality
+from bondgraph.causality.assign import asked_derivative, assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.checking.arrows import arrows_doubted
 from bondgraph.checking.drawn import strokes_drawn
@@ -18,7 +18,7 @@ from bondgraph.nodes.elements import Bond
 
 def check(
     graph: Any, parameters: Mapping[str, object] | None = None,
-    strokes: Mapping[Bond, Hashable] | None = None,
+    strokes: Mapping[Bond, Hashable] | None = None, derivative: bool | Collection[Hashable] = False,
 ) -> Check:  # fmt: skip
     """What is to be asked about a declared graph: most likely mistakes first, then what could be simpler.
 
@@ -29,9 +29,12 @@ def check(
 
     ``strokes``: bonds, as declared, to the node at whose end a causal stroke was drawn, as in
     `CausalGraph.strokes`; or ``stroke="tail"`` or ``"head"`` as attribute of a bond. Where they contradict
-    each other, those that agree with the preferred causality are believed.
+    each other, those that agree with the preferred causality are believed. ``derivative``: as of
+    `assign_causality`, True for all storages or names of some, whose derivative causality is preferred; a
+    hint names those that keep integral causality all the same.
 
-    Raises `StructureError` for what is not a bond graph, and for strokes of bonds that are not there.
+    Raises `StructureError` for what is not a bond graph, for strokes of bonds and names of storages that are
+    not there.
 
     >>> import bondgraph as bg, networkx as nx
     >>> g = nx.DiGraph()
@@ -49,32 +52,47 @@ def check(
     """
     checked = validated(graph)
     drawn = strokes_drawn(graph, strokes)
-    causal, refusals = _causality(checked)
+    chosen = asked_derivative(checked, derivative)
+    causal, refusals = _causality(checked, chosen)
     verdicts: tuple[StrokeVerdict, ...] = ()
     loop: tuple[Hashable, ...] = ()
     if drawn and causal is not None:
-        verdicts, loop = strokes_judged(causal, list(graph.edges), drawn)
+        verdicts, loop = strokes_judged(causal, list(graph.edges), drawn, chosen)
     findings = [
         *(parameters_doubted(with_tables(graph), parameters) if parameters is not None else ()),
         *junctions_doubted(checked),
         *arrows_doubted(checked),
         *refusals,
         *_strokes_doubted(verdicts, loop),
+        *(() if causal is None else _kept_integral(causal, chosen)),
         *junctions_simpler(graph),
     ]
     return Check(tuple(findings), verdicts)
 
 
-def _causality(checked: Any) -> tuple[CausalGraph | None, tuple[Finding, ...]]:
+def _causality(
+    checked: Any, chosen: frozenset[Hashable]
+) -> tuple[CausalGraph | None, tuple[Finding, ...]]:
     """The causal graph, or the contradiction for which there is none."""
     try:
-        return assign_causality(checked), ()
+        return assign_causality(checked, chosen or False), ()
     except (CausalityError, AlgebraicLoopError) as error:
         story, stop, way_out = str(error).rpartition(". ")
         if not stop:
             story, way_out = str(error), "open the loop, or put an element on it"
         way_out = way_out[:1].lower() + way_out[1:]
         return None, (Finding("doubt", "causality", story, way_out),)
+
+
+def _kept_integral(causal: CausalGraph, chosen: frozenset[Hashable]) -> Iterator[Finding]:
+    """Storages that should have derivative causality and cannot."""
+    kept = [name for name in causal.integral if name in chosen]
+    if kept:
+        named = ", ".join(map(repr, kept))
+        yield Finding(
+            "hint", "causality", f"{named}: integral causality even where derivative is preferred",
+            "nothing else determines what they hold; a resistance or a source beside them would", kept[0],
+        )  # fmt: skip
 
 
 def _strokes_doubted(

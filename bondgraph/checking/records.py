@@ -43,7 +43,8 @@ class StrokeVerdict:
 
     ``end``: the node at whose end it was drawn, None where it is missing. "right": it agrees with all
     rules, and no storage lost its integral causality by it without need. "not preferred": possible, but a
-    storage has derivative causality that could have integral. "wrong": ``node``'s rule is broken.
+    storage has derivative causality that could have integral, or the other way round where that is asked.
+    "wrong": ``node``'s rule is broken.
     """
 
     bond: Bond

@@ -24,47 +24,52 @@ class _Accepted:
     broken: Mapping[int, tuple[int, str]]
 
 
+Names = frozenset[Hashable]
+"""Of storages whose derivative causality is preferred."""
+
+
 def strokes_judged(
-    causal: CausalGraph, bonds: Collection[Bond], drawn: Drawn
+    causal: CausalGraph, bonds: Collection[Bond], drawn: Drawn, chosen: Names = frozenset()
 ) -> tuple[tuple[StrokeVerdict, ...], tuple[Hashable, ...]]:
     """A verdict for each of the bonds, in their order, and the nodes of a loop that has no solution.
 
-    Where strokes contradict each other, those that agree with the preferred causality are believed.
+    Where strokes contradict each other, those that agree with the preferred causality are believed: integral
+    but of the storages that are ``chosen``.
     """
-    first = _accepted(causal, drawn)
-    best = _with_least(causal, _derivative(first.search))
-    accepted = _accepted(best, drawn)
-    needless = _needless(best, accepted.search, drawn)
+    first = _accepted(causal, drawn, chosen)
+    best = _with_least(causal, _unpreferred(first.search, chosen), chosen)
+    accepted = _accepted(best, drawn, chosen)
+    needless = _needless(best, accepted.search, drawn, chosen)
     number = {bond: at for at, bond in enumerate(best.assignment.declared)}
     verdicts = [_verdict(best, accepted, needless, drawn, number[bond]) for bond in bonds]
     return tuple(verdicts), _unsolved(accepted)
 
 
-def _with_least(causal: CausalGraph, derivative: Collection[int]) -> CausalGraph:
-    """The causality with most integral storages in which these come last: dependent where any may be."""
-    if not derivative:
+def _with_least(causal: CausalGraph, others: Collection[int], chosen: Names) -> CausalGraph:
+    """The causality with most storages as is preferred in which these come last: not so where any may be."""
+    if not others:
         return causal
     strokes = causal.assignment
     lowest = min(element.priority for element in strokes.elements) - 1
     later = {
-        strokes.names[node]: replace(strokes.elements[node], priority=lowest) for node in derivative
+        strokes.names[node]: replace(strokes.elements[node], priority=lowest) for node in others
     }
-    return assign_causality(with_elements(causal.graph, later))
+    return assign_causality(with_elements(causal.graph, later), chosen or False)
 
 
-def _derivative(search: StrokeSearch) -> list[int]:
-    """The storages that the strokes so far give derivative causality."""
+def _unpreferred(search: StrokeSearch, chosen: Names) -> list[int]:
+    """The storages that the strokes so far give another causality than is preferred: as a rule derivative."""
     return [
         node for node, element in enumerate(search.elements)
         if element.kind.stores and search.end[search.at[node][0]] is not None
-        and search.gives(node) != element.kind.gives
+        and (search.gives(node) != element.kind.gives) != (search.names[node] in chosen)
     ]  # fmt: skip
 
 
-def _accepted(target: CausalGraph, drawn: Drawn) -> _Accepted:
+def _accepted(target: CausalGraph, drawn: Drawn, chosen: Names) -> _Accepted:
     """Set drawn strokes, those first that the target has, and tell what the others break."""
     search = StrokeSearch(target.graph)
-    order, preferred = preferences(search)
+    order, preferred = preferences(search, chosen)
     for node in order:
         gives = search.elements[node].gives
         if gives is not None:
@@ -114,12 +119,14 @@ def _end(search: StrokeSearch, bond: int, name: Hashable) -> int:
     )
 
 
-def _needless(best: CausalGraph, search: StrokeSearch, drawn: Drawn) -> dict[int, int]:
-    """Drawn bonds that keep a storage from the integral causality that it could have, and the storage."""
+def _needless(
+    best: CausalGraph, search: StrokeSearch, drawn: Drawn, chosen: Names
+) -> dict[int, int]:
+    """Drawn bonds that keep a storage from the preferred causality that it could have, and the storage."""
     found: dict[int, int] = {}
     integral = set(best.integral)
-    for node in _derivative(search):
-        if search.names[node] not in integral:
+    for node in _unpreferred(search, chosen):
+        if (search.names[node] in integral) == (search.names[node] in chosen):
             continue
         bond = search.at[node][0]
         roots = [bond] if search.declared[bond] in drawn else list(_roots(search, bond))
@@ -156,9 +163,11 @@ def _verdict(
         )
     if bond in needless:
         node = needless[bond]
-        gives = search.elements[node].kind.gives
+        has, other, gives = "derivative", "integral", search.elements[node].kind.gives
+        if search.gives(node) == gives:
+            has, other, gives = other, has, OTHER[gives]
         text = (
-            f"{_told(search, node)} has derivative causality, though it could have integral: receive the "
+            f"{_told(search, node)} has {has} causality, though it could have {other}: receive the "
             f"{OTHER[gives]} and give the {gives}"
         )
         return StrokeVerdict(declared, end, "not preferred", text, _name(search, node))

@@ -12,6 +12,9 @@ from bondgraph.tables.record import Sampled
 FAR = 1e300
 """Where a guard ends that is open: no number of a run comes near."""
 
+NAMED = f".law{BACK}"
+"""What the names of guards end with, after the node; no table of a user has a point in its name."""
+
 UPWARDS = (0.0, FAR)
 BETWEEN = (-1.0, 1.0)
 """Where logarithms and broken powers have values, and where the area tangent has."""
@@ -62,7 +65,22 @@ def guarded(inverse: sp.Expr, given: sp.Symbol, node: Hashable) -> sp.Expr:
     def kept(part: sp.Expr) -> sp.Expr:
         points = ends(part)
         assert points is not None
-        table = Sampled(f"{node}.law{BACK}", (points,), points, "linear", "refuse")
+        table = Sampled(f"{node}{NAMED}", (points,), points, "linear", "refuse")
         return part.func(Guard(Handle(table, (0,)), part.args[0]), *part.args[1:])
 
     return inverse.replace(lambda part: ends(part) is not None, kept)
+
+
+def never_given(table: str, low: float, high: float) -> str:
+    """What is to be said where a guard is left, after its argument; nothing of a table that is none.
+
+    >>> print(never_given("m.law⁻¹", 0.0, FAR))
+    leaves what is above 0: the law of 'm' gives it in no state; begin where it does
+    >>> never_given("map⁻¹", 0.0, 5.0), never_given("a.law⁻¹", -1.0, 1.0)[:31]
+    ('', 'leaves what is between -1 and 1')
+    """
+    if not table.endswith(NAMED):
+        return ""
+    where = f"above {low:g}" if high >= FAR else f"between {low:g} and {high:g}"
+    node = table.removesuffix(NAMED)
+    return f"leaves what is {where}: the law of {node!r} gives it in no state; begin where it does"

@@ -32,7 +32,7 @@ def Function(name: Hashable, value: object, **more: object) -> Node:
     >>> motor = bg.graph([bg.Se("motor", "1*tau"), bg.One("shaft"), bg.I("J", "J", flow="omega"),
     ...                   bg.Function("tau", "K*(ref - omega)")], "motor > shaft > J")
     >>> print(bg.explicit(bg.derive(motor)))
-    omega' = K*(ref - omega)/J
+    omega' = K*(-omega + ref)/J
     """
     return name, {"kind": str(Kind.FUNCTION), "value": value, **_told(more)}
 
@@ -51,7 +51,7 @@ def State(
     >>> import bondgraph as bg
     >>> lag = bg.graph([bg.State("x", "(u - x)/T"), bg.Function("u", "sin(t)")])
     >>> print(bg.explicit(bg.derive(lag)))
-    x' = (sin(t) - x)/T
+    x' = (-x + sin(t))/T
     """
     told = {"rate": rate, "start": start, "low": low, "high": high, **more}
     return name, {"kind": str(Kind.STATE), **_told(told)}

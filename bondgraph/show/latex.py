@@ -2,11 +2,10 @@
 
 from collections.abc import Iterable, Iterator
 
-from bondgraph.derive import check_derived
 from bondgraph.equations import StateEquations
 from bondgraph.show.display import MOST_SIGNS
 from bondgraph.show.latex_matrices import is_readable, matrices_latex, notebook_matrices
-from bondgraph.show.statements import Statement, statements
+from bondgraph.show.statements import Statement, statements, without_functions, without_idle
 from bondgraph.show.sums import latex_pieces
 from bondgraph.show.ways_latex import ways_latex
 from bondgraph.show.whole import PUT_IN, TOO_LONG, put_in
@@ -15,23 +14,11 @@ LONGEST_LINE = 6
 """Terms on one line of a right side."""
 
 
-def latex(equations: StateEquations) -> str:
-    r"""The matrices, then laws, sources and further states, and every equation with these put in.
-
-    Lines of amsmath's ``gathered``. Names are Greek where they are called so: ``omega_1`` is \omega_{1}.
-
-    Raises nothing.
-
-    >>> import bondgraph as bg, networkx as nx
-    >>> g = nx.DiGraph()
-    >>> g.add_nodes_from([bg.Se("engine", "tau_e"), bg.One("shaft"), bg.I("J", "J", flow="omega")])
-    >>> nx.add_path(g, ["engine", "shaft", "J"])
-    >>> left, right = latex(bg.derive(g)).split(" = ")
-    >>> print(left.replace("begin{matrix}", "").replace("end{matrix}", ""))
-    \left[\J\\right]\frac{d}{dt}\left[\\omega\\right]
-    """
-    check_derived(equations)
-    return " \\\\\n".join(part for part in (matrices_latex(equations), *beside(equations)) if part)
+def equations_latex(equations: StateEquations) -> str:
+    """The matrices, then laws, sources and further states, and every equation with these put in."""
+    equations = without_functions(equations)
+    parts = (matrices_latex(without_idle(equations)), *beside(equations))
+    return " \\\\\n".join(part for part in parts if part)
 
 
 def beside(equations: StateEquations) -> list[str]:
@@ -65,8 +52,9 @@ def _rows(one: Statement) -> Iterator[str]:
 
 def notebook_latex(equations: StateEquations) -> str:
     """The equations for a notebook's display; of large systems the sizes alone."""
+    equations = without_functions(equations)
     if is_readable(equations):
-        text = latex(equations)
+        text = equations_latex(equations)
         if len(text) <= 4 * MOST_SIGNS:
             return rf"$$\begin{{gathered}} {text} \end{{gathered}}$$" if text else ""
     return notebook_matrices(equations)

@@ -1,11 +1,30 @@
 """The matrices of equations as LaTeX."""
 
+from collections.abc import Sequence
+from typing import Protocol
+
 import sympy as sp
 
 from bondgraph.show.display import MOST_SIGNS, MOST_STATES, Matrices, structure
 from bondgraph.show.sums import typeset
 
 RATE = r"\frac{d}{dt}"
+
+
+class Space(Protocol):
+    """A linear model in numbers; its arrays are P, Q, R, F, D and G."""
+
+    @property
+    def states(self) -> Sequence[str]:
+        """Their names; so of inputs and outputs."""
+
+    @property
+    def inputs(self) -> Sequence[str]:
+        """See ``states``."""
+
+    @property
+    def outputs(self) -> Sequence[str]:
+        """See ``states``."""
 
 
 def matrices_latex(equations: Matrices) -> str:
@@ -21,6 +40,33 @@ def matrices_latex(equations: Matrices) -> str:
     if equations.outputs:
         lines.append(f"{y} = {_sum(equations, ('F', x), ('D', u), ('G', RATE + u))}")
     return " \\\\\n".join(lines)
+
+
+def space_latex(space: Space) -> str:
+    """``dx/dt = P x + Q u + R du/dt`` and ``y = F x + D u + G du/dt`` in numbers of five digits."""
+    x, u, y = (
+        typeset(sp.Matrix([sp.Symbol(name) for name in names]))
+        for names in (space.states, space.inputs, space.outputs)
+    )
+    lines = []
+    if space.states:
+        lines.append(f"{RATE}{x} = {_products(space, ('P', x), ('Q', u), ('R', RATE + u))}")
+    if space.outputs:
+        lines.append(f"{y} = {_products(space, ('F', x), ('D', u), ('G', RATE + u))}")
+    return " \\\\\n".join(lines)
+
+
+def _products(space: Space, *terms: tuple[str, str]) -> str:
+    """The products of those arrays that are not zero."""
+    shown = [(getattr(space, name), vector) for name, vector in terms]
+    rows = [(array.tolist(), vector) for array, vector in shown if array.size and array.any()]
+    told = [(sp.Matrix([[_digits(one) for one in row] for row in table]), v) for table, v in rows]
+    return " + ".join(typeset(matrix) + vector for matrix, vector in told) or "0"
+
+
+def _digits(value: float) -> sp.Expr:
+    """A number of five digits; a whole one without a point."""
+    return sp.Integer(int(value)) if value == int(value) else sp.Float(f"{value:.5g}", 5)
 
 
 def _sum(equations: Matrices, *terms: tuple[str, str]) -> str:

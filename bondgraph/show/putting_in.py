@@ -41,7 +41,9 @@ def closed(model: StateEquations, found: Statements) -> tuple[Statement, ...]:
         for left, right in rows_of_terms(model)
     ]
     n = len(model.states)
-    return tuple(put.into_both(one) for one in (*rows[:n], *found.rates, *rows[n:]))
+    # A function that is shown is stated as what it is.
+    shown = [one for one in rows[n:] if one.left not in model.inputs]
+    return tuple(put.into_both(one) for one in (*rows[:n], *found.rates, *shown))
 
 
 class _PuttingIn:

@@ -5,7 +5,7 @@ a switch or dry friction gives, or stated.
 """
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import networkx as nx
 import sympy as sp
@@ -50,6 +50,36 @@ class Statements:
     given: tuple[Statement, ...]
     rates: tuple[Statement, ...]
     loops: tuple[tuple[sp.Symbol, ...], ...]
+
+
+def without_functions(model: StateEquations) -> StateEquations:
+    """The equations whose outputs are none of their inputs: a function is stated as what it is."""
+    kept = [at for at, name in enumerate(model.outputs) if name not in model.inputs]
+    if len(kept) == len(model.outputs):
+        return model
+    rows = {letter: _part(model, letter, rows=kept) for letter in "FDG"}
+    return replace(model, outputs=tuple(model.outputs[at] for at in kept), **rows)
+
+
+def without_idle(model: StateEquations) -> StateEquations:
+    """The equations for their matrices alone: without the columns of signals that move no state."""
+    own = {p.given for p in model.ports if p.element.declared and p.element.declared.signals}
+    used = {j for letter in "BEDG" for _, j in getattr(model, letter).todok()}
+    kept = [j for j, name in enumerate(model.inputs) if j in used or name not in own]
+    if len(kept) == len(model.inputs):
+        return model
+    columns = {letter: _part(model, letter, columns=kept) for letter in "BEDG"}
+    return replace(model, inputs=tuple(model.inputs[j] for j in kept), **columns)
+
+
+def _part(
+    model: StateEquations, letter: str, rows: Sequence[int] | None = None,
+    columns: Sequence[int] | None = None,
+) -> sp.ImmutableSparseMatrix:  # fmt: skip
+    whole = getattr(model, letter)
+    every = [list(range(size)) if kept is None else list(kept)
+             for size, kept in zip(whole.shape, (rows, columns), strict=True)]  # fmt: skip
+    return sp.ImmutableSparseMatrix(whole.extract(*every))
 
 
 def statements(model: StateEquations) -> Statements:

@@ -16,7 +16,13 @@ from bondgraph.show.display import (
 )
 from bondgraph.show.lines import words, wrapped
 from bondgraph.show.putting_in import closed
-from bondgraph.show.statements import Statement, Statements, statements
+from bondgraph.show.statements import (
+    Statement,
+    Statements,
+    statements,
+    without_functions,
+    without_idle,
+)
 from bondgraph.show.ways import rubbing, switching, working
 
 PUT_IN = "with laws and sources put in"
@@ -42,8 +48,12 @@ def whole_text(model: StateEquations) -> str:
       m*v' = -k*q_k^3
       q_k' = v
     """
+    model = without_functions(model)
     found = statements(model)
-    parts = (equations_text(model), *map("\n".join, (_beside(model, found), _put_in(model, found))))
+    parts = (
+        equations_text(without_idle(model)),
+        *map("\n".join, (_beside(model, found), _put_in(model, found))),
+    )
     return "\n\n".join(part for part in parts if part)
 
 

@@ -86,8 +86,8 @@ class RunColumns(Mapping[str, Array]):
 class Again:
     """What is not recorded: the run by itself has it, and is done when that is asked for."""
 
-    def __init__(self, alone: Callable[[], Result]) -> None:
-        self._alone = alone
+    def __init__(self, alone: Callable[[], Result], program: Program) -> None:
+        self._alone, self._program = alone, program
 
     @cached_property
     def _result(self) -> Result:
@@ -96,6 +96,10 @@ class Again:
     def names(self) -> Sequence[str]:
         """Of the signals that the run by itself has."""
         return self._result.observer.names()
+
+    def nodes(self) -> Sequence[Hashable]:
+        """Those of the graph."""
+        return self._program.nodes
 
     def signal(self, name: str) -> Array:
         """See `Result`; so the others."""
@@ -131,7 +135,7 @@ def result_of(
     units: Mapping[str, str], events: bool, alone: Callable[[], Result],
 ) -> Result:  # fmt: skip
     """The record of one run; ``names``: of states, inputs, outputs; ``alone``: the same run by itself."""
-    again, columns = Again(alone), RunColumns(shared, run)
+    again, columns = Again(alone, shared.modes.model.program), RunColumns(shared, run)
     happened = tuple(shared.fleet.events[run]) if events else ()
     states, inputs, outputs = names
     return Result(times, states, inputs, outputs, happened, columns, again, again, units)

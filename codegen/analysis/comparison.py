@@ -10,12 +10,12 @@ import numpy as np
 
 from bondgraph.errors import SignalError
 from bondgraph.show.blocks import aligned
+from codegen.analysis.recording import Recording, recording
 from codegen.numbers.arrays import Array
 from codegen.pictures.labels import measured, plain
 from codegen.pictures.marks import Marks
 from codegen.pictures.stacked import Line, Panel, stacked
 from codegen.record.result import Result, values_of
-from codegen.runs.track import Event
 
 
 class Difference(NamedTuple):
@@ -50,9 +50,9 @@ class Shift(NamedTuple):
 
 @dataclass(frozen=True)
 class Comparison:
-    """Runs by name, the first of which the others are compared with."""
+    """Runs, and recordings from files, by name; the first is what the others are compared with."""
 
-    runs: Mapping[str, Result] = field(repr=False)
+    runs: Mapping[str, Result | Recording] = field(repr=False)
     signals: tuple[str, ...]
     differences: tuple[Difference, ...]
     shifts: tuple[Shift, ...]
@@ -101,31 +101,42 @@ def _time(value: float | None, digits: int = 6) -> str:
 
 
 def compare(
-    runs: Mapping[str, Result] | Sequence[Result], names: Sequence[str] | None = None
+    runs: Mapping[str, Any] | Sequence[Any], names: Sequence[str] | None = None
 ) -> Comparison:
     """Compare signals of two or more runs, the states of the first if none are named, and their events.
+
+    In place of a run may stand a file or a frame, as `Sampled.read` takes them, whose time [s] is the column
+    "t" or "time"; it has the signals that its columns are called by, and no events.
 
     Signals are compared at the first run's samples, as far as both runs go; between samples of another
     run straight lines are drawn. At a jump that comes a moment later the whole jump is the difference. A
     list of runs counts as called "1", "2" and so on.
 
-    Raises `SignalError` for fewer than two runs, unknown names, or runs that have no time in common.
+    Raises `SignalError` for fewer than two runs, unknown names, runs that have no time in common, and files
+    that cannot be used; `MissingExtraError` without the package that reads a file.
     """
-    named = dict(runs) if isinstance(runs, Mapping) else {}
+    given = dict(runs) if isinstance(runs, Mapping) else {}
     if not isinstance(runs, Mapping):
-        named = {str(at): run for at, run in enumerate(runs, 1)}
-    if len(named) < 2:
-        raise SignalError(f"{len(named)} runs; comparing needs two or more")
-    (_, first), *others = named.items()
-    signals = tuple(first.states if names is None else names)
-    if isinstance(names, str) or not signals:
+        given = {str(at): run for at, run in enumerate(runs, 1)}
+    if len(given) < 2:
+        raise SignalError(f"{len(given)} runs; comparing needs two or more")
+    if isinstance(names, str):
         raise SignalError(f"names must be a list of signals, not {names!r}")
-    differences = [_difference(name, first, key, run) for name in signals for key, run in others]
-    shifts = [shift for key, run in others for shift in _shifts(first.events, run.events, key)]
-    return Comparison(MappingProxyType(named), signals, tuple(differences), tuple(shifts))
+    (key, begun), *rest = given.items()
+    first = begun if isinstance(begun, Result) else recording(begun, names)
+    signals = tuple(first.states if names is None else names)
+    if not signals:
+        raise SignalError(f"names must be a list of signals, not {names!r}")
+    others = [(at, one if isinstance(one, Result) else recording(one, signals)) for at, one in rest]
+    differences = [_difference(name, first, at, run) for name in signals for at, run in others]
+    shifts = [shift for at, run in others for shift in _shifts(first, run, at)]
+    named = MappingProxyType({key: first, **dict(others)})
+    return Comparison(named, signals, tuple(differences), tuple(shifts))
 
 
-def _difference(name: str, first: Result, key: str, other: Result) -> Difference:
+def _difference(
+    name: str, first: Result | Recording, key: str, other: Result | Recording
+) -> Difference:
     mine, theirs = values_of(first, name), values_of(other, name)
     inside = (first.time >= other.time[0]) & (first.time <= other.time[-1])
     if not inside.any():
@@ -145,14 +156,15 @@ def _over_range(largest: float, values: Array) -> float:
     return float("inf") if largest else 0.0
 
 
-def _shifts(first: Sequence[Event], other: Sequence[Event], run: str) -> list[Shift]:
-    """Events of a port and kind side by side, in their order, earliest first."""
-    kinds = dict.fromkeys((event.port, event.kind) for event in (*first, *other))
+def _shifts(first: Result | Recording, other: Result | Recording, run: str) -> list[Shift]:
+    """Events of a port and kind side by side, in their order, earliest first; a recording knows none."""
+    if isinstance(first, Recording) or isinstance(other, Recording):
+        return []
+    both = first.events, other.events
+    kinds = dict.fromkeys((event.port, event.kind) for side in both for event in side)
     found = []
     for port, kind in kinds:
-        sides = (
-            [e.time for e in side if (e.port, e.kind) == (port, kind)] for side in (first, other)
-        )
+        sides = ([e.time for e in side if (e.port, e.kind) == (port, kind)] for side in both)
         found += [Shift(port, kind, run, a, b) for a, b in zip_longest(*sides)]
     return sorted(
         found, key=lambda shift: min(t for t in (shift.first, shift.other) if t is not None)

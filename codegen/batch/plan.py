@@ -7,12 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from codegen.energy.accounts import Account, Product
-from codegen.engine.happened import KINDS
 from codegen.numbers.arrays import Array
 from codegen.program.layout import places
 from codegen.program.records import Program
 from codegen.record.measures import READY, Measure
-from codegen.runs.track import CORNER
+from codegen.runs.track import CORNER, KINDS
 
 WHATS = (
     "peak", "largest", "smallest", "start", "final", "samples", "total", "first_event", "event_count",

@@ -6,6 +6,7 @@ from importlib.metadata import version
 from typing import Any
 
 from bondgraph.equations import StateEquations
+from codegen.c.beginning import held_tables
 from codegen.c.blocks import function, places
 from codegen.c.lookups import lookup_tables, refused
 from codegen.c.prefix import external_symbols, renamed
@@ -13,9 +14,16 @@ from codegen.c.rates import plain_rates, straight_rates
 from codegen.c.rhs import straights
 from codegen.c.runtime import runtime_file, runtime_names
 from codegen.c.scenario import scenario_text
-from codegen.c.tables import config, group_tables, name_tables, program_tables, slip_tables
+from codegen.c.tables import (
+    config,
+    group_tables,
+    name_tables,
+    program_tables,
+    slip_tables,
+)
 from codegen.c.text import comment
 from codegen.c.turnings import turned_laws
+from codegen.energy.holdings import holdings
 from codegen.model.commands import conditions_told
 from codegen.model.doubts import warn_of_doubts
 from codegen.model.resting import warn_of_rests
@@ -166,7 +174,7 @@ def texts(
     runtime = {name: runtime_file(name) for name in names if name not in CALLING}
     headers = [text for file, text in runtime.items() if file.endswith(".h")]
     macros = renamed(prefix, external_symbols(headers))
-    program, equations = closed.program, closed.equations
+    program, equations, kept = closed.program, closed.equations, holdings(closed.program)
     check_sets(program, closed.slips)
     ports, fast = range(len(program.friction)), straights(program)
     lines = [
@@ -178,13 +186,14 @@ def texts(
         *program_tables(program, defaults, [closed.coupled_directly(i) for i in ports], on),
         "",
         *slip_tables(closed.slips, len(program.states), program.coupled.inputs),
-        *_functions(program),
+        *held_tables(kept),
+        *_functions(program, kept.values),
         "",
         *refused(program),
         *group_tables(program),
         *(straight_rates(program, fast) if fast else plain_rates()),
     ]
-    sizes = config(program, fast, name, macros, longest, implicit)
+    sizes = config(program, fast, kept, name, macros, longest, implicit)
     told = {"config.h": sizes, "layout.h": layout_text(), "tuning.h": tuning_text()}
     return {**told, "model.c": "\n".join(lines) + "\n", **runtime}
 
@@ -221,7 +230,7 @@ def _head(program: Program, equations: StateEquations, name: str, prefix: str) -
     return text.splitlines() + [""]
 
 
-def _functions(program: Program) -> list[str]:
+def _functions(program: Program, held: Block) -> list[str]:
     """The blocks of the program as functions."""
     where, on = places(program), program.on_sides
     rows = [
@@ -232,6 +241,7 @@ def _functions(program: Program) -> list[str]:
          program.friction_values, on.friction_values),
         ("bg_guards", "Conditions of switches, to turn on and to turn off in turn", program.guards, None),
         ("bg_momenta", "What storages hold that impulses exchange", program.momenta, None),
+        ("bg_held_values", "How states follow from what storages hold at a start", held, None),
         ("bg_corners", "What corners hang on, and for each whether it counts", *_hung(program)),
     ]  # fmt: skip
     lines: list[str] = []

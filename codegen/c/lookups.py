@@ -81,11 +81,12 @@ def _lookup_table(table: Sampled, kept: bool) -> tuple[list[str], str]:
 def refused(program: Program) -> list[str]:
     """Arguments of tables that refuse what is outside, in the order in which laws are evaluated."""
     rows = [
-        f"{{bg_{table_name(one.table)}, {one.axis}, {quoted(str(one.argument))}}}"
+        f"{{bg_{table_name(one.table)}, {one.axis}, {quoted(str(one.argument))}, "
+        f"{quoted(one.never) if one.never else 0}}}"
         for one in refusals(program)
     ]
     what = "Arguments of tables that refuse what is outside"
     return [
-        *array("const bg_refusing bg_refusings[]", rows, "{0, 0, 0}"),
+        *array("const bg_refusing bg_refusings[]", rows, "{0, 0, 0, 0}"),
         *function("bg_refused", what, arguments(program), places(program), local=False),
     ]

@@ -10,6 +10,7 @@ from codegen.c.lookups import lookup_names, lookup_sizes
 from codegen.c.rhs import Straight
 from codegen.c.text import array, comment, doubles, integers, quoted, strings
 from codegen.c.turnings import turning_names
+from codegen.energy.holdings import Holdings
 from codegen.modes.stability import modes_told
 from codegen.modes.steps import told_step
 from codegen.program.records import FrictionPort, Group, Program
@@ -32,6 +33,7 @@ LARGE = 16
 def config(
     program: Program,
     fast: Sequence[Straight],
+    held: Holdings,
     name: str,
     macros: Sequence[str] = (),
     longest: float | None = None,
@@ -45,6 +47,10 @@ def config(
     lines = [*comment(f"Sizes of {name}; written by bondgraph-toolkit."), "#ifndef BG_CONFIG_H"]
     lines += ["#define BG_CONFIG_H", "", *_cost(step_cost(program, implicit)), ""]
     lines += [f"#define BG_{key} {value}" for key, value in _sizes(program, fast).items()]
+    lines += [
+        f"#define BG_HOLDINGS {len(held.names)}",
+        f"#define BG_HOLDING_VALUES {len(held.places)}",
+    ]
     lines += [f"#define BG_ROSENBROCK {int(implicit)}"]
     lines += ["", *_steps(longest, len(program.friction))]
     lines += ["", *macros] if macros else []

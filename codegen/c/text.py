@@ -1,10 +1,18 @@
 """Pieces of C as text: comments, strings, tables, statements of bearable length."""
 
+import re
 import textwrap
 from collections.abc import Iterable, Sequence
 
 WIDTH = 100
 """Lines are broken beyond this many characters."""
+
+
+_STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
+"""A string of C."""
+
+_BLANK = "\0"
+"""In place of a blank in one while lines are broken; no string of C has it as such."""
 
 
 def comment(text: str) -> list[str]:
@@ -41,16 +49,17 @@ def quoted(text: str) -> str:
 
 
 def statement(text: str, indent: int = 4) -> list[str]:
-    """A statement, broken at its blanks where it is long."""
+    """A statement, broken at its blanks where it is long, but not at those of strings."""
     pad = " " * indent
-    return textwrap.wrap(
-        text,
+    lines = textwrap.wrap(
+        _STRING.sub(lambda found: found[0].replace(" ", _BLANK), text),
         WIDTH,
         initial_indent=pad,
         subsequent_indent=pad + "    ",
         break_long_words=False,
         break_on_hyphens=False,
     )
+    return [line.replace(_BLANK, " ") for line in lines]
 
 
 def array(head: str, entries: Iterable[str], empty: str = "0") -> list[str]:

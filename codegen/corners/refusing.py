@@ -6,6 +6,7 @@ from typing import NamedTuple
 import sympy as sp
 
 from bondgraph.algebra.lookups import Look
+from bondgraph.inverses.guarding import never_given
 from bondgraph.tables.record import Sampled
 from codegen.program.gains import written_out
 from codegen.program.records import Block, Program, block
@@ -23,6 +24,11 @@ class Refusal(NamedTuple):
         """From where to where the table is."""
         points = self.table.axes[self.axis]
         return points[0], points[-1]
+
+    @property
+    def never(self) -> str:
+        """What to say of a law that is turned round where it never gives this; nothing of other tables."""
+        return never_given(self.table.name, *self.ends)
 
 
 def refusals(program: Program) -> list[Refusal]:

@@ -8,6 +8,7 @@ import numpy as np
 import sympy as sp
 
 from bondgraph.errors import SimulationError
+from bondgraph.inverses.guarding import never_given
 from codegen.corners.tabled import region_of
 from codegen.inputs.pieces import Piece
 from codegen.model.snapshot import Mode
@@ -142,18 +143,12 @@ def check_ends(
         if 0 < region < one.last or on & set(one.sides):
             continue
         if (sight.on(sides).values(t, s)[1][list(one.sides)] > 0).any():
+            never = never_given(one.name, *one.ends)
             raise SimulationError(
-                f"at t = {t:.9g} {one.argument} leaves table {one.name!r}, which is from {one.ends[0]!r} "
-                f"to {one.ends[1]!r} and refuses what is outside; {_way_out(one.name)}"
-            )
-
-
-def _way_out(table: str) -> str:
-    """Of a table that a user gave; one that guards a law which is turned round was not."""
-    node, law, _ = table.partition(".law")
-    if not law:
-        return "give it more points, or another outside"
-    return f"the law of {node!r} gives it in no state"
+                f"at t = {t:.9g} {one.argument} " + (never or
+                f"leaves table {one.name!r}, which is from {one.ends[0]!r} to {one.ends[1]!r} and refuses "
+                "what is outside; give it more points, or another outside")
+            )  # fmt: skip
 
 
 def turned(sight: Sight, sides: Sides, over: frozenset[int], t: float, s: Array) -> Sides:

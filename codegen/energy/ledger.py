@@ -1,16 +1,19 @@
 """Work, integrals and the power balance of a run that is over, from the same run done again."""
 
-from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cache, cached_property
+from types import MappingProxyType
 from typing import NamedTuple, Protocol
 
 import numpy as np
+import sympy as sp
 
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, nearest
 from codegen.energy.accounts import Account, Accounts, Product, accounts, with_signals
 from codegen.energy.audit import Audit, turned_over
+from codegen.model.exact_values import at_parameters
 from codegen.numbers.arrays import Array
 
 GAVE, TOOK, LOST = "gave", "took", "lost"
@@ -58,6 +61,7 @@ class Ledger:
     equations: StateEquations
     names: tuple[str, ...]
     again: Again
+    parameters: Mapping[str, sp.Expr] = field(default_factory=lambda: MappingProxyType({}))
 
     def work(self, node: Hashable) -> Array:
         """What a one-port absorbs, or a source supplies, up to each sample."""
@@ -67,8 +71,23 @@ class Ledger:
         return np.asarray(found.totals[:, columns].sum(axis=1), dtype=float)
 
     def integral(self, name: str) -> Array:
-        """A signal integrated up to each sample; `SignalError` for one that there is not."""
-        return self._integrated(name).copy()
+        """A signal, or what a linear storage holds, integrated up to each sample.
+
+        Raises `SignalError` for a signal that there is not, and what a storage holds by another law.
+        """
+        held = self.equations.held.get(sp.Symbol(name))
+        if held is None:
+            return self._integrated(name).copy()
+        expr = at_parameters(sp.expand(held), self.parameters)
+        terms = {one: expr.coeff(one) for one in sorted(expr.free_symbols, key=str)}
+        if any(not value.is_number for value in terms.values()) or expr.subs(
+            dict.fromkeys(terms, 0)
+        ):
+            raise SignalError(
+                f"{name} is {held}, no sum of signals: its integral is not worked out; read it with an "
+                "integrating detector, or sum its samples"
+            )
+        return np.asarray(sum(float(v) * self._integrated(n.name) for n, v in terms.items()))
 
     def audit(self) -> Audit:
         """The power balance from the first sample to the last."""

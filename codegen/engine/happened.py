@@ -6,9 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from codegen.runs.track import Event
-
-KINDS = ("stick", "slip", "cross", "on", "off", "hit", "touch", "apart", "slide", "leave", "corner")
+from codegen.runs.track import KINDS, Event
 
 EVENT = np.dtype(
     [("time", np.float64), ("port", np.intc), ("kind", np.intc), ("impulse", np.float64)],

@@ -99,8 +99,8 @@ def _structures(
     most = max(sum(map(slots_of, one)) for one in each)
     if sum(map(slots_of, together)) <= 2 * most + 2:
         return [together], [0] * len(pieces)
-    different = list(dict.fromkeys(each))
-    return different, [different.index(one) for one in each]
+    places = {one: at for at, one in enumerate(dict.fromkeys(each))}
+    return list(places), [places[one] for one in each]
 
 
 def _chains(rows: Sequence[Sequence[Piece]]) -> tuple[Chain, ...]:

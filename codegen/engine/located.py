@@ -28,6 +28,7 @@ from codegen.runs.track import Event, Settings
 FILES = (
     *CALLING, "batch_measure.h", "batch_measure.c",
     "batch_doubt.h", "batch_gauss.h", "batch_located.h", "batch_located.c",
+    "run_paused.h", "run_paused.c", "located_paused.h", "located_paused.c",
 )  # fmt: skip
 """What calls a model: once for a table of a run, or once for many runs."""
 
@@ -97,7 +98,7 @@ class LocatedRuns:
 
     def __init__(self, model: ClosedModel, library: LocatedLibrary | None = None) -> None:
         self.model, self.library = model, library or LocatedLibrary(model)
-        self._parameters = np.array(
+        self.parameters = np.array(
             [float(model.parameters[symbol.name]) for symbol in model.program.parameters] or [0.0]
         )
 
@@ -145,7 +146,7 @@ class LocatedRuns:
             status = library.bg_rows_run(
                 ffi.cast("bg_located *", run.ctypes.data),
                 ffi.cast("bg_model *", instance.ctypes.data),
-                _pointer(ffi, self._parameters), inputs, asked, _pointer(ffi, rows),
+                _pointer(ffi, self.parameters), inputs, asked, _pointer(ffi, rows),
             )  # fmt: skip
             room *= 16 if keeping else MANY
         del kept
@@ -212,7 +213,7 @@ def _declared() -> str:
     )
     headers = (
         "port_switch.h", "port_events.h", "model_signals.h", "located_request.h", "located_rows.h",
-        "batch_measure.h", "batch_located.h",
+        "batch_measure.h", "batch_located.h", "located_paused.h",
     )  # fmt: skip
     own += "const char *bg_model_message(int status);\n"
     return own + "".join(declarations(header, {}) for header in headers)

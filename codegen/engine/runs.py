@@ -213,11 +213,14 @@ class CRuns:
         )
 
     def _tables(self, made: Segments | Windows) -> tuple[Tables, tuple[Array, Any]]:
-        wanted = sizes(self.model, made.slots)
-        if wanted.G not in self._ready:
-            compiled = engine(wanted, self._flags)
-            self._ready[wanted.G] = Tables(compiled, self.model), compiled.context()
-        return self._ready[wanted.G]
+        compiled = self.built(made.slots)
+        if compiled.sizes.G not in self._ready:
+            self._ready[compiled.sizes.G] = Tables(compiled, self.model), compiled.context()
+        return self._ready[compiled.sizes.G]
+
+    def built(self, slots: int) -> Engine:
+        """The engine for inputs whose generators have so many slots."""
+        return engine(sizes(self.model, slots), self._flags)
 
 
 def not_affine(program: Program) -> str | None:

@@ -14,6 +14,9 @@ from codegen.engine.build import FLAGS, compiled, loaded
 from codegen.numbers.arrays import Array
 from codegen.tuning import tuning_text
 
+PAUSED = ("run_paused.h", "run_paused.c", "exact_paused.h", "exact_paused.c")
+"""What steps runs from outside."""
+
 MOST_MODES, FEW_MODES = 81, 27
 """So many modes of a model are kept in C at a time; of one with more than .."""
 
@@ -99,7 +102,7 @@ class Engine:
 
 def sources() -> dict[str, str]:
     """The engine's files, name to text."""
-    names = (*SHARED, *runtime_names("run"), *runtime_names("exact"))
+    names = (*SHARED, *runtime_names("run"), *runtime_names("exact"), *PAUSED)
     return {"tuning.h": tuning_text(), **{name: runtime_file(name) for name in names}}
 
 
@@ -133,7 +136,7 @@ def view(engine: Engine, field: Any, *shape: int) -> Array:
 def engine_declarations(numbers: Mapping[str, int]) -> str:
     """What the engine is asked with, as cffi reads it."""
     shared = declarations("port_switch.h", {}) + declarations("port_events.h", {})
-    return shared + declarations("exact.h", numbers)
+    return shared + declarations("exact.h", numbers) + declarations("exact_paused.h", numbers)
 
 
 def declarations(header: str, numbers: Mapping[str, int], prefix: str = "EX") -> str:

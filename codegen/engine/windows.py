@@ -90,6 +90,10 @@ class _Part:
                 depth[complex(rate)] = max(depth.get(complex(rate), 0), len(polynomial))
         self.chains = [(at, rate, d) for rate, d in depth.items() if rate or d > 1]
         self._table = self._told([piece.terms for piece in forms])
+        # Of one that has an end, once for all windows.
+        listed = not signal.endless
+        self._known = np.array(signal.breakpoints if listed else (), dtype=float)
+        self._starts = np.array([piece.start for piece in forms] if listed else (), dtype=float)
 
     def _forms(self, begin: float) -> Sequence[Piece]:
         signal = self._signal
@@ -137,9 +141,8 @@ class _Part:
         if isinstance(signal, Wave):
             return signal.breaks(t, count)
         if not signal.endless:
-            known = np.array(signal.breakpoints, dtype=float)
-            first = int(np.searchsorted(known, t, side="right"))
-            return known[first : first + count]
+            first = int(np.searchsorted(self._known, t, side="right"))
+            return self._known[first : first + count]
         return np.array([*islice(signal.within(t, math.inf), count)], dtype=float)
 
     def write(self, begins: Array, constants: Array, starts: Array, polynomials: Array) -> None:
@@ -149,8 +152,8 @@ class _Part:
         if isinstance(signal, Wave):
             which, own = signal.places(begins)
         elif not signal.endless:
-            which = np.searchsorted(np.array(signal.breakpoints, dtype=float), begins, side="right")
-            own = np.array([piece.start for piece in signal.pieces])[which]
+            which = np.searchsorted(self._known, begins, side="right")
+            own = self._starts[which]
         else:
             pieces = [signal.piece(t) for t in begins.tolist()]
             which, own = np.arange(len(begins)), np.array([piece.start for piece in pieces])

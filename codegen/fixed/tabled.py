@@ -12,6 +12,10 @@ from codegen.standalone.arrays import Array, EvaluationError, Mode
 from codegen.standalone.evaluation import Point
 from codegen.standalone.instant import Formula, Instant
 from codegen.standalone.stepping import FixedSteps, Given
+from codegen.tuning import TUNING
+
+ENDLESS = 1e299
+"""An end beyond this is none."""
 
 
 class Shape(NamedTuple):
@@ -61,12 +65,30 @@ def looking(block: Callable[..., Any], tables: Mapping[str, Patches]) -> Callabl
 
 
 class Refusing(NamedTuple):
-    """A table that refuses what is outside, an argument that it is looked up at, its ends there."""
+    """A table that refuses what is outside, an argument that it is looked up at, its ends there.
+
+    ``never``: what is said instead where it guards a law that is turned round.
+    """
 
     table: str
     argument: str
     low: float
     high: float
+    never: str = ""
+
+    def told(self, t: float) -> str:
+        """That it was left."""
+        never = self.never or (
+            f"leaves table {self.table!r}, which is from {self.low!r} to {self.high!r} and refuses "
+            "what is outside"
+        )
+        return f"at t = {t:.9g} {self.argument} {never}"
+
+    def is_near(self, place: float) -> bool:
+        """Whether a place is outside or on an end, but for rounding; not of what is no number."""
+        span = self.high - self.low
+        room = TUNING.rounding * (span if span < ENDLESS else 1.0)
+        return place <= self.low + room or place >= self.high - room
 
 
 class InsideTables(FixedSteps):
@@ -82,7 +104,10 @@ class InsideTables(FixedSteps):
 
     def at(self, at: Point, mode: Mode) -> Instant:
         """Every variable at one time."""
-        now = super().at(at, mode)
+        try:
+            now = super().at(at, mode)
+        except EvaluationError as error:
+            raise EvaluationError(self._lost(at) or str(error)) from None
         self.outside = self.outside or self._told(now)
         return now
 
@@ -112,8 +137,21 @@ class InsideTables(FixedSteps):
         places: Array = self.places(now)
         for one, place in zip(self.refusing, places.tolist(), strict=True):
             if place < one.low or place > one.high:
-                return (
-                    f"at t = {now.t:.9g} {one.argument} leaves table {one.table!r}, which is from "
-                    f"{one.low!r} to {one.high!r} and refuses what is outside"
-                )
+                return one.told(now.t)
+        return ""
+
+    def _lost(self, at: Point) -> str:
+        """What states and external inputs alone tell to be left, where nothing else has values."""
+        form, n = self.form, self.form.states
+        u, y = (np.full(len(names), np.nan) for names in (form.inputs, form.readings))
+        u[form.given] = at.w[: len(form.given)]
+        z = at.s[n : n + len(form.law_rates)]
+        now = Instant(at.t, at.s[:n], z, u, u, y, at.w, at.dw, np.zeros(0))
+        try:
+            places: Array = self.places(now)
+        except EvaluationError:
+            return ""
+        for one, place in zip(self.refusing, places.tolist(), strict=True):
+            if one.is_near(place):
+                return one.told(at.t)
         return ""

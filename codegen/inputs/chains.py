@@ -38,9 +38,10 @@ def sampled(breaks: Sequence[float], pieces: Sequence[Piece], times: Array) -> A
 def by_pieces(which: NDArray[np.intp], pieces: Sequence[Piece], times: Array) -> Array:
     """What each time's own piece is there."""
     result = np.zeros(len(times))
-    for at in np.unique(which).tolist():
-        here = which == at
-        result[here] = pieces[at].values(times[here])
+    order = np.argsort(which, kind="stable")
+    ends = np.flatnonzero(np.diff(which[order])) + 1
+    for here in np.split(order, ends) if len(times) else ():
+        result[here] = pieces[which[here[0]]].values(times[here])
     return result
 
 

@@ -4,13 +4,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from bondgraph.errors import SignalError
 from codegen.inputs.pieces import Piece, constant_piece
+from codegen.inputs.sampled import Points, shown, stepping
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import check_finite
-from codegen.numbers.arrays import Array, is_finite, is_number, real_array
+from codegen.numbers.arrays import Array, is_finite, is_number, read_only, real_array
 
 
 @dataclass(frozen=True)
@@ -48,8 +49,8 @@ class Pulse(Signal):
         )
 
 
-@dataclass(frozen=True, init=False)
-class ZeroOrderHold(Signal):
+@dataclass(frozen=True, init=False, repr=False)
+class ZeroOrderHold(Points):
     """Each value from its time [s] to the next one's; the first also before, the last for ever.
 
     Either ``times``, which must increase, or the ``period`` [s] between values, the first at ``start``.
@@ -81,15 +82,23 @@ class ZeroOrderHold(Signal):
         object.__setattr__(self, "times", tuple(t.tolist()))
         object.__setattr__(self, "values", tuple(v.tolist()))
 
-    @property
+    @cached_property
     def breakpoints(self) -> tuple[float, ...]:
         """The times of all values but the first."""
         return self.times[1:]
 
     @cached_property
-    def pieces(self) -> tuple[Piece, ...]:
+    def powers(self) -> tuple[Array, Array]:
         """The values."""
-        return tuple(map(constant_piece, self.times, self.values))
+        return read_only(np.array(self.times)), read_only(np.array(self.values)[:, None])
+
+    @cached_property
+    def jumps(self) -> NDArray[np.bool_]:
+        """Where values differ."""
+        return read_only(stepping(np.array(self.values)))
+
+    def __repr__(self) -> str:
+        return f"ZeroOrderHold({shown(self.times, self.values)})"
 
 
 def _row(numbers: ArrayLike | None, what: str) -> Array:

@@ -15,9 +15,10 @@ class PWM(Endless):
     """Pulses of a frequency [Hz]: ``high`` from each period's start on for ``duty`` of it, then ``low``.
 
     Period k begins at ``(k + phase)/frequency``, so ``phase`` counts in periods. A duty that is a signal is
-    read at each period's start. It is clipped to [0, 1], at whose ends nothing switches.
+    read at each period's start and clipped to [0, 1], at whose ends nothing switches.
 
-    Raises `SignalError` for a frequency that is not positive, and for what is not finite.
+    Raises `SignalError` for a frequency that is not positive, a number outside of 0 to 1 as the duty, and for
+    what is not finite.
 
     >>> gate = PWM(1000.0, 0.25)
     >>> gate(0.0), gate(0.3e-3), gate.following(1.0)
@@ -34,6 +35,8 @@ class PWM(Endless):
         told = () if isinstance(self.duty, Signal) else (self.duty,)
         check_finite(self, self.frequency, *told, self.low, self.high, self.phase)
         _check_frequency(self, self.frequency)
+        for share in told:
+            _check_share(self, "duty", share)
 
     @cached_property
     def summands(self) -> tuple[Signal, ...]:

@@ -89,7 +89,7 @@ def _fitted(
 
     ``about``: the size of the expression round each segment, which comes back with the segment's own.
     """
-    nodes = _nodes()
+    nodes = chebyshev_points()
     times = centres[:, None] + half * nodes
     values = disc_of(expr, times, np.zeros_like(times))[0]
     centre, off = disc_of(expr, centres, np.full_like(centres, BEYOND * half))
@@ -98,7 +98,7 @@ def _fitted(
     size = _size(expr, times).max(axis=1)
     about = np.fmax(about, size)
     enough = TUNING.segment_rounding * np.fmax(size, TUNING.flat * about) + TUNING.nothing_there
-    shares, basis = _matrices()
+    shares, basis = chebyshev_powers()
     # One after the other: their product would have entries of 1e6 that cancel.
     exact = np.asarray(np.isfinite(error) & (error <= enough), dtype=np.bool_)
     known = np.asarray(np.isfinite(values).any(axis=1))
@@ -108,7 +108,7 @@ def _fitted(
 def _levels(expr: sp.Expr, centres: Array, half: float) -> Array:
     """Constants, the means of what values there are."""
     values = disc_of(
-        expr, centres[:, None] + half * _nodes(), np.zeros((len(centres), DEGREE + 1))
+        expr, centres[:, None] + half * chebyshev_points(), np.zeros((len(centres), DEGREE + 1))
     )[0]
     finite = np.isfinite(values)
     means = np.where(finite, values, 0.0).sum(axis=1) / finite.sum(axis=1)
@@ -146,15 +146,15 @@ def _check(expr: sp.Expr, known: Flags, centres: Array) -> None:
 
 
 @cache
-def _nodes() -> Array:
-    """Chebyshev's points on [-1, 1]."""
+def chebyshev_points() -> Array:
+    """Chebyshev's points of the first kind on [-1, 1], one more than the degree."""
     nodes: Array = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
     nodes.flags.writeable = False
     return nodes
 
 
 @cache
-def _matrices() -> tuple[Array, Array]:
+def chebyshev_powers() -> tuple[Array, Array]:
     """From values at the points to Chebyshev coefficients, and from those, by rows, to powers."""
     count = DEGREE + 1
     angles = np.outer(np.arange(count), np.pi * (np.arange(count) + 0.5) / count)

@@ -82,7 +82,8 @@ class Ramp(Signal):
     end: float | None = None
 
     def __post_init__(self) -> None:
-        check_finite(self, self.time, self.slope, self.initial, self.end or 0.0)
+        ends = () if self.end is None else (self.end,)
+        check_finite(self, self.time, self.slope, self.initial, *ends)
         if self.end is not None and self.end <= self.time:
             raise SignalError(f"{self}: a ramp must end after it begins")
 
@@ -192,11 +193,16 @@ def as_signal(value: object, name: str) -> Signal:
         return Constant(float(value))
     told = repr(value).replace("\n", "")
     told = told if len(told) <= LONGEST else told[: LONGEST - 3] + "..."
-    points = "; values at times are Sampled(times, values)"
+    if callable(value):
+        raise SignalError(
+            f"input {name!r}: {told} is a Python function, which only runs in numpy call; give its "
+            "polynomials, codegen.TimeFunction(f).over(times), or samples, codegen.Sampled(times, values)"
+        )
+    points = "; values at times are Sampled(times, values)" if hasattr(value, "__len__") else ""
     raise SignalError(
         f"input {name!r}: {told} is neither a signal nor a number; use Constant, Step, Pulse, Ramp, "
         "Sine, Square, Sawtooth, PWM, Sampled, ZeroOrderHold or Lag"
-        f"{points if callable(value) or hasattr(value, '__len__') else ''}"
+        f"{points}"
     )
 
 

@@ -10,7 +10,7 @@ from bondgraph.errors import ParameterError, SignalError
 from bondgraph.nodes.elements import Element
 from bondgraph.nodes.laws import ExpressionLaw
 from codegen.model.exact_values import exact_parameters
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, is_finite, is_number
 from codegen.numbers.lambdified import lambdified
 from codegen.tuning import TUNING
 
@@ -55,16 +55,17 @@ def by_states(
     told = {name: value for name, value in others.items() if name in held}
     if not told:
         return dict(initial)
+    _check_numbers(initial)
     rest = {name: value for name, value in initial.items() if sp.Symbol(str(name)) not in told}
     known = {sp.Symbol(name): value for name, value in exact_parameters(parameters).items()}
     known |= {sp.Symbol(str(name)): value for name, value in rest.items()}
     by_law: dict[str, float] = {}
     linear: dict[sp.Symbol, sp.Expr] = {}
-    laws = _turned_laws(equations)
+    laws = laws_of_held(equations)
     for name, value in told.items():
         state, law = laws.get(name, (name, held[name].xreplace(known)))
         if name in laws:
-            by_law[state.name] = float(law.xreplace({**known, name: sp.Float(value)}))
+            by_law[state.name] = _given(law.xreplace({**known, name: sp.Float(value)}), name, state)
             continue
         if not law.free_symbols or not law.free_symbols <= {*equations.states}:
             raise SignalError(
@@ -75,7 +76,22 @@ def by_states(
     return rest | by_law | _solved(linear, told)
 
 
-def _turned_laws(equations: StateEquations) -> dict[sp.Symbol, tuple[sp.Symbol, sp.Expr]]:
+def _given(law: sp.Expr, name: sp.Symbol, state: sp.Symbol) -> float:
+    """What a law gives at what is held; `SignalError` where that is no number."""
+    if not (law.is_number and law.is_finite and law.is_real):
+        raise SignalError(
+            f"initial {name}: the law gives {state} = {law}, no finite number; tell {state}"
+        )
+    return float(law)
+
+
+def _check_numbers(initial: Mapping[str, float]) -> None:
+    for name, value in initial.items():
+        if not is_number(value) or not is_finite(value):
+            raise SignalError(f"initial {name}: {value!r} is not a finite number")
+
+
+def laws_of_held(equations: StateEquations) -> dict[sp.Symbol, tuple[sp.Symbol, sp.Expr]]:
     """What a storage whose law counts by its inverse holds, to its state and the law that gives that."""
     found = {}
     for port in equations.reduction.structure.ports:
@@ -98,7 +114,13 @@ def _solved(held: Mapping[sp.Symbol, sp.Expr], told: Mapping[sp.Symbol, float]) 
     matrix = np.array([[float(expr.coeff(one)) for one in names] for expr in held.values()])
     rest = dict.fromkeys(names, sp.Integer(0))
     right = [float(told[name] - expr.xreplace(rest)) for name, expr in held.items()]
-    values = np.linalg.solve(matrix, np.array(right))
+    try:
+        values = np.linalg.solve(matrix, np.array(right))
+    except np.linalg.LinAlgError:
+        raise SignalError(
+            f"initial {', '.join(map(str, held))}: these do not tell {', '.join(map(str, names))}; tell the "
+            "states"
+        ) from None
     return {one.name: value for one, value in zip(names, values.tolist(), strict=True)}
 
 

@@ -9,6 +9,7 @@ import math
 from collections.abc import Collection
 
 from bondgraph.errors import SimulationError
+from codegen.model.kept import KeptCrossings
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.modes.rounding import Peaks, scales, slip_rates
@@ -54,6 +55,20 @@ class Crossings:
             self._unseen[i] = 0 if seen else self._unseen[i] + 1
             if self._unseen[i] >= TUNING.stalled:
                 raise _accumulates(model, i, here.t)
+
+    def kept(self) -> KeptCrossings:
+        """What is known of each jump that was crossed, to go on from there."""
+        return tuple(
+            (i, last, self._unseen[i], *self._speeds.get(i, (math.inf, math.inf)))
+            for i, last in sorted(self._last.items())
+        )
+
+    def take_up(self, kept: KeptCrossings) -> None:
+        """Know what was kept, and no more."""
+        self._last = {i: last for i, last, _, _, _ in kept}
+        self._unseen = dict.fromkeys(self._jumps, 0) | {i: count for i, _, count, _, _ in kept}
+        told = {i: (before, latest) for i, _, _, before, latest in kept if i in self._speeds}
+        self._speeds = dict.fromkeys(self._speeds, (math.inf, math.inf)) | told
 
     def _swing(self, port: int, speed: float, leap: float, peaks: Peaks) -> None:
         """Tell how high swings were, and whether they hardly shrink: by crossings to the same side."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from codegen.inputs.pieces import Piece
+from codegen.model.kept import KeptPeaks
 from codegen.model.moves import Moves
 from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.closed import ClosedModel
@@ -64,6 +65,17 @@ class Peaks:
         """Nothing seen yet."""
         states = len(model.program.states)
         return cls(np.zeros(states + len(model.program.inputs)), states)
+
+    def kept(self) -> KeptPeaks:
+        """The same as a record."""
+        leapt = tuple(sorted(self.leapt.items()))
+        return KeptPeaks(tuple(self.both.tolist()), self.states, self.time, self.lingering, leapt)
+
+    @classmethod
+    def again(cls, kept: KeptPeaks) -> "Peaks":
+        """What was kept."""
+        both = np.array(kept.both)
+        return cls(both, kept.states, kept.time, kept.lingering, dict(kept.leapt))
 
     @property
     def x(self) -> Array:

@@ -17,11 +17,11 @@ Points = Sequence[tuple[float, float]]
 def dip(above: Above, times: Sequence[float], values: Sequence[float], k: int) -> float | None:
     """A time between points k and k + 1 at which a function is not above zero.
 
-    None where it stays above as far as chords tell, or points are the same as between neighbouring numbers.
-    ``times``, ``values``: points of a stretch in their order, those beside the two among them; the two
-    themselves are above zero.
+    None where it stays above as far as chords tell, and in a stretch of so few roundings of the time that
+    points fall together. ``times``, ``values``: points of a stretch in their order, those beside the two
+    among them; the two themselves are above zero.
     """
-    if any(end <= t for t, end in pairwise(times)):
+    if any(before == after for before, after in pairwise(times)):
         return None
     width = TUNING.dip * (times[-1] - times[0])
     points, end = list(zip(times, values, strict=True)), k + 1

@@ -28,7 +28,17 @@ PYTHON_WORDS = frozenset(
 )
 """Keywords, builtins, and the names that generated Python uses."""
 
-RESERVED: Mapping[str, frozenset[str]] = MappingProxyType({"c": C_WORDS, "python": PYTHON_WORDS})
+_MATLAB_WORDS = """
+    break case catch classdef continue else elseif end for function global if otherwise parfor persistent
+    return spmd switch try while
+"""
+
+MATLAB_WORDS = frozenset(_MATLAB_WORDS.split())
+"""Keywords of MATLAB, which no variable is called by."""
+
+RESERVED: Mapping[str, frozenset[str]] = MappingProxyType(
+    {"c": C_WORDS, "python": PYTHON_WORDS, "matlab": MATLAB_WORDS}
+)
 
 
 _MODULES = frozenset(

@@ -303,6 +303,12 @@ class Program:
     def _ports_taken(self) -> list[tuple[FrictionPort, Transition | None]]:
         return [(port, port.transition) for port in self.friction]
 
+    @cached_property
+    def nodes(self) -> tuple[Hashable, ...]:
+        """Where events may be asked for: the graph's nodes, and the ports of its fields."""
+        ports = (port.element.name for port in self.equations.reduction.structure.ports)
+        return tuple(dict.fromkeys([*self.equations.elements, *ports, *self.happening]))
+
     @property
     def corners_told(self) -> bool:
         """Whether states, external inputs and the time alone tell what corners hang on."""

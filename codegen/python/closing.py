@@ -1,7 +1,9 @@
 """The end of generated Python: the formulas put together with what is the same for every model."""
 
 from codegen.corners.refusing import refusals
+from codegen.energy.holdings import Holdings
 from codegen.program.records import Group, Program
+from codegen.python.beginning import beginning, held_table
 from codegen.python.blocks import bound, law_names
 from codegen.python.looking import model_words, table_shapes
 from codegen.python.tables import slip_rows
@@ -70,20 +72,20 @@ class Model({base}):
 def simulate(time, initial, inputs, parameters=None, step=STEP, dead_band=1e-6{also}{tables}):
     """Integrate with steps of at most ``step`` [s] and sample at the times given.
 
-    ``initial``: states by name, the rest start at {rest}. ``inputs``: a number or a function of time for
-    each of INPUTS. ``dead_band``: slips below it may stick. {told}The work of a step is bounded: nothing
-    is located inside it. Returns arrays by name: t, states, inputs, outputs, {what}.{values}
+    ``initial``: states{also_held} by name, the rest start at {rest}. ``inputs``: a number or a
+    function of time for each of INPUTS. ``dead_band``: slips below it may stick. {told}The
+    work of a step is bounded: nothing is located inside it. Returns arrays by name: t, states,
+    inputs, outputs, {what}.{values}
 
     Raises `UnstableStep` for a step beyond the stability of its method, with the longest that is
     stable; LONGEST_STEP is that of the start.
     """
-    return run(Model(parameters{other}), time, {initial}, inputs, step, dead_band{given})'''
+    {begin}return run({model}, time, {initial}, inputs, step, dead_band{given})'''
 
 
-_FROM_ZERO = {"rest": "0", "initial": "initial"}
-_TOLD = {"rest": "STARTS, or 0", "initial": "{**STARTS, **initial}"}
+_FROM_ZERO = {"rest": "0", "initial": "begun"}
+_TOLD = {"rest": "STARTS, or 0", "initial": "{**STARTS, **begun}"}
 """Where no start is declared, and where some are."""
-
 
 _PLAIN = {"also": "", "given": "", "told": "", "what": "friction efforts"}
 
@@ -101,10 +103,11 @@ _SWITCHED = {
 }
 
 
-def needed(program: Program, slips: SlipRows | None, implicit: bool) -> list[str]:
+def needed(program: Program, slips: SlipRows | None, implicit: bool, held: bool) -> list[str]:
     """The modules that a program's model works with, beside those that these import.
 
-    ``slips``: what ports receive; None where every set's slips bind the states, each by itself.
+    ``slips``: what ports receive; None where every set's slips bind the states, each by itself. ``held``:
+    whether a start may tell what storages hold.
     """
     also = {
         "settling": bool(program.friction) and not program.guarded,
@@ -119,6 +122,7 @@ def needed(program: Program, slips: SlipRows | None, implicit: bool) -> list[str
     events = {"stopping": program.stopped, "resetting": program.resets, "hanging": program.hanging}
     names += [f"codegen.stops.{name}" for name, wanted in events.items() if wanted]
     names += ["codegen.fixed.tabled"] if program.tables else []
+    names += ["codegen.fixed.starting"] if held else []
     back = any(table.turned for table in program.tables)
     names += ["bondgraph.tables.backward"] if back else []
     names += ["bondgraph.searching"] if program.turnings else []
@@ -126,12 +130,12 @@ def needed(program: Program, slips: SlipRows | None, implicit: bool) -> list[str
 
 
 def closing(
-    program: Program, slips: SlipRows | None, told: bool, implicit: bool = False
+    program: Program, slips: SlipRows | None, told: bool, held: Holdings, implicit: bool = False
 ) -> list[str]:
     """Functions that bind formulas and tables to the rest, the class `Model`, and `simulate`.
 
-    ``slips``: as `needed` takes them. ``told``: whether there is a table STARTS;
-    ``implicit``: whether steps are linearly implicit.
+    ``slips``: as `needed` takes them. ``told``: whether there is a table STARTS; ``held``: what a start may
+    tell of storages; ``implicit``: whether steps are linearly implicit.
     """
     names = "STATES, INPUTS, SHOWN, SWITCHES" if program.guarded else "STATES, INPUTS, SHOWN"
     lines = [RULE, "# How this model is put together.", "", f"NAMES = Names({names})"]
@@ -148,6 +152,7 @@ def closing(
     if program.tables:
         lines += ["", *table_shapes(program)]
     base = f"InsideTables, {base}" if refusals(program) else base
+    lines += held_table(held)
     lines += ["", "", *_form(program)]
     lines += _friction(program, slips) if program.friction else []
     if program.guarded:
@@ -156,6 +161,7 @@ def closing(
     resets = "\n    resets = RESETS\n" if program.resets else ""
     resets += "\n    refusing = REFUSING\n" if refusals(program) else ""
     words |= model_words(program)
+    words |= beginning(words, held)
     model = _MODEL.format(base=base, arguments=arguments, resets=resets, **words)
     return [*lines, *model.splitlines()]
 

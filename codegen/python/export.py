@@ -7,6 +7,7 @@ from typing import Any
 
 from bondgraph.equations import StateEquations
 from codegen.corners.refusing import arguments, refusals
+from codegen.energy.holdings import holdings
 from codegen.model.commands import conditions_told
 from codegen.model.doubts import warn_of_doubts
 from codegen.model.starts import told_starts
@@ -14,6 +15,7 @@ from codegen.modes.steps import is_implicit
 from codegen.ports.holds import all_plain, check_sets
 from codegen.program.records import Program
 from codegen.program.units import units
+from codegen.python.beginning import held_function
 from codegen.python.blocks import (
     Names,
     coefficients_function,
@@ -87,7 +89,8 @@ def to_python(
     starts = told_starts(equations, exact)
     check_sets(program, closed.slips)
     slips = None if all_plain(program, closed.slips) else closed.slips
-    imports, fixed = written_out(needed(program, slips, implicit))
+    held = holdings(program)
+    imports, fixed = written_out(needed(program, slips, implicit, bool(held.names)))
     lines = [
         *_head(program, equations, name, imports),
         *("", *table("PARAMETERS", used)),
@@ -98,9 +101,10 @@ def to_python(
         *(friction_tables(program, closed.slips) if program.friction else ()),
         *step_settings(longest, len(program.friction)),
         *_functions(program, names),
+        *held_function(held, program, names),
     ]
     same = [RULE, "# What follows is the same for every model.", "", "", fixed]
-    tail = closing(program, slips, bool(starts), implicit)
+    tail = closing(program, slips, bool(starts), held, implicit)
     return "\n".join([*lines, "", "", *same, "", "", *tail]) + "\n"
 
 

@@ -41,7 +41,8 @@ def table_shapes(program: Program) -> list[str]:
         lines += ["    )),"]
     lines += ["}"]
     rows = [
-        f"    Refusing({quoted(one.table.name)}, {quoted(str(one.argument))}, {low!r}, {high!r}),"
+        f"    Refusing({quoted(one.table.name)}, {quoted(str(one.argument))}, {low!r}, {high!r}"
+        f"{f', {quoted(one.never)}' * bool(one.never)}),"
         for one in refusals(program)
         for low, high in [one.ends]
     ]

@@ -9,9 +9,27 @@ from bondgraph.errors import SimulationError
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array, read_only
+from codegen.program.layout import EXTERNAL, INPUTS, LAW_STATES, NAMES, READINGS, STATES
 from codegen.program.records import Program
 from codegen.record.observer import Observer
 from codegen.record.snapshots import Snapshots
+
+
+def column_places(program: Program) -> dict[str, tuple[int, int]]:
+    """For each column of a run its part of an instant and its place in that, in the order of columns."""
+    groups = (
+        (STATES, program.states, None),
+        (LAW_STATES, program.law_states, None),
+        (INPUTS, program.inputs, set(program.shown_inputs)),
+        (EXTERNAL, program.asked, None),
+        (READINGS, program.readings, set(program.shown)),
+    )
+    found: dict[str, tuple[int, int]] = {}
+    for part, names, shown in groups:
+        for at, name in enumerate(names):
+            if shown is None or at in shown:
+                found.setdefault(name.name, (part, at))
+    return found
 
 
 def named_columns(
@@ -22,22 +40,10 @@ def named_columns(
     Raises `SimulationError`, with the time, where one is not finite, though all that laws give is.
     """
     program = model.program
-    groups = (
-        (program.states, found.x),
-        (program.law_states, found.z),
-        (program.inputs, found.u),
-        (program.asked, found.external),
-        (program.readings, found.y),
-    )
-    columns: dict[str, Array] = {}
-    shown, given = set(program.shown), set(program.shown_inputs)
-    for names, table in groups:
-        for at, name in enumerate(names):
-            if (names is program.readings and at not in shown) or (
-                names is program.inputs and at not in given
-            ):
-                continue
-            columns.setdefault(name.name, read_only(table[:, at].copy()))
+    columns = {
+        name: read_only(getattr(found, NAMES[part])[:, at].copy())
+        for name, (part, at) in column_places(program).items()
+    }
     # What laws give may be infinite where the rates are not, as the potential of what is used up.
     infinite = np.isinf(found.u).any(axis=1) & ~np.isnan(found.u).any(axis=1)
     told = {name.name for name in (*program.states, *program.law_states)}
@@ -55,6 +61,17 @@ def named_columns(
     known = MappingProxyType(columns)
     x, dx, u, du = map(read_only, (found.x, dx, found.u, found.du))
     return known, Observer(times, model, known, x, dx, u, du)
+
+
+def known_names(program: Program) -> tuple[str, ...]:
+    """All that a run can be asked for by name: its columns, switches, and every signal of the graph."""
+    equations = program.equations
+    switches = (p.name for p in program.friction if p.switch is not None and not p.slides)
+    inputs = (program.inputs[at] for at in program.shown_inputs)
+    readings = (program.readings[at] for at in program.shown)
+    signals = (*equations.signals, *equations.held)
+    names = (*program.states, *program.law_states, *inputs, *program.asked, *readings, *switches)
+    return tuple(dict.fromkeys(map(str, (*names, *signals))))
 
 
 def _check_finite(times: Array, columns: Mapping[str, Array], states: Collection[str]) -> None:

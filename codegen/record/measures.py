@@ -3,15 +3,17 @@
 The ready ones here can be sent to other processes; so can any function at the top of a module.
 """
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Collection, Hashable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from bondgraph.errors import SignalError, nearest
 from codegen.numbers.arrays import Array
-from codegen.record.result import Result
+from codegen.record.result import Result, values_of
+from codegen.runs.track import KINDS, Event
 
 
 @dataclass(frozen=True, repr=False)
@@ -35,7 +37,7 @@ class Measure:
 def peak(signal: str) -> Measure:
     """The largest magnitude of a signal at the samples.
 
-    Raises nothing; a sweep lists runs without such a signal in `Sweep.failed`.
+    Raises nothing; a sweep, and a run, refuses by `SignalError` a signal that there is not.
 
     >>> peak("tau_k1")
     peak('tau_k1')
@@ -46,7 +48,7 @@ def peak(signal: str) -> Measure:
 def largest(signal: str) -> Measure:
     """The largest value of a signal at the samples.
 
-    Raises nothing; a sweep lists runs without such a signal in `Sweep.failed`.
+    Raises nothing; a sweep, and a run, refuses by `SignalError` a signal that there is not.
 
     >>> largest("v")
     largest('v')
@@ -57,7 +59,7 @@ def largest(signal: str) -> Measure:
 def smallest(signal: str) -> Measure:
     """The smallest value of a signal at the samples.
 
-    Raises nothing; a sweep lists runs without such a signal in `Sweep.failed`.
+    Raises nothing; a sweep, and a run, refuses by `SignalError` a signal that there is not.
 
     >>> smallest("v")
     smallest('v')
@@ -68,7 +70,7 @@ def smallest(signal: str) -> Measure:
 def final(signal: str) -> Measure:
     """A signal's value at the last point in time.
 
-    Raises nothing; a sweep lists runs without such a signal in `Sweep.failed`.
+    Raises nothing; a sweep, and a run, refuses by `SignalError` a signal that there is not.
 
     >>> final("v")
     final('v')
@@ -79,7 +81,7 @@ def final(signal: str) -> Measure:
 def integral(signal: str) -> Measure:
     """A signal integrated through the run, however few its samples; see `Result.integral`.
 
-    Raises nothing; a sweep lists runs without such a signal in `Sweep.failed`.
+    Raises nothing; a sweep, and a run, refuses by `SignalError` a signal that there is not.
 
     >>> integral("v")
     integral('v')
@@ -90,7 +92,7 @@ def integral(signal: str) -> Measure:
 def samples(signal: str) -> Measure:
     """The whole signal, a number for each point in time.
 
-    Raises nothing; a sweep lists runs without such a signal in `Sweep.failed`.
+    Raises nothing; a sweep, and a run, refuses by `SignalError` a signal that there is not.
 
     >>> samples("v")
     samples('v')
@@ -101,29 +103,31 @@ def samples(signal: str) -> Measure:
 def first_event(port: Hashable, kind: str) -> Measure:
     """The time [s] of the first event of that kind at a port, such as "stick"; NaN if there is none.
 
-    Raises nothing; a port that has no such event may be any name.
+    Raises `SignalError` for a kind that events do not have; a sweep, and a run, for what is no node of the
+    graph.
 
     >>> first_event("clutch", "stick")
     first_event('clutch', 'stick')
     """
-    return Measure(_first_event, (port, kind))
+    return Measure(_first_event, (port, _checked(kind)))
 
 
 def event_count(port: Hashable, kind: str) -> Measure:
     """How many events of that kind a port has.
 
-    Raises nothing; a port that has no such event may be any name.
+    Raises `SignalError` for a kind that events do not have; a sweep, and a run, for what is no node of the
+    graph.
 
     >>> event_count("clutch", "slip")
     event_count('clutch', 'slip')
     """
-    return Measure(_event_count, (port, kind))
+    return Measure(_event_count, (port, _checked(kind)))
 
 
 def work(node: Hashable) -> Measure:
     """The energy that an element absorbs, or a source supplies, through the run; see `Result.work`.
 
-    Raises nothing; a sweep lists runs without such a node in `Sweep.failed`.
+    Raises nothing; a sweep refuses by `SignalError` a node that there is not.
 
     >>> work("brake")
     work('brake')
@@ -142,20 +146,28 @@ def balance() -> Measure:
     return Measure(_balance, ())
 
 
+def _checked(kind: str) -> str:
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise SignalError(
+            f"no event is a {kind!r}{nearest(str(kind), KINDS)}; there are {', '.join(KINDS)}"
+        )
+    return kind
+
+
 def _peak(result: Result, signal: str) -> float:
-    return float(np.abs(result[signal]).max())
+    return float(np.abs(values_of(result, signal)).max())
 
 
 def _largest(result: Result, signal: str) -> float:
-    return float(result[signal].max())
+    return float(values_of(result, signal).max())
 
 
 def _smallest(result: Result, signal: str) -> float:
-    return float(result[signal].min())
+    return float(values_of(result, signal).min())
 
 
 def _final(result: Result, signal: str) -> float:
-    return float(result[signal][-1])
+    return float(values_of(result, signal)[-1])
 
 
 def _integral(result: Result, signal: str) -> float:
@@ -163,18 +175,29 @@ def _integral(result: Result, signal: str) -> float:
 
 
 def _samples(result: Result, signal: str) -> Array:
-    return result[signal]
+    return values_of(result, signal)
+
+
+def check_node(node: Hashable, nodes: Collection[Hashable]) -> None:
+    """Refuse, by `SignalError`, what is no node of the graph."""
+    if node not in nodes:
+        told = [str(one) for one in nodes]
+        raise SignalError(
+            f"no node {node!r}{nearest(str(node), told)}; there are {', '.join(told) or 'none'}"
+        )
+
+
+def _events(result: Result, port: Hashable, kind: str) -> list[Event]:
+    check_node(port, result.observer.nodes())
+    return [event for event in result.events if (event.port, event.kind) == (port, kind)]
 
 
 def _first_event(result: Result, port: Hashable, kind: str) -> float:
-    return min(
-        (event.time for event in result.events if (event.port, event.kind) == (port, kind)),
-        default=float("nan"),
-    )
+    return min((event.time for event in _events(result, port, kind)), default=float("nan"))
 
 
 def _event_count(result: Result, port: Hashable, kind: str) -> float:
-    return float(sum((event.port, event.kind) == (port, kind) for event in result.events))
+    return float(len(_events(result, port, kind)))
 
 
 def _work(result: Result, node: Hashable) -> float:
@@ -198,3 +221,6 @@ READY: Mapping[Callable[..., float | Array], str] = MappingProxyType(
     }
 )  # fmt: skip
 """What loops in C can do, too."""
+
+OF_NODES = frozenset({"first_event", "event_count", "work"})
+"""Those that are asked of a node; the others are asked of a signal, or of nothing."""

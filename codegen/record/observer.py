@@ -40,6 +40,10 @@ class Observer:
         """Every named effort and flow of the graph, and what its storages hold."""
         return tuple(map(str, (*self._equations.signals, *self._equations.held)))
 
+    def nodes(self) -> tuple[Hashable, ...]:
+        """The nodes of the graph and the ports of its fields."""
+        return self.model.program.nodes
+
     def signal(self, name: str) -> Array:
         """A named effort or flow, or what a storage holds; `KeyError` naming what there is."""
         row = self._equations.signals.get(sp.Symbol(name))

@@ -4,7 +4,7 @@ from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from types import MappingProxyType
-from typing import Any, Protocol
+from typing import Any
 
 from bondgraph.errors import SignalError
 from codegen.energy.audit import Audit
@@ -12,42 +12,12 @@ from codegen.numbers.arrays import Array
 from codegen.pictures.labels import common, measured, pretty
 from codegen.pictures.marks import Marks, stuck_spans
 from codegen.pictures.stacked import Line, Panel, along, fill, stacked
+from codegen.record.files import write_mat, write_parquet
 from codegen.record.summary import summary
-from codegen.record.tables import dataset, frame, write_columns, write_netcdf
+from codegen.record.tables import dataset, frame, free, write_columns, write_netcdf
 from codegen.record.views import run_html
+from codegen.record.working import Accountant, Named, Watcher
 from codegen.runs.track import Event
-
-
-class Accountant(Protocol):
-    """What integrates a run's powers and signals."""
-
-    def work(self, node: Hashable) -> Array:
-        """What a one-port absorbs, or a source supplies, up to each sample."""
-
-    def integral(self, name: str) -> Array:
-        """A signal integrated up to each sample."""
-
-    def audit(self) -> Audit:
-        """The power balance of the run."""
-
-
-class Watcher(Protocol):
-    """What works out a run's signals, bonds, powers and energies."""
-
-    def names(self) -> Sequence[str]:
-        """Of the signals that it works out."""
-
-    def signal(self, name: str) -> Array:
-        """A named effort or flow."""
-
-    def bond(self, tail: Hashable, head: Hashable) -> tuple[Array, Array]:
-        """Effort and flow of a bond."""
-
-    def power(self, node: Hashable) -> Array:
-        """Effort times flow of a one-port."""
-
-    def energy(self, node: Hashable) -> Array:
-        """What a storage holds."""
 
 
 def _no_units() -> Mapping[str, str]:
@@ -112,7 +82,10 @@ class Result:
         return self.ledger.work(node)
 
     def integral(self, name: str) -> Array:
-        """A signal integrated up to each sample, as `work` is; `SignalError` for one that there is not."""
+        """A signal, or what a linear storage holds, integrated up to each sample, as `work` is.
+
+        Raises `SignalError` for one that there is not.
+        """
         return self.ledger.integral(name)
 
     def audit(self) -> Audit:
@@ -154,6 +127,28 @@ class Result:
         Raises `MissingExtraError` without xarray or h5netcdf, `WriteError` where the file cannot be written.
         """
         write_netcdf(self.to_xarray(), path)
+
+    def write_parquet(self, path: str | PathLike[str]) -> None:
+        """Write time, as "t", and every column as a parquet file, digit for digit.
+
+        Units are metadata of its columns, ``unit``; events, as JSON, are metadata of the table. Raises
+        `MissingExtraError` without pyarrow, `WriteError` where the file cannot be written.
+        """
+        write_parquet(path, *self._timed(), self.events)
+
+    def write_mat(self, path: str | PathLike[str]) -> None:
+        """Write time, as "t", and every column as variables of a MAT file, for MATLAB and Octave.
+
+        The variable ``signals`` lists variable, signal and unit, as not every name is one in MATLAB; events
+        are ``event_time``, ``event_port`` and ``event_kind``. Raises `SignalError` for a name beyond 63
+        characters, `WriteError` where the file cannot be written.
+        """
+        write_mat(path, *self._timed(), self.events)
+
+    def _timed(self) -> tuple[list[str], list[Array], dict[str, str]]:
+        """Names, columns and units with those of time in front."""
+        t = free("t", self.columns)
+        return [t, *self.columns], [self.time, *self.columns.values()], {**self.units, t: "s"}
 
     def summary(self) -> str:
         """Samples, where states begin, end and turn, and events, as a short text."""
@@ -202,7 +197,7 @@ class Result:
         return ax.figure
 
 
-def values_of(result: Result, name: str) -> Array:
+def values_of(result: Named, name: str) -> Array:
     """A signal of a run; `SignalError` naming what there is."""
     try:
         return result[name]

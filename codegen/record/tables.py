@@ -10,10 +10,9 @@ import numpy as np
 
 from bondgraph.errors import MissingExtraError
 from bondgraph.writing import replacing, write_bytes
+from codegen.data.record import INSTALL
 from codegen.numbers.arrays import Array
 from codegen.runs.track import Event
-
-INSTALL = "install the optional extra: pip install bondgraph-toolkit[tables]"
 
 
 def free(name: str, taken: Mapping[str, object]) -> str:

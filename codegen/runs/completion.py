@@ -9,12 +9,14 @@ import numpy as np
 
 from bondgraph.errors import ModelWarning
 from codegen.inputs.pieces import Piece
+from codegen.inputs.signal import Signal
 from codegen.model.snapshot import Mode
 from codegen.modes.bounce import check_gaps
 from codegen.modes.closed import ClosedModel
 from codegen.modes.keeping import kept_by
 from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
+from codegen.runs.arguments import initial_values
 from codegen.standalone.striking import completing
 from codegen.tuning import TUNING
 
@@ -65,6 +67,23 @@ def beginning(
         states[j]: float(now.x[j] + change) for j, change in zip(free, moved, strict=True) if change
     }
     return Beginning(made, mode, MappingProxyType(found), by)
+
+
+def started(
+    model: ClosedModel, t: float, told: Mapping[str, float], signals: Sequence[Signal],
+    on: Collection[object],
+) -> tuple[Array, Beginning]:  # fmt: skip
+    """The states with which a run begins at t [s], law states last, and where that is.
+
+    ``told``: states by name, all others are zero; ``signals``: of all external inputs.
+    """
+    names = [name.name for name in (*model.program.states, *model.program.law_states)]
+    states = initial_values(told, names)
+    start = model.vector(t, states, np.array([signal(t) for signal in signals]))
+    with np.errstate(all="ignore"):
+        pieces = [signal.piece(t) for signal in signals]
+        begun = beginning(model, t, start, pieces, on, {str(name) for name in told})
+    return states + begun.moved, begun
 
 
 def tell_completed(completed: Mapping[str, float]) -> None:

@@ -13,7 +13,8 @@ from codegen.inputs.pieces import Piece
 from codegen.inputs.present import Inputs, Present
 from codegen.inputs.signal import Signal
 from codegen.instants.parts import Part, hits, parts_of
-from codegen.model.snapshot import Mode
+from codegen.model.kept import Kept
+from codegen.model.snapshot import Mode, Snapshot
 from codegen.modes.choices import Choices, Occasion
 from codegen.modes.choose import decide
 from codegen.modes.closed import ClosedModel
@@ -64,22 +65,23 @@ def run_hybrid(
     ``keeping``: whether events are kept; without them nothing grows with the length of a run but its samples.
     ``corners``: whether those of laws are among them.
     """
-    course = _Course(model, times, start, signals, settings, first)
+    course = Course(model, times, start, signals, settings, first)
     course.track.tally, course.track.keeping, course.track.cornered = tally, keeping, corners
     if tally is not None:
         tally.within(course.track)
-    while course.unfinished:
-        course.settle()
-        if course.t < course.end:
-            course.advance()
+    course.arrive()
+    course.settle()
     course.track.record(course.s, course.mode)
     if tally is not None:
         tally.record()
     return Stretch(course.track, course.s, course.mode)
 
 
-class _Course:
-    """Where a run is: time, integrated vector, mode; and the ports whose event it has come to."""
+class Course:
+    """Where a run is: time, integrated vector, mode; and the ports whose event it has come to.
+
+    It may pause where it ends, and go on from there.
+    """
 
     def __init__(
         self, model: ClosedModel, times: Array, start: Array, signals: Sequence[Signal],
@@ -97,19 +99,69 @@ class _Course:
         self._first_looks = glances, None if glances is None else Choices(glances)
         self._changes = Latest[tuple[Mode, Mode], list[tuple[Hashable, str]]]()
         self._clear = False
-        self._due = frozenset(
-            at for at, one in enumerate(model.program.clocks) if one.strikes(begin)
-        )
         self._touched = frozenset[int]()
         self._settled: float | None = None
+        #: Up to when [s] tasks have set what they set.
+        self._done = -math.inf
+        #: Whether the mode of the present instant is none that could go on, as a run may end with.
+        self._excused = False
+        #: The instant at which it paused, where that is decided again.
+        self._paused: float | None = None
         self._before: Sequence[Piece] | None = None
         self._peaks, self._rounds = Peaks.none(model), deque[float](maxlen=TUNING.stalled)
 
-    @property
-    def unfinished(self) -> bool:
-        """Whether there is anything left to decide or to integrate."""
-        undecided = self.t != self._settled
-        return undecided or self.t < self.end or bool(self._touched or self._due)
+    def arrive(self) -> None:
+        """Go on to the end, where the mode is not decided yet."""
+        while self.t < self.end:
+            if self._touched or self.t != self._settled:
+                self.settle()
+            self.advance()
+
+    def on_to(self, end: float) -> None:
+        """Go on from the present instant, with nothing recorded but what happens."""
+        self.end, self._times = end, np.array([self.t, end])
+        self.track.recorded = 1
+        self.track.modes, self.track.events = [self.mode], []
+
+    def under(self, signals: Sequence[Signal]) -> None:
+        """Other inputs from the present instant on."""
+        self._inputs = Inputs(signals)
+
+    def kept(self) -> Kept:
+        """Where the run is, to go on from there."""
+        decided = self._settled == self.t and not self._touched and not self._excused
+        return Kept(
+            self.t,
+            self._origin,
+            self._done,
+            tuple(self.s.tolist()),
+            self.mode,
+            self._touched,
+            self._settled is not None,
+            decided,
+            tuple(self.track.largest.tolist()),
+            self._peaks.kept(),
+            self._crossings.kept(),
+            tuple(self._rounds),
+        )
+
+    def take_up(self, kept: Kept) -> None:
+        """Be where a run was that was kept, under the inputs as they are."""
+        self.t, self._origin, self.s = kept.t, kept.began, np.array(kept.s)
+        self._done = kept.done
+        self.mode, self._touched = kept.mode, kept.touched
+        self._settled = kept.t if kept.decided else -math.inf if kept.begun else None
+        self._clear, self._excused = False, False
+        self._paused = None if kept.decided else kept.t
+        self.track.largest = np.array(kept.largest)
+        self._peaks = Peaks.again(kept.peaks)
+        self._crossings.take_up(kept.crossings)
+        self._rounds = deque(kept.rounds, maxlen=TUNING.stalled)
+        self._here = Sight(self._model, self.t, self.s, self._inputs.at(self.t).pieces)
+
+    def look(self) -> Snapshot:
+        """Everything at the present instant, which is decided."""
+        return self._here.at(self.mode)
 
     @property
     def _slipping(self) -> frozenset[int]:
@@ -120,13 +172,13 @@ class _Course:
     def settle(self) -> None:
         """Decide the mode just after t, and bring ports that hold to rest."""
         model, t, peaks, present = self._model, self.t, self._peaks, self._inputs.at(self.t)
-        pieces = present.pieces
+        pieces, self._excused = present.pieces, False
         here = Sight(model, t, self.s, pieces)
         peaks.see(here, self.mode)
         if self.mode:
             peaks.time = time_constant(self._fastest(here, present), t - self._origin)
         ahead = look_ahead(peaks.time, t, present.following)
-        if t >= self.end and self._settled is not None:
+        if (t >= self.end or t == self._paused) and self._settled is not None:
             # The search may have missed an event at the very end by a rounding.
             self._touched |= _still(here, self.mode, self._slipping, peaks)
         # A breakpoint may set the slips anew, so sticking ports are decided again with the others.
@@ -134,8 +186,9 @@ class _Course:
         occasion = Occasion(
             model, t, pieces, self.mode, ahead, peaks, loose, self._touched, *self._first_looks
         )
-        parts = self._decided(occasion, here)
-        self._due = NONE
+        due = self._due()
+        parts = self._decided(occasion, here, due)
+        self._done = t if due else self._done
         new, self._clear = parts[-1].mode, parts[-1].clear
         self._note(parts, self._settled is None)
         counted = self._touched - self._crossings.of(self.mode, new)
@@ -153,20 +206,28 @@ class _Course:
             # What was left of a leap is gone, and what goes with it may rest, too.
             self.settle()
 
-    def _decided(self, now: Occasion, here: Sight) -> list[Part]:
+    def _due(self) -> frozenset[int]:
+        """The tasks whose instant the present one is, and which have not set yet what they set."""
+        if self.t <= self._done:
+            return NONE
+        clocks = self._model.program.clocks
+        return frozenset(at for at, one in enumerate(clocks) if one.strikes(self.t))
+
+    def _decided(self, now: Occasion, here: Sight, due: frozenset[int]) -> list[Part]:
         """What an instant comes to; the last mode where a run ends so soon that none needs to go on.
 
         As where a level comes down to zero at the end: what would follow, a level below, does not. A
         run begins with no event.
         """
         if self._settled is None:
-            return parts_of(decide, now, here, self._due, begins=True)
+            return parts_of(decide, now, here, due, begins=True)
         try:
-            return parts_of(decide, now, here, self._due)
+            return parts_of(decide, now, here, due)
         except SimulationError:
             if self.t + now.ahead < self.end:
                 raise
             here.at(self.mode)
+            self._excused = True
             return [Part(self.mode, self.mode, (), here.s)]
 
     def _note(self, parts: Sequence[Part], begins: bool) -> None:
@@ -213,39 +274,30 @@ class _Course:
         present = self._inputs.at(self.t)
         pieces, stop = present.pieces, min(present.following, self.end)
         instant, timed = self._clock.following(self.t, pieces, self.mode, stop)
-        tick, due = self._ticks(stop)
+        tick = min((c.following(self.t) for c in self._model.program.clocks), default=math.inf)
         stop = min(stop, instant, tick)
         exact = self._exact(pieces, stop)
         if exact is not None:
             begin, s, first = self.t, self.s, self.track.recorded
             self.t, self.s, ended = exact.run(stop, self._times, self.track)
             self._touched = ended or (timed if self.t == instant else NONE)
-            self._due = due if self.t == tick else NONE
             self._back_to_sample(begin)
             self._integrate(pieces, begin, s, first)
         else:
             begin, leg = self.t, self._leg(pieces, self.mode)
             self.t, self.s, ended = leg.run(self.t, self.s, stop, self._times, self.track)
             self._touched = ended or (timed if self.t == instant else NONE)
-            self._due = due if self.t == tick else NONE
             self._back_to_sample(begin)
-
-    def _ticks(self, stop: float) -> tuple[float, frozenset[int]]:
-        """The next instant of a task up to ``stop`` [s], and whose it is; or infinity."""
-        times = [one.following(self.t) for one in self._model.program.clocks]
-        first = min(times, default=math.inf)
-        if first > stop:
-            return math.inf, NONE
-        return first, frozenset(at for at, time in enumerate(times) if time == first)
 
     def _back_to_sample(self, begin: float) -> None:
         """Where a switch changes over a rounding after a sample, that shows the instant just after, too."""
         track, switching = self.track, self._model.switching
-        if not track.recorded or not (self._due or any(switching[i] for i in self._touched)):
+        due = self._due()
+        if not track.recorded or not (due or any(switching[i] for i in self._touched)):
             return
         last = float(self._times[track.recorded - 1])
         if last > begin and self.t - last <= TUNING.together * max(abs(self.t), self.t - begin):
-            self.t = last
+            self.t = self.t if due else last
             track.unrecord()
 
     def _integrate(self, pieces: Sequence[Piece], begin: float, s: Array, first: int) -> None:
@@ -284,9 +336,10 @@ class _Course:
 def _still(here: Sight, mode: Mode, ports: frozenset[int], peaks: Peaks) -> frozenset[int]:
     """Those of the ports that are at rest, or close enough for it to be the event's own rounding.
 
-    A stop is met where its gap is closed, not where it is at rest.
+    A stop is met where its gap is closed, not where it is at rest; what keeps a switch with a condition of
+    its own is that.
     """
-    ports -= {*here.model.stopping}
+    ports -= {*here.model.stopping, *here.model.guarded}
     if not ports:
         return frozenset()
     known, now = here.evaluated(mode)

@@ -9,6 +9,7 @@ from codegen.inputs.signal import Signal
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.records import Program
+from codegen.tuning import TUNING
 
 
 def refuse_impulses(model: ClosedModel, signals: Sequence[Signal], times: Array) -> None:
@@ -17,23 +18,49 @@ def refuse_impulses(model: ClosedModel, signals: Sequence[Signal], times: Array)
     So are steps of inputs that drive a dependent storage by way of a ratio that changes. Raises
     `SimulationError` naming the input, the time and what would see the impulse.
     """
-    program = model.program
+    for at, where in rated_inputs(model).items():
+        step = signals[at].first_jump(float(times[0]), float(times[-1]))
+        if step is not None:
+            raise _impulse(model, at, where, step)
+
+
+def rated_inputs(model: ClosedModel) -> dict[int, str]:
+    """The external inputs whose steps are impulses somewhere, and what sees that, as a clause."""
+    program, found = model.program, dict[int, str]()
     shown = _shown_rates(model)
-    for at, (symbol, signal) in enumerate(zip(program.external, signals, strict=True)):
+    for at, symbol in enumerate(program.external):
         columns = [j for j, name in enumerate(program.inputs) if name.name == symbol.name]
         known = zip(program.known.inputs, program.known_uses, strict=True)
         columns += [j for j, used in known if at in used]
         rows = [i for i in program.read if any(shown[i, j] for j in columns)]
         driven = program.varying and any(j in program.layout["E"].columns for j in columns)
-        if not rows and not driven:
-            continue
-        where = f"{program.readings[rows[0]]} shows" if rows else "a dependent storage would see"
-        step = signal.first_jump(float(times[0]), float(times[-1]))
-        if step is not None:
-            raise SimulationError(
-                f"{_told(program, at)} steps at t = {step:g}, where {where} its rate and would be an "
-                "impulse; smooth it with Lag or Ramp"
+        if rows or driven:
+            found[at] = (
+                f"{program.readings[rows[0]]} shows" if rows else "a dependent storage would see"
             )
+    return found
+
+
+def refuse_step(
+    model: ClosedModel, at: int, where: str, before: Signal, after: Signal,
+    times: tuple[float, float],
+) -> None:  # fmt: skip
+    """Refuse that such an input steps from one signal to another at the first of these times, or between."""
+    begin, end = times
+    old, new = before(begin), after(begin)
+    step = begin if abs(new - old) > TUNING.together * max(abs(old), abs(new)) else None
+    if step is None:
+        step = after.first_jump(begin, end)
+    if step is not None:
+        raise _impulse(model, at, where, step)
+
+
+def _impulse(model: ClosedModel, at: int, where: str, t: float) -> SimulationError:
+    """That such an input steps at t [s]."""
+    return SimulationError(
+        f"{_told(model.program, at)} steps at t = {t:g}, where {where} its rate and would be an "
+        "impulse; smooth it with Lag or Ramp"
+    )
 
 
 def _told(program: Program, at: int) -> str:

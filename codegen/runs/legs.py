@@ -80,7 +80,7 @@ class Leg:
                     track.tally.record()
             return stop, s, frozenset()
         self.rate = fastest = self.fastest(t, s)
-        name = self._integrator(fastest, float(times[-1]) - self._origin)
+        name = self._integrator(fastest, float(times[-1] - times[0]))
         trials = Trials(self._rates, self._lost)
         solver = self._solver(name, trials, t, s, stop, fastest, self._first_step)
         turns = Turns(len(s), explicit=name == "DOP853")

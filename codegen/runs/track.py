@@ -40,6 +40,10 @@ CORNER = "corner"
 """What happens where a law has one, or jumps, and the run crosses it."""
 
 
+KINDS = ("stick", "slip", "cross", "on", "off", "hit", "touch", "apart", "slide", "leave", CORNER)
+"""Of events, as C counts them."""
+
+
 LATEST = 4
 """So many events are told where a run makes no progress."""
 

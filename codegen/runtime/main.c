@@ -1,5 +1,6 @@
 /* Runs the model and prints its states, outputs and switches (1 on, 0 off) as CSV:
- *     ./model END SAMPLE [name=value ...]    names of parameters, initial states, inputs
+ *     ./model END SAMPLE [name=value ...]    names of parameters, initial states, inputs, and of
+ *                                            what storages hold at the start
  * A table has as many values as points, name=value,value,...; over two axes row by row of x.
  * A row every SAMPLE seconds, by fixed steps of SAMPLE or, with `step=H`, of a part of it that is
  * about H; `band=B` is the dead band of every friction port. With the word `located` steps are
@@ -23,7 +24,8 @@ typedef struct {
     double end, sample, step, band;
     int located;
     double parameters[BG_ROOM(BG_PARAMETERS)], states[BG_ROOM(STATES)];
-    int named[BG_ROOM(STATES)];
+    int named[BG_ROOM(STATES)], given[BG_SIZE], told[BG_ROOM(BG_HOLDINGS)];
+    double held[BG_ROOM(BG_HOLDINGS)];
     bg_term terms[SCENARIO_TERMS];
     double coefficients[SCENARIO_COEFFICIENTS][2], values[BG_ROOM(BG_TABLE_VALUES)];
     bg_own_tables tables;
@@ -82,7 +84,9 @@ static int assign(command *asked, const char *text)
     if ((at = find(BG_PARAMETERS, bg_parameter_names, text, length)) >= 0)
         asked->parameters[at] = value;
     else if ((at = find(STATES, bg_state_names, text, length)) >= 0)
-        asked->named[at] = 1, asked->states[at] = value;
+        asked->given[at] = 1, asked->states[at] = value;
+    else if ((at = find(BG_HOLDINGS, bg_held_names, text, length)) >= 0)
+        asked->told[at] = 1, asked->held[at] = value;
     else if ((at = find(BG_EXTERNAL, bg_input_names, text, length)) >= 0)
         hold_input(asked, at, value);
     else if (length == 4 && strncmp(text, "band", 4) == 0)
@@ -92,6 +96,18 @@ static int assign(command *asked, const char *text)
     else
         return 0;
     return 1;
+}
+
+/* States from what storages hold at the start; 0 if one does not tell any, which is told. */
+static int begin_held(bg_model *m, command *asked)
+{
+    const int wrong = bg_model_held(m, asked->told, asked->held, asked->given, asked->states);
+    if (wrong)
+        fprintf(stderr, "%s: %s does not tell a state: give all that its field holds, or the other "
+                "states, and nothing twice\n", bg_model_name, bg_held_names[wrong - 1]);
+    for (int i = 0; i < STATES; i++)
+        asked->named[i] |= asked->given[i];
+    return !wrong;
 }
 
 static void print_row(double t, const int *mode, const bg_snapshot *shot)
@@ -274,6 +290,8 @@ int main(int count, char **words)
         SCENARIO_WAVES, scenario_wave, scenario_parts, SCENARIO_DUTIES,
     };
     if (failed(&model, bg_model_init_with(&model, asked.parameters, &asked.tables)))
+        return 1;
+    if (!begin_held(&model, &asked))
         return 1;
     for (int i = 0; i < BG_FRICTION; i++)
         model.band[i] = asked.band;

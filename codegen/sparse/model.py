@@ -7,7 +7,7 @@ costs what ten thousand masses on springs cost. Causality is decided exactly, as
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
@@ -16,6 +16,7 @@ import scipy
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.lines import variable_of
+from bondgraph.declare.names import energy_name, named_by
 from bondgraph.errors import StructureError
 from bondgraph.nodes.laws import ExpressionLaw
 from codegen.inputs.signals import Constant
@@ -43,6 +44,8 @@ class SparseModel:
     H: scipy.sparse.csr_array
     K: scipy.sparse.csr_array
     known: Mapping[str, Constant]
+    #: What independent storages hold, ``p_m`` and ``q_C``: the state, and how much of it one of that is.
+    held: Mapping[str, tuple[str, float]] = field(default_factory=lambda: MappingProxyType({}))
 
 
 def sparse_model(
@@ -91,6 +94,7 @@ def _assembled(rows: SignalRows, outputs: Iterable[Hashable]) -> SparseModel:
         H=_fixed(seen[:, rates:last]),
         K=_fixed(seen[:, last:]),
         known=_known(rows),
+        held=_held(rows),
     )
 
 
@@ -111,6 +115,18 @@ def _known(rows: SignalRows) -> Mapping[str, Constant]:
         for e in elements
         if e.given is not None and isinstance(e.law, ExpressionLaw)
     })  # fmt: skip
+
+
+def _held(rows: SignalRows) -> Mapping[str, tuple[str, float]]:
+    """Momenta and displacements of the states' storages, by names that nothing else has."""
+    elements = rows.strokes.elements
+    taken = {name.name for element in elements for name in named_by(element)}
+    found = {}
+    for node in rows.states:
+        element = elements[node]
+        name = energy_name(element, taken)
+        found[name.name] = (rows.given(node).name, float(element.constant))
+    return MappingProxyType(found)
 
 
 def _shown(signals: SignalRows, outputs: Iterable[Hashable]) -> tuple[list[str], list[Row]]:

@@ -8,11 +8,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bondgraph.errors import SignalError, SimulationError
+from codegen.called.function import followed
 from codegen.energy.audit import Audit
 from codegen.inputs.signal import Signal
 from codegen.numbers.arrays import Array, read_only
 from codegen.record.result import Result
-from codegen.runs.arguments import checked_times, initial_values, settings_of, signals_for
+from codegen.runs.arguments import (
+    checked_times,
+    initial_values,
+    named_numbers,
+    settings_of,
+    signals_for,
+)
 from codegen.runs.methods import EXACT
 from codegen.sparse.model import SparseModel
 from codegen.sparse.steps import SparseSystem, integrate
@@ -23,14 +30,24 @@ NO_POWERS = "a sparse run knows no powers; derive the graph and run a simulator 
 
 @dataclass(frozen=True)
 class Recorded:
-    """A run of which the states, inputs and outputs were recorded, and nothing else."""
+    """A run of which the states, inputs and outputs were recorded, and what storages of states ``held``."""
+
+    columns: Mapping[str, Array]
+    held: Mapping[str, tuple[str, float]]
 
     def names(self) -> tuple[str, ...]:
-        """None beside the columns."""
+        """What is held, beside the columns."""
+        return tuple(self.held)
+
+    def nodes(self) -> tuple[Hashable, ...]:
+        """None: no events happen."""
         return ()
 
     def signal(self, name: str) -> Array:
-        """Refuses: what was not recorded cannot be worked out."""
+        """What a state's storage holds; refuses else: what was not recorded cannot be worked out."""
+        if name in self.held:
+            state, value = self.held[name]
+            return value * self.columns[state]
         raise KeyError(f"{name!r} was not recorded; name its node in outputs of sparse_model")
 
     def bond(self, tail: Hashable, head: Hashable) -> tuple[Array, Array]:
@@ -69,8 +86,9 @@ def run_sparse(
 ) -> Result:
     """Integrate a sparse model over the given times [s] and sample states, inputs and outputs at them.
 
-    ``initial`` and ``inputs`` as for `Simulator.run`. ``method``: "DOP853", "Radau" (stiff models, and long
-    runs), or "auto". Memory is that of the samples and of the factors of A and J.
+    ``initial`` and ``inputs`` as for `Simulator.run`; of what storages hold those of states. ``method``:
+    "DOP853", "Radau" (stiff models, and long runs), or "auto". Memory is that of the samples and of the
+    factors of A and J.
 
     Raises `SignalError` for unusable arguments, `SimulationError` if the run can't go on.
 
@@ -86,9 +104,10 @@ def run_sparse(
     times, settings = checked_times(time), settings_of(method, rtol, atol)
     if method == EXACT:
         raise SignalError("sparse models are integrated; let method be auto, DOP853 or Radau")
-    state = initial_values({} if initial is None else initial, model.states)
+    state = initial_values(_by_states(model, {} if initial is None else initial), model.states)
     asked = tuple(name for name in model.inputs if name not in model.known)
-    given = dict(zip(asked, signals_for({} if inputs is None else inputs, asked), strict=True))
+    told = followed({} if inputs is None else inputs, times)
+    given = dict(zip(asked, signals_for(told, asked), strict=True))
     signals = [given[name] if name in given else model.known[name] for name in model.inputs]
     _check_steps(model, signals, times)
     with np.errstate(all="ignore"):
@@ -98,10 +117,24 @@ def run_sparse(
             model, system, driven, times, state, signals, settings.method, rtol, atol
         )
         columns = _columns(model, system, driven, times, vectors, signals)
+    recorded = Recorded(columns, model.held)
     return Result(
-        times, model.states, asked, model.outputs, (), MappingProxyType(columns),
-        Recorded(), Recorded(),
-    )  # fmt: skip
+        times, model.states, asked, model.outputs, (), MappingProxyType(columns), recorded, recorded
+    )
+
+
+def _by_states(model: SparseModel, initial: Mapping[str, float]) -> Mapping[str, float]:
+    """Initial values with what storages hold turned into the states that hold it."""
+    if not isinstance(initial, Mapping):
+        return initial
+    told = named_numbers(initial, (*model.states, *model.held))
+    found = {name: value for name, value in told.items() if name not in model.held}
+    for name in told.keys() & model.held.keys():
+        state, value = model.held[name]
+        if state in found:
+            raise SignalError(f"initial {name}: it is {value:.9g}*{state}, which is told, too")
+        found[state] = told[name] / value
+    return found
 
 
 def _vectors(

@@ -2,7 +2,7 @@
 
 import hashlib
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -36,7 +36,7 @@ class Table:
     ) -> None:
         if rows is not None:
             columns = _columns_of(rows, columns)
-        self._columns = _numbers(columns)
+        self._columns = _numbers(columns.items())
         self.names = tuple(self._columns)
         lengths = {name: len(column) for name, column in self._columns.items()}
         if len(set(lengths.values())) != 1:
@@ -73,7 +73,7 @@ class Table:
 class Grid(Table):
     """A run for each combination; the last name changes fastest.
 
-    Raises `SignalError` for what is no list of numbers; for a name without values `sweep` does.
+    Raises `SignalError` for what is no list of numbers, a name without values, or one that comes twice.
 
     >>> grid = Grid(m=[1, 2], k=[10, 20, 30])
     >>> len(grid), grid.row(1), grid.row(3)
@@ -81,7 +81,9 @@ class Grid(Table):
     """
 
     def __init__(self, axes: Mapping[str, ArrayLike] | None = None, /, **more: ArrayLike) -> None:
-        self._columns = _numbers({**(axes or {}), **more})
+        if not isinstance(axes, Mapping | None):
+            raise SignalError(f"a grid's axes must map names to lists of numbers, not be {axes!r}")
+        self._columns = _numbers([*(axes or {}).items(), *more.items()])
         self.names = tuple(self._columns)
         self.shape = tuple(len(axis) for axis in self._columns.values())
         self._length = math.prod(self.shape)
@@ -111,7 +113,8 @@ class Samples(Table):
     Every name has random numbers of its own: they change neither with other names nor, as far as they
     go, with the number of runs.
 
-    Raises `SignalError` for a list that is not two limits.
+    Raises `SignalError` for what is neither two finite limits, the lower first, nor a function, and for
+    a number of runs or a seed that is no whole number.
 
     >>> draws = Samples(100, seed=1, m=(1, 2), k=lambda generator: generator.normal(40, 2))
     >>> draws.row(0) == Samples(1, seed=1, k=lambda generator: generator.normal(40, 2), m=(1, 2)).row(0)[::-1]
@@ -121,15 +124,15 @@ class Samples(Table):
     def __init__(
         self, runs: int, /, seed: int, **draws: tuple[float, float] | Draw | list[float]
     ) -> None:
+        _check_whole(runs, "runs", 1)
+        _check_whole(seed, "seed", 0)
         columns: dict[str, ArrayLike] = {}
         for name, draw in draws.items():
             generator = np.random.default_rng([seed, *str(normal(name)).encode()])
             if callable(draw):
                 columns[name] = [draw(generator) for _ in range(runs)]
                 continue
-            if len(draw) != 2:
-                raise SignalError(f"samples of {name} need two limits or a function, not {draw!r}")
-            columns[name] = generator.uniform(draw[0], draw[1], runs)
+            columns[name] = generator.uniform(*_limits(name, draw), runs)
         super().__init__(**columns)
 
 
@@ -143,8 +146,6 @@ def design(parameters: object) -> Table:
         raise SignalError(
             f"parameters must be a Grid, a Table, Samples, a mapping or a list of rows, not {parameters!r}"
         )
-    if not len(parameters):
-        raise SignalError("the sweep has no runs: a name has no values")
     return parameters
 
 
@@ -153,7 +154,8 @@ def _columns_of(
 ) -> dict[str, ArrayLike]:
     if columns:
         raise SignalError("a table takes rows or columns, not both")
-    if not rows or not all(isinstance(row, Mapping) for row in rows):
+    listed = isinstance(rows, list | tuple) and all(isinstance(row, Mapping) for row in rows)
+    if not listed or not rows:
         raise SignalError("a table's rows must be one or more mappings of names to numbers")
     for at, row in enumerate(rows):
         if row.keys() != rows[0].keys():
@@ -161,15 +163,39 @@ def _columns_of(
     return {name: [row[name] for row in rows] for name in rows[0]}
 
 
-def _numbers(columns: Mapping[str, ArrayLike]) -> dict[str, Array]:
+def _check_whole(count: object, what: str, least: int) -> None:
+    whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
+    if not whole or count < least:  # type: ignore[operator]
+        raise SignalError(f"samples: {what} must be a whole number from {least} on, not {count!r}")
+
+
+def _limits(name: str, draw: object) -> tuple[float, float]:
+    """Two finite numbers, the lower first."""
+    try:
+        found = real_array(draw).tolist()  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        found = []
+    if not isinstance(found, list) or len(found) != 2 or not np.isfinite(found).all():
+        raise SignalError(f"samples of {name} need two limits or a function, not {draw!r}")
+    if found[0] > found[1]:
+        raise SignalError(f"samples of {name}: the lower limit comes first, not {draw!r}")
+    return found[0], found[1]
+
+
+def _numbers(columns: Iterable[tuple[str, ArrayLike]]) -> dict[str, Array]:
     result: dict[str, Array] = {}
-    for name, values in columns.items():
+    for given, values in columns:
+        name = str(normal(given))
+        if name in result:
+            raise SignalError(f"{name} comes twice in the sweep's numbers; name it once")
         try:
             column = real_array(values)
         except (TypeError, ValueError) as error:
             raise SignalError(f"the values of {name} must be numbers: {error}") from None
         if column.ndim != 1:
             raise SignalError(f"the values of {name} must be a list, not of shape {column.shape}")
+        if not len(column):
+            raise SignalError(f"{name} has no values: give one number or more")
         column.flags.writeable = False
-        result[str(normal(name))] = column
+        result[name] = column
     return result

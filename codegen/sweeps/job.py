@@ -100,6 +100,8 @@ class Job:
         for name, measure in self.measures.items():
             try:
                 found.append(_measured(measure(result)))
+            except BondGraphError as error:
+                return f"measure {name!r}: {error}"
             except Exception as error:  # noqa: BLE001 - the caller's code
                 return f"measure {name!r}: {type(error).__name__}: {error}"
         return tuple(found)
@@ -148,12 +150,15 @@ class Job:
         on = {"initially_on": self.initially_on} if self.initially_on else {}
         return {**self.settings, **on}
 
-    def about(self) -> dict[str, object]:
-        """What identifies the job, part by part: everything that the results depend on but the rows."""
+    def about(self, initial: Given) -> dict[str, object]:
+        """What identifies the job, part by part: everything that the results depend on but the rows.
+
+        ``initial``: as it was given, with what storages hold by that name.
+        """
         return {
             "model": self.model.fingerprint(),
             "time": hashlib.sha256(self.time.tobytes()).hexdigest(),
-            "initial": _described(self.initial),
+            "initial": _described(initial),
             "inputs": _described(self.inputs),
             "settings": {name: _described(value) for name, value in self.settings.items()},
             "names": list(self.names),

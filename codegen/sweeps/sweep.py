@@ -10,16 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bondgraph.algebra.atoms import normal
 from bondgraph.errors import SignalError
 from codegen.batch.asked import Given
+from codegen.called.function import followed
 from codegen.engine.fallback import tell_all
-from codegen.inputs.signal import Signal
-from codegen.inputs.swept import Swept, settled
 from codegen.record.measures import Measure
 from codegen.record.result import Result
-from codegen.runs.arguments import checked_times, named_numbers, settings_of, signals_for
+from codegen.runs.arguments import checked_times
 from codegen.runs.completion import tell_all_completed
+from codegen.sweeps.checks import check, checked_measures, checked_switches
 from codegen.sweeps.chunks import Outcome
 from codegen.sweeps.cluster import Cluster
 from codegen.sweeps.crew import Crew
@@ -33,9 +32,6 @@ from codegen.sweeps.resting import tell_all_resting
 from codegen.sweeps.result import Collected, Sweep, SweepInterrupted
 from codegen.sweeps.store import Store
 from codegen.tuning import TUNING
-
-RESERVED = ("run", "time")
-"""Names of axes."""
 
 
 def sweep(
@@ -59,12 +55,13 @@ def sweep(
 ) -> Sweep:
     """Run a model once for each set of numbers and keep the measures of each run.
 
-    ``model``: a `Family`. ``parameters``: a `Grid` (or a mapping of names to numbers), a `Table` (or a
-    list of rows) or `Samples`. A name is a parameter, a state (its value at the start), an input (held
-    constant) or the size of an input, which is given as `Swept`. ``measures``: name to a function of the
-    `Result` that gives a number or an array. ``time``, ``initial``, ``inputs``, ``method``, ``rtol``,
-    ``atol``, ``initially_on``: as of `Simulator.run`; ``initial`` and ``inputs`` may be functions of a
-    run's numbers by name, which then may have names of their own.
+    ``model``: a `Family`. ``parameters``: a `Grid` (or a mapping of names to numbers), a `Table` (or a list
+    of rows) or `Samples`. A name is a parameter, a state (its value at the start), what a storage holds at
+    the start (``p_m``, ``q_C``), an input (held constant) or the size of an input, which is given as
+    `Swept`. ``measures``: name to a function of the `Result` that gives a number or an array. ``time``,
+    ``initial``, ``inputs``, ``method``, ``rtol``, ``atol``, ``initially_on``: as of `Simulator.run`;
+    ``initial`` and ``inputs`` may be functions of a run's numbers by name, which then may have names of
+    their own.
 
     ``workers``: processes to run in, by default one for each core; 0: in this process. A family with
     backend "c" and ready measures (all of this package) is run by threads instead, many runs in
@@ -92,7 +89,8 @@ def sweep(
     A run that is refused, or whose process ends, is told in ``failed``; the others go on. Interrupted, it
     raises `SweepInterrupted`, a `KeyboardInterrupt` whose ``sweep`` has what is done.
 
-    Raises `SignalError` for arguments that no run can use, `StoreError` for the folder of another sweep.
+    Raises `SignalError`, and `StructureError` for switches that there are not, for arguments that no run can
+    use, `StoreError` for the folder of another sweep.
 
     >>> import bondgraph as bg, networkx as nx
     >>> from codegen import Family, final, peak
@@ -109,17 +107,21 @@ def sweep(
     """
     runs = design(parameters)
     settings = MappingProxyType({"method": method, "rtol": rtol, "atol": atol})
-    asked = MappingProxyType(dict(measures))
-    on = tuple(initially_on)
-    given = by_states_of(model, initial), inputs, settings, on, events, len(runs)
-    job = Job(model, runs.names, checked_times(time), asked, *given)
-    _check(job)
+    asked = MappingProxyType(checked_measures(measures))
+    on = checked_switches(model, initially_on)
+    times = checked_times(time)
+    # Once for all runs and processes, which need not have the functions.
+    in_numpy = getattr(model, "backend", "numpy") == "numpy"
+    told = followed(inputs, times) if in_numpy else inputs
+    given = by_states_of(model, initial, runs.names), told, settings, on, events, len(runs)
+    job = Job(model, runs.names, times, asked, *given)
+    check(job, initial)
     _check_count(workers, "workers", 0)
     _check_count(chunk, "chunk", 1)
     collected = Collected(len(runs), tuple(measures))
     kept = None
     if store is not None:
-        about = {**job.about(), "parameters": runs.fingerprint(), "runs": len(runs)}
+        about = {**job.about(initial), "parameters": runs.fingerprint(), "runs": len(runs)}
         kept = Store(store, about)
     for outcome in () if kept is None else kept.finished():
         collected.add(outcome)
@@ -187,64 +189,6 @@ def _bar(wanted: bool, runs: int, done: int) -> Iterator[Callable[[int], object]
         return
     with tqdm(total=runs, initial=done, unit="run") as bar:
         yield bar.update
-
-
-def _check(job: Job) -> None:
-    """Refuse what no run could use, before the first."""
-    model = job.model
-    if not all(hasattr(model, name) for name in ("simulator", "parameters", "states", "inputs")):
-        raise SignalError(
-            f"a sweep needs a model whose numbers are free, such as codegen.Family, not {model!r}"
-        )
-    _check_measures(job)
-    free = callable(job.initial) or callable(job.inputs)
-    known = (*model.parameters, *model.states, *model.inputs, *_sizes(job))
-    for name in job.names:
-        if name not in known and not free:
-            raise SignalError(
-                f"{name!r} is no parameter, state or input; there are {', '.join(known)}"
-            )
-    for given, what in ((job.initial, "initial"), (job.inputs, "inputs")):
-        if isinstance(given, Signal) or not (callable(given) or isinstance(given, Mapping | None)):
-            raise SignalError(f"{what} must map names to values, not be {given!r}")
-        twice = [] if callable(given) else [n for n in given or {} if str(normal(n)) in job.names]
-        if twice:
-            raise SignalError(f"{what}: {twice[0]!r} is swept, too; leave it out here")
-    if not callable(job.initial):
-        named_numbers({} if job.initial is None else job.initial, model.states)
-    if not callable(job.inputs):
-        swept = {name: 0.0 for name in job.names if name in model.inputs}
-        given = settled(job.inputs or {}, dict.fromkeys(_sizes(job), 0.0))
-        signals_for({**given, **swept}, model.inputs)
-    settings_of(**job.settings)
-
-
-def _sizes(job: Job) -> list[str]:
-    """The swept numbers that are sizes of inputs; refuses those that are not swept."""
-    if not isinstance(job.inputs, Mapping):
-        return []
-    for name, given in job.inputs.items():
-        if isinstance(given, Swept) and given.name not in job.names:
-            raise SignalError(
-                f"input {name!r}: {given.name!r} is not swept; swept are {', '.join(job.names)}"
-            )
-    return [given.name for given in job.inputs.values() if isinstance(given, Swept)]
-
-
-def _check_measures(job: Job) -> None:
-    if not job.measures:
-        raise SignalError("measures: name at least one function of a run")
-    for name, measure in job.measures.items():
-        if not callable(measure):
-            raise SignalError(f"measure {name!r}: {measure!r} is not a function of a run")
-    if not job.events and job.asking:
-        raise SignalError(f"measure {job.asking[0]!r} asks for events; leave events=False out")
-    for name in RESERVED:
-        if name in job.names or name in job.measures:
-            raise SignalError(f"{name!r} names an axis; call the column something else")
-    for name in job.names:
-        if name in job.measures:
-            raise SignalError(f"{name!r} is swept, so no measure can have that name")
 
 
 def _check_count(count: object, what: str, least: int) -> None:

@@ -17,6 +17,7 @@ from codegen.runs.completion import tell_completed
 from codegen.runs.dependent import dependent_variables, over_states
 from codegen.simulate import simulator
 from codegen.simulator import Simulator
+from codegen.stepping.stepper import Stepper
 from codegen.tuning import TUNING
 
 
@@ -59,16 +60,36 @@ class SwitchedSimulator:
     ) -> Result:
         """Integrate over the given times [s]; see `Simulator.run`."""
         # Not by its `run`, so that warnings are told of who calls this.
-        closed = self.simulator.closed
-        begun = {} if initial is None else by_states(closed.equations, closed.parameters, initial)
-        given = named_numbers(begun, self.states)
-        told = over_states(closed, given)
+        told = self._told(initial)
         done = self.simulator.run_telling(
             tell, time, told, inputs, method, rtol, atol, initially_on, events
         )
         tell_completed(done.completed)
         tell_resting(self.simulator.closed, done)
         return done
+
+    def stepper(
+        self,
+        initial: Mapping[str, float] | None = None,
+        inputs: Mapping[str, object] | None = None,
+        *,
+        time: float = 0.0,
+        method: str = "auto",
+        rtol: float = TUNING.rtol,
+        atol: float = TUNING.atol,
+        initially_on: Iterable[Hashable] = (),
+    ) -> Stepper:
+        """The graph at ``time`` [s], to be stepped from outside; see `Simulator.stepper`."""
+        told = self._told(initial)
+        made = self.simulator.stepping(told, inputs, time, method, rtol, atol, initially_on)
+        tell_completed(made.completed)
+        return made
+
+    def _told(self, initial: Mapping[str, float] | None) -> dict[str, float]:
+        """A start by states alone."""
+        closed = self.simulator.closed
+        begun = {} if initial is None else by_states(closed.equations, closed.parameters, initial)
+        return over_states(closed, named_numbers(begun, self.states))
 
 
 def switched_simulator(

@@ -147,7 +147,8 @@ _RUN = (
         "--input", "inputs", SIGNAL,
         "A number, or step(time, value), ramp(time, slope), sine(amplitude, frequency), "
         "lag(signal, time_constant), pulse(begin, end, value), square(frequency, low, high), "
-        "sawtooth(frequency, low, high), pwm(frequency, duty), constant(value), or a sum.",
+        "sawtooth(frequency, low, high), pwm(frequency, duty), constant(value), or a sum; or two columns of "
+        "a file, @FILE:TIME,VALUE, then :linear, :held or :pchip.",
     ),
     laws,
     click.option("--until", type=click.FloatRange(min=0, min_open=True), metavar="SECONDS",

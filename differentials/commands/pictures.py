@@ -13,7 +13,7 @@ from differentials.commands.printing import with_folder, written
 from differentials.commands.subject import Subject
 from differentials.figures import Figure, draw, panels, save_picture
 
-FORMATS = (".csv", ".nc", ".png")
+FORMATS = (".csv", ".nc", ".parquet", ".mat", ".png")
 """What a run may be written as."""
 
 
@@ -48,6 +48,10 @@ def save(result: Result, target: Path, paint: Callable[[Path], None]) -> None:
             result.write_csv(target)
         case ".nc":
             result.write_netcdf(target)
+        case ".parquet":
+            result.write_parquet(target)
+        case ".mat":
+            result.write_mat(target)
         case _:
             paint(target)
 

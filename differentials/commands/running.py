@@ -40,7 +40,7 @@ from differentials.report import events_text
     "target",
     type=FileOf(*FORMATS),
     metavar="FILE",
-    help="Write only this file: a table (.csv, .nc) or a picture (.png).",
+    help="Write only this file: a table (.csv, .nc, .parquet, .mat) or a picture (.png).",
 )
 @options.folder
 @options.as_json

@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import re
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
@@ -19,19 +20,25 @@ SIGNALS: Mapping[str, type[codegen.Signal]] = MappingProxyType(
 )  # fmt: skip
 """What a signal may be made of, beside numbers and sums."""
 
+DATA = re.compile(r"@(?P<path>.+?):(?P<time>[^:,]+),(?P<value>[^:,]+)(?::(?P<kind>[^:,]*))?")
+"""Data in a file: its columns, and what is between their rows."""
+
+DATA_FORM = "@FILE:TIME,VALUE[:linear|held|pchip]"
+
 LONGEST = 1_000
 DEEPEST = 20
 
 
 def forms() -> str:
     """How each signal is written."""
-    return ", ".join(f"{name}({', '.join(_arguments(name))})" for name in SIGNALS)
+    called = [f"{name}({', '.join(_arguments(name))})" for name in SIGNALS]
+    return ", ".join([*called, DATA_FORM])
 
 
 def signal(text: str) -> codegen.Signal:
-    """The signal that a text describes: a number, one of `SIGNALS`, or a sum of them.
+    """The signal that a text describes: a number, one of `SIGNALS`, a sum of them, or columns of a file.
 
-    Raises `SignalError` for anything else.
+    Raises `SignalError` for anything else, `MissingExtraError` without the package that reads the file.
 
     >>> signal("lag(step(0.1, 350), 0.04)")
     Lag(signal=Step(time=0.1, value=350.0, initial=0.0), time_constant=0.04)
@@ -40,7 +47,16 @@ def signal(text: str) -> codegen.Signal:
     >>> signal("pwm(10e3, 0.3, high=24)").high
     24.0
     """
-    return _signal(_parsed(text), 0)
+    return _data(text) if text.startswith("@") else _signal(_parsed(text), 0)
+
+
+def _data(text: str) -> codegen.Signal:
+    """Two columns of a file, which stand alone."""
+    found = DATA.fullmatch(text)
+    if found is None:
+        raise bg.SignalError(f"{text[:60]!r} is not {DATA_FORM}, as in @cycle.csv:t,v:held")
+    path, time, value, kind = (None if one is None else one.strip() for one in found.groups())
+    return codegen.Sampled.read(path, str(time), str(value), "linear" if kind is None else kind)
 
 
 def law(text: str, tables: Sequence[bg.LookupTable] = ()) -> object:

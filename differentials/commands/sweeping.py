@@ -11,6 +11,7 @@ import bondgraph as bg
 import codegen
 import differentials.commands.options as options
 from bondgraph.writing import write_bytes
+from codegen.record.files import write_mat, write_parquet
 from codegen.record.tables import write_columns
 from differentials.commands.grids import (
     FORM,
@@ -66,9 +67,9 @@ SHOWN = 50
 @click.option(
     "-o",
     "target",
-    type=FileOf(".csv", ".nc"),
+    type=FileOf(".csv", ".nc", ".parquet", ".mat"),
     metavar="FILE",
-    help="Write the table as .csv, or as a data set with an axis for each name (.nc).",
+    help="Write the table as .csv, .parquet or .mat, or as a data set with an axis for each name (.nc).",
 )
 @options.as_json
 def sweep(
@@ -144,11 +145,17 @@ def _swept(
 
 def _save(found: codegen.Sweep, target: Path) -> None:
     with_folder(target)
-    if target.suffix.lower() == ".nc":
-        write_bytes(target, bytes(found.to_xarray().to_netcdf(engine="scipy")))
-        return
     columns = found.table()
-    write_columns(target, [*columns], [*columns.values()])
+    names, arrays = [*columns], [*columns.values()]
+    match target.suffix.lower():
+        case ".nc":
+            write_bytes(target, bytes(found.to_xarray().to_netcdf(engine="scipy")))
+        case ".parquet":
+            write_parquet(target, names, arrays, {})
+        case ".mat":
+            write_mat(target, names, arrays, {})
+        case _:
+            write_columns(target, names, arrays)
 
 
 def _data(found: codegen.Sweep) -> dict[str, object]:

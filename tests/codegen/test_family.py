@@ -134,7 +134,9 @@ def test_ready_measures_of_events() -> None:
     assert codegen.first_event("clutch", "stick")(result) == result.events[0].time
     assert np.isnan(codegen.first_event("clutch", "slip")(result))
     assert codegen.event_count("clutch", "stick")(result) == 1.0
-    assert codegen.event_count("other", "stick")(result) == 0.0
+    assert codegen.event_count("left", "stick")(result) == 0.0
+    with pytest.raises(bg.SignalError, match="no node 'clutsch'"):
+        codegen.event_count("clutsch", "stick")(result)
 
 
 def test_ready_measures_are_pickled_and_tell_how_they_were_made() -> None:

@@ -6,7 +6,20 @@ import pytest
 from references.build import bond_graph
 
 import bondgraph as bg
-from codegen import Family, final, simulator, sweep, to_c, to_python
+from codegen import (
+    Family,
+    Grid,
+    final,
+    integral,
+    run_sparse,
+    samples,
+    simulator,
+    sparse_model,
+    sweep,
+    to_c,
+    to_python,
+    trim,
+)
 
 NUMBERS = {"m": 2.0, "k": 8.0, "b": 0.1, "m2": 1.0}
 HELD, STATES = {"p_m": 3.0, "q_k": 0.5}, {"v": 1.5, "e_k": 4.0}
@@ -59,6 +72,76 @@ def test_sweeps_begin_with_what_storages_hold_at_each_runs_numbers(backend: str)
     found = sweep(family, {"m": [1.0, 2.0, 4.0]}, TIMES, {"v": final("v"), "begin": _first},
                   initial=HELD, inputs={"F": 1.0}, workers=0, progress=False)  # fmt: skip
     assert found["begin"] == pytest.approx([3.0, 1.5, 0.75])
+
+
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_what_storages_hold_is_swept(backend: str) -> None:
+    """v = p/m at the start, whatever m is; of a field the state beside it rules, too: 3 a + b = p."""
+    family = Family(bg.derive(_graph()), NUMBERS, backend=backend)
+    found = sweep(family, Grid(p_m=[2.0, 3.0], m=[1.0, 4.0]), TIMES,
+                  {"begin": _first, "p": samples("p_m"), "sum": integral("p_m"), "way": integral("v")},
+                  initial={"q_k": 0.5}, inputs={"F": 1.0}, workers=0, progress=False)  # fmt: skip
+    assert not found.failed
+    assert found["begin"] == pytest.approx([2.0, 0.5, 3.0, 0.75])
+    assert found["p"][:, 0] == pytest.approx([2.0, 2.0, 3.0, 3.0])
+    assert found["sum"] == pytest.approx(np.array([1.0, 4.0, 1.0, 4.0]) * found["way"])
+    family = Family(bg.derive(_coils()), {}, backend=backend)
+    found = sweep(family, {"p_L_a": [5.0, 8.0], "f_L_b": [2.0]}, TIMES, {"begin": _first_flow},
+                  workers=0, progress=False)  # fmt: skip
+    assert found["begin"] == pytest.approx([1.0, 2.0])
+
+
+def test_a_sweep_tells_of_each_run_whose_starts_states_cannot_hold() -> None:
+    family = Family(bg.derive(_coils()), {})
+    found = sweep(
+        family, {"p_L_a": [5.0]}, TIMES, {"begin": _first_flow}, workers=0, progress=False
+    )
+    assert "tell all that is held" in found.failed[0].message
+    family = Family(bg.derive(_graph()), NUMBERS)
+    found = sweep(family, {"p_m": [5.0], "v": [1.0]}, TIMES, {"begin": _first},
+                  inputs={"F": 1.0}, workers=0, progress=False)  # fmt: skip
+    assert "p_m: it is m*v, which other states rule, or are told" in found.failed[0].message
+
+
+def test_sparse_runs_begin_with_what_storages_hold_and_tell_it() -> None:
+    model = sparse_model(_graph(), NUMBERS)
+    run, other = (run_sparse(model, TIMES, start, {"F": 1.0}) for start in (HELD, STATES))
+    assert (run["v"] == other["v"]).all()
+    assert run["p_m"] == pytest.approx(2 * run["v"])
+    assert run["q_k"] == pytest.approx(run["e_k"] / 8)
+    for start, says in (
+        ({"p_m": 1.0, "v": 2.0}, "p_m: it is 2\\*v, which is told, too"),
+        ({"p_m2": 1.0}, "'p_m2' is not a state"),
+    ):
+        with pytest.raises(bg.SignalError, match=says):
+            run_sparse(model, TIMES, start, {"F": 1.0})
+
+
+def test_what_storages_hold_is_integrated() -> None:
+    """Of a mass without force p stays: its integral is p t."""
+    ready = simulator(
+        bg.derive(bond_graph([bg.One("j"), bg.I("m", "m", flow="v")], "j>m")), {"m": 2.0}
+    )
+    run = ready.run(TIMES, {"p_m": 3.0})
+    assert run.integral("p_m") == pytest.approx(3 * TIMES)
+
+
+def test_a_trim_begins_with_what_storages_hold() -> None:
+    """``p**3 - p = F`` rests at several momenta: the start says at which."""
+    nodes = [bg.Se("F", 0), bg.One("j"), bg.I("m", "m", flow="v"), bg.R("b", law="v**3 - v")]
+    ready = simulator(bg.derive(bond_graph(nodes, "F>j>m j>b")), {"m": 2.0})
+    for momentum, speed in ((1.9, 1.0), (-1.9, -1.0)):
+        assert trim(ready, initial={"p_m": momentum})["v"] == pytest.approx(speed)
+
+
+@pytest.mark.parametrize("value", ["3", None, 1j, float("nan"), True])
+def test_what_is_no_number_is_not_held(value: object) -> None:
+    with pytest.raises(bg.SignalError, match=r"initial p_m: .* is not a finite number"):
+        simulator(bg.derive(_graph()), NUMBERS).run(TIMES, {"p_m": value}, {"F": 1.0})  # type: ignore[dict-item]
+
+
+def _first_flow(run: object) -> float:
+    return float(run["f_L_a"][0])  # type: ignore[index]
 
 
 def _first(run: object) -> float:

@@ -30,6 +30,8 @@ def _run() -> codegen.Result:
 WRITERS: dict[str, Callable[[Path], object]] = {
     "a.csv": lambda path: _run().write_csv(path),
     "a.nc": lambda path: _run().write_netcdf(path),
+    "a.mat": lambda path: _run().write_mat(path),
+    "a.parquet": lambda path: pytest.importorskip("pyarrow") and _run().write_parquet(path),
     "a.fmu": lambda path: codegen.write_fmu(path, bg.derive(_graph()), {"R": 1, "L": 1, "C": 1}),
     "a.json": lambda path: bg.write_json(_graph(), path),
     "a.graphml": lambda path: bg.write_graphml(_graph(), path),

@@ -72,6 +72,8 @@ FAMILIES = (
         3,
         300,
     ),
+    # Steps from outside.
+    Family("stepped", "codegen/stepping/test_random_steps.py", 8, 300),
     # What is shown of equations.
     Family("whole-equations", "codegen/test_whole_equations.py", 12, 1_000),
     # Graphs judged.

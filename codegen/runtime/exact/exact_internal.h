@@ -154,7 +154,11 @@ void ex_set_out(ex_context *c, ex_place *p, double stop);
 void ex_arrive(ex_context *c, ex_place *p);
 int ex_check_levels(ex_context *c, double t, double *row);
 
-/* exact_run.c: a run but for its last sample; a status. */
+/* exact_run.c: points to what a run is asked; makes ready for one, whatever was before; what its loop
+ * looks at and advances; a run but for its last sample, a status. */
+void ex_point(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task);
+void ex_prepare(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task);
+bg_engine ex_engine(ex_context *c);
 int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task,
               ex_advancing *advance, void *caller);
 

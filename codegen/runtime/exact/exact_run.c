@@ -173,26 +173,43 @@ static void start_anew(ex_context *c)
     c->met = 0;
 }
 
-int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task,
-              ex_advancing *how, void *caller)
+bg_engine ex_engine(ex_context *c)
 {
+    const ex_model *const model = c->model;
     const bg_sight sight = {c, EX_N, EX_K, model->switched ? model->switches : NULL,
                             model->switches, model->stopping, model->coupled,
                             c->shot + EX_AT_RATE, c->point, c->struck, look, tell, ex_strike, couple,
                             BG_RESETS, model->resets, ex_become, model->clocks};
-    const bg_engine engine = {sight, c, pass, see, fastest, ex_choose, rest, advance};
+    return (bg_engine){sight, c, pass, see, fastest, ex_choose, rest, advance};
+}
+
+void ex_point(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task)
+{
     c->model = model;
     c->inputs = inputs;
     c->task = task;
-    start_anew(c);
-    c->advance = how;
-    c->caller = caller;
-    c->known = c->next = 0;
+    c->advance = ex_advance;
     c->run.log.events = task->events;
     c->run.log.capacity = task->capacity;
+}
+
+void ex_prepare(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task)
+{
+    ex_point(c, model, inputs, task);
+    start_anew(c);
+    c->known = c->next = 0;
     memcpy(c->s, task->start, sizeof c->s);
     memset(&c->peaks, 0, sizeof c->peaks);
     memset(c->farthest, 0, sizeof c->farthest);
+}
+
+int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task,
+              ex_advancing *how, void *caller)
+{
+    ex_prepare(c, model, inputs, task);
+    const bg_engine engine = ex_engine(c);
+    c->advance = how;
+    c->caller = caller;
     bg_set_out(&c->run, task->times[0], task->times[task->samples - 1], c->s, task->first);
     int status = bg_run(&engine, &c->run);
     task->count = c->run.log.count;

@@ -107,11 +107,8 @@ int bg_dip(double (*above)(void *self, double at), void *self, int count, const 
 {
     const double width = BG_DIP * (times[count - 1] - times[0]);
     const polygon given = {count, times, values};
-    searched p;
-    for (int i = 0; i + 1 < count; i++)
-        if (!(times[i] < times[i + 1]))
-            return 0; /* between neighbouring numbers points are the same */
     place next = place_between(&given, k);
+    searched p;
     if (!(next.least <= 0))
         return 0; /* as a rule */
     p.count = count;

@@ -1,8 +1,7 @@
 #include "located_rows.h"
 
-static void put_row(void *to, int sample, const double *w, const int *mode, const bg_snapshot *shot)
+void bg_row_put(double *row, const double *w, const int *mode, const bg_snapshot *shot)
 {
-    double *row = (double *)to + (size_t)sample * BG_ROW_WIDTH;
 #define SHOWN(part, count) row = bg_put(row, count, shot->part);
 #define GIVEN(part, count) row = bg_put(row, count, part);
     BG_RECORDED(SHOWN, GIVEN)
@@ -10,6 +9,11 @@ static void put_row(void *to, int sample, const double *w, const int *mode, cons
 #undef GIVEN
     for (int i = 0; i < BG_FRICTION; i++)
         row[i] = mode[i];
+}
+
+static void put_row(void *to, int sample, const double *w, const int *mode, const bg_snapshot *shot)
+{
+    bg_row_put((double *)to + (size_t)sample * BG_ROW_WIDTH, w, mode, shot);
 }
 
 void bg_rows_sizes(unsigned long *sizes)

@@ -8,6 +8,9 @@
 #define BG_WIDTH(part, count) +(count)
 enum { BG_ROW_WIDTH = BG_RECORDED(BG_WIDTH, BG_WIDTH) + BG_FRICTION };
 
+/* Writes one. */
+void bg_row_put(double *row, const double *w, const int *mode, const bg_snapshot *shot);
+
 /* The sizes of an instance, a run and a row, in bytes. */
 void bg_rows_sizes(unsigned long *sizes);
 

@@ -76,7 +76,7 @@ static int take_away(void *run)
 }
 
 /* Hands the next sample over, which is at s. */
-static int hand_over(bg_located *c, const double *s)
+int bg_located_hand_over(bg_located *c, const double *s)
 {
     const bg_request *const asked = c->asked;
     const double t = asked->times[c->next], sided = c->model->now.sided;
@@ -100,7 +100,7 @@ static int sample(bg_located *c, double until)
     while (status == BG_OK && c->next < asked->samples && asked->times[c->next] < until) {
         status = bg_solver_dense(c, asked->times[c->next], s);
         if (status == BG_OK)
-            status = hand_over(c, s);
+            status = bg_located_hand_over(c, s);
     }
     return status;
 }
@@ -228,15 +228,36 @@ void bg_located_set_out(bg_located *c, bg_model *m, const bg_signals *signals, b
     c->view.given = inputs_now;
 }
 
-int bg_located_go(bg_located *c)
+/* The model is where the run came to, at the end of a table that it was to leave. */
+static int come_to(bg_located *c, int status)
 {
-    const bg_engine engine = {bg_view_sight(&c->view), c, pass_on, take_in, fastest_now, NULL,
-                              take_away, go_on};
-    const int status = bg_run(&engine, &c->run);
-    /* The model is where the run came to, at the end of a table that it was to leave. */
     if (status != BG_OK && BG_REFUSING > 0)
         (void)bg_view_look(&c->view, c->run.at.t, c->s, c->run.mode);
     return status;
+}
+
+static bg_engine engine_of(bg_located *c)
+{
+    return (bg_engine){bg_view_sight(&c->view), c, pass_on, take_in, fastest_now, NULL, take_away,
+                       go_on};
+}
+
+int bg_located_arrive(bg_located *c)
+{
+    const bg_engine engine = engine_of(c);
+    return come_to(c, bg_arrive(&engine, &c->run));
+}
+
+int bg_located_finish(bg_located *c)
+{
+    const bg_engine engine = engine_of(c);
+    return come_to(c, bg_finish(&engine, &c->run));
+}
+
+int bg_located_go(bg_located *c)
+{
+    const int status = bg_located_arrive(c);
+    return status ? status : bg_located_finish(c);
 }
 
 /* The vector and the switches at the start. */
@@ -270,7 +291,8 @@ int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_reque
     if (status == BG_OK)
         status = bg_located_go(c);
     if (status == BG_OK)
-        status = hand_over(c, c->s); /* the last sample shows the instant after all events */
+        /* the last sample shows the instant after all events */
+        status = bg_located_hand_over(c, c->s);
     asked->count = c->run.log.count;
     asked->time = c->run.at.t;
     return status;

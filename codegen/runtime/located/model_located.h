@@ -94,6 +94,11 @@ void bg_located_set_out(bg_located *c, bg_model *m, const bg_signals *signals, b
                         double t, double end, const int *first);
 int bg_located_go(bg_located *c);
 
+/* The same in two parts: to the end, and what is decided there; the next sample, which is at s. */
+int bg_located_arrive(bg_located *c);
+int bg_located_finish(bg_located *c);
+int bg_located_hand_over(bg_located *c, const double *s);
+
 /* Runs; a status. */
 int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked);
 

@@ -48,10 +48,11 @@ void bg_edges(const bg_table *of, int axis, int bits, double x, double region, d
 double *bg_tables_values(bg_own_tables *own, int table);
 int bg_tables_fit(bg_own_tables *own, int table);
 
-/* An argument of a table that refuses what is outside, and along which axis it is one. */
+/* An argument of a table that refuses what is outside, and along which axis it is one. `never`:
+ * what is said where it guards a law that is turned round; else 0. */
 typedef struct {
     int table, axis;
-    const char *argument;
+    const char *argument, *never;
 } bg_refusing;
 
 /* A law that rises or falls all over its domain, and its slope; no number outside that domain. */
@@ -104,6 +105,10 @@ void bg_guards(const bg_values *v, double *out);
 /* What storages hold of each state, then of readings, where impulses move slopes. */
 void bg_momenta(const bg_values *v, double *out);
 extern const int bg_momenta_rows[];
+void bg_held_values(const bg_values *v, double *out);
+/* What a start may tell of storages: where the values of each begin, and their end; the states that
+ * it is a sum of, times these; or the one that a law gives, whose value it is. */
+extern const int bg_held_begins[], bg_held_states[], bg_held_by_law[];
 void bg_corners(const bg_values *v, double *out); /* what they hang on; whether each counts */
 void bg_prepare_rhs(bg_model *m);
 

@@ -55,5 +55,6 @@ int bg_model_left(const bg_model *m, int status, bg_leaving *told)
     told->high = of->breaks[one->axis][of->cells[one->axis]];
     told->table = bg_lookup_names[one->table];
     told->argument = one->argument;
+    told->never = one->never;
     return 1;
 }

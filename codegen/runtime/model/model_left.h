@@ -12,6 +12,10 @@ static inline int bg_left_text(const bg_model *m, int status, char *text, size_t
     bg_leaving told;
     if (!bg_model_left(m, status, &told))
         return 0;
+    if (told.never) {
+        snprintf(text, room, "at t = %.9g %.60s %.150s", told.time, told.argument, told.never);
+        return 1;
+    }
     snprintf(text, room, "at t = %.9g %.60s leaves table '%.40s', which is from %.9g to %.9g and "
              "refuses what is outside", told.time, told.argument, told.table, told.low, told.high);
     return 1;

@@ -157,6 +157,7 @@ typedef struct {
     double loop[BG_ROOM(BG_LOOP)][6], slopes[BG_TABLE(BG_LOOP, BG_LOOP)];
     int pivots[BG_ROOM(BG_LOOP)];
     unsigned long long residues[BG_TABLE(BG_FRICTION, BG_RANKED)];
+    double holding[BG_ROOM(BG_HOLDING_VALUES)];
     bg_values sizes;
 } bg_work;
 
@@ -195,6 +196,7 @@ extern const char *const bg_output_names[], *const bg_output_units[];
 extern const char *const bg_parameter_names[];
 extern const char *const bg_friction_names[];
 extern const char *const bg_lookup_names[];
+extern const char *const bg_held_names[]; /* what storages hold, BG_HOLDINGS of them */
 
 /* The parameters the model was generated at, BG_PARAMETERS of them. */
 void bg_model_parameters(double *parameters);
@@ -211,16 +213,22 @@ void bg_tables_init(bg_own_tables *own);
 int bg_tables_set(bg_own_tables *own, int table, const double *values);
 
 /* A table that refuses what is outside, its ends along an axis, and when which argument left it, to
- * this place. After a call that failed: whether one was left; model_left.h has it in words. */
+ * this place; `never`: what is to be said of a law that is turned round and gives this in no state,
+ * else 0. After a call that failed: whether one was left; model_left.h has it in words. */
 typedef struct {
     double time, place, low, high;
-    const char *table, *argument;
+    const char *table, *argument, *never;
 } bg_leaving;
 int bg_model_left(const bg_model *m, int status, bg_leaving *told);
 
 /* s from the states (law states last) and the external inputs: they differ where inputs drive
  * dependent storages. */
 int bg_model_vector(bg_model *m, double t, const double *states, const double *w, double *s);
+
+/* States at which storages hold what a start tells, the `held` that are `told`, in the order of
+ * bg_held_names. The states that are `named` are kept; those that follow become so. 0, or 1 + the
+ * place of one that does not tell a state: of a field all has to be told, or the other states. */
+int bg_model_held(bg_model *m, const int *told, const double *held, int *named, double *states);
 
 /* Before a run: switches of `mode` change over where their conditions say so, and states that are
  * not `named` follow what the switches then hold. */

@@ -48,6 +48,7 @@ static int decide(const bg_engine *e, bg_course *c, int started)
         || (status != BG_UNDECIDED && status != BG_BAD_FRICTION && status != BG_NEGATIVE))
         return status;
     memcpy(c->mode, before, sizeof before);
+    c->excused = 1;
     return sight->look(sight->self, c->at.t, c->at.s, c->mode);
 }
 
@@ -138,6 +139,7 @@ static int settle_once(const bg_engine *e, bg_course *c, const int *before, int 
 static int settle(const bg_engine *e, bg_course *c, int started)
 {
     int before[BG_MOST_PORTS], rests = e->sight.ports > 0, status = BG_OK;
+    c->excused = 0;
     while (rests && status == BG_OK) {
         memcpy(before, c->mode, sizeof before);
         status = settle_once(e, c, before, started);
@@ -150,27 +152,28 @@ static int settle(const bg_engine *e, bg_course *c, int started)
     return status;
 }
 
-/* The next instant of a task after t, and of which. */
-static void look_for_tick(const bg_clock *clocks, bg_course *c, double t)
+/* The next instant of a task. */
+static double next_tick(const bg_engine *e, const bg_course *c)
 {
-    c->tick = INFINITY;
+    double tick = INFINITY;
     for (int k = 0; k < BG_CLOCKS; k++)
-        c->tick = fmin(c->tick, bg_clock_after(clocks + k, t));
+        tick = fmin(tick, bg_clock_after(e->sight.clocks + k, c->at.t));
+    return tick;
 }
 
-/* Which tasks are due at t; whether any is. */
-static int are_due(const bg_clock *clocks, bg_course *c)
+/* Which tasks are due at the present instant, and have not been done yet; whether any is. */
+static int are_due(const bg_engine *e, bg_course *c)
 {
     int any = 0;
     for (int k = 0; k < BG_CLOCKS; k++)
-        any |= c->due[k] = bg_clock_strikes(clocks + k, c->at.t);
+        any |= c->due[k] = c->at.t > c->done && bg_clock_strikes(e->sight.clocks + k, c->at.t);
     return any;
 }
 
 /* Whether nothing but tasks makes an instant: no port has come to an event, no input to a breakpoint. */
 static int is_plain(const bg_engine *e, const bg_course *c)
 {
-    int touched = c->span.begin == c->at.t;
+    int touched = c->paused || c->span.begin == c->at.t;
     for (int i = 0; i < e->sight.ports; i++)
         touched |= c->at.touched[i];
     return !touched;
@@ -180,6 +183,7 @@ static int is_plain(const bg_engine *e, const bg_course *c)
 static int strike(const bg_engine *e, bg_course *c)
 {
     const int status = bg_set_by_tasks(&e->sight, &c->at, c->mode, c->due);
+    c->done = c->at.t;
     return status ? status : settle(e, c, 1);
 }
 
@@ -187,7 +191,8 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
 {
     c->at = (bg_instant){.t = t, .s = s};
     c->began = t;
-    c->goes_on = 0;
+    c->goes_on = c->started = c->decided = c->paused = c->excused = 0;
+    c->done = -INFINITY;
     c->end = end;
     c->span = (bg_span){0, -INFINITY, INFINITY};
     c->log.count = c->rounds.next = c->rounds.full = 0;
@@ -200,32 +205,57 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
     }
 }
 
-int bg_run(const bg_engine *e, bg_course *c)
+/* Decides the mode at the present instant. */
+static int decide_here(const bg_engine *e, bg_course *c)
+{
+    const int due = are_due(e, c);
+    int status = BG_OK;
+    if (!c->started || !due || !is_plain(e, c))
+        status = settle(e, c, c->started);
+    c->started = c->decided = 1;
+    if (due && status == BG_OK)
+        status = strike(e, c);
+    memset(c->at.touched, 0, sizeof c->at.touched);
+    return status;
+}
+
+int bg_arrive(const bg_engine *e, bg_course *c)
 {
     const double most = 16.0 * c->log.capacity + 1000.0;
-    int status = BG_OK, started = 0, due = !c->goes_on && are_due(e->sight.clocks, c);
+    int status = BG_OK, undecided;
     /* Breakpoints lie ahead one after the other: a turn that ends at one gets somewhere. */
     for (double turns = 0.0; turns < most; turns += c->at.t < c->at.following) {
-        int undecided = 1;
         status = e->pass(e->self, c->at.t, &c->span);
-        look_for_tick(e->sight.clocks, c, c->at.t);
-        c->at.following = fmin(c->span.following, c->tick);
-        if (status == BG_OK && started && c->at.t >= c->end)
-            status = come_to_end(e, c, &undecided);
-        if (status || !(undecided || due))
-            return status;
-        if (!started || !due || !is_plain(e, c))
-            status = settle(e, c, started);
-        started = 1;
-        if (due && status == BG_OK)
-            status = strike(e, c);
-        memset(c->at.touched, 0, sizeof c->at.touched);
+        c->at.following = fmin(c->span.following, next_tick(e, c));
         if (status || c->at.t >= c->end)
             return status;
+        if (!c->decided && c->paused)
+            status = come_to_end(e, c, &undecided);
+        if (!c->decided && status == BG_OK)
+            status = decide_here(e, c);
+        if (status)
+            return status;
+        c->decided = c->paused = 0;
         status = e->advance(e->self, fmin(c->at.following, c->end));
         if (status)
             return status;
-        due = c->at.t == c->tick && are_due(e->sight.clocks, c);
     }
     return BG_EVENTS;
+}
+
+int bg_finish(const bg_engine *e, bg_course *c)
+{
+    int undecided = 1, status = BG_OK;
+    if (c->started)
+        status = come_to_end(e, c, &undecided);
+    if (status == BG_OK && (undecided || are_due(e, c)))
+        status = decide_here(e, c);
+    c->decided = status == BG_OK;
+    return status;
+}
+
+int bg_run(const bg_engine *e, bg_course *c)
+{
+    const int status = bg_arrive(e, c);
+    return status ? status : bg_finish(e, c);
 }

@@ -8,13 +8,16 @@
 #include "run_pace.h"
 
 /* Where a run is. `began`, `end` [s]: of all of it; `span`: the pieces of its inputs;
- * `goes_on`: whether it goes on with one before, so that its begin may have events. */
+ * `goes_on`: whether it goes on with one before, so that its begin may have events; `started`,
+ * `decided`: whether its first instant has been decided, and the present one; `paused`: whether it
+ * came to the present one as to its end; `excused`: whether the mode there is none that could go
+ * on. `done` [s]: up to when tasks have set what they set; `due`: those whose instant it is. */
 typedef struct {
     bg_instant at;
     double began, end;
     bg_span span;
-    int goes_on;
-    double tick; /* the next instant of a task, and whose it is or was */
+    int goes_on, started, decided, paused, excused;
+    double done;
     int due[BG_MOST_CLOCKS];
     int mode[BG_MOST_PORTS];
     bg_log log;
@@ -40,8 +43,10 @@ typedef struct {
 } bg_engine;
 
 /* Sets out at t, with BG_MOST_PORTS modes as they are before, all let go unless told; and runs to
- * the end. */
+ * the end: arrives there, and decides what is just after it. */
 void bg_set_out(bg_course *c, double t, double end, double *s, const int *first);
+int bg_arrive(const bg_engine *engine, bg_course *c);
+int bg_finish(const bg_engine *engine, bg_course *c);
 int bg_run(const bg_engine *engine, bg_course *c);
 
 #endif

@@ -187,3 +187,32 @@ def _derivative(graph: Graph, given: dict[str, str]) -> set[str]:
     prefers = {"I": "flow", "C": "effort"}
     kinds = {node: graph.nodes[node]["kind"] for node in given}
     return {n for n, gives in given.items() if kinds[n] in prefers and gives != prefers[kinds[n]]}
+
+
+def _dragged(*, drag: bool) -> Graph:
+    nodes = [bg.Se("push", "F"), bg.One("mass"), bg.I("m", "m"), *[bg.R("drag", "b")] * drag]
+    return bond_graph(nodes, "push>mass>m" + " mass>drag" * drag)
+
+
+def test_derivative_causality_is_judged_where_it_is_asked() -> None:
+    """By hand: the drag may give the flow, F/b, which the mass then receives, its stroke at the junction."""
+    derivative = {("push", "mass"): "mass", ("mass", "m"): "mass", ("mass", "drag"): "drag"}
+    integral = {("push", "mass"): "mass", ("mass", "m"): "m", ("mass", "drag"): "mass"}
+    graph = _dragged(drag=True)
+    for strokes, asked, other in ((derivative, True, False), (integral, False, ["m"])):
+        assert len(bg.check(graph, strokes=strokes, derivative=asked)) == 0
+        found = bg.check(graph, strokes=strokes, derivative=other)
+        assert {one.verdict for one in found.strokes} == {"right", "not preferred"}
+        assert len(found.doubts) == 1
+    assert "has integral causality, though it could have derivative: receive the flow" in str(found)
+
+
+def test_a_hint_names_what_cannot_have_derivative_causality() -> None:
+    """Nothing but the mass itself tells the speed under a force."""
+    assert len(bg.check(_dragged(drag=True), derivative=True)) == 0
+    (hint,) = (
+        one for one in bg.check(_dragged(drag=False), derivative=True) if one.rule == "causality"
+    )
+    assert (hint.kind, hint.node) == ("hint", "m")
+    with pytest.raises(bg.StructureError, match="'drag' is no storage"):
+        bg.check(_dragged(drag=True), derivative=["drag"])

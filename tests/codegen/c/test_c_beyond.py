@@ -16,7 +16,7 @@ from references.build import bond_graph
 import bondgraph as bg
 import codegen
 
-LEFT = r"at t = (\S+) (?:v|w) \+ 1 leaves table 'm\.law⁻¹', which is from 0"
+LEFT = r"at t = (\S+) (?:v|w) \+ 1 leaves what is above 0: the law of 'm' gives it in no state; begin where"
 
 
 def _equations() -> bg.StateEquations:
@@ -68,3 +68,24 @@ def test_programs_in_c_end_there(words: list[str], tmp_path: Path) -> None:
     done = subprocess.run(asked, capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert re.search(LEFT, done.stderr), done.stderr
+
+
+def test_steps_in_python_end_where_slopes_have_no_value_at_all() -> None:
+    """At -1 itself the slope 1/(1 + v) is a division by zero, which says nothing."""
+    module: dict[str, Any] = {}
+    exec(codegen.to_python(_driven(), {"r": 1.0}), module)
+    with pytest.raises(module["EvaluationError"], match=LEFT) as told:
+        module["simulate"]([0.0, 1.0, 2.0], {}, {"v": lambda t: -t}, step=0.25)
+    found = re.search(LEFT, str(told.value))
+    assert found is not None
+    assert float(found[1]) == pytest.approx(1.0, abs=0.25)
+
+
+def test_what_lies_between_two_ends_says_so() -> None:
+    """``tanh(p)`` gives no speed from 1 on."""
+    nodes = [bg.Sf("v", "v"), bg.One("o"), bg.I("m", law="tanh(p_m)"), bg.Zero("n"), bg.R("r", "r")]
+    made = codegen.simulator(bg.derive(bond_graph(nodes, "v>o>m o>n>r")), {"r": 1.0})
+    with pytest.raises(
+        bg.SimulationError, match="v leaves what is between -1 and 1: the law of 'm'"
+    ):
+        made.run([0.0, 1.0], inputs={"v": codegen.Ramp(0.0, 3.0)})

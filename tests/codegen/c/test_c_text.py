@@ -3,6 +3,7 @@
 import subprocess
 from pathlib import Path
 
+import networkx as nx
 import numpy as np
 import pytest
 import sympy as sp
@@ -176,3 +177,19 @@ def test_several_redundant_ports_share_as_fairly_as_can_be(count: int, tmp_path:
     caps = np.arange(1, count + 1)
     found = parts[2][pair.closed.friction_inputs]
     assert found == pytest.approx(0.7 * caps / caps.sum(), rel=1e-12)
+
+
+def test_strings_are_not_broken_at_their_blanks(tmp_path: Path) -> None:
+    """Of brakes called by several words, more than stand on a line."""
+    names = [f"a brake with number {at}" for at in range(6)]
+    brakes = [bg.R(name, law=bg.DryFriction("1"), effort=f"e{at}", flow=f"f{at}")
+              for at, name in enumerate(names)]  # fmt: skip
+    graph = nx.DiGraph()
+    graph.add_nodes_from([bg.One("j"), bg.I("m", "m"), *brakes])
+    graph.add_edges_from([("j", "m"), *(("j", name) for name in names)])
+    files = to_c(bg.derive(graph), {"m": 1.0}, main=True)
+    for name in names:
+        assert f'"{name}"' in files["model.c"]
+    program = compiled(tmp_path, written(tmp_path, files), "-O0")
+    done = subprocess.run([program, "1", "1"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0

@@ -9,6 +9,7 @@ from fmpy import validation
 from oracles.called import Unit
 from oracles.tuned import END, LEAVES, NUMBERS, PUSH, START, VALUES, dragged, mapped, speed
 from oracles.units import Case
+from references.build import bond_graph
 from references.interpolated import METHODS, interpolated, off, random_table
 
 import bondgraph as bg
@@ -215,3 +216,22 @@ def test_of_many_values_fmi_2_lists_none(tmp_path: Path) -> None:
         unit = _unit(mapped("linear", axis), version, tmp_path)
         names[version] = {name for name in unit.at if name.startswith("map")}
     assert names == {"2.0": set(), "3.0": {"map", "map.x"}}
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_law_that_never_gives_this_is_named(
+    version: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """A mass of the speed ``exp(p) - 1`` is driven to -2."""
+    nodes = [bg.Se("T", "T"), bg.One("n"), bg.I("J", 1),
+             bg.I("m", law="exp(p_m) - 1", flow="w", priority=-1)]  # fmt: skip
+    equations = bg.derive(bond_graph(nodes, "T>n>J n>m"))
+    unit = Unit(Case(equations, {}, None, {}, {}, END), version, tmp_path)
+    made = unit.started("ModelExchange", T=-1.0)
+    made.setTime(0.5)
+    made.setContinuousStates((np.ctypeslib.ctypes.c_double * 1)(-2.0), 1)
+    with pytest.raises(Exception, match=r"Get(Real|Float64)"):
+        unit.get(made, "der(w)")
+    says = "at t = 0.5 w + 1 leaves what is above 0: the law of 'm' gives it in no state"
+    assert says in capfd.readouterr().out
+    made.freeInstance()

@@ -101,10 +101,16 @@ def test_what_repeats_faster_than_time_can_tell_is_refused() -> None:
         PWM(1e20, 0.5).following(1.0)
 
 
-@pytest.mark.parametrize(("duty", "level"), [(0, 2.0), (1, 5.0), (-3.0, 2.0), (1.5, 5.0)])
+@pytest.mark.parametrize(("duty", "level"), [(0, 2.0), (1, 5.0)])
 def test_a_duty_at_its_ends_switches_nothing(duty: float, level: float) -> None:
     signal = PWM(1e3, duty, 2.0, 5.0)
     assert list(signal.within(0.0, 1.0)) == []
+    assert signal.sampled(TIMES).tolist() == [level] * len(TIMES)
+
+
+@pytest.mark.parametrize(("duty", "level"), [(-3.0, 2.0), (1.5, 5.0)])
+def test_a_duty_that_is_a_signal_is_clipped(duty: float, level: float) -> None:
+    signal = PWM(1e3, Constant(duty), 2.0, 5.0)
     assert signal.sampled(TIMES).tolist() == [level] * len(TIMES)
 
 
@@ -223,6 +229,8 @@ def test_what_a_lag_remembers_does_not_grow() -> None:
         (lambda: PWM(-1.0, 0.5), "PWM: the frequency must be positive"),
         (lambda: PWM(math.nan, 0.5), "PWM: nan is not finite"),
         (lambda: PWM(1.0, "0.5"), "PWM: '0.5' is not a number"),
+        (lambda: PWM(1.0, 2), "PWM: the duty must be from 0 to 1, not 2"),
+        (lambda: PWM(1.0, -0.1), "PWM: the duty must be from 0 to 1, not -0.1"),
         (lambda: PWM(1.0, 0.5, phase=math.inf), "PWM: inf is not finite"),
         (lambda: Square(1.0, 0.0, 1.0, 1.5), "Square: the duty must be from 0 to 1, not 1.5"),
         (lambda: Square(0, 0.0, 1.0), "Square: the frequency must be positive, not 0"),

@@ -109,3 +109,9 @@ def test_points_that_leave_no_dip_are_not_looked_between(values: list[float]) ->
 def test_points_far_above_zero_need_no_chords(values: list[float]) -> None:
     assert not may_dip(values)
     assert all(dip(lambda t: -1.0, TIMES[:4], values, k) is None for k in range(3))
+
+
+def test_points_that_fall_together_tell_of_no_dip() -> None:
+    """A stretch of one rounding of the time, whose points are its begin or its end."""
+    one = math.nextafter(1.0, 2.0)
+    assert dip(lambda t: 1e-3, (1.0, 1.0, one, one), (1e-3, 1e-3, 1e-3, 1e-3), 1) is None

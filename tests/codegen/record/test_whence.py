@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 
 import bondgraph as bg
@@ -86,7 +87,8 @@ def test_a_law_that_reads_only_what_it_gives_is_refused() -> None:
 def test_a_graph_in_place_of_equations_is_refused(ask) -> None:
     graph = bg.graph([bg.Se("push", "F"), bg.One("cart"), bg.I("m", 1)], "push > cart > m")
     with pytest.raises(
-        bg.StructureError, match=r"what bondgraph.derive\(graph\) returns, not a BondGraph"
+        bg.StructureError,
+        match=r"bondgraph.derive.* not a BondGraph|not BondGraph; .*bondgraph.derive",
     ):
         ask(graph)
 
@@ -99,7 +101,7 @@ def test_equations_in_place_of_a_simulator_are_refused() -> None:
         codegen.trim(bg.derive(graph))  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("given", [abs, [1, 2], lambda t: t])
+@pytest.mark.parametrize("given", [[1, 2], np.ones(3)])
 def test_what_is_no_signal_has_its_way_out(given) -> None:
     graph = bg.graph([bg.Se("push", "F"), bg.One("cart"), bg.I("m", 1)], "push > cart > m")
     with pytest.raises(bg.SignalError, match=r"values at times are Sampled\(times, values\)"):

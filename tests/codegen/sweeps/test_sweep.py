@@ -1,6 +1,7 @@
 """`sweep` in one process: every run's numbers, what fails, and what cannot be swept."""
 
 import gc
+import math
 import sys
 import tracemalloc
 
@@ -12,6 +13,7 @@ from oracles.sweeping import LOCKING, MEASURES, TIMES, Plain, answer, locking, s
 import bondgraph as bg
 import codegen
 from codegen import Samples, Sweep, Table, sweep
+from codegen.record.measures import Measure
 
 HERE = {"workers": 0, "progress": False}
 
@@ -74,10 +76,65 @@ def test_measures_that_fail_are_told_by_name_and_run() -> None:
     assert "measure 'odd': ValueError" in found.failed[0].message
     found = _swept({"v": [2.0]}, {"odd": lambda result: np.complex128(1 + 5j)})
     assert "measure 'odd': TypeError" in found.failed[0].message
-    found = _swept({"v": [1.0]}, {"odd": codegen.peak("nothing")})
-    assert (
-        "measure 'odd': KeyError: \"no signal 'nothing'; there are v, F" in found.failed[0].message
-    )
+    found = _swept({"v": [1.0]}, {"odd": lambda result: codegen.peak("nothing")(result)})
+    assert "measure 'odd': no signal 'nothing'; there are v, F" in found.failed[0].message
+
+
+@pytest.mark.parametrize(
+    ("measure", "says"),
+    [
+        (codegen.peak("forc"), "no signal 'forc'"),
+        (codegen.integral("V"), "no signal 'V'"),
+        (codegen.samples("f_sprin"), "no signal 'f_sprin' \\(did you mean 'f_spring'\\?\\)"),
+        (codegen.first_event("sprin", "stick"), "no node 'sprin' \\(did you mean 'spring'\\?\\)"),
+        (codegen.event_count("clutch", "slip"), "no node 'clutch'; there are"),
+        (codegen.work("sprin"), "no node 'sprin'"),
+    ],
+)
+def test_measures_of_what_the_model_does_not_have_are_refused_first(
+    measure: Measure, says: str
+) -> None:
+    with pytest.raises(bg.SignalError, match=f"measure 'odd': {says}"):
+        _swept({"v": [1.0]}, {"odd": measure})
+    result = spring_mass().simulator().run([0.0, 1.0], {}, {"P": 0.0})
+    with pytest.raises((bg.SignalError, bg.StructureError), match=says.split(" ")[2].strip("'")):
+        measure(result)
+
+
+def test_kinds_of_events_that_there_are_not_are_refused() -> None:
+    for asked in (codegen.first_event, codegen.event_count):
+        with pytest.raises(bg.SignalError, match="no event is a 'stik'"):
+            asked("clutch", "stik")
+
+
+@pytest.mark.parametrize("on", ["P", 3, ["gap"]])
+def test_switches_that_there_are_not_are_refused_first(on: object) -> None:
+    with pytest.raises(bg.StructureError, match=r"on must be a list of switches|is no switch"):
+        _swept({"v": [1.0]}, {"end": codegen.final("v")}, initially_on=on)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: codegen.Grid(a=[]), "a has no values"),
+        (lambda: Table(a=[], b=[]), "a has no values"),
+        (lambda: codegen.Grid("ab"), "a grid's axes must map names"),
+        (lambda: codegen.Grid({"a": [1.0]}, a=[2.0]), "a comes twice"),
+        (lambda: codegen.Grid({sp.Symbol("a"): [1.0], "a": [2.0]}), "a comes twice"),
+        (lambda: Table(7), "a table's rows must be one or more mappings"),
+        (lambda: Samples(3, 1, a=3), "samples of a need two limits or a function, not 3"),
+        (lambda: Samples(3, 1, a=None), "samples of a need two limits"),
+        (lambda: Samples(3, 1, a=(1.0, math.inf)), "samples of a need two limits"),
+        (lambda: Samples(3, 1, a=(2.0, 1.0)), "samples of a: the lower limit comes first"),
+        (lambda: Samples(0, 1, a=(1.0, 2.0)), "runs must be a whole number from 1 on, not 0"),
+        (lambda: Samples(2.5, 1, a=(1.0, 2.0)), "runs must be a whole number"),
+        (lambda: Samples(3, "x", a=(1.0, 2.0)), "seed must be a whole number from 0 on, not 'x'"),
+        (lambda: Samples(3, -1, a=(1.0, 2.0)), "seed must be a whole number"),
+    ],
+)
+def test_what_is_no_design_is_refused_when_it_is_made(make, message: str) -> None:
+    with pytest.raises(bg.SignalError, match=message):
+        make()
 
 
 @pytest.mark.parametrize("chunk", [1, 2, 7])
@@ -166,14 +223,19 @@ def test_an_input_whose_size_is_swept_is_the_signal_times_the_number(backend: st
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"parameters": {"c": [1]}}, "'c' is no parameter, state or input; there are m, k, v, F, P"),
-        ({"parameters": {"k": []}}, "no runs"),
+        ({"parameters": {"c": [1]}}, "'c' is no parameter, state or input; there are m, k, v, F, p_m"),
+        ({"parameters": {"k": []}}, "k has no values"),
         ({"parameters": {"k": ["a"]}}, "the values of k must be numbers"),
         ({"parameters": {"k": np.array([1 + 5j])}}, "the values of k must be numbers: these are complex128"),
         ({"parameters": {"k": [1.0, np.complex128(1)]}}, "the values of k must be numbers"),
         ({"parameters": {"k": ["1", "2"]}}, "the values of k must be numbers"),
         ({"parameters": {"k": 1.0}}, r"the values of k must be a list, not of shape \(\)"),
         ({"parameters": 5}, "parameters must be a Grid"),
+        ({"measures": codegen.peak("v")}, "measures must map names to functions"),
+        ({"parameters": {"p_n": [1.0]}}, "'p_n' is no parameter, .* .did you mean 'p_m'"),
+        ({"parameters": {"p_n": [1.0]}, "initial": {"p_m": 1.0}}, "'p_n' is no parameter"),
+        ({"initial": {"p_m": 1.0, "w": 2.0}}, "'w' is not a state"),
+        ({"parameters": {"p_m": [1.0]}, "initial": {"p_m": 1.0}}, "'p_m' is swept, too"),
         ({"parameters": [{"k": 1}, {"m": 1}]}, r"row 1 has the names \['m'\]"),
         ({"parameters": {"P": [1.0]}}, "inputs: 'P' is swept, too"),
         ({"initial": {"x": 1.0}}, "'x' is not a state"),

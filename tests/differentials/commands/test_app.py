@@ -88,7 +88,7 @@ def test_what_cannot_be_done_is_one_clear_line(
         (["simulate", "alsd", "--set", "k=1", "--set", "k=2"], "k is given twice"),
         (["simulate", "alsd", "--input", "tau_e=stp(1)"], "tau_e: 'stp(1)' is neither a number nor a signal"),
         (["simulate", "alsd", "--until", "0"], "--until"),
-        (["simulate", "alsd", "-o", "run.txt"], "must end in .csv, .nc or .png"),
+        (["simulate", "alsd", "-o", "run.txt"], "must end in .csv, .nc, .parquet, .mat or .png"),
         (["simulate", "alsd", "--bakend", "c"], "'--backend'"),
         (["derive", "alsd", "--json", "--latex"], "keep one"),
         (["sweep", "alsd", "--peak", "tau_k1"], "give at least one --grid"),

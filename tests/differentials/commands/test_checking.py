@@ -40,3 +40,19 @@ def test_strokes_of_a_file_are_judged_as_data(call: Call, data: Data) -> None:
     done = call("check", "drawn.json")
     assert done.exit_code == 1
     assert "[WRONG] mass -> m, stroke at mass" in done.stdout
+
+
+def test_derivative_causality_is_preferred_where_it_is_asked(call: Call, data: Data) -> None:
+    """Of the oscillator all may be derivative; with its strokes drawn for integral causality none is."""
+    graph = json.loads(Path("examples/oscillator.json").read_text(encoding="utf-8"))
+    for edge, stroke in zip(graph["edges"], ("head", "head", "tail", "tail"), strict=True):
+        edge["stroke"] = stroke
+    Path("drawn.json").write_text(json.dumps(graph), encoding="utf-8")
+    assert data("check", "drawn.json")["findings"] == []
+    for named in ("all", "m"):
+        done = call("check", "drawn.json", "--derivative", named)
+        assert done.exit_code == 1
+        assert "I 'm' has integral causality, though it could have derivative" in done.stdout
+    done = call("check", "drawn.json", "--derivative", "damper")
+    assert done.exit_code == 2
+    assert "no storage is called 'damper'" in done.stderr

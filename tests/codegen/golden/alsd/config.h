@@ -48,6 +48,8 @@
 #define BG_TABLE_FACTORS 0
 #define BG_TABLE_WORK 0
 #define BG_REFUSING 0
+#define BG_HOLDINGS 6
+#define BG_HOLDING_VALUES 6
 #define BG_ROSENBROCK 0
 
 /* The longest step [s] that is stable at the default start, parameters and inputs, in every

@@ -95,6 +95,12 @@ const int bg_moved_begins[] = {0, 0};
 const int bg_moved[] = {0};
 const unsigned long long bg_prime = 2305840746056767921u;
 const unsigned long long bg_prime_inverse = 2899849368476528815u;
+const char *const bg_held_names[] = {
+    "p_I_1", "p_I_2", "q_halfshaft_1_spring", "q_halfshaft_2_spring", "p_I_w1", "p_I_w2"
+};
+const int bg_held_begins[] = {0, 1, 2, 3, 4, 5, 6};
+const int bg_held_states[] = {0, 1, 2, 3, 4, 5};
+const int bg_held_by_law[] = {0, 0, 0, 0, 0, 0};
 
 /* Nonzero entries of A, J, B, E, F, D, H, K: 22 operations. */
 void bg_coefficients(const bg_values *v, double *out)
@@ -189,6 +195,21 @@ void bg_momenta(const bg_values *v, double *out)
     (void)out;
 }
 
+/* How states follow from what storages hold at a start: 2 operations. */
+void bg_held_values(const bg_values *v, double *out)
+{
+    const double I_1 = v->p[0];
+    const double I_2 = v->p[1];
+    const double I_w = v->p[3];
+    const double k = v->p[6];
+    out[0] = I_1;
+    out[1] = I_2;
+    out[2] = 1.0/k;
+    out[3] = 1.0/k;
+    out[4] = I_w;
+    out[5] = I_w;
+}
+
 /* What corners hang on, and for each whether it counts: 0 operations. */
 void bg_corners(const bg_values *v, double *out)
 {
@@ -230,7 +251,7 @@ static void coupled_values(const bg_values *v, double *out)
     (void)out;
 }
 
-const bg_refusing bg_refusings[] = {{0, 0, 0}};
+const bg_refusing bg_refusings[] = {{0, 0, 0, 0}};
 
 /* Arguments of tables that refuse what is outside: 0 operations. */
 void bg_refused(const bg_values *v, double *out)

@@ -54,20 +54,32 @@ def explain(bench: Bench) -> None:
 
 
 def explicit(bench: Bench) -> None:
-    """The rates, at what the run gives at one instant, are those of the run about it."""
+    """The rates, at what the run gives at one instant, are those of the run about it.
+
+    So what laws give that are left to be solved, of which only nonlinear loops have some.
+    """
     kind, rates = bench.kind, bg.explicit(bench.kind.equations, bench.kind.laws)
     run, h = bench.about, CLOSE * kind.end
-    numbers = {sp.Symbol(name): value for name, value in kind.numbers.items()}
-    assert not rates.implicit
+    assert bool(rates.implicit) == kind.loop
+    for name, expr in rates.implicit.items():
+        given, scale = run[str(name)][4], np.abs(bench.run[str(name)]).max()
+        assert abs(_at(bench, expr, rates.where) - given) < 1e-6 * scale, f"the law of {name}"
     for state, rate in rates.items():
-        for name, part in reversed(rates.where.items()):
-            rate = rate.xreplace({name: part})
-        found = rate.subs(numbers).subs(sp.Symbol("t"), kind.at)
-        moving = {name: name.name.removeprefix("d_") for name in found.free_symbols}
-        values = {name: _value(run, name.name, source, h) for name, source in moving.items()}
         slope = (run[str(state)][5] - run[str(state)][3]) / (2 * h)
         scale = max(abs(slope), np.abs(bench.run[str(state)]).max() / kind.end)
-        assert abs(float(found.subs(values)) - slope) < 1e-3 * scale, f"the rate of {state}"
+        assert abs(_at(bench, rate, rates.where) - slope) < 1e-3 * scale, f"the rate of {state}"
+
+
+def _at(bench: Bench, expr: sp.Expr, where: Mapping[sp.Symbol, sp.Expr]) -> float:
+    """An expression at the instant of a kind, over names of parts."""
+    kind, run, h = bench.kind, bench.about, CLOSE * bench.kind.end
+    for name, part in reversed(where.items()):
+        expr = expr.xreplace({name: part})
+    numbers = {sp.Symbol(name): value for name, value in kind.numbers.items()}
+    found = expr.subs(numbers).subs(sp.Symbol("t"), kind.at)
+    moving = {name: name.name.removeprefix("d_") for name in found.free_symbols}
+    values = {name: _value(run, name.name, source, h) for name, source in moving.items()}
+    return float(found.subs(values))
 
 
 def _value(run: codegen.Result, name: str, source: str, h: float) -> float:
@@ -161,6 +173,27 @@ def commands(bench: Bench) -> None:
 
 def numpy(bench: Bench) -> None:
     bench.check(bench.run, EXACT)
+
+
+def stepper(bench: Bench) -> None:
+    """Steps from outside."""
+    _stepped_outside(bench, bench.ready, EXACT)
+
+
+def stepper_in_c(bench: Bench) -> None:
+    with _in_c_alone():
+        _stepped_outside(bench, bench.compiled, LOCATED)
+
+
+def _stepped_outside(bench: Bench, ready: codegen.Simulator, within: float) -> None:
+    kind = bench.kind
+    one = ready.stepper(kind.initial, kind.signals, initially_on=kind.on)
+    rows, told = [dict(one.signals)], list[codegen.Event]()
+    for t in kind.times()[1:]:
+        rows.append(dict(one.advance(t - one.time)))
+        told += one.events
+    bench.check({name: np.array([row[name] for row in rows]) for name in rows[0]}, within)
+    assert [(e.port, e.kind) for e in told] == [(e.port, e.kind) for e in bench.run.events]
 
 
 def c_exact(bench: Bench) -> None:
@@ -313,8 +346,10 @@ ROUTES: Mapping[str, Route] = MappingProxyType(
     {
         "print": whole, "explain": explain, "explicit": explicit, "latex": latex,
         "drawing": drawing, "JSON": json, "GraphML": graphml, "numpy": numpy,
-        "linearize": linearize, "trim": trim, "sweep": sweep_numpy, "command line": commands,
+        "stepper": stepper, "linearize": linearize, "trim": trim,
+        "sweep": sweep_numpy, "command line": commands,
         "to_python": to_python, "C, exact": c_exact, "C, located": c_located,
+        "stepper in C": stepper_in_c,
         "sweep in C": sweep_c, "to_c, fixed steps": to_c_stepped,
         "to_c, located": to_c_located, "FMI 2 ME": _fmu("2.0", "ModelExchange"),
         "FMI 2 CS": _fmu("2.0", "CoSimulation"), "FMI 3 ME": _fmu("3.0", "ModelExchange"),

@@ -24,7 +24,7 @@ class Kind:
     ``known``: what the run is by hand. ``rest``: inputs and a start for a steady state; None where there
     is none at all. ``mode``: what ports do at ``at`` [s], in the words of events. ``ends``: nodes that
     have impulses, so that fixed steps and samples beside them are of either side. ``read``: the inputs
-    that values read.
+    that values read. ``loop``: whether nonlinear laws are left to be solved at once.
     """
 
     name: str
@@ -40,6 +40,7 @@ class Kind:
     mode: Mapping[str, str] = field(default_factory=dict)
     rest: Mapping[str, Mapping[str, float]] | None = None
     read: tuple[str, ...] = ()
+    loop: bool = False
 
     @cached_property
     def equations(self) -> bg.StateEquations:

@@ -5,6 +5,7 @@ from oracles.routes.exchanging import EXCHANGING
 from oracles.routes.friction import FRICTION
 from oracles.routes.jumping import JUMPING
 from oracles.routes.lawful import LAWFUL
+from oracles.routes.looped import LOOPED
 from oracles.routes.machines import MACHINES
 from oracles.routes.plain import PLAIN
 from oracles.routes.resetting import RESETTING
@@ -17,9 +18,8 @@ from oracles.routes.switches import SWITCHES
 from oracles.routes.tabled import TABLED
 
 EVERY = (
-    *FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL, *SUPPLIED,
-    *TABLED, *SEARCHED, *EXCHANGING, *SIGNALS,
-    *MACHINES,
+    *FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL, *LOOPED,
+    *SUPPLIED, *TABLED, *SEARCHED, *EXCHANGING, *SIGNALS, *MACHINES,
 )  # fmt: skip
 
 KINDS = {make.__name__: make for make in EVERY}

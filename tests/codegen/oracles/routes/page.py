@@ -9,6 +9,7 @@ from oracles.routes.jumping import JUMPING
 from oracles.routes.kind import Kind
 from oracles.routes.kinds import KINDS
 from oracles.routes.lawful import LAWFUL
+from oracles.routes.looped import LOOPED
 from oracles.routes.plain import PLAIN
 from oracles.routes.sloped import SLOPED
 from oracles.routes.switches import SWITCHES
@@ -34,8 +35,8 @@ WHAT = """
 | JSON, GraphML | read again, the graph has the same equations, laws and switches |
 | linearize | in the mode of the run its model changes rates as the run does |
 | trim | a state from which a run does not move |
-| numpy, sweep, command line, C exact | the known run, to 1e-7 of its range |
-| C located, sweep in C, to_c located | to 1e-6, without a run that numpy does for C |
+| numpy, stepper, sweep, command line, C exact | the known run, to 1e-7 of its range |
+| C located, stepper in C, sweep in C, to_c located | to 1e-6, without a run that numpy does for C |
 | FMI ME, CS | to 1e-5, in FMPy, by CVODE and at the samples' steps |
 | to_python, to_c fixed steps | to 60 over their number (2,500 and 20,000), but for samples beside an event |
 """
@@ -48,7 +49,7 @@ def page() -> str:
         ("Dry friction", (*FRICTION, *SLOPED)),
         ("Laws that jump", JUMPING),
         ("Switches", (*SWITCHES, *EXCHANGING)),
-        ("No port that switches", (*PLAIN, *LAWFUL)),
+        ("No port that switches", (*PLAIN, *LAWFUL, *LOOPED)),
         ("Lookup tables", TABLED),
     ):
         plain = [route for route in ROUTES if route not in COMPILED]

@@ -26,7 +26,8 @@ REFUSALS = (
          "hardening_inertia", "cells", "curved_cells", "gapped_springs", "orifice", "rubbing_nonlinear",
          "staircase", "per_turn",
          "tabled_resistance", "tabled_storage", "engine_map", "tabled_ratio", "tabled_curve",
-         "tabled_level", "meshed_shafts", "joined_cells", "geared_behind", "bouncing_nonlinear"),
+         "tabled_level", "meshed_shafts", "joined_cells", "geared_behind", "bouncing_nonlinear",
+         "loop_of_nonlinear_laws"),
         ("C, exact",), True,
         "Matrix exponentials need rates that are affine in each mode, and here a law or a ratio bends them. "
         "`method=\"auto\"`, which users take, locates events with step control instead.",

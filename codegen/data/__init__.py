@@ -1,0 +1,1 @@
+"""Tables that others wrote: files and frames as columns of numbers."""
