@@ -22,6 +22,7 @@ PICTURES = {
 
 
 PENDULUM = "pendulum.svg"
+SPEED_LOOP = "speed_loop.svg"
 DRIVE = "quarter_car.svg"
 
 
@@ -40,8 +41,22 @@ def pendulum() -> "nx.DiGraph[str]":
     return graph
 
 
+def speed_loop() -> Any:
+    """A motor whose speed a controller with a bounded integral sees to."""
+    return bg.graph(
+        [bg.Se("motor"), bg.One("shaft"), bg.I("J", "J", flow="omega"), bg.R("b", "b"), bg.Df("tacho"),
+         bg.Function("ref", "30*(1 - exp(-t))"), bg.State("z", "K_i*error", low=-8, high=8),
+         bg.Function("error", "plus - minus", ports=["plus", "minus"]),
+         bg.Function("tau", "K*e + z", ports=["e"])],
+        "motor > shaft > J, shaft > b, shaft > tacho",
+        "ref > error.plus, tacho > error.minus, error > tau > motor, error > z > tau",
+    )  # fmt: skip
+
+
 def picture(file: str) -> str:
     """What the file should hold."""
+    if file == SPEED_LOOP:
+        return bg.drawing(speed_loop(), title="Blocks of signals around a bond graph").svg()
     if file == PENDULUM:
         return bg.drawing(pendulum(), title="Pendulum: its angle modulates two transformers").svg()
     name, title = PICTURES[file]
@@ -64,5 +79,5 @@ if __name__ == "__main__":
     # The versions of matplotlib write other bytes for the same curves.
     matplotlib.rcParams["svg.hashsalt"] = "pictures"
     drive().savefig(FOLDER / DRIVE, metadata={"Date": None})
-    for file in (*PICTURES, PENDULUM):
+    for file in (*PICTURES, PENDULUM, SPEED_LOOP):
         write_text(FOLDER / file, picture(file))

@@ -6,7 +6,6 @@ import networkx as nx
 
 from bondgraph.checking.records import Finding
 from bondgraph.nodes.elements import Element
-from bondgraph.nodes.kinds import Kind
 
 
 def arrows_doubted(graph: "nx.DiGraph[Hashable]") -> Iterator[Finding]:
@@ -40,12 +39,12 @@ def _out_of_what_absorbs(graph: "nx.DiGraph[Hashable]") -> Iterator[Finding]:
 
 def _told(element: Element) -> str:
     """A one-port as its declaration calls it."""
-    kind = Kind.STOP if element.whole is not None else element.kind
+    kind = element.declared or element.kind
     return f"{kind} {(element.owner or element.whole or element.name)!r}"
 
 
 def _into_all_sources(graph: "nx.DiGraph[Hashable]") -> Iterator[Finding]:
-    sources = [name for name in graph if _element(graph, name).kind.supplies]
+    sources = _sources(graph)
     if sources and all(graph.in_degree(name) for name in sources):
         name = sources[0]
         kind = _element(graph, name).kind
@@ -57,13 +56,19 @@ def _into_all_sources(graph: "nx.DiGraph[Hashable]") -> Iterator[Finding]:
         )  # fmt: skip
 
 
+def _sources(graph: "nx.DiGraph[Hashable]") -> list[Hashable]:
+    """The sources of power; what gives a signal is none."""
+    elements = [_element(graph, name) for name in graph]
+    return [one.name for one in elements if one.kind.supplies and not one.of_signals]
+
+
 def _from_nowhere(graph: "nx.DiGraph[Hashable]") -> Iterator[Finding]:
     """Junctions between two of the other kind whose arrows make a sum of what should be a difference.
 
     Only where one of the two is the supply: along the arrows no power of a source comes to the other's
     storages. Sums through transformers are kinematics and may be meant so.
     """
-    sources = [n for n in graph if _element(graph, n).kind.supplies and graph.out_degree(n)]
+    sources = [name for name in _sources(graph) if graph.out_degree(name)]
     reached: set[Hashable] = set(sources)
     for name in sources:
         reached |= nx.descendants(graph, name)

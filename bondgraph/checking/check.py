@@ -12,6 +12,7 @@ from bondgraph.checking.records import Check, Finding, StrokeVerdict
 from bondgraph.checking.shapes import junctions_doubted, junctions_simpler
 from bondgraph.checking.strokes import strokes_judged
 from bondgraph.declare.tables import with_tables
+from bondgraph.declare.wires import is_wire
 from bondgraph.errors import AlgebraicLoopError, CausalityError
 from bondgraph.nodes.elements import Bond
 
@@ -57,7 +58,8 @@ def check(
     verdicts: tuple[StrokeVerdict, ...] = ()
     loop: tuple[Hashable, ...] = ()
     if drawn and causal is not None:
-        verdicts, loop = strokes_judged(causal, list(graph.edges), drawn, chosen)
+        bonds = [edge for edge in graph.edges if not is_wire(graph, *edge)]
+        verdicts, loop = strokes_judged(causal, bonds, drawn, chosen)
     findings = [
         *(parameters_doubted(with_tables(graph), parameters) if parameters is not None else ()),
         *junctions_doubted(checked),

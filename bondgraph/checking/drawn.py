@@ -3,6 +3,7 @@
 from collections.abc import Hashable, Mapping
 from typing import Any
 
+from bondgraph.declare.wires import is_wire
 from bondgraph.errors import StructureError
 from bondgraph.nodes.elements import Bond
 
@@ -21,7 +22,7 @@ def strokes_drawn(graph: Any, strokes: Drawn | None) -> dict[Bond, Hashable]:
         if attributes.get("stroke") is not None:
             found[tail, head] = tail if attributes["stroke"] == "tail" else head
     for bond, end in (strokes or {}).items():
-        if not graph.has_edge(*bond):
+        if not graph.has_edge(*bond) or is_wire(graph, *bond):
             raise StructureError(f"strokes: there is no bond {bond!r}; name it as it was declared")
         if end not in bond:
             raise StructureError(

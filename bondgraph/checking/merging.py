@@ -8,6 +8,7 @@ import networkx as nx
 from bondgraph.checking.names import signals_named, validated
 from bondgraph.declare.renaming import names_read
 from bondgraph.declare.tables import with_tables
+from bondgraph.declare.wires import unwired
 from bondgraph.nodes.attributes import kind_of
 from bondgraph.nodes.elements import Bond
 from bondgraph.nodes.kinds import Kind
@@ -21,7 +22,8 @@ def merged(graph: Any) -> "nx.DiGraph[Hashable]":
     Bonded junctions of one kind become one; a junction of two bonds, one in and one out, gives way to a
     bond. A junction stays that is controlled, that names its variable or whose variable a value or law
     reads, unless its partner can take over the name, and one without which two nodes would have two
-    bonds. Drawn strokes are left out. The graph itself is not changed.
+    bonds, or that a wire leads on from. Drawn strokes are left out; what wires bring is read by its name. The
+    graph itself is not changed.
 
     Raises `StructureError` for what `validate` refuses.
 
@@ -57,7 +59,9 @@ class Merger:
 
     def __init__(self, graph: Any) -> None:
         validated(graph)
-        self.given = graph
+        told, self._wires = unwired(with_tables(graph))
+        self.given = told if self._wires else graph
+        self._sources = {wire.source: wire.source for wire in self._wires}
         self.graph: nx.DiGraph[Hashable] = nx.DiGraph()
         self.graph.graph.update(self.given.graph)
         for name, attributes in self.given.nodes(data=True):
@@ -69,7 +73,7 @@ class Merger:
             first, last = (head, tail) if self._turns(tail, head) else (tail, head)
             self.graph.add_edge(first, last, tail_port=ports[first], head_port=ports[last])
         self._place = {name: at for at, name in enumerate(self.graph)}
-        self._read = names_read(with_tables(graph))
+        self._read = names_read(with_tables(self.given))
         self._shared = _named_twice(self.given)
 
     def kind(self, name: Hashable) -> Kind:
@@ -93,6 +97,8 @@ class Merger:
         """Whether a junction only hands on, from one bond in to one bond out, and nobody asks for it."""
         graph = self.graph
         if self._controlled(name) or self._asked_for(name) or self._named(name) is not None:
+            return False
+        if name in self._sources.values():
             return False
         if (graph.in_degree(name), graph.out_degree(name)) != (1, 1):
             return False
@@ -137,6 +143,7 @@ class Merger:
             self.graph.nodes[name][common] = self._named(other)
         edges = [*self.graph.in_edges(other, data=True), *self.graph.out_edges(other, data=True)]
         self.graph.remove_node(other)
+        self._sources |= {one: name for one, now in self._sources.items() if now == other}
         for tail, head, ports in edges:
             if name not in (tail, head):
                 self.graph.add_edge(
@@ -161,6 +168,7 @@ class Merger:
             made.add_edge(
                 tail, head, **({"port": given.popitem()[1]} if len(given) == 1 else given)
             )
+        made.add_edges_from((self._sources[one.source], one.reader) for one in self._wires)
         return made
 
 

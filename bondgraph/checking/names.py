@@ -7,7 +7,8 @@ import networkx as nx
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.checking.records import Finding
-from bondgraph.declare.renaming import names_read, quantities
+from bondgraph.declare.quantities import quantities
+from bondgraph.declare.renaming import names_read
 from bondgraph.declare.validate import validate
 from bondgraph.errors import StructureError, nearest
 
@@ -26,8 +27,8 @@ def signals_named(graph: Any) -> set[str]:
     """Every name of an effort, a flow, a state or an input that the graph's nodes have."""
     found: set[str] = set()
     for name, attributes in graph.nodes(data=True):
-        for letter, ending, given in quantities(name, attributes):
-            found.add(f"{letter}_{name}{ending}" if given is None else given)
+        for begin, ending, given in quantities(name, attributes):
+            found.add(f"{begin}{name}{ending}" if given is None else given)
     return found
 
 

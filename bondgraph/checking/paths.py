@@ -71,11 +71,13 @@ def causal_paths(graph: Any, start: Hashable, end: Hashable, s: str = "s") -> Ca
 
     ``start``: a one-port, whose path begins with what it gives: of a source or an open port its input, of a
     storage or a resistance what is added to what it gives. ``end``: a one-port, which shows what it
-    receives, or a junction, which shows its common variable, as the outputs of `derive` do. ``s``: the
-    name of Laplace's variable.
+    receives, or a junction, which shows its common variable, as the outputs of `derive` do; or a function
+    or a state, which shows itself. What functions, states and known sources read is a way, too, where they
+    are linear. ``s``: the name of Laplace's variable.
 
     Raises what `assign_causality` raises, and `StructureError` for nodes that are not there, for laws,
-    switches and values that move, and for more paths or loops than can be read.
+    switches, controllers that work at instants and values that move, and for more paths or loops than can be
+    read.
 
     >>> import bondgraph as bg, networkx as nx
     >>> g = nx.DiGraph()
@@ -125,18 +127,27 @@ def _start(signals: SignalGraph, name: Hashable) -> tuple[int, int]:
     return signals.given[node]
 
 
-def _end(signals: SignalGraph, name: Hashable) -> tuple[int, int]:
+def _end(signals: SignalGraph, name: Hashable) -> tuple[int, sp.Expr]:
     node = _number(signals, name)
     strokes, element = signals.strokes, signals.strokes.elements[node]
     if element.kind.two_port:
         raise StructureError(
             f"{element.kind} {name!r} has two efforts and two flows; a path ends at a junction or a one-port"
         )
+    if element.of_signals:
+        return _signal_of(signals, name)
     if element.one_port:
         return signals.received[node]
     zero = element.kind.common == "effort"
     bond = next(b for b in strokes.at[node] if (strokes.end[b] == node) == zero)
     return 2 * bond + (not zero), 1
+
+
+def _signal_of(signals: SignalGraph, name: Hashable) -> tuple[int, sp.Expr]:
+    """A function's own signal, or of a state the integral."""
+    return next(
+        home for one, home in signals.homes.items() if one.name == str(name)
+    )  # fmt: skip
 
 
 def _from_storage(signals: SignalGraph, loop: Way) -> Way:

@@ -13,6 +13,7 @@ from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.causality.lines import field_solved
 from bondgraph.causality.record import Strokes
 from bondgraph.causality.signals import CausalEquations, causal_equations
+from bondgraph.checking.controlled import Home, homes_of, of_sources, told
 from bondgraph.declare.names import named_by
 from bondgraph.errors import StructureError
 from bondgraph.nodes.elements import Element
@@ -23,12 +24,14 @@ class SignalGraph:
     """Signals, ``2*b`` the effort of bond b and ``2*b + 1`` its flow, with edges of a ``gain``.
 
     ``given`` and ``received``: of one-ports by their number, the signal, and its sign over the variable.
+    ``homes``: of names the signal that has it, and what the name is of that.
     """
 
     strokes: Strokes
     graph: "nx.DiGraph[int]"
     given: Mapping[int, tuple[int, int]]
     received: Mapping[int, tuple[int, int]]
+    homes: Mapping[sp.Symbol, Home]
 
 
 def signal_graph(causal: CausalGraph, s: sp.Symbol) -> SignalGraph:
@@ -40,16 +43,21 @@ def signal_graph(causal: CausalGraph, s: sp.Symbol) -> SignalGraph:
     strokes = causal.assignment
     _check_linear(strokes, s)
     equations = causal_equations(strokes)
+    homes = homes_of(strokes, equations, s)
     made: nx.DiGraph[int] = nx.DiGraph()
     made.add_nodes_from(range(2 * len(strokes.bonds)))
     for signal, terms in enumerate(equations.terms):
         for source, factor in terms:
             made.add_edge(source, signal, gain=factor)
-    for source, signal, gain in _of_one_ports(strokes, equations, s):
+    for source, signal, gain in (
+        *_of_one_ports(strokes, equations, s), *of_sources(strokes, equations, homes)
+    ):  # fmt: skip
         made.add_edge(source, signal, gain=gain)
     nx.freeze(made)
     given = {node: (signal, sign) for signal, (node, sign) in equations.given.items()}
-    return SignalGraph(strokes, made, MappingProxyType(given), equations.received)
+    return SignalGraph(
+        strokes, made, MappingProxyType(given), equations.received, MappingProxyType(homes)
+    )
 
 
 def _check_linear(strokes: Strokes, s: sp.Symbol) -> None:
@@ -57,22 +65,27 @@ def _check_linear(strokes: Strokes, s: sp.Symbol) -> None:
     for element in strokes.elements:
         read: set[sp.Symbol] = set() if element.value is None else element.value.free_symbols
         read = read.union(*(value.free_symbols for _, value in element.row))
+        if element.task is not None:
+            raise StructureError(
+                f"{told(element)} works at instants, and causal paths are of what goes on all the time; take "
+                "linearize(..., period=...)"
+            )
         if element.kind.supplies:
-            read |= set() if element.law is None else element.law.free_symbols
+            read |= set() if element.law is None else element.law.free_symbols & {s}
         elif element.law is not None or element.kind.switches:
             raise StructureError(
-                f"{element.kind} {element.name!r} is not linear, and causal paths have gains of linear "
+                f"{told(element)} is not linear, and causal paths have gains of linear "
                 "elements alone; give it a constant value (a switch: take bondgraph.in_mode)"
             )
         if read & moving:
             name = min(read & moving, key=str)
             raise StructureError(
-                f"{element.kind} {element.name!r} reads {name}, which moves, and causal paths have constant "
+                f"{told(element)} reads {name}, which moves, and causal paths have constant "
                 "gains; give it a constant value"
             )
         if s in read:
             raise StructureError(
-                f"{element.kind} {element.name!r} has a parameter {s}; call Laplace's variable by "
+                f"{told(element)} has a parameter {s}; call Laplace's variable by "
                 "another name, with s=..."
             )
 
@@ -126,5 +139,6 @@ def _caused(element: Element) -> str:
 
 
 def node_of(strokes: Strokes, node: int) -> Hashable:
-    """A node as it was declared: of a field's port, the field."""
-    return strokes.elements[node].owner or strokes.names[node]
+    """A node as it was declared: of a field's port the field, of a part its whole."""
+    element = strokes.elements[node]
+    return element.owner or element.whole or element.name

@@ -8,7 +8,9 @@ import networkx as nx
 from bondgraph.algebra.atoms import normal, symbol
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.drawn import BondGraph
-from bondgraph.declare.renaming import Names, Part, name_text, names_read, quantities, renamed
+from bondgraph.declare.quantities import name_text
+from bondgraph.declare.renaming import Names, Part, names_read, renamed
+from bondgraph.declare.signal_names import signal_names
 from bondgraph.declare.tables import TABLES, tables_of, with_tables
 from bondgraph.errors import StructureError
 from bondgraph.nodes.kinds import Kind
@@ -91,7 +93,7 @@ def prefixed(
     prefix, graph = _checked_prefix(prefix), with_tables(graph)
     kept = _kept(graph, keep)
     nodes = _nodes(graph, prefix, kept)
-    signals = _signal_names(graph, prefix, nodes, kept)
+    signals = signal_names(graph, prefix, nodes, kept)
     read = names_read(graph)
     names = signals | _parameter_names(read - signals.keys(), prefix, parameters)
     _check_names(names, read, prefix)
@@ -100,7 +102,11 @@ def prefixed(
     for inner, attributes in graph.nodes(data=True):
         result.add_node(nodes[inner], **renamed(inner, attributes, names))
     for tail, head, attributes in graph.edges(data=True):
-        result.add_edge(nodes[tail], nodes[head], **attributes)
+        told = attributes
+        if attributes.get("signal") is not None:
+            name = str(name_text(attributes["signal"]))
+            told = {**attributes, "signal": names.get(name, name)}
+        result.add_edge(nodes[tail], nodes[head], **told)
     return result
 
 
@@ -140,29 +146,6 @@ def _nodes(graph: Part, prefix: str, kept: Mapping[Hashable, Hashable]) -> dict[
                 "take another prefix, or another name in keep"
             )
     return nodes
-
-
-def _signal_names(
-    graph: Part, prefix: str, nodes: Mapping[Hashable, Hashable], kept: Mapping[Hashable, Hashable]
-) -> dict[str, str]:
-    """Old to new names of all signals of the part.
-
-    A name that one node has by default and others by declaration becomes the node's new default, so
-    that it stays one name; what a kept terminal names goes before both.
-    """
-    own: dict[str, str] = {}
-    default: dict[str, str] = {}
-    given: dict[str, str] = {}
-    for inner, attributes in graph.nodes(data=True):
-        for letter, port, name in quantities(inner, attributes):
-            if name is None:
-                target = own if inner in kept else default
-                target[f"{letter}_{inner}{port}"] = f"{letter}_{nodes[inner]}{port}"
-            elif inner in kept:
-                own[name] = name
-            else:
-                given[name] = symbol(prefix + name, f"node {inner!r}, with its prefix").name
-    return given | default | own
 
 
 def _parameter_names(known: set[str], prefix: str, chosen: Any) -> dict[str, str]:

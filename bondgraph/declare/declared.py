@@ -208,7 +208,9 @@ def _source(name: Hashable, kind: Kind, attributes: Mapping[str, Any], unit: str
     """A source: a bare name is an input of that name, another expression a known source's law."""
     where = f"node {name!r}"
     if attributes.get("value") is None:
-        raise StructureError(f"{where} has no value; give the input's name or an expression")
+        raise StructureError(
+            f"{where} has no value; give the input's name or an expression, or wire a signal to it"
+        )
     gives, receives = kind.gives, OTHER[kind.gives]
     bare = bare_name(attributes["value"], where)
     given = variable({}, gives, name) if bare is None else sp.Symbol(bare.name)

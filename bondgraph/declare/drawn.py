@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import networkx as nx
 
+from bondgraph.declare.wires import is_wire
 from bondgraph.errors import BondGraphError
 
 if TYPE_CHECKING:
@@ -30,11 +31,14 @@ class BondGraph(_DiGraph):
     """
 
     def __repr__(self) -> str:
-        nodes, bonds = self.number_of_nodes(), self.number_of_edges()
-        return (
-            f"<{type(self).__name__}: {nodes} node{'s' * (nodes != 1)}, "
-            f"{bonds} bond{'s' * (bonds != 1)}>"
-        )
+        wires = sum(is_wire(self, *edge) for edge in self.edges)
+        counts = {"node": len(self), "bond": self.number_of_edges() - wires, "wire": wires}
+        told = [
+            f"{count} {word}{'s' * (count != 1)}"
+            for word, count in counts.items()
+            if count or word != "wire"
+        ]
+        return f"<{type(self).__name__}: {', '.join(told)}>"
 
     def __str__(self) -> str:
         """A line a bond, with its stroke; else as declared, and why."""

@@ -7,10 +7,15 @@ from typing import Any
 
 from bondgraph.declare.drawn import BondGraph
 from bondgraph.declare.tables import TABLES, tables_of
+from bondgraph.declare.wires import is_wire
 from bondgraph.errors import StructureError, nearest
 from bondgraph.nodes.attributes import check_node_name
 from bondgraph.nodes.elements import Node
+from bondgraph.nodes.kinds import SIGNALS
 from bondgraph.tables.record import Sampled
+
+End = tuple[Hashable, str | None]
+"""A node on a path, and its port if the path names one."""
 
 ARROWS = re.compile(r"[-<=–—→⇀⇁|;]+")
 """Signs of other notations; they stay letters of names that were declared so."""
@@ -27,6 +32,10 @@ def graph(
     names, for names with such signs in them. ``"3"`` is the node 3 where none is called so, and
     ``"field.a"`` the port a of a node with ports. A node that another part declares is its bare name.
     ``tables``: `LookupTable` objects that values and laws call.
+
+    With a `Function`, a `State` or a `Controller` at an end, a ``>`` is a wire: the node behind it reads a
+    signal of the one before it, ``"tacho > error > motor"``. ``"error.plus"`` is a port of such a node, and
+    ``"pi.tau"`` what a controller gives.
 
     What returns is a `networkx.DiGraph`, to which nodes and bonds can be added; notebooks draw it.
 
@@ -54,8 +63,9 @@ put it among the nodes, there are force, mass
     for path in paths:
         for where, names in _paths(result, path):
             ends = [_end(result, name, where) for name in names]
+            _check_outer(result, ends, where)
             for tail, head in pairwise(ends):
-                _add_bond(result, tail, head, where)
+                _add_edge(result, tail, head, where)
     return result
 
 
@@ -114,7 +124,7 @@ def _names(text: str) -> list[Hashable]:
     return [*names]
 
 
-def _end(result: BondGraph, name: Any, where: str) -> tuple[Hashable, str | None]:
+def _end(result: BondGraph, name: Any, where: str) -> End:
     """The node that a path names, and its port if the path names one."""
     if isinstance(name, str | int) and not isinstance(name, bool) and name in result:
         return name, None
@@ -122,7 +132,7 @@ def _end(result: BondGraph, name: Any, where: str) -> tuple[Hashable, str | None
         if name.isdecimal() and int(name) in result:
             return int(name), None
         owner, _, port = name.rpartition(".")
-        if owner in result and port in (result.nodes[owner].get("ports") or ()):
+        if owner in result and port in (*_inputs(result, owner), *_outputs(result, owner)):
             return owner, port
         _check_arrow(result, name, where)
     known = [str(node) for node in result]
@@ -144,24 +154,58 @@ def _check_arrow(result: BondGraph, text: str, where: str) -> None:
         )
 
 
-def _add_bond(
-    result: BondGraph,
-    tail: tuple[Hashable, str | None],
-    head: tuple[Hashable, str | None],
-    where: str,
-) -> None:
+def _inputs(result: BondGraph, name: Hashable) -> tuple[Hashable, ...]:
+    """The ports that a path may name at a node: of a field, and those that wires lead to."""
+    return _names_at(result, name, "ports")
+
+
+def _outputs(result: BondGraph, name: Hashable) -> tuple[Hashable, ...]:
+    """What a controller gives, which a path may name where it leads on."""
+    return _names_at(result, name, "outputs")
+
+
+def _names_at(result: BondGraph, name: Hashable, key: str) -> tuple[Hashable, ...]:
+    given = result.nodes[name].get(key)
+    return tuple(given) if isinstance(given, list | tuple | Mapping) else ()
+
+
+def _check_outer(result: BondGraph, ends: Sequence[End], where: str) -> None:
+    """Refuse what a controller gives as the end of a path, and what it reads as the beginning of one."""
+    for (name, port), known, way in (
+        (ends[0], _outputs(result, ends[0][0]), "in"),
+        (ends[-1], _inputs(result, ends[-1][0]), "out"),
+    ):
+        if port is not None and _signals(result, name) and port not in known:
+            raise StructureError(
+                f"{where}: {port!r} is where a signal comes {way} at {name!r}; a path begins with what gives "
+                "a signal, and ends with what reads it"
+            )
+
+
+def _signals(result: BondGraph, name: Hashable) -> bool:
+    return str(result.nodes[name].get("kind")) in SIGNALS
+
+
+def _add_edge(result: BondGraph, tail: End, head: End, where: str) -> None:
+    """A bond, or a wire where one of its ends is a node of signals."""
     (first, out), (second, into) = tail, head
     if first == second:
         raise StructureError(f"{where}: node {first!r} is bonded to itself; remove that bond")
+    wire = is_wire(result, first, second)
     for one, other in ((first, second), (second, first)):
-        if result.has_edge(one, other):
+        # Two nodes of signals may read each other.
+        if result.has_edge(one, other) and (one == first or not wire):
             raise StructureError(
                 f"{where}: the bond {one!r} > {other!r} is there already; write each bond once, in "
                 "the direction of positive power"
             )
-    if out is not None and into is not None:
-        result.add_edge(first, second, tail_port=out, head_port=into)
-    elif (port := out if into is None else into) is not None:
-        result.add_edge(first, second, port=port)
-    else:
-        result.add_edge(first, second)
+    ports = {"tail_port": out, "head_port": into}
+    if _signals(result, first):
+        ports["signal"] = ports.pop("tail_port") if out in _outputs(result, first) else None
+        ports.pop("tail_port", None)
+    if _signals(result, second) and into not in _inputs(result, second):
+        del ports["head_port"]
+    told = {key: port for key, port in ports.items() if port is not None}
+    if {"tail_port", "head_port"} & told.keys() != {"tail_port", "head_port"}:
+        told = {"port" if key.endswith("_port") else key: port for key, port in told.items()}
+    result.add_edge(first, second, **told)

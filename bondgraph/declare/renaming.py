@@ -1,19 +1,19 @@
-"""Names in a declared graph: what its nodes name and read, and the same attributes under other names."""
+"""Names in a declared graph: what its nodes read, and the same attributes under other names."""
 
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import networkx as nx
 import sympy as sp
 
-from bondgraph.algebra.atoms import normal
 from bondgraph.algebra.expressions import expression
+from bondgraph.declare.quantities import name_text
 from bondgraph.declare.tables import READ
-from bondgraph.errors import StructureError
-from bondgraph.nodes.attributes import bare_name
-from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.fields import port_names
+from bondgraph.nodes.kinds import SIGNALS
 from bondgraph.nodes.laws import SLIP, DryFriction, ExpressionLaw
-from bondgraph.nodes.stops import stop_parts
+from bondgraph.nodes.tasks import Called
 
 Part: TypeAlias = "nx.DiGraph[Hashable]"
 """A bond graph whose terminals may still lack their attributes."""
@@ -25,81 +25,66 @@ _OWN_SLIP = sp.Dummy("slip of a curve")
 """Stands for ``slip`` in friction curves while the graph's names change."""
 
 
-def quantities(
-    name: Hashable, attributes: Mapping[str, Any]
-) -> Iterator[tuple[str, str, str | None]]:
-    """What a node names: the letter and ending of the default name, and the name given or None."""
-    if not attributes:
-        yield from (("e", "", None), ("f", "", None))
-        return
-    kind = _kind(name, attributes)
-    ports = attributes.get("ports")
-    for key in ("effort", "flow"):
-        if kind.two_port or ((kind.joins or kind is Kind.STOP) and key not in kind.nature.keys):
-            continue
-        given = attributes.get(key)
-        if kind.supplies and key not in kind.nature.keys:
-            given = _bare(name, attributes.get("value"))
-        if ports is None:
-            yield key[0], "", name_text(given)
-        for port in ports or ():
-            yield key[0], f"_{port}", name_text((given or {}).get(port))
-    yield from _further(kind, attributes)
+@dataclass(frozen=True)
+class RenamedStep:
+    """A controller's function where ``names`` are others, old and new: it is told those that it knows."""
 
+    step: Called
+    names: tuple[tuple[str, str], ...]
 
-def _further(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str, str, str | None]]:
-    """The same beside effort and flow: states of laws, integrals, the ports of controlled junctions."""
-    ports = attributes.get("ports")
-    if kind.stores and any(attributes.get(key) is not None for key in ("law", "energy")):
-        for ending in ("",) if ports is None else (f"_{port}" for port in ports):
-            yield kind.letter, ending, None
-    if kind.joins and (attributes.keys() & {"on", "off", "reset"}):
-        yield from (("e", "_switch", None), ("f", "_switch", None))
-    if kind is Kind.STOP:
-        yield "q", "", None
-        for part in stop_parts(attributes):
-            yield from (("e", f"_{part}", None), ("f", f"_{part}", None))
-    if attributes.get("integrate") is not None:
-        yield "", "", name_text(attributes["integrate"])
+    def __call__(self, values: Mapping[str, float]) -> dict[str, float]:
+        """What the function makes of the values, by the new names.
 
-
-def _kind(name: Hashable, attributes: Mapping[str, Any]) -> Kind:
-    try:
-        return Kind(str(attributes.get("kind")))
-    except ValueError:
-        raise StructureError(
-            f"node {name!r}: kind {attributes.get('kind')!r}; there are {', '.join(Kind)}. A part is "
-            "the graph as declared, and its terminals have no attributes at all or a kind"
-        ) from None
-
-
-def _bare(name: Hashable, value: object) -> str | None:
-    """The input that a source's value names, if it is one name."""
-    found = bare_name(value, f"node {name!r}")
-    return None if found is None else found.name
-
-
-def name_text(name: Any) -> str | None:
-    """A name as it is compared."""
-    return None if name is None else str(normal(str(name)))
+        >>> twice = RenamedStep(lambda now: {"u": 2 * now["x"]}, (("u", "left_u"), ("x", "left_x")))
+        >>> twice({"left_x": 3, "t": 0})
+        {'left_u': 6}
+        """
+        new = dict(self.names)
+        known = {old: values[now] for old, now in self.names if now in values}
+        others = {name: value for name, value in values.items() if name not in new.values()}
+        told = self.step({**others, **known})
+        return {new.get(name, name): value for name, value in told.items()}
 
 
 def names_read(graph: Part) -> set[str]:
     """Every name that a value, a law or an energy reads."""
+    return {one for name, told in graph.nodes(data=True) for one in names_read_at(name, told)}
+
+
+def names_read_at(name: Hashable, attributes: Mapping[str, Any]) -> set[str]:
+    """Every name that one node reads, but those that stand for its own inputs."""
     found: set[str] = set()
 
     def note(expr: sp.Expr) -> sp.Expr:
         found.update(name.name for name in expr.free_symbols)
         return expr
 
-    for name, attributes in graph.nodes(data=True):
-        for key in READ:
-            _mapped_at(attributes, key, note, f"node {name!r}, {key}")
-    return found - {_OWN_SLIP.name}
+    for key in READ:
+        _mapped_at(attributes, key, note, f"node {name!r}, {key}")
+    return found - {_OWN_SLIP.name} - _inputs(name, attributes)
+
+
+def _inputs(name: Hashable, attributes: Mapping[str, Any]) -> frozenset[str]:
+    """The names that stand for what wires bring to a node of signals; nobody else knows them."""
+    ports = attributes.get("ports") if str(attributes.get("kind")) in SIGNALS else None
+    return frozenset(() if ports is None else port_names(ports, f"node {name!r}"))
 
 
 def renamed(name: Hashable, attributes: Mapping[str, Any], names: Names) -> dict[str, Any]:
     """A node's attributes with new names in them; what holds none of the old is as it was."""
+    own = _inputs(name, attributes)
+    names = {old: new for old, new in names.items() if old not in own}
+    result = with_names(name, attributes, names)
+    for key in ("effort", "flow", "integrate"):
+        if isinstance(result.get(key), Mapping):
+            result[key] = {port: names.get(str(one), one) for port, one in result[key].items()}
+        elif result.get(key) is not None:
+            result[key] = names[str(name_text(result[key]))]
+    return result
+
+
+def with_names(name: Hashable, attributes: Mapping[str, Any], names: Names) -> dict[str, Any]:
+    """A node's attributes with other names in all that it reads."""
 
     def rewrite(expr: sp.Expr) -> sp.Expr:
         found = [one for one in expr.free_symbols if one.name in names]
@@ -109,11 +94,8 @@ def renamed(name: Hashable, attributes: Mapping[str, Any], names: Names) -> dict
     for key in READ:
         if key in result:
             result[key] = _mapped_at(result, key, rewrite, f"node {name!r}, {key}")
-    for key in ("effort", "flow", "integrate"):
-        if isinstance(result.get(key), Mapping):
-            result[key] = {port: names.get(str(one), one) for port, one in result[key].items()}
-        elif result.get(key) is not None:
-            result[key] = names[str(name_text(result[key]))]
+    if result.get("step") is not None:
+        result["step"] = RenamedStep(result["step"], tuple(sorted(names.items())))
     return result
 
 

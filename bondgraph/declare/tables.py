@@ -10,14 +10,14 @@ import sympy as sp
 from bondgraph.algebra.expressions import callable_in_text, expression
 from bondgraph.algebra.lookups import Handle
 from bondgraph.errors import TableError
-from bondgraph.nodes.kinds import EXPRESSIONS
+from bondgraph.nodes.kinds import EXPRESSIONS, NAMED
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 from bondgraph.tables.record import Sampled
 
 TABLES = "tables"
 """The graph attribute that holds them."""
 
-READ = ("law", "reset", *EXPRESSIONS)
+READ = ("law", "reset", "reads", *EXPRESSIONS, *NAMED)
 """The attributes of a node that read names."""
 
 

@@ -7,7 +7,9 @@ import networkx as nx
 
 from bondgraph.declare.declared import elements_of
 from bondgraph.declare.names import check_names, check_one_whole
-from bondgraph.declare.tables import TABLES, tables_of, with_calls
+from bondgraph.declare.tables import TABLES, tables_of, with_tables
+from bondgraph.declare.wires import WIRES, unwired
+from bondgraph.declare.wiring import Wire
 from bondgraph.errors import StructureError
 from bondgraph.nodes.elements import Bond, Element
 from bondgraph.nodes.fields import part
@@ -27,7 +29,9 @@ def validate(graph: Any) -> "nx.DiGraph[Hashable]":
     """A frozen copy of the graph whose nodes carry one checked `Element` each as ``element``.
 
     Bonds of I, C or R at junctions and sources point into them; each keeps as ``declared`` the pair
-    of nodes it was declared with. A graph that has passed is returned as it is.
+    of nodes it was declared with. Edges with a signal's node at an end are no bonds but wires: what they
+    bring is read by its name, and they are the graph's attribute ``wires``. A graph that has passed is
+    returned as it is.
 
     Raises `StructureError`, naming the node or bond, for whatever is not a bond graph.
 
@@ -48,6 +52,7 @@ def validate(graph: Any) -> "nx.DiGraph[Hashable]":
         raise StructureError("the graph has no nodes; add elements and bonds first")
     result = _Validated()
     result.graph[TABLES] = tables_of(graph)
+    graph, result.graph[WIRES] = unwired(with_tables(graph))
     fields, controls = _add_elements(result, graph)
     for tail, head, attributes in graph.edges(data=True):
         _check_bond(graph, tail, head, attributes)
@@ -79,10 +84,11 @@ def graph_of(
     elements: Mapping[Hashable, Element],
     bonds: Iterable[tuple[Bond, Bond]],
     tables: tuple[Sampled, ...] = (),
+    wires: tuple[Wire, ...] = (),
 ) -> "nx.DiGraph[Hashable]":
     """The validated graph of these elements and bonds, each by its ends and as it was declared."""
     result = _Validated()
-    result.graph[TABLES] = tables
+    result.graph[TABLES], result.graph[WIRES] = tables, wires
     for name, element in elements.items():
         result.add_node(name, element=element)
     for ends, declared in bonds:
@@ -117,8 +123,7 @@ def _add_elements(result: _Validated, graph: Any) -> tuple[set[Hashable], list[B
     fields: set[Hashable] = set()
     controls: list[Bond] = []
     for name, attributes in graph.nodes(data=True):
-        told = with_calls(attributes, result.graph[TABLES], f"node {name!r}")
-        for own, element in elements_of(name, told).items():
+        for own, element in elements_of(name, attributes).items():
             _add(result, own, element)
             if element.owner is not None:
                 fields.add(name)

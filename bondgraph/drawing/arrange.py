@@ -7,6 +7,7 @@ from math import sqrt
 
 import networkx as nx
 
+from bondgraph.drawing.blocks import placed_blocks
 from bondgraph.drawing.ends import bond_paths
 from bondgraph.drawing.marks import corners, moved
 from bondgraph.drawing.places import Room, as_reckoned, places
@@ -48,36 +49,57 @@ class Arranged:
 
 
 def arranged(subject: Subject, room: Room) -> Arranged:
-    """The whole graph: every part by itself, in rows in the order of their first nodes."""
+    """The whole graph: blocks of signals, then every part by itself, in rows in the order of first nodes."""
     parts = _parts(subject)
     done = [_part(subject, part, room) for part in parts]
+    if blocks := [at for at, item in enumerate(subject.items) if item.block]:
+        parts.insert(0, blocks)
+        done.insert(0, _blocks(subject, blocks, room))
     if len(done) == 1:
         return done[0]
     boxes = [one.box for one in done]
     gap = PART_GAP * room.wide
     area = sum((box.right - box.left + gap) * (box.bottom - box.top + gap) for box in boxes)
     limit = max(PAGE, sqrt(ASPECT * area))
+    low = _level(subject, parts, done)
+    if boxes[0].right - boxes[0].left + gap + boxes[1].right - boxes[1].left > limit:
+        low = {}
     nodes: dict[int, NodeShape] = {}
     paths: dict[int, tuple[Point, ...]] = {}
     order: list[int] = []
     x = y = high = 0.0
-    for part, one, box in zip(parts, done, boxes, strict=True):
+    for at, (part, one, box) in enumerate(zip(parts, done, boxes, strict=True)):
         wide = box.right - box.left
         if x and x + wide > limit:
             x, y, high = 0.0, y + high + gap, 0.0
-        by = (x - box.left, y - box.top)
+        by = (x - box.left, y - box.top + low.get(at, 0.0))
         nodes.update(zip(part, (moved(node, by) for node in one.nodes), strict=True))
         own = [at for at, link in enumerate(subject.links) if link.tail in set(part)]
         for link, path in zip(own, one.paths, strict=True):
             paths[link] = tuple((px + by[0], py + by[1]) for px, py in path)
         order += [part[at] for at in one.order]
-        x, high = x + wide + gap, max(high, box.bottom - box.top)
+        x, high = x + wide + gap, max(high, box.bottom - box.top + low.get(at, 0.0))
     return Arranged(
         tuple(nodes[at] for at in range(len(nodes))),
         tuple(paths[at] for at in range(len(paths))),
         tuple(order),
         any(one.chain for one in done),
     )
+
+
+def _level(
+    subject: Subject, parts: Sequence[Sequence[int]], done: Sequence[Arranged]
+) -> dict[int, float]:
+    """How much lower the blocks, or the part beside them, lie for the first signal to it to run straight."""
+    for one in subject.signals:
+        if subject.items[one.source].block and one.source in parts[0] and one.reader in parts[1]:
+            downs = []
+            for part, found, item in zip(parts, done, (one.source, one.reader), strict=False):
+                box = found.nodes[part.index(item)].box
+                downs.append((box.top + box.bottom) / 2 - found.box.top)
+            down = round(downs[1] - downs[0], 2)
+            return {0: max(down, 0.0), 1: max(-down, 0.0)}
+    return {}
 
 
 def lies_across(found: Arranged) -> bool:
@@ -89,7 +111,7 @@ def lies_across(found: Arranged) -> bool:
 def _parts(subject: Subject) -> list[list[int]]:
     """The items of every part that bonds connect, in order."""
     joined: nx.Graph[int] = nx.Graph()
-    joined.add_nodes_from(range(len(subject.items)))
+    joined.add_nodes_from(at for at, item in enumerate(subject.items) if not item.block)
     joined.add_edges_from((link.tail, link.head) for link in subject.links)
     return sorted(sorted(part) for part in nx.connected_components(joined))
 
@@ -112,6 +134,13 @@ def _part(whole: Subject, part: Sequence[int], room: Room) -> Arranged:
         tuple(sorted(items, key=lambda at: placed.at[at][::-1])),
         len(placed.layers) >= CHAIN and all(len(layer) == 1 for layer in placed.layers),
     )
+
+
+def _blocks(whole: Subject, blocks: Sequence[int], room: Room) -> Arranged:
+    """The blocks of signals, which no bond joins."""
+    shapes = placed_blocks(whole, blocks, room)
+    order = sorted(range(len(blocks)), key=lambda at: (shapes[at].box.left, shapes[at].box.top))
+    return Arranged(tuple(shapes), (), tuple(order), chain=False)
 
 
 def _named_aside(

@@ -11,7 +11,8 @@ MARK = " *"
 
 
 def listing(subject: Subject, order: Sequence[int], powers: bool, numbers: bool = False) -> str:
-    """The bonds in the order of their places, ``|`` at the end that receives the effort, then the signals.
+    """The bonds in the order of their places, ``|`` at the end that receives the effort, then the signals
+    and what makes them.
 
     ``order``: the nodes as one reads the picture.
     """
@@ -20,6 +21,7 @@ def listing(subject: Subject, order: Sequence[int], powers: bool, numbers: bool 
     links = sorted(subject.links, key=lambda link: sorted((rows[link.tail], rows[link.head])))
     cells = [[number[id(link)]] * numbers + _cells(subject, link, powers) for link in links]
     cells += [[""] * numbers + _signal(subject, one) for one in subject.signals]
+    cells += [[""] * numbers + _does(item) for item in subject.items if item.lines]
     lines = _aligned(cells)
     if any(item.dependent for item in subject.items):
         lines.append(f"{MARK.strip()} {LEGEND}")
@@ -54,6 +56,11 @@ def _signal(subject: Subject, signal: Signal) -> list[str]:
     """What has a signal, what reads it, and its name."""
     first, last = (_name(subject.items[end]) for end in (signal.source, signal.reader))
     return [first, " ┄┄→ ", last, plain(signal.names)]
+
+
+def _does(item: Item) -> list[str]:
+    """A node of signals, and what it does."""
+    return [_name(item), "  =  ", ", ".join(map(plain, item.lines))]
 
 
 def _name(item: Item) -> str:

@@ -16,7 +16,7 @@ SIZE, SMALLER = 14.0, 9.5
 Side = Literal["left", "right", "middle"]
 """Where an element lies from its bond, its symbol next to the bond; across, left is above, right below."""
 
-_MIDDLE = 0.35
+MIDDLE = 0.35
 """From the base line up to the middle of capitals and digits, of the size."""
 
 _FRAME = 5.0
@@ -62,29 +62,29 @@ def moved(shape: NodeShape, to: Point) -> NodeShape:
     box = shape.frame
     if box is not None:
         box = Box(box.left + to[0], box.top + to[1], box.right + to[0], box.bottom + to[1])
-    return NodeShape(shape.name, labels, box)
+    return replace(shape, labels=labels, frame=box)
 
 
 def _junction(item: Item, caption: Side) -> tuple[Label, ...]:
     symbol = (Run(item.symbol),)
     half = width(symbol, SIZE) / 2
-    own = Label(symbol, -half, SIZE * _MIDDLE, SIZE)
+    own = Label(symbol, -half, SIZE * MIDDLE, SIZE)
     x = half + 4 if caption == "right" else -half - 4 - width(item.beside, SMALLER)
-    return own, Label(item.beside, x, SMALLER * _MIDDLE, SMALLER, QUIET)
+    return own, Label(item.beside, x, SMALLER * MIDDLE, SMALLER, QUIET)
 
 
 def _below(item: Item) -> tuple[Label, ...]:
     """A junction between bonds to its left and right: its name stands below on the right."""
     symbol = (Run(item.symbol),)
     half = width(symbol, SIZE) / 2
-    own = Label(symbol, -half, SIZE * _MIDDLE, SIZE)
+    own = Label(symbol, -half, SIZE * MIDDLE, SIZE)
     return own, Label(item.beside, half + 4, _CORNER + ASCENT * SMALLER, SMALLER, QUIET)
 
 
 def corners(shape: NodeShape) -> Iterator[NodeShape]:
     """The same junction with its name in every corner between upright and level bonds, then farther off."""
     symbol, name = shape.labels
-    x, y = (symbol.box.left + symbol.box.right) / 2, symbol.y - SIZE * _MIDDLE
+    x, y = (symbol.box.left + symbol.box.right) / 2, symbol.y - SIZE * MIDDLE
     right = symbol.box.right + 4
     for off in _FARTHER:
         for left in (right, 2 * x - right - name.width):
@@ -99,7 +99,7 @@ def _across(item: Item, side: Side) -> tuple[Label, ...]:
     """``I: J`` over or under its bond, or in the middle of a row; its name on the far side."""
     text = (Run(item.symbol + ": "), *item.beside)
     wide, up, down = width(text, SIZE), ASCENT * SIZE, DESCENT * SIZE
-    y = {"left": -down, "right": up, "middle": SIZE * _MIDDLE}[side]
+    y = {"left": -down, "right": up, "middle": SIZE * MIDDLE}[side]
     own = Label(text, -wide / 2, y, SIZE)
     x = -width(item.caption, SMALLER) / 2
     far = own.box.bottom + ASCENT * SMALLER + _APART
@@ -114,7 +114,7 @@ def _captioned(own: Label, item: Item, x: float, y: float) -> tuple[Label, ...]:
 
 def _two_port(item: Item, caption: Side) -> tuple[Label, ...]:
     """The letters stand in the middle, the ratio beside them, the name behind it."""
-    symbol, y = (Run(item.symbol),), SIZE * _MIDDLE
+    symbol, y = (Run(item.symbol),), SIZE * MIDDLE
     half = width(symbol, SIZE) / 2
     text: Rich = (Run(item.symbol + ": "), *item.beside)
     x = -half
@@ -126,7 +126,7 @@ def _two_port(item: Item, caption: Side) -> tuple[Label, ...]:
 
 def _element(item: Item, side: Side) -> tuple[Label, ...]:
     """``I: J`` right of its bond or in its middle, ``J :I`` left of it; its name below, or behind."""
-    y = SIZE * _MIDDLE
+    y = SIZE * MIDDLE
     text: Rich = (Run(item.symbol + ": "), *item.beside)
     if side == "left":
         text = (*item.beside, Run(" :" + item.symbol))
@@ -141,4 +141,4 @@ def _element(item: Item, side: Side) -> tuple[Label, ...]:
 def _beside(own: Label, item: Item, side: Side) -> tuple[Label, ...]:
     """A label with the name behind it, or before it."""
     x = own.box.left - 6 - width(item.caption, SMALLER) if side == "left" else own.box.right + 6
-    return _captioned(own, item, x, SMALLER * _MIDDLE)
+    return _captioned(own, item, x, SMALLER * MIDDLE)

@@ -27,9 +27,10 @@ def save_figure(scene: Scene, path: Path) -> None:
     for signal in scene.signals:
         _line(axes, signal.path, FINE)
     _heads(axes, scene)
-    for box in [node.frame for node in scene.nodes] + [scene.swatch]:
-        if box is not None:
-            _frame(axes, box)
+    for box in scene.frames:
+        _frame(axes, box, MARKED, (0, (3, 2)))
+    for box in scene.blocks:
+        _frame(axes, box, INK, "-")
     for label in scene.labels:
         _text(axes, label)
     # Without a date, so that the same picture is the same bytes.
@@ -73,14 +74,12 @@ def _heads(axes: Any, scene: Scene) -> None:
         axes.add_patch(Circle(point, DOT, facecolor=INK, linewidth=0))
 
 
-def _frame(axes: Any, box: Box) -> None:
+def _frame(axes: Any, box: Box, colour: str, style: Any) -> None:
     from matplotlib.patches import Rectangle
 
     corner, wide, high = (box.left, box.top), box.right - box.left, box.bottom - box.top
     axes.add_patch(
-        Rectangle(
-            corner, wide, high, fill=False, edgecolor=MARKED, linewidth=THIN, linestyle=(0, (3, 2))
-        )
+        Rectangle(corner, wide, high, fill=False, edgecolor=colour, linewidth=THIN, linestyle=style)
     )
 
 

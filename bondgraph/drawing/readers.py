@@ -7,6 +7,7 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.declare.names import named_by
+from bondgraph.declare.wiring import Wire
 from bondgraph.nodes.elements import Element
 
 Reading = tuple[Hashable, Hashable]
@@ -14,19 +15,20 @@ Reading = tuple[Hashable, Hashable]
 
 
 def readings(
-    graph: "nx.DiGraph[Hashable]", owners: Mapping[Hashable, Hashable]
+    graph: "nx.DiGraph[Hashable]", owners: Mapping[Hashable, Hashable], wires: Iterable[Wire] = ()
 ) -> dict[Reading, tuple[sp.Symbol, ...]]:
     """The signals that nodes read of others, in order: what has them, what reads them, their names.
 
     ``owners``: the node that stands for an element. Of several elements that name a signal it is a
-    detector's, else a junction's, a storage's, the first one's. What an element, other than a source, reads
-    of its own bond is no signal, whoever names it.
+    detector's, else a junction's, a storage's, the first one's; a wire tells whose it is. What an element,
+    other than a source, reads of its own bond is no signal, whoever names it.
     """
     elements = [graph.nodes[name]["element"] for name in graph]
     homes: dict[sp.Symbol, Element] = {}
     for element in sorted(elements, key=_rank):
         for name in named_by(element):
             homes.setdefault(name, element)
+    told = {(wire.reader, name): wire.source for wire in wires for name in wire.names}
     found: dict[Reading, tuple[sp.Symbol, ...]] = {}
     for element in elements:
         reader = owners[element.name]
@@ -35,8 +37,8 @@ def readings(
             own |= _at_its_bond(graph, element)
         for name in sorted(reads(element) - own, key=str):
             if name in homes and owners[homes[name].name] != reader:
-                pair = (owners[homes[name].name], reader)
-                found[pair] = (*found.get(pair, ()), name)
+                source = told.get((reader, name.name), owners[homes[name].name])
+                found[source, reader] = (*found.get((source, reader), ()), name)
     return {pair: tuple(dict.fromkeys(names)) for pair, names in found.items()}
 
 
@@ -47,6 +49,9 @@ def reads(element: Element) -> set[sp.Symbol]:
     if element.switch is not None:
         parts += [element.switch.on, element.switch.off, element.switch.restitution]
         parts += [one.value for one in element.switch.resets]
+    if element.task is not None:
+        parts += [one.value for one in element.task.resets]
+        parts += element.task.reads
     found: set[sp.Symbol] = set()
     for part in parts:
         found |= part.free_symbols

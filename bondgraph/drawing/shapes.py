@@ -35,11 +35,12 @@ class Label:
 
 @dataclass(frozen=True)
 class NodeShape:
-    """A node: its labels, and the dashed frame round a dependent storage."""
+    """A node: its labels, and the frame of a ``block`` of signals, or a dashed one of a dependent storage."""
 
     name: Hashable
     labels: tuple[Label, ...]
     frame: Box | None = None
+    block: bool = False
 
     @property
     def box(self) -> Box:
@@ -102,6 +103,17 @@ class Scene:
     swatch: Box | None = None
     signals: tuple[SignalShape, ...] = ()
     order: tuple[int, ...] = ()
+
+    @property
+    def frames(self) -> tuple[Box, ...]:
+        """The dashed frames, that beside the legend among them."""
+        boxes = [node.frame for node in self.nodes if not node.block]
+        return tuple(box for box in (*boxes, self.swatch) if box is not None)
+
+    @property
+    def blocks(self) -> tuple[Box, ...]:
+        """The frames of blocks of signals."""
+        return tuple(node.frame for node in self.nodes if node.block and node.frame is not None)
 
     @property
     def labels(self) -> tuple[Label, ...]:

@@ -7,9 +7,10 @@ from typing import Any
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.declare.validate import validate
+from bondgraph.declare.wires import WIRES
 from bondgraph.drawing.readers import is_modulated, readings
 from bondgraph.drawing.rich import Rich, Run, listed, named
-from bondgraph.drawing.texts import bounds, switched, value_text
+from bondgraph.drawing.texts import bounds, does, switched, value_text
 from bondgraph.errors import AlgebraicLoopError, CausalityError
 from bondgraph.nodes.elements import Bond, Element
 from bondgraph.nodes.kinds import Kind
@@ -21,6 +22,7 @@ class Item:
 
     Beside a junction there is its name only, small. ``one_port``: with one bond, so no field. ``caption``:
     its name, small, where its value is written beside it. ``modulated``: whether signals or the time rule it.
+    ``lines``: of a block of signals, what it does.
     """
 
     name: Hashable
@@ -30,6 +32,12 @@ class Item:
     dependent: bool = False
     caption: Rich = ()
     modulated: bool = False
+    lines: tuple[Rich, ...] = ()
+
+    @property
+    def block(self) -> bool:
+        """Whether it is a node of signals, without power."""
+        return self.kind.signals
 
     @property
     def symbol(self) -> str:
@@ -96,7 +104,7 @@ def subject(graph: Any, values: bool, names: bool = False, signals: bool = True)
     ports: dict[Hashable, list[Element]] = {owner: [] for owner in places}
     for name, owner in owners.items():
         ports[owner].append(elements[name])
-    read = readings(checked, owners)
+    read = readings(checked, owners, checked.graph[WIRES])
     modulated = {reader for _, reader in read}
     items = tuple(
         _item(owner, own, dependent, values, names, is_modulated(own, owner in modulated))
@@ -140,6 +148,11 @@ def _item(
     names: bool, modulated: bool,
 ) -> Item:  # fmt: skip
     element, name = ports[0], named(owner)
+    if element.declared is not None and element.declared.signals:
+        called = (
+            name if element.task is None else (Run(str(owner)),)
+        )  # what has instants is no signal
+        return Item(owner, element.declared, called, lines=does(ports) if values else ())
     if element.whole is not None:
         beside: Rich = (bounds(ports) if values else ()) or name
         return Item(owner, Kind.STOP, beside, one_port=True, caption=_caption(names, beside, name))

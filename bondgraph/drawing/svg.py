@@ -47,9 +47,10 @@ def _lines(scene: Scene) -> Iterator[str]:
     for x, y in branches(scene):
         yield f'<circle cx="{_number(x)}" cy="{_number(y)}" r="{DOT}" fill="{INK}" stroke="none"/>'
     yield "</g>"
-    for box in [node.frame for node in scene.nodes] + [scene.swatch]:
-        if box is not None:
-            yield _frame(box)
+    for box in scene.frames:
+        yield _frame(box, MARKED, f' stroke-dasharray="{DASH}"')
+    for box in scene.blocks:
+        yield _frame(box, INK)
     yield f'<g font-family="{_FONTS}" xml:space="preserve">'
     for label in scene.labels:
         yield _text(label)
@@ -84,12 +85,11 @@ def _text(label: Label) -> str:
     return f'<text font-size="{_number(label.size)}" fill="{label.colour}">{"".join(parts)}</text>'
 
 
-def _frame(box: Box) -> str:
+def _frame(box: Box, colour: str, dashes: str = "") -> str:
     wide, high = box.right - box.left, box.bottom - box.top
     return (
         f'<rect x="{_number(box.left)}" y="{_number(box.top)}" width="{_number(wide)}" '
-        f'height="{_number(high)}" rx="2" fill="none" stroke="{MARKED}" stroke-width="{THIN}" '
-        f'stroke-dasharray="{DASH}"/>'
+        f'height="{_number(high)}" rx="2" fill="none" stroke="{colour}" stroke-width="{THIN}"{dashes}/>'
     )
 
 

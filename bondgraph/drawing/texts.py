@@ -6,7 +6,11 @@ import sympy as sp
 
 from bondgraph.drawing.rich import MOST, Rich, Run, formula, joined, length, named
 from bondgraph.nodes.elements import OTHER, Element, Switch
+from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import ExpressionLaw
+
+IN_BLOCK = 36
+"""Letters of a line in a block, which are small, at most."""
 
 
 def bounds(ports: Sequence[Element]) -> Rich:
@@ -28,6 +32,20 @@ def bounds(ports: Sequence[Element]) -> Rich:
         if (low or high) and length(one) <= MOST:
             return joined([*one])
     return ()
+
+
+def does(ports: Sequence[Element]) -> tuple[Rich, ...]:
+    """What a node of signals does, by lines that are short: a value, an integral and its bounds, instants."""
+    told = [port.law.expression for port in ports if isinstance(port.law, ExpressionLaw)]
+    lines: list[Rich] = []
+    if (task := ports[0].task) is not None:
+        lines.append((Run(task.instants),))
+    elif ports[0].declared is Kind.STATE:
+        begin, end = ("∫ (", ")") if told[0].is_Add else ("∫ ", "")
+        lines += [joined([Run(begin), *formula(told[0]), Run(end)]), bounds(ports)]
+    else:
+        lines.append(formula(told[0]))
+    return tuple(line for line in lines if line and length(line) <= IN_BLOCK)
 
 
 def switched(element: Element) -> str:

@@ -17,6 +17,7 @@ from bondgraph.explaining.layout import MOST_LINES
 from bondgraph.explaining.momenta import momenta
 from bondgraph.explaining.primitives import junctions_step, laws_step, storages_step
 from bondgraph.explaining.records import Step, numbered
+from bondgraph.explaining.signals_told import signals_step, without_signals
 from bondgraph.explaining.strokes_told import causality_step
 from bondgraph.explaining.text import text_of
 from bondgraph.explaining.typesetting import latex_of, markdown_of
@@ -60,7 +61,8 @@ def explain(
 ) -> Explanation:
     """The derivation of a declared or causal graph, as the engine decided it.
 
-    Who imposes what; storages, laws and junctions as equations, switches in both of their ways; what
+    Who imposes what; what functions, states and controllers make of signals; storages, laws and junctions
+    as equations, switches in both of their ways; what
     every port receives, loops and resistances solved; dependent storages differentiated and put in; A,
     and the result. ``outputs`` and ``inputs`` as for `derive`, whose errors it raises.
 
@@ -86,13 +88,18 @@ def _steps(causal: CausalGraph, result: StateEquations) -> Iterator[Step]:
         taken |= part.free_symbols
     held = momenta(reduction, taken)
     shown = [(name, result.signals[name]) for name in result.outputs]
+    powers = (
+        storages_step(reduction, held),
+        laws_step(result, signals),
+        junctions_step(strokes, causal_equations(strokes), signals, reduction),
+        loops_step(reduction, causal_equations(strokes), signals),
+        received_step(reduction, shown),
+        resistances_step(reduction),
+    )
     yield causality_step(causal, signals, reduction)
-    yield storages_step(reduction, held)
-    yield laws_step(result, signals)
-    yield junctions_step(strokes, causal_equations(strokes), signals, reduction)
-    yield loops_step(reduction, causal_equations(strokes), signals)
-    yield received_step(reduction, shown)
-    yield resistances_step(reduction)
+    yield signals_step(result)
+    for step in powers:
+        yield without_signals(step, reduction.structure.elements)
     yield dependent_step(reduction, held)
     yield balances_step(reduction, held, shown)
     yield inertia_step(result)

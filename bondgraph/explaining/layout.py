@@ -63,9 +63,18 @@ def heading(equations: StateEquations) -> tuple[str, ...]:
     dependent = [structure.ports[port].element.name for port in equations.reduction.dependent]
     further = equations.further_states
     goal = formula(equations) or _rates_of(len(further))
+    elements = structure.elements
+    signals = {one.whole for one in elements.values() if one.of_signals}
+    nodes = [one for one in elements.values() if not one.of_signals]
+    bonds = [
+        one
+        for one in structure.bonds
+        if not {elements[e].whole for e in one if e in elements} & signals
+    ]
     lines = [
-        f"From a bond graph of {counted(len(structure.elements), 'node')} and "
-        f"{counted(len(structure.bonds), 'bond')} to {goal}"
+        f"From a bond graph of {counted(len(nodes), 'node')} and {counted(len(bonds), 'bond')}"
+        + (f" with {counted(len(signals), 'node')} of signals" if signals else "")
+        + f" to {goal}"
     ]
     for count, what, names in (
         (len(equations.states), "state", equations.states),

@@ -60,12 +60,17 @@ def laws_step(equations: StateEquations, signals: Sequence[Assignment]) -> Step:
             lines.append(equation(port.given, right, node=port.element.name))
         elif isinstance(law, DryFriction):
             sentences.append(rubbing(port, law))
-    sentences += map(switching, equations.switches)
+    switches = [one for one in equations.switches if not one.port.element.of_signals]
+    sentences += map(switching, switches)
     return Step("laws", _title_of_laws(equations), tuple(sentences), tuple(lines))
 
 
 def _title_of_laws(equations: StateEquations) -> str:
-    kinds = (("laws", equations.laws), ("switches", equations.switches))
+    laws = [port for port in equations.ports if port.element.law is not None]
+    kinds = (
+        ("laws", [port for port in laws if not port.element.of_signals]),
+        ("switches", [one for one in equations.switches if not one.port.element.of_signals]),
+    )
     what = [word for word, there in kinds if there]
     if not what:
         return "Resistances and detectors"

@@ -10,7 +10,7 @@ from bondgraph.show.sums import Sum, Term, total
 
 Topic = Literal[
     "causality", "storages", "laws", "junctions", "loops", "received", "resistances", "dependent",
-    "balances", "inertia", "result", "whole",
+    "balances", "inertia", "result", "whole", "signals",
 ]  # fmt: skip
 """What a step is about."""
 

@@ -33,7 +33,7 @@ def _imposed(strokes: Strokes, symbols: Symbols) -> Iterator[str]:
     """A sentence for every choice, every two-port and every junction, as their strokes were set."""
     for bond in strokes.trail:
         reason = strokes.reason[bond]
-        if reason is None:
+        if reason is None or strokes.elements[strokes.bonds[bond][0]].of_signals:
             continue
         if not strokes.elements[reason.node].kind.joins or not reason.causes:
             yield _decision(strokes, symbols, bond, reason)

@@ -14,7 +14,7 @@ from bondgraph.declare.tables import TABLES, tables_in
 from bondgraph.declare.validate import validate
 from bondgraph.errors import ExpressionError, FileFormatError
 from bondgraph.files.tables import plain_table
-from bondgraph.nodes.kinds import EXPRESSIONS, Kind
+from bondgraph.nodes.kinds import EXPRESSIONS, INSTANTS, NAMED, Kind
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 
 FRICTION = ("breakaway", "curve", "level")
@@ -22,7 +22,7 @@ FRICTION = ("breakaway", "curve", "level")
 
 NAMES = frozenset(
     {"kind", "effort", "flow", "gives", "integrate", "unit", "port", "tail_port", "head_port"}
-) | {"stroke"}
+) | {"stroke", "signal"}
 """Attributes of nodes and bonds that are mere names."""
 
 
@@ -72,6 +72,11 @@ def _all_plain(attributes: Mapping[str, Any], kind: object, where: str) -> dict[
     given = {key: value for key, value in attributes.items() if value is not None}
     if kind is not None:
         given["kind"] = Kind(str(kind))
+    if given.get("step") is not None:
+        raise FileFormatError(
+            f"{where}: its step is a Python function, which no file can hold; tell update and gives as "
+            "expressions"
+        )
     keys = sorted(given, key=lambda key: (key != "kind", key))
     return {key: _plain(key, given[key], kind, f"{where}, {key}") for key in keys}
 
@@ -85,15 +90,15 @@ def _plain(key: str, value: Any, kind: object, where: str) -> Any:
         return dict(sorted(told.items()))
     if key == "law":
         return _law(value, kind, where)
-    if key in EXPRESSIONS:
+    if key in (*EXPRESSIONS, *INSTANTS):
         rows = value.tolist() if isinstance(value, sp.MatrixBase) else value
         if isinstance(rows, Sequence) and not isinstance(rows, str):
             return [[_written(entry, where) for entry in row] for row in rows]
         return _written(rows, where)
-    if key == "reset" and isinstance(value, Mapping):
+    if key in ("reset", *NAMED) and isinstance(value, Mapping):
         return {_name(state, where): _become(state, told, where) for state, told in value.items()}
-    if key == "ports":
-        return [_name(port, where) for port in value]
+    if key in ("ports", "reads"):
+        return [_name(one, where) for one in value]
     if key in ("effort", "flow", "gives") and isinstance(value, Mapping):
         names = {_name(port, where): _name(given, where) for port, given in value.items()}
         return dict(sorted(names.items()))
@@ -103,7 +108,7 @@ def _plain(key: str, value: Any, kind: object, where: str) -> Any:
 
 
 def _become(state: object, told: Any, where: str) -> Any:
-    """What a state is reset to, or the states of an event by what each is reset to."""
+    """What a name stands for, or by an event what each of its states is reset to."""
     if isinstance(told, Mapping):
         return {
             _name(one, where): _written(value, f"{where} of {one}") for one, value in told.items()

@@ -13,13 +13,16 @@ from bondgraph.files.declarations import Declaration, declaration
 from bondgraph.files.nodelink import line, parsed
 from bondgraph.files.restored import check_type, restored
 from bondgraph.files.safexml import check_xml
+from bondgraph.nodes.kinds import NAMED
 from bondgraph.tables.record import Sampled
 
 _INTEGER = re.compile(r"-?[0-9]{1,500}")
 _NO_XML = re.compile("[^\t\n\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Characters that XML cannot hold, and the carriage return, which it turns into another."""
 
-_NESTED = frozenset({"value", "law", "ports", "effort", "flow", "gives", "reset", "start"})
+_NESTED = frozenset(
+    {"value", "law", "ports", "effort", "flow", "gives", "reset", "start", "reads", *NAMED}
+)
 
 
 def to_graphml(graph: Any) -> str:

@@ -13,13 +13,14 @@ from bondgraph.declare.validate import validate
 from bondgraph.errors import BondGraphError, FileFormatError
 from bondgraph.files.declarations import FRICTION, Declaration, check_text
 from bondgraph.files.tables import restored_table
-from bondgraph.nodes.kinds import EXPRESSIONS
+from bondgraph.nodes.kinds import EXPRESSIONS, INSTANTS, NAMED
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw
 from bondgraph.tables.record import Sampled
 
 SCALARS = (str, int, float)
 TYPES: Mapping[str, tuple[type, ...]] = {
-    **dict.fromkeys(EXPRESSIONS, SCALARS),
+    **dict.fromkeys((*EXPRESSIONS, *INSTANTS), SCALARS),
+    **dict.fromkeys(NAMED, (dict,)),
     "value": (*SCALARS, list),
     "law": (*SCALARS, dict),
     "start": (*SCALARS, dict),
@@ -28,6 +29,7 @@ TYPES: Mapping[str, tuple[type, ...]] = {
     "flow": (str, dict),
     "gives": (str, dict),
     "ports": (list,),
+    "reads": (list,),
     "reset": (dict,),
 }
 """What a file may hold for an attribute; where nothing is said here, a text."""
@@ -99,7 +101,9 @@ def _attributes(
         elif key == "reset":
             _check_reset(value, place)
         elif key == "start" and isinstance(value, dict):
-            _check_starts(value, place)
+            _check_entries(value, f"{place} at")
+        elif key in NAMED:
+            _check_entries(value, f"{place} of")
         elif isinstance(value, dict) and key != "law":
             _check_list([*value, *value.values()], place, rows=False)
         result[key] = value
@@ -109,11 +113,11 @@ def _attributes(
     return result
 
 
-def _check_starts(starts: Mapping[str, Any], where: str) -> None:
-    """Of a field, by its ports."""
-    for port, value in starts.items():
-        check_type(port, (str,), where)
-        check_type(value, SCALARS, f"{where} at {port[:60]}")
+def _check_entries(told: Mapping[str, Any], where: str) -> None:
+    """Refuse what does not map names to numbers and texts: of ports, of states, of what is given."""
+    for name, value in told.items():
+        check_type(name, (str,), where)
+        check_type(value, SCALARS, f"{where} {name[:60]}")
 
 
 def _laws(parts: Mapping[str, Any], where: str, tables: tuple[Sampled, ...]) -> dict[str, Any]:

@@ -78,7 +78,15 @@ def _edges(box: Box, others: Sequence[Box]) -> Iterator[tuple[Point, int]]:
         yield (level, box.top), 3
     yield (box.right, y), 0
     yield (box.left, y), 2
-    most = min(int((box.right - box.left) / 2 / _SPACING - 0.25), _MOST)
-    for at in sorted(range(-most, most + 1), key=abs):
-        yield (x + at * _SPACING, box.bottom), 1
-        yield (x + at * _SPACING, box.top), 3
+    for by in _along(box.right - box.left):
+        yield (x + by, box.bottom), 1
+        yield (x + by, box.top), 3
+    for by in _along(box.bottom - box.top)[1:]:
+        yield (box.right, y + by), 0
+        yield (box.left, y + by), 2
+
+
+def _along(long: float) -> list[float]:
+    """Places on a side, as they are off its middle, the middle first."""
+    most = min(int(long / 2 / _SPACING - 0.25), _MOST)
+    return [at * _SPACING for at in sorted(range(-most, most + 1), key=abs)]

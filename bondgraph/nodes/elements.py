@@ -96,6 +96,11 @@ class Element:
         return self.declared in (Kind.FUNCTION, Kind.MACHINE) and self.kind.supplies
 
     @property
+    def of_signals(self) -> bool:
+        """Whether it is a part of a node of signals, and carries no power."""
+        return self.declared is not None and self.declared.signals
+
+    @property
     def one_port(self) -> bool:
         """True for everything but transformers, gyrators and junctions."""
         return self.kind.one_port
@@ -137,10 +142,11 @@ class Element:
         return self.effort if which == "effort" else self.flow
 
 
-def Se(name: Hashable, value: object, **more: object) -> Node:
+def Se(name: Hashable, value: object = None, **more: object) -> Node:
     """An effort source. A bare name as value is an input of that name, anything else is known.
 
-    ``"1*v"`` repeats a signal v of the model: an ideal follower.
+    ``"1*v"`` repeats a signal v of the model: an ideal follower. Without a value it repeats the signal
+    that a wire brings, an edge from a `Function`, a `State` or a `Controller`.
 
     Raises nothing: `validate` looks at nodes.
 
@@ -150,8 +156,9 @@ def Se(name: Hashable, value: object, **more: object) -> Node:
     return _node(name, Kind.SE, value=value, **more)
 
 
-def Sf(name: Hashable, value: object, **more: object) -> Node:
-    """A flow source. A bare name as value is an input of that name, anything else is known.
+def Sf(name: Hashable, value: object = None, **more: object) -> Node:
+    """A flow source. A bare name as value is an input of that name, anything else is known; without a value
+    it repeats the signal that a wire brings, as `Se`.
 
     Raises nothing: `validate` looks at nodes.
 
@@ -219,8 +226,11 @@ def R(
     )  # fmt: skip
 
 
-def TF(name: Hashable, m: object, **more: object) -> Node:
+def TF(name: Hashable, m: object = None, **more: object) -> Node:
     """A transformer: ``e_in = m e_out``, ``f_out = m f_in``; a gear of ratio w_in/w_out is m = 1/ratio.
+
+    Without ``m`` its ratio is the signal that a wire brings, an edge from a `Function`, a `State` or a
+    `Controller`.
 
     Raises nothing: `validate` looks at nodes.
 
@@ -230,8 +240,8 @@ def TF(name: Hashable, m: object, **more: object) -> Node:
     return _node(name, Kind.TF, value=m, **more)
 
 
-def GY(name: Hashable, r: object, **more: object) -> Node:
-    """A gyrator: ``e_in = r f_out``, ``e_out = r f_in``.
+def GY(name: Hashable, r: object = None, **more: object) -> Node:
+    """A gyrator: ``e_in = r f_out``, ``e_out = r f_in``; without ``r`` that is the signal that a wire brings.
 
     Raises nothing: `validate` looks at nodes.
 

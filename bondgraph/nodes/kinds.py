@@ -17,6 +17,9 @@ EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", *_BOUNDED)
 NAMED = ("states", "update", "outputs")
 """The attributes that map names to expressions."""
 
+INSTANTS = ("every", "offset")
+"""The attributes that are numbers of seconds."""
+
 _SWITCHED = frozenset({"on", "off", "reset"})
 _NAMED = frozenset({"value", "effort", "flow", "law", "unit", "ports"})
 _STORED = _NAMED | {"inverse", "energy", "priority", "start"}
@@ -78,11 +81,14 @@ class Kind(StrEnum):
     )
     STOP = "Stop", Nature("switch", frozenset({"flow", "reset", *_BOUNDED}), place=8)
     SW = "Sw", Nature("switch", frozenset({"effort", "flow", *_SWITCHED}), place=2)
-    FUNCTION = "Function", Nature("signal", frozenset({"value", "unit"}), place=9)
-    STATE = "State", Nature("signal", frozenset({"rate", "start", "low", "high", "unit"}), place=10)
+    FUNCTION = "Function", Nature("signal", frozenset({"value", "unit", "ports"}), place=9)
+    STATE = (
+        "State",
+        Nature("signal", frozenset({"rate", "start", "low", "high", "unit", "ports"}), place=10),
+    )
     CONTROLLER = (
         "Controller",
-        Nature("signal", frozenset({"every", "offset", "reads", "step", *NAMED}), place=11),
+        Nature("signal", frozenset({*INSTANTS, "reads", "step", "ports", *NAMED}), place=11),
     )
     MACHINE = (
         "StateMachine",
@@ -183,3 +189,7 @@ class Kind(StrEnum):
     def letter(self) -> str:
         """The letter of a storage's own state, p or q; else an empty text."""
         return self.nature.letter
+
+
+SIGNALS = frozenset(str(kind) for kind in Kind if kind.signals)
+"""The kinds of node without power, as texts."""

@@ -24,7 +24,8 @@ def Function(name: Hashable, value: object, **more: object) -> Node:
     """A signal of this name: an expression of signals, inputs, parameters and the time.
 
     It has no bonds and takes no power; whatever reads a name may read it, and it may read any. Where
-    functions determine one another, or by way of the graph themselves, they are solved together.
+    functions determine one another, or by way of the graph themselves, they are solved together. ``ports=``:
+    names in the expression that stand for what wires bring, as arguments do, ``ports=["plus", "minus"]``.
 
     Raises nothing: `validate` looks at nodes.
 
@@ -102,7 +103,7 @@ def state_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Elemen
         f"{name}.{POSITION}", Kind.DF, None, symbol(f"e_{name}_{POSITION}", where), flow,
         gives="effort", integral=place, start=start, whole=name,
     )  # fmt: skip
-    return [junction, source, follows, reads, *rigid(name, {}, bounds, place)]
+    return [junction, source, follows, reads, *rigid(name, {}, bounds, place, signal=True)]
 
 
 def _pair(

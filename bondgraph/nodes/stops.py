@@ -86,9 +86,13 @@ def stop_parts(attributes: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def rigid(
-    name: Hashable, attributes: Mapping[str, Any], bounds: Mapping[str, sp.Expr], place: sp.Symbol
-) -> list[Element]:
-    """At each bound a switch that holds as long as its effort pushes, and lets go what has left."""
+    name: Hashable, attributes: Mapping[str, Any], bounds: Mapping[str, sp.Expr], place: sp.Symbol,
+    signal: bool = False,
+) -> list[Element]:  # fmt: skip
+    """At each bound a switch that holds as long as its effort pushes, and lets go what has left.
+
+    ``signal``: whether the node's name is a signal's, so that a switch needs another.
+    """
     where = f"node {name!r}"
     if attributes.get("damping") is not None:
         raise StructureError(
@@ -102,7 +106,7 @@ def rigid(
     for key, bound in bounds.items():
         effort, flow = _own(name, key)
         way = BOUNDS[key]
-        own = name if len(bounds) == 1 else f"{name}.{key}"
+        own = name if len(bounds) == 1 and not signal else f"{name}.{key}"
         switch = Switch(
             own, way * effort, way * (bound - place), "effort", restitution=bounce, stops=True,
             resets=resets,

@@ -222,7 +222,7 @@ def test_widths_are_those_of_the_font() -> None:
         assert round(glyph.horiAdvance * 1000 / font.units_per_EM) == advance, letter
 
 
-@pytest.mark.parametrize("file", ["alsd.svg", "fig2a.svg", "pendulum.svg"])
+@pytest.mark.parametrize("file", ["alsd.svg", "fig2a.svg", "pendulum.svg", "speed_loop.svg"])
 def test_pictures_of_the_documentation_are_up_to_date(file: str) -> None:
     """If this fails as it should, write them with ``python docs/draw.py``."""
     spec = util.spec_from_file_location("draw", ROOT / "docs" / "draw.py")

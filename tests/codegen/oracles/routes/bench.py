@@ -131,6 +131,7 @@ def same(graph: nx.DiGraph, other: bg.StateEquations) -> None:
     one = bg.derive(graph, inputs=[name.name for name in other.reduction.structure.opened])
     for name in ("A", "J", "B", "E", "F", "D", "G", "states", "inputs", "outputs", "laws"):
         assert getattr(one, name) == getattr(other, name), name
+    assert one.tasks == other.tasks
     told = [
         [(s.name, s.on, s.off, s.guard, s.side, s.switch.resets) for s in e.switches]
         for e in (one, other)

@@ -153,4 +153,25 @@ def cascade() -> Kind:
                 1.0, at=0.31, rest={"inputs": {"ref": REF}})  # fmt: skip
 
 
-SIGNALS = (function, state, bounded, controller, saturating, cascade)
+def wired() -> Kind:
+    """The sampled PI by wires: a detector, a sum of two ports, a source without a value."""
+    T, K, Ki = 0.05, 2.0, 6.0
+    pi = bg.Controller(
+        "pi",
+        every=T,
+        ports=["e"],
+        states={"z": 0},
+        update={"z": "z + T*K_i*e"},
+        gives={"tau": "K*e + z"},
+    )
+    graph = bg.graph(
+        [bg.Se("motor"), bg.One("shaft"), bg.I("J", "J", flow="omega"), bg.R("b", "b"), bg.Df("tacho"),
+         bg.Function("goal", "1*ref"), bg.Function("error", "plus - minus", ports=["plus", "minus"]), pi],
+        "motor > shaft > J, shaft > b, shaft > tacho",
+        "goal > error.plus, tacho > error.minus, error > pi.tau > motor",
+    )  # fmt: skip
+    return Kind("controller by wires", graph, {"J": J, "b": B, "T": T, "K": K, "K_i": Ki}, {"ref": f"{REF}"},
+                controller().known, 1.0, at=0.31, rest={"inputs": {"ref": REF}})  # fmt: skip
+
+
+SIGNALS = (function, state, bounded, controller, saturating, cascade, wired)
