@@ -11,7 +11,7 @@ from bondgraph.algebra.expressions import TIME, callable_in_text
 from bondgraph.errors import StructureError
 from bondgraph.nodes.elements import Element
 from bondgraph.nodes.laws import ExpressionLaw, Law
-from bondgraph.nodes.tasks import Task
+from bondgraph.nodes.tasks import Machine, Task
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction, held
 from bondgraph.reduce.structure import Port, PortRow
@@ -138,6 +138,16 @@ class StateEquations:
     def tasks(self) -> tuple[Task, ...]:
         """What sampled controllers do, and at which instants, in declaration order."""
         return tuple(one.task for one in self.elements.values() if one.task is not None)
+
+    @property
+    def machines(self) -> tuple[Machine, ...]:
+        """The state machines, in declaration order."""
+        return tuple(one.machine for one in self.elements.values() if one.machine is not None)
+
+    @property
+    def plain_switches(self) -> tuple[SwitchPort, ...]:
+        """The switches but for those by which state machines take transitions."""
+        return tuple(one for one in self.switches if one.switch.transition is None)
 
     @property
     def tables(self) -> tuple[Sampled, ...]:

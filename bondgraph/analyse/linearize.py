@@ -15,6 +15,7 @@ from bondgraph.analyse.closures import merged_laws
 from bondgraph.analyse.constrained import Rows, locked
 from bondgraph.analyse.instant import Instant
 from bondgraph.analyse.linear_model import LinearModel
+from bondgraph.analyse.machined import told_numbers
 from bondgraph.analyse.modes import ToldModes, held_rows, told_modes
 from bondgraph.analyse.moving_hold import turns
 from bondgraph.analyse.sampled import SampledModel, check_told, sampled
@@ -68,7 +69,8 @@ def linearize(
     has is a parameter. A law that reads no signal and no such input leaves its port an input. ``outputs``:
     names of signals, else the equations' outputs. ``mode``: node to its mode: "on" or "off" for every
     switch and controlled junction, of a stop also "apart" or "touch"; "stick" or "slip" for dry friction,
-    which slips unless told, to the side that ``at`` tells. ``stuck``: nodes that stick. What is held takes
+    which slips unless told, to the side that ``at`` tells; for a state machine one of its modes, where ``at``
+    does not tell its number. ``stuck``: nodes that stick. What is held takes
     a state with it, of the storage of lowest priority, earlier ones first. ``period`` [s]: of a loop with
     sampled controllers, for the model from one instant to the next; without one what they keep stays.
 
@@ -85,6 +87,7 @@ def linearize(
     Matrix([[-6*c]])
     """
     check_derived(equations)
+    mode, at = told_numbers(equations.machines, mode, at)
     stuck = tuple(stuck) if isinstance(stuck, Iterable) and not isinstance(stuck, str) else stuck
     equations = turned(_opened(equations, inputs), _with_held(equations, laws, stuck, mode))
     merged = merged_laws(equations, {} if laws is None else laws)

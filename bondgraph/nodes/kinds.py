@@ -14,8 +14,10 @@ _BOUNDED = ("low", "high", "restitution", "start", "stiffness", "damping")
 EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", *_BOUNDED)
 """The attributes that are numbers or expressions."""
 
-NAMED = ("states", "update", "outputs")
-"""The attributes that map names to expressions."""
+_KEPT = ("states", "update", "outputs")
+
+NAMED = (*_KEPT, "transitions")
+"""The attributes that map names to expressions; those of transitions are no signals."""
 
 INSTANTS = ("every", "offset")
 """The attributes that are numbers of seconds."""
@@ -88,11 +90,15 @@ class Kind(StrEnum):
     )
     CONTROLLER = (
         "Controller",
-        Nature("signal", frozenset({*INSTANTS, "reads", "step", "ports", *NAMED}), place=11),
+        Nature("signal", frozenset({*INSTANTS, "reads", "step", "ports", *_KEPT}), place=11),
     )
     MACHINE = (
         "StateMachine",
-        Nature("signal", frozenset({"modes", "initially", "transitions", "states"}), place=12),
+        Nature(
+            "signal",
+            frozenset({"modes", "initially", "transitions", "states", "reset", "ports"}),
+            place=12,
+        ),
     )
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":

@@ -20,6 +20,9 @@ ARROW = ">"
 NUMBER = "in"
 """The part of a machine that keeps the number of its mode; no name that a state can have."""
 
+LAST = "_end"
+"""How the names end of what the port of a transition ends at."""
+
 
 def StateMachine(
     name: Hashable, modes: Iterable[str], transitions: Mapping[str, object],
@@ -50,7 +53,13 @@ def StateMachine(
     >>> [(event.port, event.kind) for event in run.events], run["valve"].tolist(), run["fills"][-1]
     ([('valve', 'fill > rest'), ('valve', 'rest > fill'), ('valve', 'fill > rest')], [0.0, 0.0, 1.0], 2.0)
     """
-    given = {"modes": modes, "transitions": transitions, "initially": start, "states": states, **more}
+    pairs = transitions.items() if isinstance(transitions, Mapping) else ()
+    acting = {key: told for key, told in pairs if isinstance(told, list | tuple) and len(told) == 2}
+    guards = {key: acting[key][0] if key in acting else told for key, told in pairs}
+    given = {
+        "modes": modes, "transitions": guards or transitions, "initially": start, "states": states,
+        "reset": {key: told[1] for key, told in acting.items()} or None, **more,
+    }  # fmt: skip
     told = {key: value for key, value in given.items() if value is not None}
     return name, {"kind": str(Kind.MACHINE), **told}
 
@@ -71,7 +80,7 @@ def machine_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Elem
     _check_mode(first, modes, f"{where}, start")
     machine = Machine(name, number, modes, str(first))
     starts = _starts(attributes.get("states"), where)
-    found = _transitions(attributes.get("transitions"), machine, where)
+    found = _transitions(attributes, machine, where)
     _check_set(starts, found, number, where)
     effort, flow = (symbol(f"{letter}_{name}", where) for letter in "ef")
     made = [
@@ -113,8 +122,8 @@ def _taken(transition: Transition, resets: tuple[Reset, ...]) -> list[Element]:
     """The switch that a transition turns on, and off again where that has led away; what it ends at."""
     machine = transition.machine
     name, where = str(machine.name), f"node {machine.name!r}"
-    ends = f"{name}_{transition.source}_{transition.target}"
-    sides = ([symbol(f"{letter}_{ends}{end}", where) for letter in "ef"] for end in ("", "_end"))
+    ends = f"{name}_{ending(transition.words)}"
+    sides = ([symbol(f"{letter}_{ends}{end}", where) for letter in "ef"] for end in ("", LAST))
     own, one = f"{name}.{transition.words}", sp.Integer(1)
     on = machine.chosen(transition.source, transition.guard, -one)
     off = machine.chosen(transition.source, -transition.guard, one)
@@ -174,45 +183,57 @@ def _starts(given: Any, where: str) -> dict[sp.Symbol, sp.Expr]:
     return found
 
 
+def ending(words: str) -> str:
+    """What the names of effort and flow of a transition's port end with.
+
+    >>> ending("idle > launch")
+    'idle_launch'
+    """
+    return "_".join(part.strip() for part in words.split(ARROW))
+
+
 def _transitions(
-    given: Any, machine: Machine, where: str
+    attributes: Mapping[str, Any], machine: Machine, where: str
 ) -> list[tuple[Transition, tuple[Reset, ...]]]:
     """The transitions, with what their actions set."""
+    given, actions = attributes.get("transitions"), attributes.get("reset") or {}
     if not isinstance(given, Mapping) or not given:
         raise StructureError(
             f"{where}: transitions is {given!r}; it must map the modes of each to its guard, "
             "{'idle > drive': 'speed - 1'}"
         )
+    if not isinstance(actions, Mapping) or (unknown := [key for key in actions if key not in given]):
+        what = repr(actions) if not isinstance(actions, Mapping) else f"{unknown[0]!r}"
+        raise StructureError(f"{where}: reset has {what}, which is no transition of the machine")
     found: dict[str, tuple[Transition, tuple[Reset, ...]]] = {}
-    for words, told in given.items():
-        ends = [part.strip() for part in words.split(ARROW)] if isinstance(words, str) else []
-        if len(ends) != 2:
-            raise StructureError(
-                f"{where}: {words!r} is no transition; name the mode that it leaves and the one that it comes "
-                f"to, '{machine.modes[0]} > {machine.modes[-1]}'"
-            )
-        for end in ends:
-            _check_mode(end, machine.modes, f"{where}, {words!r}")
-        guard, action = _pair(told, f"{where}, {words!r}")
-        one = Transition(machine, *ends, expression(guard, f"{where}, guard of {words!r}"))
+    for words, guard in given.items():
+        one = _transition(words, guard, machine, where)
         if one.words in found:
             raise StructureError(
                 f"{where}: {one.words!r} is there twice; one guard is above zero where either is, max(a, b)"
             )
-        found[one.words] = one, resets_of(action, f"{where}, action of {words!r}", ("on",))
+        told = f"{where}, action of {words!r}"
+        found[one.words] = one, resets_of(actions.get(words), told, ("on",))
     return list(found.values())
 
 
-def _pair(told: Any, where: str) -> tuple[Any, Any]:
-    """The guard and the action, None where there is none."""
-    if not isinstance(told, list | tuple):
-        return told, None
-    if len(told) != 2 or not isinstance(told[1], Mapping):
+def _transition(words: Any, guard: Any, machine: Machine, where: str) -> Transition:
+    """One transition, its modes known."""
+    ends = [part.strip() for part in words.split(ARROW)] if isinstance(words, str) else []
+    if len(ends) != 2:
         raise StructureError(
-            f"{where} is {told!r}; it must be a guard, or a guard and what states become, "
+            f"{where}: {words!r} is no transition; name the mode that it leaves and the one that it comes "
+            f"to, '{machine.modes[0]} > {machine.modes[-1]}'"
+        )
+    for end in ends:
+        _check_mode(end, machine.modes, f"{where}, {words!r}")
+    if isinstance(guard, list | tuple | Mapping):
+        raise StructureError(
+            f"{where}, {words!r} is {guard!r}; it must be a guard, or a guard and what states become, "
             "('speed - 1', {'gear': 1})"
         )
-    return told[0], told[1]
+    source, target = ends
+    return Transition(machine, source, target, expression(guard, f"{where}, guard of {words!r}"))
 
 
 def _check_set(

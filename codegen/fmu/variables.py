@@ -54,7 +54,7 @@ def variables(
 
 def _described(one: Variable, program: Program, equations: StateEquations) -> Variable:
     """With when switches change over, at switches and at the inputs that they go by."""
-    told = {switch.name: conditions_told(switch) for switch in equations.switches}
+    told = {switch.name: conditions_told(switch) for switch in equations.plain_switches}
     texts: list[str] = []
     if one.kind == "FMU_SWITCH":
         texts = [
@@ -66,7 +66,7 @@ def _described(one: Variable, program: Program, equations: StateEquations) -> Va
         symbol = program.external[one.index]
         texts = [
             f"switch {switch.name} {told[switch.name]}"
-            for switch in equations.switches
+            for switch in equations.plain_switches
             if told[switch.name] and symbol in switch.on.free_symbols | switch.off.free_symbols
         ]
     return replace(one, description=plain(". ".join(texts))) if texts else one

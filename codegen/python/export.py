@@ -125,7 +125,7 @@ def _head(
         ] or ["none"]
         lines = filled([f"{one}, " for one in listed[:-1]] + listed[-1:], 4)
         rows += [f"{title}: {lines[0].strip()}"] if len(lines) == 1 else [f"{title}:", *lines]
-    for one in equations.switches:
+    for one in equations.plain_switches:
         if told := conditions_told(one):
             words = plain(f"switch {one.name}: {told}").split(" ")
             rows += [line.strip() for line in filled([f"{word} " for word in words], 4)]
