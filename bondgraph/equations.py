@@ -109,7 +109,10 @@ class StateEquations:
     @property
     def kept(self) -> frozenset[sp.Symbol]:
         """The states that stay as they are but at instants: what detectors make of nothing at all."""
-        rows = {name: self.reduction.reading(self.signals[rate]) for name, rate in self.integrals.items()}
+        rows = {
+            name: self.reduction.reading(self.signals[rate])
+            for name, rate in self.integrals.items()
+        }
         return frozenset(name for name, row in rows.items() if not any(row.parts))
 
     @property

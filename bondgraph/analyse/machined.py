@@ -1,7 +1,9 @@
 """The modes of state machines in what is told of a mode: each is a value of a state."""
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
+
+import sympy as sp
 
 from bondgraph.errors import StructureError, nearest
 from bondgraph.nodes.tasks import Machine
@@ -31,11 +33,11 @@ def told_numbers(
         told = found.setdefault(_key(found, machine), number)
         if told != number:
             raise StructureError(
-                f"mode: {name!r} is in {word!r}, which is number {number}, but {name} is {told}; leave one out"
+                f"mode: {name!r} is in {word!r}, number {number}, but {name} is told as {told}; leave one out"
             )
     return {name: word for name, word in mode.items() if name not in known}, found
 
 
-def _key(point: Mapping[Any, Any], machine: Machine) -> Hashable:
+def _key(point: Mapping[Any, Any], machine: Machine) -> sp.Symbol | str:
     """What the mode's number stands under: its name, or its symbol where that is there."""
-    return machine.number if machine.number in point else machine.number.name
+    return machine.number if machine.number in point else str(machine.number)

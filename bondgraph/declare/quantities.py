@@ -80,7 +80,9 @@ def _of_signals(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str
 
 def listed(given: Any) -> list[str]:
     """The names in a list or a mapping, if it is one."""
-    return [str(name_text(one)) for one in given] if isinstance(given, Mapping | list | tuple) else []
+    return (
+        [str(name_text(one)) for one in given] if isinstance(given, Mapping | list | tuple) else []
+    )
 
 
 def kept_names(attributes: Mapping[str, Any]) -> Iterator[str]:

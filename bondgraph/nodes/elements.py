@@ -46,18 +46,17 @@ class Element:
 
     A source's ``value`` is None: what it gives is its input, closed by ``law`` if it is known.
     ``gives`` is "effort" or "flow" where the causality is fixed: sources, open ports, laws, detectors.
-    ``integral``: the state that a detector makes of what it reads. ``row``: of a port of a field, what
-    it has per unit of each port's variable, by the ports' names; ``owner``: the field's node.
-    ``energy``: of a storage with an energy function, that function. ``inverse``: of one with a law, its
-    state as a function of what the law gives, so that it may have derivative causality. ``switch``: of an
-    ideal switch, when it turns on and off. ``whole``: of a part of a node of several, a stop or a signal,
-    that node, and ``declared`` its kind; ``at``: where it is not bonded to the first of these, the part that it
-    is bonded to, or itself. ``task``: of a sampled controller, what it does at its instants; ``machine``: of a
-    state machine, its modes.
-    ``start``: of what keeps or makes a state, the value with which runs begin. ``by_inverse``: whether the
-    law counts by its inverse alone, what it gives being the state. ``turned``: whether its law is turned
-    round by what is known of it: a resistance then gives what its law, as it was written, receives.
-    ``needed``: names that have to be positive for that.
+    ``integral``: the state that a detector makes of what it reads. ``row``: of a port of a field, what it
+    has per unit of each port's variable, by the ports' names; ``owner``: the field's node. ``energy``: of a
+    storage with an energy function, that function. ``inverse``: of one with a law, its state as a function
+    of what the law gives, so that it may have derivative causality. ``switch``: of an ideal switch, when it
+    turns on and off. ``whole``: of a part of a node of several, a stop or a signal, that node, and
+    ``declared`` its kind; ``at``: where that is not bonded to the first of these, the part that it is bonded
+    to, or itself. ``task``: of a sampled controller, what it does at its instants; ``machine``: of a state
+    machine, its modes. ``start``: of what keeps or makes a state, the value with which runs begin.
+    ``by_inverse``: whether the law counts by its inverse alone, what it gives being the state. ``turned``:
+    whether its law is turned round by what is known of it: a resistance then gives what its law, as it was
+    written, receives. ``needed``: names that have to be positive for that.
     """
 
     name: Hashable

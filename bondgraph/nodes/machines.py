@@ -123,7 +123,9 @@ def _taken(transition: Transition, resets: tuple[Reset, ...]) -> list[Element]:
     machine = transition.machine
     name, where = str(machine.name), f"node {machine.name!r}"
     ends = f"{name}_{ending(transition.words)}"
-    sides = ([symbol(f"{letter}_{ends}{end}", where) for letter in "ef"] for end in ("", LAST))
+    effort, flow, *beyond = (
+        symbol(f"{letter}_{ends}{last}", where) for last in ("", LAST) for letter in "ef"
+    )
     own, one = f"{name}.{transition.words}", sp.Integer(1)
     on = machine.chosen(transition.source, transition.guard, -one)
     off = machine.chosen(transition.source, -transition.guard, one)
@@ -132,15 +134,17 @@ def _taken(transition: Transition, resets: tuple[Reset, ...]) -> list[Element]:
         resets = (Reset(machine.number, target, "on"), *resets)
     switch = Switch(own, on, off, "effort", resets=resets, transition=transition)
     return [
-        Element(own, Kind.SW, None, *next(sides), switch=switch, whole=name, at=own),
-        Element(f"{own}.end", Kind.R, one, *next(sides), whole=name, at=own),
+        Element(own, Kind.SW, None, effort, flow, switch=switch, whole=name, at=own),
+        Element(f"{own}.end", Kind.R, one, beyond[0], beyond[1], whole=name, at=own),
     ]
 
 
 def _modes(given: Any, name: str, where: str) -> tuple[str, ...]:
     """The modes, each of which makes a signal's name."""
     if given is None or isinstance(given, str | Mapping) or not isinstance(given, Iterable):
-        raise StructureError(f"{where}: modes is {given!r}; give a list of names, ['idle', 'drive']")
+        raise StructureError(
+            f"{where}: modes is {given!r}; give a list of names, ['idle', 'drive']"
+        )
     modes = tuple(given)
     if not modes:
         raise StructureError(f"{where} has no modes; give their names, modes=['idle', 'drive']")
@@ -202,7 +206,9 @@ def _transitions(
             f"{where}: transitions is {given!r}; it must map the modes of each to its guard, "
             "{'idle > drive': 'speed - 1'}"
         )
-    if not isinstance(actions, Mapping) or (unknown := [key for key in actions if key not in given]):
+    if not isinstance(actions, Mapping) or (
+        unknown := [key for key in actions if key not in given]
+    ):
         what = repr(actions) if not isinstance(actions, Mapping) else f"{unknown[0]!r}"
         raise StructureError(f"{where}: reset has {what}, which is no transition of the machine")
     found: dict[str, tuple[Transition, tuple[Reset, ...]]] = {}

@@ -39,7 +39,7 @@ def _machine(machine: Machine, switches: Sequence[SwitchPort]) -> Iterator[str]:
         taken = one.switch.transition
         if taken is None or taken.machine != machine:
             continue
-        ends = rf" \to ".join(rf"\text{{{escaped(mode)}}}" for mode in (taken.source, taken.target))
+        ends = r" \to ".join(rf"\text{{{escaped(mode)}}}" for mode in (taken.source, taken.target))
         sets = (each for each in one.switch.resets if each.state != machine.number)
         told = "".join(rf",\ {typeset(each.state)} := {typeset(each.value)}" for each in sets)
         yield rf"{ends} \quad \text{{as }} {_passed(taken.guard)}{told}"

@@ -22,7 +22,7 @@ SIDE = "side_"
 def with_corners(program: Program) -> Program:
     """The program with the corners of its laws; the same where there are none.
 
-    Not those of parameters, of known sources alone, whose instants are known, of what is kept between instants,
+    Not those of parameters, of known sources alone, whose instants are known, of what stays between instants,
     nor the slips of friction ports, which are events anyway.
     """
     if not any(expr.has(*KINDS) for code in program.blocks for expr in code.values):

@@ -42,7 +42,7 @@ def choices(model: ClosedModel, told: Mapping[Hashable, str] | None) -> Choices:
             raise StructureError(
                 f"mode: {name!r} is no switch and has no dry friction; there are {listed}"
             )
-    found = []
+    found: list[tuple[int, ...]] = []
     for port in ports:
         if port.transition is not None and port.switch is not None:
             # What leads to another mode does not rest.

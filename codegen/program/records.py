@@ -300,6 +300,11 @@ class Program:
         return {at: one.words for at, (_, one) in found if one is not None}
 
     @property
+    def transitions(self) -> tuple[Transition, ...]:
+        """The transitions of state machines, in declaration order."""
+        return tuple(port.transition for port in self.friction if port.transition is not None)
+
+    @property
     def _ports_taken(self) -> list[tuple[FrictionPort, Transition | None]]:
         return [(port, port.transition) for port in self.friction]
 

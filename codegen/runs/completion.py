@@ -111,7 +111,7 @@ def tell_all_completed(completed: Mapping[int, Mapping[str, float]], runs: int) 
 
 
 def _as_told(model: ClosedModel, guards: Array, mode: Mode) -> Mode:
-    """The mode with those switches changed over whose conditions say so; no transition is taken before a run."""
+    """The mode with those switches changed over whose conditions say so; none takes a transition."""
     result = list(mode)
     for i, switch in enumerate(model.switching):
         if switch is not None and not switch.side and not switch.machine:

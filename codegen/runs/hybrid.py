@@ -366,9 +366,7 @@ def _at_rest(here: Sight, mode: Mode) -> Array:
     return s
 
 
-def _transitions(
-    ports: Sequence[FrictionPort], old: Mode, new: Mode
-) -> list[tuple[Hashable, str]]:
+def _transitions(ports: Sequence[FrictionPort], old: Mode, new: Mode) -> list[tuple[Hashable, str]]:
     """The transitions that state machines have taken, by the machine."""
     return [
         (taken.machine.name, taken.words)

@@ -34,7 +34,7 @@ class Switching:
     displacement; ``guard`` is its gap then, which changes by ``opening`` with that, and the next
     its restitution. It is on while it is apart, and where the gap is closed it has the two sides
     of a one-sided switch. ``bound``: whether it is declared as a stop, which touches and is apart.
-    ``machine``: of a transition of a state machine, taken as it turns on, which machine, from 1 on.
+    ``machine``: of a transition of a state machine, taken as it turns on, which, from 1 on.
     """
 
     on: bool
@@ -88,8 +88,8 @@ class Reset:
 
     ``port``: its place; ``sign``: the mode that it comes to; ``place``: of the state in s;
     ``value``: of what it becomes, among the guards. Of a task, which has instants of its own,
-    ``port`` is -1 less its place among the clocks. Those of a state machine's transitions happen at the
-    begin of a run, too.
+    ``port`` is -1 less its place among the clocks. Those of transitions happen at the begin of a
+    run, too.
     """
 
     port: int
@@ -141,7 +141,7 @@ def flipped(mode: Mode, ports: Iterable[int]) -> Mode:
 
 
 def first_taken(switching: Sequence[Switching | None], before: Mode, mode: Mode) -> Mode:
-    """The mode in which of each state machine the first transition alone is taken of those that turn on.
+    """The mode in which of each machine's transitions that turn on the first alone does.
 
     >>> one = Switching(True, 0, 0, machine=1)
     >>> first_taken((one, one, one), (1, 0, 1), (0, 0, 0))

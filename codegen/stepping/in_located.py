@@ -74,8 +74,9 @@ class LocatedGoing:
         self._call(self._library.bg_pause_next, self._from[1], self._to[1], stop, anew)
         self._commit(stop)
         count = self._asked.count
-        names = self._runs.model.program.happening
-        return told_events(self._ffi, self._events, count, names) if count else ()
+        program = self._runs.model.program
+        told = program.happening, program.taken
+        return told_events(self._ffi, self._events, count, *told) if count else ()
 
     def row(self) -> Row:
         """See `Going`."""

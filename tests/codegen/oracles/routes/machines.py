@@ -29,8 +29,10 @@ def selector() -> Kind:
             t, (0.0, lambda s: 3 * (1 - np.exp(-s))), (up, lambda s: F + (2 - F) * np.exp(-s)),
             (cut, lambda s: at_cut * np.exp(-s)), (down, lambda s: np.exp(-s)),
         )  # fmt: skip
-        gear = stepwise(t, (0.0, lambda s: 0 * s), (up, lambda s: 1 + 0 * s), (down, lambda s: 0 * s))
-        return {"omega": w, "gear": gear, "gear_low": 1 - gear, "gear_high": gear}
+        gear = stepwise(
+            t, (0.0, lambda s: 0 * s), (up, lambda s: 1 + 0 * s), (down, lambda s: 0 * s)
+        )
+        return {"omega": w, "gear": gear}
 
     gear = bg.StateMachine(
         "gear", ["low", "high"], {"low > high": "omega - up", "high > low": "down - omega"}
@@ -54,7 +56,12 @@ def launch() -> Kind:
             t, (0.0, lambda s: 0 * s), (begin, lambda s: s**2 / 2 + s / 5),
             (begin + s1, lambda s: 1 + gear * (s**2 / 4 + (s1 / 2 + 0.1) * s)),
         )  # fmt: skip
-        mode = stepwise(t, (0.0, lambda s: 0 * s), (begin, lambda s: 1 + 0 * s), (begin + s1, lambda s: 2 + 0 * s))
+        mode = stepwise(
+            t,
+            (0.0, lambda s: 0 * s),
+            (begin, lambda s: 1 + 0 * s),
+            (begin + s1, lambda s: 2 + 0 * s),
+        )
         return {"omega": w, "box": mode, "gear": np.where(mode == 2, gear, 0.0)}
 
     box = bg.StateMachine(
@@ -71,8 +78,8 @@ def launch() -> Kind:
     )  # fmt: skip
     graph.nodes["drive"]["value"] = "1*force"
     return Kind(
-        "state machine with an action", graph, {"J": 1.0, "none": 0.0}, {"throttle": "ramp(0, 0.5)"}, known, 1.9,
-        at=0.7, mode={"box": "launch"}, rest={"inputs": {"throttle": 0.0}},
+        "state machine with an action", graph, {"J": 1.0, "none": 0.0}, {"throttle": "ramp(0, 0.5)"},
+        known, 1.9, at=0.7, mode={"box": "launch"}, rest={"inputs": {"throttle": 0.0}},
     )  # fmt: skip
 
 
@@ -103,10 +110,24 @@ def chained() -> Kind:
 
     def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
         x = stepwise(
-            t, (0.0, lambda s: s), (1.0, lambda s: 2 - s), (3.0, lambda s: s), (4.0, lambda s: 2 - s)
+            t,
+            (0.0, lambda s: s),
+            (1.0, lambda s: 2 - s),
+            (3.0, lambda s: s),
+            (4.0, lambda s: 2 - s),
         )
         away = ((t >= 1) & (t < 3)) | (t >= 4)
-        return {"x": x, "n": stepwise(t, (0.0, lambda s: 0 * s), (1.0, lambda s: 21 + 0 * s), (3.0, lambda s: 22 + 0 * s), (4.0, lambda s: 65 + 0 * s)), "p": np.where(away, 3.0, 0.0)}
+        return {
+            "x": x,
+            "n": stepwise(
+                t,
+                (0.0, lambda s: 0 * s),
+                (1.0, lambda s: 21 + 0 * s),
+                (3.0, lambda s: 22 + 0 * s),
+                (4.0, lambda s: 65 + 0 * s),
+            ),
+            "p": np.where(away, 3.0, 0.0),
+        }
 
     machine = bg.StateMachine(
         "p", ["up", "b", "c", "down"], states={"n": 0},
@@ -130,7 +151,13 @@ def ticked() -> Kind:
     def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
         # x' = 1 up to the first instant at which 0.8 is passed, then -1 to the first below 0.3, and so on.
         turns = [1.0, 2.0, 3.0]
-        x = stepwise(t, (0.0, lambda s: s), (1.0, lambda s: 1 - s), (2.0, lambda s: s), (3.0, lambda s: 1 - s))
+        x = stepwise(
+            t,
+            (0.0, lambda s: s),
+            (1.0, lambda s: 1 - s),
+            (2.0, lambda s: s),
+            (3.0, lambda s: 1 - s),
+        )
         mode = sum((-1) ** k * (t >= turn - 1e-12) for k, turn in enumerate(turns))
         counted = sum((t >= turn + 0.5 - 1e-12) * 1.0 for turn in (0.0, 1.0, 2.0))
         return {"x": x, "way": mode * 1.0, "passed": counted}
@@ -140,8 +167,10 @@ def ticked() -> Kind:
         bg.StateMachine(
             "way", ["up", "down"], {"up > down": "seen - most", "down > up": "least - seen"}
         ),
-        bg.StateMachine("counter", ["on"], {"on > on": ("(x - 1/2)*(way_up - way_down)", {"passed": "passed + 1"})},
-                        states={"passed": 0}),
+        bg.StateMachine(
+            "counter", ["on"], states={"passed": 0},
+            transitions={"on > on": ("(x - 1/2)*(way_up - way_down)", {"passed": "passed + 1"})},
+        ),
     ]  # fmt: skip
     return Kind("state machine that reads a controller", bond_graph(nodes, ""), {"most": 0.8, "least": 0.1},
                 {}, known, 3.2, at=0.7, mode={"way": "up", "counter": "on"})  # fmt: skip
