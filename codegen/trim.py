@@ -2,8 +2,8 @@
 
 from collections.abc import Hashable, Mapping
 
-from bondgraph.analyse.machined import told_numbers
 from bondgraph.errors import StructureError
+from bondgraph.nodes.machined import told_numbers
 from codegen.instants.equilibrium import equilibrium
 from codegen.model.snapshot import Snapshot
 from codegen.modes.closed import ClosedModel

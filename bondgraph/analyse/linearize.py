@@ -15,7 +15,6 @@ from bondgraph.analyse.closures import merged_laws
 from bondgraph.analyse.constrained import Rows, locked
 from bondgraph.analyse.instant import Instant
 from bondgraph.analyse.linear_model import LinearModel
-from bondgraph.analyse.machined import told_numbers
 from bondgraph.analyse.modes import ToldModes, held_rows, told_modes
 from bondgraph.analyse.moving_hold import turns
 from bondgraph.analyse.sampled import SampledModel, check_told, sampled
@@ -26,6 +25,7 @@ from bondgraph.derive import check_derived, derive_again
 from bondgraph.equations import StateEquations
 from bondgraph.errors import SignalError, SingularStorageError
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw, Law, slides
+from bondgraph.nodes.machined import told_numbers
 from bondgraph.reduce.rates import resolved
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.structure import Port

@@ -7,8 +7,7 @@ from bondgraph.algebra.atoms import normal
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import bare_name
 from bondgraph.nodes.kinds import Kind
-from bondgraph.nodes.machines import LAST, NUMBER, ending
-from bondgraph.nodes.stops import BOUNDS, POSITION, stop_parts
+from bondgraph.nodes.parts import BOUNDS, LAST, NUMBER, POSITION, ending, stop_parts
 
 
 def quantities(

@@ -17,7 +17,8 @@ from bondgraph.nodes.attributes import start_of, unit_of
 from bondgraph.nodes.elements import Element, Node
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import ExpressionLaw, law
-from bondgraph.nodes.stops import BOUNDS, POSITION, check_order, rigid
+from bondgraph.nodes.parts import BOUNDS, POSITION
+from bondgraph.nodes.stops import check_order, rigid
 
 
 def Function(name: Hashable, value: object, **more: object) -> Node:

@@ -12,13 +12,8 @@ from bondgraph.nodes.attributes import variable
 from bondgraph.nodes.elements import Element, Node, Switch
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import ExpressionLaw
+from bondgraph.nodes.parts import BOUNDS, POSITION
 from bondgraph.nodes.resets import resets_of
-
-BOUNDS = {"low": 1, "high": -1}
-"""The bounds of a stop, and which way its flow leads off each."""
-
-POSITION = "position"
-"""The part of a stop that integrates its flow."""
 
 
 def Stop(
@@ -78,11 +73,6 @@ def stop_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element
     )  # fmt: skip
     made = _springs if attributes.get("stiffness") is not None else rigid
     return [junction, position, *made(name, attributes, bounds, place)]
-
-
-def stop_parts(attributes: Mapping[str, Any]) -> tuple[str, ...]:
-    """The names of a stop's parts beside its junction."""
-    return (POSITION, *(key for key in BOUNDS if attributes.get(key) is not None))
 
 
 def rigid(
