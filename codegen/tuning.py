@@ -185,6 +185,7 @@ class Tuning:
     reach_part: float = _told(1e-3, "of all states' magnitude: the least of each")
     reach_floor: float = _told(1e-10, "the same where all are zero")
     bracket: float = _told(1e-3, "by which the boundary of stability is searched farther")
+    cuts: int = _told(1000, "parts that instants of tasks may cut a step of exported C into")
     whole_steps: float = _told(1e-9, "part by which a stretch may be longer than whole steps")
 
     # Many runs, and sources

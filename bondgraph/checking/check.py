@@ -26,8 +26,9 @@ def check(
 
     Doubts: numbers in ``parameters`` that nothing reads; junctions of one bond; arrows out of storages and
     resistances, into every source, and such that a sum stands where a difference is meant; modes of state
-    machines that no transition leads to; sources that contradict each other; drawn strokes that are wrong, or take integral causality from a storage that
-    could have it. Hints: bonds without a stroke where others have one; junctions that `merged` takes out.
+    machines that no transition leads to; sources that contradict each other; drawn strokes that are wrong,
+    or take integral causality from a storage that could have it. Hints: bonds without a stroke where others
+    have one; junctions that `merged` takes out.
 
     ``strokes``: bonds, as declared, to the node at whose end a causal stroke was drawn, as in
     `CausalGraph.strokes`; or ``stroke="tail"`` or ``"head"`` as attribute of a bond. Where they contradict

@@ -6,8 +6,8 @@ from typing import Any
 from bondgraph.algebra.atoms import normal
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import bare_name
-from bondgraph.nodes.kinds import Kind
-from bondgraph.nodes.parts import BOUNDS, LAST, NUMBER, POSITION, ending, stop_parts
+from bondgraph.nodes.kinds import BOUNDS, POSITION, Kind
+from bondgraph.nodes.parts import LAST, NUMBER, ending
 
 
 def quantities(
@@ -45,10 +45,15 @@ def _further(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str, s
         yield from (("e_", "_switch", None), ("f_", "_switch", None))
     if kind is Kind.STOP:
         yield "q_", "", None
-        for part in stop_parts(attributes):
+        for part in _stop_parts(attributes):
             yield from (("e_", f"_{part}", None), ("f_", f"_{part}", None))
     if attributes.get("integrate") is not None:
         yield "", "", name_text(attributes["integrate"])
+
+
+def _stop_parts(attributes: Mapping[str, Any]) -> tuple[str, ...]:
+    """The names of a stop's parts beside its junction."""
+    return (POSITION, *(key for key in BOUNDS if attributes.get(key) is not None))
 
 
 def _of_signals(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str, str, str | None]]:

@@ -11,6 +11,12 @@ Role = Literal[
 
 _BOUNDED = ("low", "high", "restitution", "start", "stiffness", "damping")
 
+BOUNDS = {"low": 1, "high": -1}
+"""The bounds of a stop, and which way its flow leads off each."""
+
+POSITION = "position"
+"""The part of a stop that integrates its flow."""
+
 EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", *_BOUNDED)
 """The attributes that are numbers or expressions."""
 

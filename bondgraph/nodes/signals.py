@@ -15,9 +15,8 @@ from bondgraph.algebra.expressions import expression
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import start_of, unit_of
 from bondgraph.nodes.elements import Element, Node
-from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.kinds import BOUNDS, POSITION, Kind
 from bondgraph.nodes.laws import ExpressionLaw, law
-from bondgraph.nodes.parts import BOUNDS, POSITION
 from bondgraph.nodes.stops import check_order, rigid
 
 
@@ -104,7 +103,7 @@ def state_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Elemen
         f"{name}.{POSITION}", Kind.DF, None, symbol(f"e_{name}_{POSITION}", where), flow,
         gives="effort", integral=place, start=start, whole=name,
     )  # fmt: skip
-    return [junction, source, follows, reads, *rigid(name, {}, bounds, place, signal=True)]
+    return [junction, source, follows, reads, *rigid(name, {}, bounds, place)]
 
 
 def _pair(

@@ -10,9 +10,8 @@ from bondgraph.algebra.expressions import expression
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import variable
 from bondgraph.nodes.elements import Element, Node, Switch
-from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.kinds import BOUNDS, POSITION, Kind
 from bondgraph.nodes.laws import ExpressionLaw
-from bondgraph.nodes.parts import BOUNDS, POSITION
 from bondgraph.nodes.resets import resets_of
 
 
@@ -76,12 +75,11 @@ def stop_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element
 
 
 def rigid(
-    name: Hashable, attributes: Mapping[str, Any], bounds: Mapping[str, sp.Expr], place: sp.Symbol,
-    signal: bool = False,
-) -> list[Element]:  # fmt: skip
+    name: Hashable, attributes: Mapping[str, Any], bounds: Mapping[str, sp.Expr], place: sp.Symbol
+) -> list[Element]:
     """At each bound a switch that holds as long as its effort pushes, and lets go what has left.
 
-    ``signal``: whether the node's name is a signal's, so that a switch needs another.
+    A stop of one bound calls it by its own name, unless that is the place's.
     """
     where = f"node {name!r}"
     if attributes.get("damping") is not None:
@@ -96,7 +94,7 @@ def rigid(
     for key, bound in bounds.items():
         effort, flow = _own(name, key)
         way = BOUNDS[key]
-        own = name if len(bounds) == 1 and not signal else f"{name}.{key}"
+        own = name if len(bounds) == 1 and name != place.name else f"{name}.{key}"
         switch = Switch(
             own, way * effort, way * (bound - place), "effort", restitution=bounce, stops=True,
             resets=resets,

@@ -82,7 +82,8 @@ def step_cost(program: Program, implicit: bool) -> StepCost:
     usual = one * evaluations + method + (around if ports else Count())
     pivots = TURNS_EACH * ports + TURNS_MORE if ports else 0
     change = _change(program, pivots) + one * 2 if ports else Count()
-    changes = TUNING.rounds + 1 if ports else 0
+    # Where a task sets anything at a start, that is decided once more.
+    changes = (TUNING.rounds + 1) * (2 if program.clocks else 1) if ports else 0
     return StepCost(one, usual, change, usual + change * changes, evaluations, pivots, changes)
 
 

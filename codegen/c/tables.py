@@ -45,7 +45,12 @@ def config(
     whether fixed steps are linearly implicit.
     """
     lines = [*comment(f"Sizes of {name}; written by bondgraph-toolkit."), "#ifndef BG_CONFIG_H"]
-    lines += ["#define BG_CONFIG_H", "", *_cost(step_cost(program, implicit)), ""]
+    lines += [
+        "#define BG_CONFIG_H",
+        "",
+        *_cost(step_cost(program, implicit), bool(program.clocks)),
+        "",
+    ]
     lines += [f"#define BG_{key} {value}" for key, value in _sizes(program, fast).items()]
     lines += [
         f"#define BG_HOLDINGS {len(held.names)}",
@@ -58,8 +63,8 @@ def config(
     return "\n".join([*lines, "", "#endif", ""])
 
 
-def _cost(cost: StepCost) -> list[str]:
-    """What a real-time step takes, in operations."""
+def _cost(cost: StepCost, ticks: bool) -> list[str]:
+    """What a real-time step takes, in operations; ``ticks``: whether there are sampled tasks."""
     told = [
         "What a real-time step takes, in operations of floating point; tables count as if full.",
         f"One evaluation of the rates: {cost.evaluation}.",
@@ -69,6 +74,10 @@ def _cost(cost: StepCost) -> list[str]:
         told += [
             f"Each change of ports, at most {cost.changes} in a step: {cost.change}, with {cost.pivots} ways "
             "to hold and let go at the most.",
+        ]
+    if ticks:
+        told += [
+            "Each instant of a task inside a step costs a step more; what tasks set is beside these."
         ]
     lines = [line for text in told for line in comment(text)]
     return [
@@ -155,7 +164,8 @@ def name_tables(program: Program, equations: StateEquations, name: str) -> list[
         lines += strings(f"bg_{what}_names", _names(symbols))
         lines += strings(f"bg_{what}_units", [known.get(symbol, "") for symbol in symbols])
     lines += strings("bg_parameter_names", _names(program.parameters))
-    return [*lines, *strings("bg_friction_names", [str(port.name) for port in program.friction])]
+    lines += strings("bg_friction_names", [str(port.name) for port in program.friction])
+    return [*lines, *strings("bg_task_names", [str(task.name) for task in equations.tasks])]
 
 
 def _names(symbols: Iterable[sp.Symbol]) -> list[str]:

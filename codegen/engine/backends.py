@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from codegen.engine.fallback import Stopped
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.engine.located import LocatedRuns, Recorded
-from codegen.engine.runs import CRuns
+from codegen.engine.runs import CRuns, not_affine
 from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
 from codegen.modes.closed import ClosedModel
@@ -49,7 +49,7 @@ def in_c(
 ) -> Recorded | Stopped:
     """The run in C, or why it cannot go on there."""
     method, first = asked.settings.method, asked.begun.mode
-    stopped = Stopped(f"C has no method {method!r}", limit=method != EXACT)
+    stopped = Stopped(_unknown(model, method), limit=method != EXACT)
     if model.program.steps:
         return Stopped(f"{stepped_in_python(model.program)}, which C cannot call", limit=True)
     if engine is not None and method in ("auto", EXACT):
@@ -67,6 +67,12 @@ def in_c(
     return located.run(
         asked.times, asked.states, asked.signals, asked.settings, first, asked.events, asked.corners
     )
+
+
+def _unknown(model: ClosedModel, method: str) -> str:
+    """Why C does not go by a method; exact steps of an affine model may have ended for other reasons."""
+    reason = not_affine(model.program) if method == EXACT else None
+    return f"C has no method {method!r}{f': {reason}' if reason else ''}"
 
 
 def _recorded(model: ClosedModel, asked: Request, track: Track, backend: str) -> Recorded:

@@ -27,7 +27,8 @@ def switching(program: Program) -> tuple[sp.Expr, ...]:
 def told_by_time(program: Program) -> tuple[sp.Expr, ...]:
     """What changes its sign by time alone, at given parameters: of those, and conditions of switches."""
     found: dict[sp.Expr, None] = {}
-    for size in (*_sizes(program), *_whole(program.guards)):
+    conditions = [*_whole(program.guards)][: len(program.guards.results) - len(program.resets)]
+    for size in (*_sizes(program), *conditions):
         if _of_time(size, program) and -size not in found:
             found.setdefault(size)
     return tuple(found)

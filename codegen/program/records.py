@@ -402,6 +402,16 @@ class Program:
         )
 
     @property
+    def events(self) -> tuple[Reset, ...]:
+        """What ports set as they change over, or as stops are hit."""
+        return tuple(one for one in self.resets if one.port >= 0)
+
+    @property
+    def ticks(self) -> tuple[Reset, ...]:
+        """What tasks set at instants of their own."""
+        return tuple(one for one in self.resets if one.port < 0)
+
+    @property
     def restitution_given(self) -> bool:
         """Whether parameters alone tell the restitutions of stops."""
         told = [one.switch.restitution for one in self.equations.switches if one.gap is not None]

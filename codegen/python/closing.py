@@ -8,6 +8,7 @@ from codegen.python.blocks import bound, law_names
 from codegen.python.looking import model_words, table_shapes
 from codegen.python.tables import slip_rows
 from codegen.python.text import RULE, listing, quoted
+from codegen.python.ticking import clocks, reset_rows, ticking
 from codegen.standalone.ranks import SlipRows
 from codegen.standalone.switchings import Switching
 
@@ -111,7 +112,7 @@ def needed(program: Program, slips: SlipRows | None, implicit: bool, held: bool)
     """
     also = {
         "settling": bool(program.friction) and not program.guarded,
-        "switched": program.guarded and not (program.stopped or program.resets or program.hanging),
+        "switched": program.guarded and not (program.stopped or program.events or program.hanging),
         "joint": program.joint,
         "loops": any(group.loop for group in program.groups),
         "ranks": slips is not None,
@@ -119,8 +120,9 @@ def needed(program: Program, slips: SlipRows | None, implicit: bool, held: bool)
     }
     folders = dict.fromkeys(also, "standalone") | {"settling": "fixed", "switched": "fixed"}
     names = [f"codegen.{folders[name]}.{name}" for name, wanted in also.items() if wanted]
-    events = {"stopping": program.stopped, "resetting": program.resets, "hanging": program.hanging}
+    events = {"stopping": program.stopped, "resetting": program.events, "hanging": program.hanging}
     names += [f"codegen.stops.{name}" for name, wanted in events.items() if wanted]
+    names += ["codegen.fixed.ticking"] if program.clocks else []
     names += ["codegen.fixed.tabled"] if program.tables else []
     names += ["codegen.fixed.starting"] if held else []
     back = any(table.turned for table in program.tables)
@@ -149,6 +151,9 @@ def closing(
         arguments = f"{arguments}, switches({taken})"
         lines += _switching(program)
     base = f"Rosenbrock, {base}" if implicit else base
+    if program.clocks:
+        base = f"TickingSteps, {base}"
+        lines += clocks(program)
     if program.tables:
         lines += ["", *table_shapes(program)]
     base = f"InsideTables, {base}" if refusals(program) else base
@@ -158,10 +163,12 @@ def closing(
     if program.guarded:
         lines += _switches(program)
     words = (_SWITCHED if program.guarded else _PLAIN) | (_TOLD if told else _FROM_ZERO)
-    resets = "\n    resets = RESETS\n" if program.resets else ""
+    resets = "\n    resets = RESETS\n" if program.events else ""
+    resets += "\n    clocks, ticks = CLOCKS, TICKS\n" if program.clocks else ""
     resets += "\n    refusing = REFUSING\n" if refusals(program) else ""
     words |= model_words(program)
     words |= beginning(words, held)
+    words["own"] += ticking(program)
     model = _MODEL.format(base=base, arguments=arguments, resets=resets, **words)
     return [*lines, *model.splitlines()]
 
@@ -172,7 +179,7 @@ def _given(program: Program) -> str:
 
 def _base(program: Program) -> str:
     """The classes of fixed steps that a model with switches, stops or jumps of second order is of."""
-    bases = ["ResettingSteps"] if program.resets else []
+    bases = ["ResettingSteps"] if program.events else []
     bases += ["HangingSteps"] if program.hanging else []
     bases += ["StoppedSteps"] if program.stopped else []
     return ", ".join(bases or ["SwitchedSteps"])
@@ -196,11 +203,9 @@ def _switching(program: Program) -> list[str]:
         f"    {None if port.switch is None else _told(port.switch)}," for port in program.friction
     ]
     lines = ["", f"# {note}", "SWITCHING = (", *rows, ")"]
-    if not program.resets:
+    if not program.events:
         return lines
-    rows = [
-        f"    Reset({one.port}, {one.sign}, {one.place}, {one.value})," for one in program.resets
-    ]
+    rows = reset_rows(program.events)
     note = "What resets states: the port and the mode it comes to; places of state and value."
     return [*lines, "", f"# {note}", "RESETS = (", *rows, ")"]
 

@@ -29,6 +29,7 @@ from codegen.python.looking import lookup_tables
 from codegen.python.modules import written_out
 from codegen.python.tables import friction_tables, places, public, step_settings
 from codegen.python.text import RULE, filled, plain, table
+from codegen.python.ticking import set_by_tasks
 from codegen.python.turnings import turned_laws
 from codegen.runs.start import start_of
 
@@ -154,17 +155,8 @@ def _functions(program: Program, names: Names) -> list[str]:
         rows = [f"{plain(str(port.name))}: {part}" for port in program.friction for part in what]
         doc = "For each friction port u = level * curve(|slip|) * sign(slip)."
         lines += values_function("friction_values", doc, program.friction_values, rows, names)
-    if program.guarded:
-        rows = [f"{plain(str(p.name))}: {way}" for p in program.told_by_guards
-                if p.switch is not None for way in p.switch.guards]  # fmt: skip
-        rows += [
-            f"{plain(str(program.friction[i].name))}: what it jumps by" for i, _ in program.hanging
-        ]
-        states = (*program.states, *program.law_states)
-        rows += [f"{plain(str(states[one.place]))} reset by {plain(str(program.friction[one.port].name))}"
-                 for one in program.resets]  # fmt: skip
-        doc = "Conditions of switches: to turn on and to turn off in turn, each above zero."
-        lines += values_function("switch_conditions", doc, program.guards, rows, names)
+    if program.guarded or program.clocks:
+        lines += _conditions(program, names)
     if program.momenta.results:
         rows = [f"moving {plain(state.name)}" for state in program.states]
         rows += [f"behind {plain(program.readings[at].name)}" for at in program.momenta_rows]
@@ -177,3 +169,22 @@ def _functions(program: Program, names: Names) -> list[str]:
         doc = "Arguments of tables that refuse what is outside."
         lines += values_function("table_places", doc, arguments(program), rows, names)
     return lines
+
+
+def _conditions(program: Program, names: Names) -> list[str]:
+    """What switches change over by, and what states become with them, or as tasks set them."""
+    rows = [
+        f"{plain(str(p.name))}: {way}" for p in program.told_by_guards
+        if p.switch is not None for way in p.switch.guards
+    ]  # fmt: skip
+    rows += [
+        f"{plain(str(program.friction[i].name))}: what it jumps by" for i, _ in program.hanging
+    ]
+    states = (*program.states, *program.law_states)
+    rows += [f"{plain(str(states[one.place]))} reset by {plain(str(program.friction[one.port].name))}"
+             for one in program.events]  # fmt: skip
+    rows += [plain(one) for one in set_by_tasks(program)]
+    doc = "Conditions of switches: to turn on and to turn off in turn, each above zero."
+    if not program.guarded:
+        doc = "What tasks set."
+    return values_function("switch_conditions", doc, program.guards, rows, names)

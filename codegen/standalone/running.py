@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from codegen.standalone.arrays import Array
+from codegen.standalone.arrays import Array, Mode
 from codegen.standalone.evaluation import Point, vector
+from codegen.standalone.instant import Instant
 from codegen.standalone.stepping import FixedSteps, Given
 from codegen.tuning import TUNING
 
@@ -80,22 +81,30 @@ def run(
     s = model.begin(Point(time[0], s, *given[0]), initially_on, initial)
     mode, rows = None, []
     for t, end in zip(time, [*time[1:], time[-1]], strict=True):
-        parts = max(1, int(np.ceil((end - t) / step * (1 - TUNING.whole_steps))))
-        h = (end - t) / parts or step
-        given = sampled(signals, t, h)
-        mode, s = model.settled(Point(t, s, *given[0]), mode, dead_band, h)
-        now = model.at(Point(t, s, *given[0]), mode)
-        shown = model.named(now)
-        row = [*now.x, *now.z, *now.w, *(shown[name] for name in names.shown)]
-        rows.append([*row, *model.shown(mode)])
-        # What laws give may be infinite where states and rates are not.
-        if not np.isfinite([*now.x, *now.z, *now.rate]).all():
-            raise ArithmeticError(f"at t = {t:g} a value is not finite; give a shorter step")
-        for count in range(parts if end > t else 0):
-            if count:
-                given = sampled(signals, t + count * h, h)
-                at = Point(t + count * h, s, *given[0])
-                mode, s = model.settled(at, mode, dead_band, h)
-            mode, s = model.advance(t + count * h, h, s, given, mode)
+        begin, sampling = t, True
+        while sampling or begin < end:
+            stop = model.until(begin, end)
+            parts = max(1, int(np.ceil((stop - begin) / step * (1 - TUNING.whole_steps))))
+            h = (stop - begin) / parts or step
+            for count in range(parts if end > t else 1):
+                at = begin + count * h
+                given = sampled(signals, at, h)
+                mode, s = model.settled(Point(at, s, *given[0]), mode, dead_band, h)
+                if sampling:
+                    rows.append(_row(model, model.at(Point(at, s, *given[0]), mode), mode))
+                    sampling = False
+                if end > t:
+                    mode, s = model.advance(at, h, s, given, mode)
+            begin = stop
     columns = (*names.states, *names.external, *names.shown, *names.switches)
     return {"t": time, **dict(zip(columns, np.array(rows).T, strict=True))}
+
+
+def _row(model: FixedSteps, now: Instant, mode: Mode) -> list[float]:
+    """A sample: states, inputs, what is shown, switches. Refuses what is not finite."""
+    # What laws give may be infinite where states and rates are not.
+    if not np.isfinite([*now.x, *now.z, *now.rate]).all():
+        raise ArithmeticError(f"at t = {now.t:g} a value is not finite; give a shorter step")
+    shown = model.named(now)
+    values = (shown[name] for name in model.names.shown)
+    return [*now.x, *now.z, *now.w, *values, *model.shown(mode)]

@@ -90,6 +90,10 @@ class FixedSteps:
         """The vector s with which a run begins; no port is a switch, or could be ``on``."""
         return at.s
 
+    def until(self, t: float, end: float) -> float:
+        """Where steps from t end at the latest, the end: there are no instants before."""
+        return end
+
     def shown(self, mode: Mode) -> list[float]:
         """For each switch 1 while it is on, 0 while it is off: there are none."""
         return []

@@ -107,6 +107,8 @@ class Clock:
     >>> clock = Clock(1.0, 0.0, 100.0)
     >>> clock.following(0.28), clock.following(0.29), clock.strikes(0.29), clock.following(-3.0)
     (0.29, 0.3, True, 0.0)
+    >>> clock.latest(0.295), clock.latest(0.29), clock.latest(-3.0)
+    (0.29, 0.29, -inf)
     """
 
     every: float
@@ -123,6 +125,13 @@ class Clock:
         while self.instant(k) <= t:
             k += 1.0
         return self.instant(k)
+
+    def latest(self, t: float) -> float:
+        """The last instant up to t; before the first minus infinity."""
+        k = math.floor((t * self.unit - self.offset) / self.every) + 1.0
+        while k >= 0 and self.instant(k) > t:
+            k -= 1.0
+        return self.instant(k) if k >= 0 else -math.inf
 
     def strikes(self, t: float) -> bool:
         """Whether t is one of its instants."""

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from codegen.fixed.switched import SwitchedSteps
+from codegen.fixed.ticking import become
 from codegen.standalone.arrays import Array, EvaluationError, Mode
 from codegen.standalone.evaluation import Point
 from codegen.standalone.stepping import Chosen
@@ -63,16 +64,8 @@ class ResettingSteps(SwitchedSteps):
 
     def reset(self, at: Point, mode: Mode, fired: Sequence[Reset]) -> Array:
         """The vector s with what these resets set."""
-        now, s = self.at(at, mode), at.s.copy()
-        values, x = self.told(now), np.concatenate((now.x, now.z))
-        first = {one.place: one for one in reversed(fired)}
-        for one in fired:
-            value = values[one.value]
-            if not np.isfinite(value) or value != values[first[one.place].value]:
-                name = self.names.states[one.place]
-                raise EvaluationError(f"at t = {at.t:g} {name} is reset to two values, or to none")
-            # Less what inputs that drive dependent storages add.
-            s[one.place] = value + (at.s[one.place] - x[one.place])
+        now = self.at(at, mode)
+        s = become(self.names.states, now, at.s, self.told(now), fired)
         self.check_held(at._replace(s=s), mode, [self.names.states[one.place] for one in fired])
         return s
 

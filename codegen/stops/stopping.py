@@ -74,11 +74,11 @@ class StoppedSteps(SwitchedSteps):
     def met(self, at: Point, mode: Mode, h: float) -> list[Stop]:
         """The stops that were held, and those whose gap is closed, or would be within the step."""
         now = self.any_of(at, mode)
-        gaps, near, slips = self.told(now), self.gap_rounding(now), now.y[self.slips]
+        gaps, near = self.told(now), self.gap_rounding(now)
         return [
             (i, one) for i, one in self.stops()
             if not one.is_on(mode[i]) or gaps[one.guard] <= near[one.guard]
-            or gaps[one.guard] + h * one.side * slips[i] <= 0
+            or gaps[one.guard] + h * one.opening * now.rate[one.place] <= 0
         ]  # fmt: skip
 
     def gap_rounding(self, now: Instant) -> Array:

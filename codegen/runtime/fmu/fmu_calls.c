@@ -1,4 +1,5 @@
 /* What a unit's calls do, for FMI 2 and 3 alike: which is allowed when, and arrays of values. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -16,6 +17,7 @@ fmu_error fmu_begin(fmu_instance *f, double start)
     f->at.phase = FMU_INITIALIZING;
     fmu_set_time(f, start);
     f->at.began = start;
+    f->at.ticked = nextafter(start, -INFINITY);
     fmu_pass(f, start);
     return NULL;
 }

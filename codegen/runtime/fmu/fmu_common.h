@@ -29,9 +29,10 @@ typedef struct {
 /* All that a run depends on: what is saved and restored. Plain numbers. `began`: when it did; `step`:
  * of fixed internal steps, 0 where events are located; `tolerance`: relative, 0 where none is told;
  * `seen`: as of the model. `named`: start values that are kept as they are. `rest`, `margin`: how far a
- * slip or what holds or keeps a port may go beyond its bound before it counts as an event. */
+ * slip or what holds or keeps a port may go beyond its bound before it counts as an event. `ticked`:
+ * up to when tasks have set what they set. */
 typedef struct {
-    double time, began, step, tolerance, seen[BG_SIZE];
+    double time, began, ticked, step, tolerance, seen[BG_SIZE];
     double parameters[BG_ROOM(BG_PARAMETERS)], start[BG_ROOM(FMU_STATES)], s[BG_SIZE];
     double given[BG_ROOM(BG_EXTERNAL)], slopes[BG_ROOM(BG_EXTERNAL)];
     bg_peaks peaks;
@@ -127,8 +128,16 @@ static inline int fmu_is_table(int kind)
     return kind == FMU_TABLE || kind == FMU_AXIS || kind == FMU_TABLE_VALUE;
 }
 
-/* fmu_sources.c: external inputs at a time in a span; breakpoints that are passed; the next one. The
- * time of the next event: of a breakpoint, or of a look. That after t: where known sources have done
+/* fmu_tasks.c: which tasks are due at the instance's time, and whether any is: they are so once. What
+ * those set. The next instant of a task, or infinity; where a run from a time to the end ends: at an
+ * instant that is a rounding off the end. */
+int fmu_due(fmu_instance *f, int *due);
+fmu_error fmu_set_by_tasks(fmu_instance *f, const int *due);
+double fmu_next_tick(const fmu_instance *f);
+double fmu_run_end(double from, double end);
+
+/* fmu_sources.c: external inputs at a time in a span; breakpoints that are passed; the next one, or
+ * the next instant of a task. The time of the next event: of one of these, or of a look. That after t: where known sources have done
  * enough to be looked at, or an expression of time alone changes its sign. */
 void fmu_externals(const fmu_instance *f, const bg_span *span, double t, double *w, double *dw);
 void fmu_pass(fmu_instance *f, double t);

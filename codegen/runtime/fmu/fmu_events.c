@@ -110,24 +110,39 @@ static int comes_to_rest(const fmu_instance *f, const int *before)
     return any;
 }
 
-/* Everything just after the instance's time; whether an impact, or what is held, moved the states. */
+/* The mode just after the instance's time, and slips that stick at rest. */
+static fmu_error settle_ports(fmu_instance *f)
+{
+    int mode[BG_ROOM(K)];
+    fmu_error failed;
+    do {
+        memcpy(mode, f->at.mode, sizeof mode);
+        failed = fmu_decide(f);
+        if (!failed)
+            failed = remove_slips(f);
+    } while (!failed && comes_to_rest(f, mode));
+    return failed;
+}
+
+/* Everything just after the instance's time, first what ports do, then what tasks set; whether that,
+ * an impact, or what is held, moved the states. */
 static fmu_error settle_event(fmu_instance *f, int *states_changed)
 {
     double before[BG_SIZE];
-    int mode[BG_ROOM(K)];
+    int due[BG_ROOM(BG_CLOCKS)] = {0};
     fmu_error failed;
     memcpy(before, f->at.s, sizeof before);
     fmu_pass(f, f->at.time);
     failed = fmu_apply(f);
     bg_have_seen(&f->model, f->at.s);
     memcpy(f->at.seen, f->model.seen, sizeof f->at.seen);
-    do {
-        memcpy(mode, f->at.mode, sizeof mode);
-        if (!failed)
-            failed = fmu_decide(f);
-        if (!failed)
-            failed = remove_slips(f);
-    } while (!failed && comes_to_rest(f, mode));
+    const int any = fmu_due(f, due);
+    if (!failed)
+        failed = settle_ports(f);
+    if (!failed && any)
+        failed = fmu_set_by_tasks(f, due);
+    if (!failed && any)
+        failed = settle_ports(f);
     if (!failed)
         failed = fmu_refresh(f);
     *states_changed = memcmp(before, f->at.s, sizeof before) != 0;

@@ -1,5 +1,5 @@
-/* Co-simulation in steps of fixed length that end at breakpoints and communication points: for real
- * time, as each takes the same work. */
+/* Co-simulation in steps of fixed length that end at breakpoints, instants of tasks and communication
+ * points: for real time, as each takes the same work. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -57,7 +57,8 @@ static fmu_error walk_pieces(fmu_instance *f, double t, double end)
     while (!failed && t < end) {
         double stop = end;
         fmu_pass(f, t);
-        if (fmu_next_break(f, &stop) && !(stop < end))
+        f->at.ticked = fmax(f->at.ticked, t); /* the model tells which are done */
+        if (fmu_next_break(f, &stop) && !(bg_reached(stop) < end))
             stop = end;
         failed = walk_on(f, t, stop);
         t = stop;
@@ -82,6 +83,7 @@ fmu_error fmu_fixed(fmu_instance *f, double t, double end)
 {
     f->warned = BG_OK;
     memcpy(f->model.mode, f->at.mode, sizeof f->at.mode);
+    f->model.ticked = f->at.ticked;
     fmu_error failed = walk_pieces(f, t, end);
     fmu_pass(f, end);
     if (!failed) {
@@ -90,6 +92,7 @@ fmu_error fmu_fixed(fmu_instance *f, double t, double end)
     }
     memcpy(f->at.mode, f->model.mode, sizeof f->at.mode);
     f->at.stepped = f->model.started;
+    f->at.ticked = fmax(end, f->model.ticked);
     f->at.fastest = f->model.fastest;
     return failed;
 }

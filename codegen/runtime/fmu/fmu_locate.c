@@ -47,17 +47,19 @@ fmu_error fmu_locate(fmu_instance *f, double t, double end)
     bg_located *const c = &f->located;
     bg_request asked = {0};
     int first[BG_MOST_PORTS] = {0};
-    /* A breakpoint a rounding after t counts as reached. */
-    const double from = fmax(t, bg_signals_span(&fmu_signals, bg_reached(t)).begin);
-    if (!(from < end))
+    /* A breakpoint a rounding after t counts as reached, as instants of tasks do. */
+    const double begin = fmax(t, bg_signals_span(&fmu_signals, bg_reached(t)).begin);
+    const double from = fmax(begin, f->at.ticked), to = fmu_run_end(from, end);
+    if (!(from < to))
         return NULL;
     ask_for(f, &asked);
     memcpy(first, f->at.mode, sizeof(int) * K);
     memcpy(c->s, f->at.s, sizeof c->s);
-    bg_located_set_out(c, &f->model, &fmu_signals, &asked, from, end, first);
+    bg_located_set_out(c, &f->model, &fmu_signals, &asked, from, to, first);
     c->run.began = f->at.began;
     c->run.goes_on = f->at.decided;
-    c->stiff = BG_STIFF_STEP / (end - from);
+    c->run.done = f->at.ticked;
+    c->stiff = BG_STIFF_STEP / (to - from);
     c->ahead = look_by;
     c->view.peaks = &f->at.peaks;
     c->view.self = f;
@@ -65,6 +67,7 @@ fmu_error fmu_locate(fmu_instance *f, double t, double end)
     const int status = bg_located_go(c);
     memcpy(f->at.s, c->s, sizeof f->at.s);
     memcpy(f->at.mode, c->run.mode, sizeof(int) * K);
+    f->at.ticked = fmax(to, end);
     fmu_apply(f);
     return status == BG_OK ? NULL : told_at(f, status);
 }

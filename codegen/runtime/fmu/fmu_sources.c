@@ -31,9 +31,10 @@ void fmu_pass(fmu_instance *f, double t)
 
 int fmu_next_break(const fmu_instance *f, double *time)
 {
-    if (f->at.span.following == INFINITY)
+    const double following = fmin(f->at.span.following, fmu_next_tick(f));
+    if (following == INFINITY)
         return 0;
-    *time = f->at.span.following;
+    *time = following;
     return 1;
 }
 

@@ -19,6 +19,7 @@ int bg_model_init_with(bg_model *m, const double *parameters, const bg_own_table
     int status;
     memset(m, 0, sizeof *m);
     m->where = -1;
+    m->ticked = -INFINITY;
     m->now.tables = own ? own->tables : bg_tables;
     memcpy(m->now.p, parameters ? parameters : bg_defaults, sizeof(double) * BG_PARAMETERS);
     if (!bg_finite(BG_PARAMETERS, m->now.p))
@@ -165,6 +166,7 @@ const char *bg_model_message(int status)
         "the error of a step is beyond 1 % of a state's range; the step was taken: shorten it",
         "no impulse is found that keeps what nonlinear storages hold: their laws may have no value "
         "in common",
+        "a step crosses more instants of tasks than it may be cut at; shorten it",
     };
     const int count = (int)(sizeof messages / sizeof *messages);
     return status >= 0 && status < count ? messages[status] : "unknown status";

@@ -208,6 +208,13 @@ typedef struct {
     int started;
 } bg_start;
 
+/* port_step_task.c: where a step from t to the end is cut by the instant of a task, or the end;
+ * which tasks are due at the start of a step of h, and whether any is, their latest instant; what
+ * those set in s, a status. */
+double bg_cut_step(const bg_model *m, double t, double end);
+int bg_due_in_step(const bg_model *m, double t, double h, int *due, double *instant);
+int bg_set_by_tasks_in_step(bg_model *m, const bg_start *at, const int *due, double *s);
+
 /* port_look.c: everything in a mode, in m->shot; in the first that can be of those that slip as
  * this one, which it becomes in `tried`. */
 int bg_look(bg_model *m, const bg_start *at, const int *mode);

@@ -172,11 +172,12 @@ typedef struct {
 /* One instance. `band` [unit of each slip]: the dead band inside which a step lets a port stick;
  * `mode`: 0 sticking, 1 or -1 the sign of the slip; of a switch 0 where it is held, 1 where it is
  * let go; as the last step left it (`started`: there was one), or as switches are before the first.
- * `where`: the friction port or group of laws that a failure is about, -1 for none. The rest is its
- * own. */
+ * `where`: the friction port or group of laws that a failure is about, -1 for none. `ticked`: the
+ * instant [s] at which tasks last set what they set; `unclocked`: whether the caller runs them. The
+ * rest is its own. */
 typedef struct {
-    double band[BG_ROOM(BG_FRICTION)];
-    int mode[BG_ROOM(BG_FRICTION)], started, where, decided;
+    double band[BG_ROOM(BG_FRICTION)], ticked;
+    int mode[BG_ROOM(BG_FRICTION)], started, unclocked, where, decided;
     bg_fastest fastest;
     bg_values now;
     double seen[BG_SIZE]; /* the largest magnitudes of s at starts of steps: what it rounds by */
@@ -197,6 +198,7 @@ extern const char *const bg_parameter_names[];
 extern const char *const bg_friction_names[];
 extern const char *const bg_lookup_names[];
 extern const char *const bg_held_names[]; /* what storages hold, BG_HOLDINGS of them */
+extern const char *const bg_task_names[]; /* BG_CLOCKS of them */
 
 /* The parameters the model was generated at, BG_PARAMETERS of them. */
 void bg_model_parameters(double *parameters);
@@ -207,7 +209,7 @@ int bg_model_init(bg_model *m, const double *parameters);
 /* The same with tables of the caller's, which `bg_tables_init` makes as the model was generated.
  * `bg_tables_set` gives one new values at its points, row by row of x, and works out what is
  * between them; BG_TABLE_VALUE where one is not finite. As with a parameter an instance is then
- * made again, which may go on with its `mode`, `seen` and `started`. */
+ * made again, which may go on with its `mode`, `seen`, `started`, `ticked` and `unclocked`. */
 int bg_model_init_with(bg_model *m, const double *parameters, const bg_own_tables *own);
 void bg_tables_init(bg_own_tables *own);
 int bg_tables_set(bg_own_tables *own, int table, const double *values);
@@ -269,6 +271,18 @@ int bg_model_rhs(bg_model *m, double t, const double *s, const double *w, const 
 int bg_model_step(bg_model *m, double t, double h, double *s, const double *w);
 int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w);
 int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w);
+
+/* Sampled tasks, such as controllers. By itself a step sets at its start what is due there, once at
+ * each instant, and is cut at instants inside it, at the cost of a step more for each; its inputs
+ * there are on the parabola through their three values. BG_INSTANTS where it would be more than
+ * BG_CUTS parts. With the clock off, as it is after
+ * `bg_model_clock` of 0, the caller runs tasks where it likes, as a timer or an interrupt tells:
+ * `bg_model_tasks` sets what those set that are `due`, BG_CLOCKS flags, all told by what stood
+ * before, of the external inputs w at t; the mode is decided anew by the next step. `bg_task_after`
+ * is the first instant [s] of one after t. */
+void bg_model_clock(bg_model *m, int on);
+int bg_model_tasks(bg_model *m, double t, double *s, const double *w, const int *due);
+double bg_task_after(int task, double t);
 
 const char *bg_model_message(int status);
 size_t bg_model_size(void);

@@ -1,5 +1,6 @@
 /* One step in bounded time: which ports hold is decided at its start, then it is one of a
- * method's in that mode, and what changes inside it is made up for at its end. */
+ * method's in that mode, and what changes inside it is made up for at its end. Tasks that are due
+ * set what they set at its start; one that crosses their instants is cut there. */
 #include <math.h>
 #include <string.h>
 
@@ -16,16 +17,13 @@ static void external_rates(double h, const double *w, double rates[3][BG_ROOM(BG
     }
 }
 
-int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w)
+/* The mode at the start of a step of h, whose inputs' rates are known, and s then. */
+static int settle_start(bg_model *m, double t, double h, double *s, const double *w)
 {
     int status, sticking = 0;
-    if (!(h > 0) || !isfinite(h))
-        return BG_BAD_STEP;
     if (K == 0)
         return BG_OK;
     bg_have_seen(m, s);
-    if (BG_RATED)
-        external_rates(h, w, m->work.rates);
     status = bg_decide_step(m, t, h, s, w);
     for (int i = 0; i < K; i++)
         sticking |= m->mode[i] == 0;
@@ -34,10 +32,30 @@ int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w)
     return status == BG_OK ? m->decided : status;
 }
 
-int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w)
+int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w)
 {
+    int due[BG_ROOM(BG_CLOCKS)];
+    double instant = 0.0;
     if (!(h > 0) || !isfinite(h))
         return BG_BAD_STEP;
+    if (BG_RATED)
+        external_rates(h, w, m->work.rates);
+    const double until = BG_CLOCKS ? bg_cut_step(m, t, t + h) - t : h;
+    const int decided = settle_start(m, t, until, s, w);
+    if (!BG_CLOCKS || !bg_is_taken(decided) || !bg_due_in_step(m, t, h, due, &instant))
+        return decided;
+    const bg_start at = {t, until, s, w, m->work.rates[0], m->mode, m->started};
+    const int set = bg_set_by_tasks_in_step(m, &at, due, s);
+    if (set)
+        return set;
+    m->ticked = instant;
+    const int again = settle_start(m, t, until, s, w);
+    return again == BG_OK ? decided : again;
+}
+
+/* A step in one mode, and what changes at its end. */
+static int advance_plain(bg_model *m, double t, double h, double *s, const double *w)
+{
     if (BG_RATED)
         external_rates(h, w, m->work.rates);
     memset(m->work.mean, 0, sizeof m->work.mean);
@@ -50,6 +68,58 @@ int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w
     }
     m->work.unshared = 0;
     return status;
+}
+
+/* The external inputs at the start, the middle and the end of a part of a step: on the parabola
+ * through their three values. */
+static void inputs_of_part(double from, double part, const double *w, double *of)
+{
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < BG_EXTERNAL; i++) {
+            const double x = from + 0.5 * k * part, y = 1.0 - x;
+            const double a = w[i], b = w[BG_EXTERNAL + i], c = w[2 * BG_EXTERNAL + i];
+            of[k * BG_EXTERNAL + i] = a * y * (y - x) + 4.0 * b * x * y + c * x * (x - y);
+        }
+}
+
+/* The same by parts, from one instant of tasks to the next; s and the mode are as they were where
+ * one is not taken. */
+static int advance_by_parts(bg_model *m, double t, double h, double *s, const double *w)
+{
+    double begun[BG_SIZE], part[3 * BG_ROOM(BG_EXTERNAL)];
+    int mode[BG_ROOM(K)], started = m->started, status = BG_OK, told = BG_OK;
+    const double end = t + h, ticked = m->ticked;
+    double a = t;
+    memcpy(begun, s, sizeof begun);
+    memcpy(mode, m->mode, sizeof mode);
+    for (int k = 0; k < BG_CUTS && a < end && bg_is_taken(status); k++) {
+        const double b = bg_cut_step(m, a, end);
+        inputs_of_part((a - t) / h, (b - a) / h, w, part);
+        if (a > t)
+            status = bg_model_settle(m, a, b - a, s, part);
+        told = status ? status : told;
+        if (bg_is_taken(status))
+            status = advance_plain(m, a, b - a, s, part);
+        told = status ? status : told;
+        a = b;
+    }
+    if (bg_is_taken(told) && a < end)
+        told = BG_INSTANTS;
+    if (bg_is_taken(told))
+        return told;
+    memcpy(s, begun, sizeof begun);
+    memcpy(m->mode, mode, sizeof mode);
+    m->started = started;
+    m->ticked = ticked;
+    return told;
+}
+
+int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w)
+{
+    if (!(h > 0) || !isfinite(h))
+        return BG_BAD_STEP;
+    return BG_CLOCKS && bg_cut_step(m, t, t + h) < t + h ? advance_by_parts(m, t, h, s, w)
+                                                        : advance_plain(m, t, h, s, w);
 }
 
 int bg_model_step(bg_model *m, double t, double h, double *s, const double *w)

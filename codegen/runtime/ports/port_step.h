@@ -27,6 +27,9 @@ int bg_search_ways(step_search *c, const int *before);
 /* port_step.c: s after the impulses of what switches hold in a mode; how far these go with it. */
 int bg_strike_in_step(step_search *c, const int *mode, double *ways);
 
+/* port_step_reset.c: what s becomes at the place of each reset, a status. */
+int bg_become_in_step(bg_model *m, const bg_start *at, double *values);
+
 /* port_step_reset.c: sets what states are reset to at the events from the mode before to the
  * present one, which then is that before; `any`: whether there were such. A status. */
 int bg_set_in_step(step_search *c, int *before, int *any);

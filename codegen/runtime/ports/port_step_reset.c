@@ -36,18 +36,17 @@ static int check_set(step_search *c)
     return status ? status : struck ? BG_SET_HELD : BG_OK;
 }
 
-/* What s becomes at the place of each reset. */
-static int become_in_step(step_search *c, double *values)
+int bg_become_in_step(bg_model *m, const bg_start *at, double *values)
 {
     double guards[BG_ROOM(BG_GUARDS)];
-    const int status = bg_look(c->m, &c->at, c->m->mode);
+    const int status = bg_look(m, at, m->mode);
     if (status)
         return status;
-    bg_guards(&c->m->now, guards);
+    bg_guards(&m->now, guards);
     for (int r = 0; r < BG_RESETS; r++) {
         const int place = bg_resets[r].place;
-        const double state = place < N ? c->m->shot.x[place] : c->s[place];
-        values[r] = guards[bg_resets[r].value] + (c->s[place] - state);
+        const double state = place < N ? m->shot.x[place] : at->s[place];
+        values[r] = guards[bg_resets[r].value] + (at->s[place] - state);
     }
     return BG_OK;
 }
@@ -63,7 +62,7 @@ int bg_set_in_step(step_search *c, int *before, int *any)
     c->at.started = 1;
     if (!*any)
         return BG_OK;
-    int status = become_in_step(c, values);
+    int status = bg_become_in_step(c->m, &c->at, values);
     if (status == BG_OK)
         status = bg_set_states(bg_resets, BG_RESETS, fired, values, c->s);
     memcpy(before, c->m->mode, sizeof(int) * K);

@@ -31,8 +31,10 @@ typedef struct {
     double every, offset, unit;
 } bg_clock;
 
-/* port_clock.c: the first instant after t, and whether t is one. */
+/* port_clock.c: the first instant after t; the last up to t, before the first minus infinity;
+ * whether t is one. */
 double bg_clock_after(const bg_clock *clock, double t);
+double bg_clock_latest(const bg_clock *clock, double t);
 int bg_clock_strikes(const bg_clock *clock, double t);
 
 /* The place of the condition that changes a switch over in its mode. */

@@ -170,7 +170,7 @@ static int are_due(const bg_engine *e, bg_course *c)
     return any;
 }
 
-/* Whether nothing but tasks makes an instant: no port has come to an event, no input to a breakpoint. */
+/* Whether nothing but tasks makes an instant: no port is at an event, no input at a breakpoint. */
 static int is_plain(const bg_engine *e, const bg_course *c)
 {
     int touched = c->paused || c->span.begin == c->at.t;

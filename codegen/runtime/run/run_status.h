@@ -31,6 +31,7 @@ enum bg_status {
     BG_PIVOTS,       /* a step's ports were not decided in so many pivots; the best was taken */
     BG_INACCURATE,   /* a step's error is beyond 1 % of a state's range; it was taken */
     BG_UNEXCHANGED,  /* no impulse is found that keeps what nonlinear storages hold */
+    BG_INSTANTS,     /* a step crosses more instants of tasks than it may */
     /* of exact steps alone */
     BG_MISSING,      /* a mode is not in the table */
     BG_NEGATIVE,     /* a friction level falls below zero */

@@ -159,6 +159,19 @@ class CModel:
         samples = {name.name: rows[:, at] for at, name in enumerate(names)}
         return np.reshape(modes.ravel()[: (count + 1) * ports], (count + 1, ports)), samples
 
+    def timed(
+        self, h: float, count: int, every: int, s, w: np.ndarray
+    ) -> tuple[int, dict[str, np.ndarray]]:
+        """The status, and a sample at every step, where the caller runs all tasks at every so many."""
+        names = [*self.program.states, *self.program.law_states]
+        names += [*self.program.inputs, *self.program.readings]
+        rows = np.zeros((count + 1, len(names)))
+        status = self.library.harness_timed(
+            self.instance, ctypes.c_double(h), count, every, _numbers(s), _numbers(w),
+            rows.ctypes.data_as(ctypes.c_void_p),
+        )  # fmt: skip
+        return status, {name.name: rows[:, at] for at, name in enumerate(names)}
+
     def band(self, width: float) -> None:
         self.library.harness_band(self.instance, ctypes.c_double(width))
 

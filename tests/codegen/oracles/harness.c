@@ -79,3 +79,24 @@ int harness_march(bg_model *m, double h, int count, int every, double *s, const 
     }
     return status;
 }
+
+/* The same where the caller runs all tasks, at every `every`th step from the first on. */
+int harness_timed(bg_model *m, double h, int count, int every, double *s, const double *w,
+                  double *rows)
+{
+    const int width = BG_STATES + BG_LAW_STATES + BG_INPUTS + BG_READINGS;
+    int status = BG_OK, due[BG_ROOM(BG_CLOCKS)];
+    for (int i = 0; i < BG_CLOCKS; i++)
+        due[i] = 1;
+    bg_model_clock(m, 0);
+    for (int k = 0; k <= count && status == BG_OK; k++) {
+        status = k % every == 0 ? bg_model_tasks(m, k * h, s, w, due) : BG_OK;
+        if (status == BG_OK)
+            status = sample(m, k * h, h, s, w, rows);
+        if (status == BG_OK && k < count)
+            status = bg_model_step(m, k * h, h, s, w);
+        rows += width;
+        w += 2 * BG_EXTERNAL;
+    }
+    return status;
+}

@@ -31,6 +31,7 @@
 #define BG_STOPPING 0
 #define BG_GUARDS 0
 #define BG_RESETS 0
+#define BG_CLOCKS 0
 #define BG_MOMENTA 0
 #define BG_COUPLED 0
 #define BG_HOLDS 2

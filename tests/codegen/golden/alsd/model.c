@@ -45,6 +45,7 @@ const char *const bg_parameter_names[] = {
     "I_1", "I_2", "I_i", "I_w", "b", "i", "k", "k_t", "omega_t1_0", "omega_t2_0", "r"
 };
 const char *const bg_friction_names[] = {"clutch"};
+const char *const bg_task_names[] = {""};
 const bg_table bg_tables[] = {{0}};
 const char *const bg_lookup_names[] = {""};
 
@@ -65,6 +66,7 @@ const int bg_differentiable[] = {1, 1, 0, 0};
 const int bg_output_readings[] = {1, 4, 5, 6, 7};
 const bg_switch bg_switches[] = {{BG_RUBS, 0, 0, 0, 0, 0, 0, 0, 0}};
 const bg_reset bg_resets[] = {{0, 0, 0, 0}};
+const bg_clock bg_clocks[] = {{0.0, 0.0, 0.0}};
 
 static const int rows_A[] = {0, 0, 1, 1, 2, 3, 4, 5};
 static const int columns_A[] = {0, 1, 0, 1, 2, 3, 4, 5};

@@ -283,7 +283,8 @@ def to_c_located(bench: Bench) -> None:
 def _fmu(version: str, how: str) -> Route:
     def route(bench: Bench) -> None:
         kind, (path, case) = bench.kind, bench.unit(version)
-        names = [*map(str, bench.run.states), *kind.switches]
+        known = kind.known(kind.times(), bench.run)
+        names = list(dict.fromkeys([*map(str, bench.run.states), *known, *kind.switches]))
         found = sampled(simulated(path, how, case, names, 51), case, 51)
         # An importer reads of an event what is before or after it.
         bench.check(found, UNIT, aside=1e-7 * kind.end)

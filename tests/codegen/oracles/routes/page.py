@@ -11,6 +11,7 @@ from oracles.routes.kinds import KINDS
 from oracles.routes.lawful import LAWFUL
 from oracles.routes.looped import LOOPED
 from oracles.routes.plain import PLAIN
+from oracles.routes.signals import SIGNALS
 from oracles.routes.sloped import SLOPED
 from oracles.routes.switches import SWITCHES
 from oracles.routes.table import REFUSALS, REFUSED
@@ -51,6 +52,7 @@ def page() -> str:
         ("Switches", (*SWITCHES, *EXCHANGING)),
         ("No port that switches", (*PLAIN, *LAWFUL, *LOOPED)),
         ("Lookup tables", TABLED),
+        ("Signals", SIGNALS),
     ):
         plain = [route for route in ROUTES if route not in COMPILED]
         parts += [f"\n## {title}\n", *_table(kinds, plain), "", *_table(kinds, COMPILED)]

@@ -153,6 +153,47 @@ def cascade() -> Kind:
                 1.0, at=0.31, rest={"inputs": {"ref": REF}})  # fmt: skip
 
 
+def thermostat() -> Kind:
+    """A vent that a sampled thermostat opens above 25 degrees: each way a lag, turned at instants alone."""
+    P, C, R, vent, every = 12.0, 2.0, 10.0, 1.0, 0.1
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        theta, at, found, opens = 24.5, 0.0, np.zeros_like(t), np.zeros_like(t)
+        while at < t[-1] + every / 2:
+            opened = theta > 25
+            conductance = 1 / R + opened / vent
+            to, tau = P / conductance, C / conductance
+            own = t > at - 1e-12
+            found[own] = to + (theta - to) * np.exp((at - t[own]) / tau)
+            opens[own] = opened
+            theta, at = to + (theta - to) * float(np.exp(-every / tau)), at + every
+        return {"theta": found, "gate": opens}
+
+    nodes = [bg.Sf("power", "P"), bg.Zero("n"), bg.One("pass"), bg.R("vent", "R_v"), bg.R("wall", "R"),
+             bg.Sw("relay", on="gate - 1/2"), bg.C("room", "C", effort="theta"),
+             bg.Controller("thermostat", every=every,
+                           gives={"gate": "Piecewise((1, theta > 25), (0, True))"})]  # fmt: skip
+    graph = bond_graph(nodes, "power>n n>room n>wall n>pass pass>vent pass>relay")
+    return Kind("switch that a sampled controller turns", graph, {"C": C, "R": R, "R_v": vent}, {"P": f"{P}"},
+                known, 2.05, {"theta": 24.5}, at=0.05, mode={"relay": "off"},
+                rest={"inputs": {"P": 1.0}, "initial": {"theta": 9.0}})  # fmt: skip
+
+
+def braked() -> Kind:
+    """A brake of 3 N for four of a controller's instants, then of 1/2: a rest from 1/4 to 0.4 s."""
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        return {"v": np.where(t < 0.4, np.maximum(0.5 - 2 * t, 0), 0.5 * (t - 0.4))}
+
+    nodes = [bg.Se("push", "P"), bg.One("n"), bg.I("m", "m", flow="v"),
+             bg.R("brake", law=bg.DryFriction("N")),
+             bg.Controller("sequence", every="1/10", states={"k": 0}, update={"k": "Min(k + 1, 9)"},
+                           gives={"N": "Piecewise((3, k < 4), (most, True))"})]  # fmt: skip
+    return Kind("brake that a sampled controller sets", bond_graph(nodes, "push>n>m n>brake"),
+                {"m": 1.0, "most": 0.5}, {"P": "1"}, known, 0.98, {"v": 0.5}, at=0.12, mode={"brake": "slip"},
+                rest={"inputs": {"P": 0.25}, "initial": {"v": 0.0, "k": 9.0, "N": 0.5}})  # fmt: skip
+
+
 def wired() -> Kind:
     """The sampled PI by wires: a detector, a sum of two ports, a source without a value."""
     T, K, Ki = 0.05, 2.0, 6.0
@@ -174,4 +215,4 @@ def wired() -> Kind:
                 controller().known, 1.0, at=0.31, rest={"inputs": {"ref": REF}})  # fmt: skip
 
 
-SIGNALS = (function, state, bounded, controller, saturating, cascade, wired)
+SIGNALS = (function, state, bounded, controller, saturating, cascade, wired, thermostat, braked)

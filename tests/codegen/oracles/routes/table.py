@@ -34,6 +34,12 @@ REFUSALS = (
         "not affine",
     ),
     Refusal(
+        ("saturating", "thermostat", "braked"), ("C, exact",), True,
+        "Exact steps in C set states by affine maps, and here what a controller sets has cases or bounds. "
+        "`method=\"auto\"` locates events with step control instead; exact steps in numpy go.",
+        "not affine",
+    ),
+    Refusal(
         ("together", "bridge", "two_dogs", "resting"), ("C, exact",), True,
         "Redundant ports (two brakes at rest, two dogs, two jumps, four diodes without a current) share a "
         "load so that the largest part of what one can bear is the least: which one that is changes with "
