@@ -21,6 +21,9 @@ from codegen.numbers.arrays import Array
 from codegen.standalone.switchings import Reset, first_taken
 from codegen.tuning import TUNING
 
+AROUND = 12
+"""So many parts of an instant without end are told."""
+
 Decide = Callable[[Occasion, Sight], Decision]
 
 
@@ -70,7 +73,9 @@ def parts_of(
         assert part.reset is not None
         here = now.seen(part.reset)
         now = now._replace(previous=part.mode, touched=frozenset())
-    if taken := now.model.taken_by(fired):
+    if taken := now.model.taken_by(
+        [one for part in found[-AROUND:] for one in _fired(now.model, part)]
+    ):
         raise SimulationError(
             f"at t = {now.t:.9g} the transitions of {taken} lead to one another without end; let no guard be "
             "above zero where another transition has just led"
@@ -97,7 +102,7 @@ def hits(
     }
 
 
-def _fired(model: ClosedModel, part: Part, begins: bool) -> list[Reset]:
+def _fired(model: ClosedModel, part: Part, begins: bool = False) -> list[Reset]:
     """The resets of ports that changed over, and of stops that were hit; as a run begins of transitions."""
     if not model.program.resets:
         return []

@@ -54,6 +54,10 @@ class ExactRoom:
         """Go on from one buffer to the next; what happens."""
         ends = self._from[1], self._to[1]
         self._call(self._library.ex_pause_next, inputs, *ends, stop, anew, renewed)
+        return self.told()
+
+    def told(self) -> Sequence[Event]:
+        """What the latest call says has happened."""
         count = self._task.count
         told = self._names, self._taken
         return told_events(self._ffi, self._events, count, *told) if count else ()

@@ -188,7 +188,7 @@ def stepper_in_c(bench: Bench) -> None:
 def _stepped_outside(bench: Bench, ready: codegen.Simulator, within: float) -> None:
     kind = bench.kind
     one = ready.stepper(kind.initial, kind.signals, initially_on=kind.on)
-    rows, told = [dict(one.signals)], list[codegen.Event]()
+    rows, told = [dict(one.signals)], [*one.events]
     for t in kind.times()[1:]:
         rows.append(dict(one.advance(t - one.time)))
         told += one.events

@@ -73,10 +73,9 @@ def launch() -> Kind:
         },
     )  # fmt: skip
     graph = bond_graph(
-        [bg.Se("drive", "torque"), bg.One("shaft"), bg.I("J", "J", flow="omega"),
+        [bg.Se("drive", "1*force"), bg.One("shaft"), bg.I("J", "J", flow="omega"),
          bg.Function("force", "throttle*(2*box_launch + gear)"), box], "drive>shaft>J",
     )  # fmt: skip
-    graph.nodes["drive"]["value"] = "1*force"
     return Kind(
         "state machine with an action", graph, {"J": 1.0, "none": 0.0}, {"throttle": "ramp(0, 0.5)"},
         known, 1.9, at=0.7, mode={"box": "launch"}, rest={"inputs": {"throttle": 0.0}},
@@ -102,7 +101,7 @@ def begun() -> Kind:
     )  # fmt: skip
     graph = bond_graph([bg.State("x", "rate*m_run - m_down", start=1), machine], "")
     return Kind("state machine that begins by transitions", graph, {"rate": 3.0, "off": 0.0}, {}, known, 1.0,
-                at=0.7, mode={"m": "down"})  # fmt: skip
+                at=0.7, mode={"m": "down"}, rest={"initial": {"x": 0.2}})  # fmt: skip
 
 
 def chained() -> Kind:
@@ -141,7 +140,7 @@ def chained() -> Kind:
     )  # fmt: skip
     graph = bond_graph([bg.State("x", "p_up - p_down"), machine], "")
     return Kind("state machine that goes on at once", graph, {"one": 1.0}, {}, known, 4.5, at=0.5,
-                mode={"p": "up"})  # fmt: skip
+                mode={"p": "up"}, rest={"initial": {"x": 0.5, "p": 1.0}})  # fmt: skip
 
 
 def ticked() -> Kind:
@@ -149,7 +148,7 @@ def ticked() -> Kind:
     T = 0.25
 
     def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
-        # x' = 1 up to the first instant at which 0.8 is passed, then -1 to the first below 0.3, and so on.
+        # x' = 1 up to the first instant above 0.8, then -1 to the first below 0.1, and so on.
         turns = [1.0, 2.0, 3.0]
         x = stepwise(
             t,
@@ -163,7 +162,7 @@ def ticked() -> Kind:
         return {"x": x, "way": mode * 1.0, "passed": counted}
 
     nodes = [
-        bg.State("x", "way_up - way_down"), bg.Controller("sensor", every=T, gives={"seen": "x"}),
+        bg.State("x", "drive*(way_up - way_down)"), bg.Controller("sensor", every=T, gives={"seen": "x"}),
         bg.StateMachine(
             "way", ["up", "down"], {"up > down": "seen - most", "down > up": "least - seen"}
         ),
@@ -173,7 +172,8 @@ def ticked() -> Kind:
         ),
     ]  # fmt: skip
     return Kind("state machine that reads a controller", bond_graph(nodes, ""), {"most": 0.8, "least": 0.1},
-                {}, known, 3.2, at=0.7, mode={"way": "up", "counter": "on"})  # fmt: skip
+                {"drive": "1"}, known, 3.2, at=0.7, mode={"way": "up", "counter": "on"},
+                rest={"inputs": {"drive": 0.0}, "initial": {"x": 0.3}})  # fmt: skip
 
 
 MACHINES = (selector, launch, begun, chained, ticked)

@@ -10,6 +10,7 @@ from oracles.routes.kind import Kind
 from oracles.routes.kinds import KINDS
 from oracles.routes.lawful import LAWFUL
 from oracles.routes.looped import LOOPED
+from oracles.routes.machines import MACHINES
 from oracles.routes.plain import PLAIN
 from oracles.routes.signals import SIGNALS
 from oracles.routes.sloped import SLOPED
@@ -53,6 +54,7 @@ def page() -> str:
         ("No port that switches", (*PLAIN, *LAWFUL, *LOOPED)),
         ("Lookup tables", TABLED),
         ("Signals", SIGNALS),
+        ("State machines", MACHINES),
     ):
         plain = [route for route in ROUTES if route not in COMPILED]
         parts += [f"\n## {title}\n", *_table(kinds, plain), "", *_table(kinds, COMPILED)]
