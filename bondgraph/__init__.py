@@ -55,6 +55,7 @@ from bondgraph.nodes.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, S
 from bondgraph.nodes.hysteresis import Hysteresis
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw
+from bondgraph.nodes.machines import StateMachine
 from bondgraph.nodes.one_way import CheckValve, Diode, Freewheel
 from bondgraph.nodes.rate_limiter import RateLimiter
 from bondgraph.nodes.signals import Function, State
@@ -127,6 +128,7 @@ __all__ = [
     "SingularStorageError",
     "State",
     "StateEquations",
+    "StateMachine",
     "StateSpace",
     "Step",
     "Stop",

@@ -126,6 +126,8 @@ def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:
         element = graph.nodes[name]["element"]
         if element.owner is not None:
             joined.add_edge(("node", name), ("field", element.owner))
+        if element.whole is not None:
+            joined.add_edge(("node", name), ("whole", element.whole))
         used = {symbol for part in read_in(element) for symbol in part.free_symbols & owned}
         for _, entry in element.row:
             used |= entry.free_symbols & owned

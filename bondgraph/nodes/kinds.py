@@ -20,8 +20,10 @@ POSITION = "position"
 EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", "falling", "time", *_BOUNDED)
 """The attributes that are numbers or expressions."""
 
-NAMED = ("states", "update", "outputs")
-"""The attributes that map names to expressions."""
+_KEPT = ("states", "update", "outputs")
+
+NAMED = (*_KEPT, "transitions")
+"""The attributes that map names to expressions; those of transitions are no signals."""
 
 INSTANTS = ("every", "offset")
 """The attributes that are numbers of seconds."""
@@ -94,7 +96,15 @@ class Kind(StrEnum):
     )
     CONTROLLER = (
         "Controller",
-        Nature("signal", frozenset({*INSTANTS, "reads", "step", "ports", *NAMED}), place=11),
+        Nature("signal", frozenset({*INSTANTS, "reads", "step", "ports", *_KEPT}), place=11),
+    )
+    MACHINE = (
+        "StateMachine",
+        Nature(
+            "signal",
+            frozenset({"modes", "initially", "transitions", "states", "reset", "ports"}),
+            place=12,
+        ),
     )
     HYSTERESIS = (
         "Hysteresis",

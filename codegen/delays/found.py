@@ -42,11 +42,11 @@ def readings(
 ) -> tuple[Reading, ...]:
     """The delays with numbers for their parameters.
 
-    Raises `ParameterError` for a delay that is not above zero.
+    Raises `ParameterError` for a delay that is not above zero, and for names without a number.
     """
     found = []
     for one in delays:
-        late, start = (float(at_parameters(part, parameters)) for part in (one.time, one.start))
+        late, start = (_number(one.given, part, parameters) for part in (one.time, one.start))
         if not late > 0 or not math.isfinite(start):
             raise ParameterError(
                 f"delay {one.given}: its time is {late:g} and its start {start:g}; a delay is above zero"
@@ -56,6 +56,15 @@ def readings(
         function = lambdified([sp.Symbol(name) for name in names], [value])
         found.append(Reading(one.given.name, late, start, _by_name(function, names)))
     return tuple(found)
+
+
+def _number(name: sp.Symbol, part: sp.Expr, parameters: Mapping[str, sp.Rational]) -> float:
+    """A time or a start; `ParameterError` where it lacks a number."""
+    told = at_parameters(part, parameters)
+    if told.free_symbols:
+        missing = ", ".join(sorted(map(str, told.free_symbols)))
+        raise ParameterError(f"delay {name}: missing parameter(s) {missing}; give each a number")
+    return float(told)
 
 
 def _by_name(function: Callable[..., object], names: Sequence[str]) -> Callable[..., float]:

@@ -106,6 +106,8 @@ def test_what_has_no_past_refuses_delays_by_name() -> None:
             ask()
     with pytest.raises(bg.ParameterError, match="delay past: its time is 0"):
         codegen.simulator(equations, {"T": 0}).run([0, 1])
+    with pytest.raises(bg.ParameterError, match=r"delay past: missing parameter\(s\) T"):
+        codegen.simulator(equations, {}).run([0, 1], inputs={"T": 1})
     with pytest.raises(bg.StructureError, match="its time is -1"):
         bg.derive(bg.graph([bg.State("x", "y"), bg.Delay("y", "x", time=-1)]))
     assert "past: x as it was T s ago; 1 before a run has gone so far" in " ".join(

@@ -143,6 +143,7 @@ def _parameters(equations: bg.StateEquations) -> list[str]:
     read = [law.free_symbols for law in equations.laws.values()]
     read += [part.free_symbols for switch in equations.switches for part in switch.read]
     read += [start.free_symbols for start in equations.starts.values()]
+    read += [part.free_symbols for late in equations.delays for part in (late.time, late.start)]
     known = {*equations.signals, *equations.states, *equations.inputs, *equations.further_states}
     known |= {*equations.held, TIME}
     return sorted({str(name) for name in used.union(*read)} - {str(name) for name in known})
