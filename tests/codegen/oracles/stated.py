@@ -112,7 +112,7 @@ def _begun(
         else Constant(rng.uniform(0.3, 1.5))
         for name in ready.inputs
     }
-    end = t + SETTLED if ready.switches else t
+    end = t + SETTLED if equations.switches else t
     times = end + STEP * np.arange(len(SLOPE))
     run = ready.run(times if end == t else [t, *times], states, signals)
     if any(event.time > end for event in run.events):
@@ -120,7 +120,7 @@ def _begun(
     numbers = {TIME.name: end, **{str(name): float(v) for name, v in parameters.items()}}
     for name, signal in signals.items():
         numbers[name], numbers[f"{name}'"] = signal(end), signal.piece(end).derivative(end)
-    if not ready.switches:
+    if not equations.switches:
         slopes = _rates(ready, t, states, signals)
         numbers |= {f"{name}'": slope for name, slope in zip(states, slopes, strict=True)}
     return Instant(run, numbers, BY_PIECES if ready.closed.program.sources else CLOSE)

@@ -47,7 +47,7 @@ REFUSALS = (
         "not affine",
     ),
     Refusal(
-        ("followed",), ("C, exact",), True,
+        ("followed",), ("C, exact",), False,
         "The affine maps of modes are made of one in which all ports are let go, and what laws give is the "
         "same in all; here a law reads what a port gives. `method=\"auto\"` locates events with step control "
         "instead.",
