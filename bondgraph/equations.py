@@ -10,6 +10,7 @@ from bondgraph.algebra.called import unguarded
 from bondgraph.algebra.expressions import TIME, callable_in_text
 from bondgraph.errors import StructureError
 from bondgraph.nodes.elements import Element
+from bondgraph.nodes.lagging import Lagging
 from bondgraph.nodes.laws import ExpressionLaw, Law
 from bondgraph.nodes.tasks import Machine, Task
 from bondgraph.reduce.record import Reading
@@ -141,6 +142,11 @@ class StateEquations:
     def tasks(self) -> tuple[Task, ...]:
         """What sampled controllers do, and at which instants, in declaration order."""
         return tuple(one.task for one in self.elements.values() if one.task is not None)
+
+    @property
+    def delays(self) -> tuple[Lagging, ...]:
+        """What is given late, in declaration order."""
+        return tuple(one.late for one in self.elements.values() if one.late is not None)
 
     @property
     def machines(self) -> tuple[Machine, ...]:

@@ -87,6 +87,12 @@ def linearize(
     Matrix([[-6*c]])
     """
     check_derived(equations)
+    if equations.delays:
+        name = equations.delays[0].given
+        raise SignalError(
+            f"delay {name}: a delay has no finite number of states, and no linear model of them; put a "
+            f"bg.TransferFunction that stands for it in its place, or bg.Function({name.name!r}, ...) at rest"
+        )
     mode, at = told_numbers(equations.machines, mode, at)
     stuck = tuple(stuck) if isinstance(stuck, Iterable) and not isinstance(stuck, str) else stuck
     equations = turned(_opened(equations, inputs), _with_held(equations, laws, stuck, mode))

@@ -106,6 +106,8 @@ def read_in(element: Element) -> list[Law | sp.Expr]:
         told += [element.switch.on, element.switch.off]
         resets = element.switch.resets
     told += [part for one in resets for part in (one.state, one.value)]
+    if element.late is not None:
+        told += [element.late.value, element.late.time, element.late.start]
     return [part for part in told if part is not None]
 
 

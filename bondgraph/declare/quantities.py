@@ -68,7 +68,7 @@ def _of_signals(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str
     if kind is not Kind.FUNCTION:
         yield "e_", "", None
     yield "f_", "", None
-    parts = [*kept]
+    parts = [*kept, *PARTS.get(kind, ())]
     if kind is Kind.STATE:
         yield "rate_", "", None
         bounds = [key for key in BOUNDS if attributes.get(key) is not None]
@@ -80,6 +80,13 @@ def _of_signals(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str
         parts += [NUMBER, *(f"{end}{last}" for end in ends for last in ("", LAST))]
     for part in parts:
         yield from (("e_", f"_{part}", None), ("f_", f"_{part}", None))
+
+
+PARTS: Mapping[Kind, tuple[str, ...]] = {
+    Kind.HYSTERESIS: ("load", "off", "branch", "on", "switch"),
+    Kind.RATE_LIMITER: ("mass", "drift", "slip", "input", "clutch"),
+}
+"""The parts of nodes that are the same whatever their attributes."""
 
 
 def listed(given: Any) -> list[str]:

@@ -41,12 +41,19 @@ def does(ports: Sequence[Element]) -> tuple[Rich, ...]:
     lines: list[Rich] = []
     if (task := ports[0].task) is not None:
         lines.append((Run(task.instants),))
+    elif (late := ports[0].late) is not None:
+        lines += [formula(late.value), joined([*formula(late.time), Run(" s ago")])]
     elif ports[0].machine is not None:
         taken = [port.switch.transition for port in ports if port.switch is not None]
         lines += [_taken(one) for one in taken if one is not None]
     elif ports[0].declared is Kind.STATE:
         begin, end = ("∫ (", ")") if told[0].is_Add else ("∫ ", "")
         lines += [joined([Run(begin), *formula(told[0]), Run(end)]), bounds(ports)]
+    elif ports[0].declared is Kind.HYSTERESIS:
+        lines += [_conditions(port.switch) for port in ports if port.switch is not None]
+    elif ports[0].declared is Kind.RATE_LIMITER:
+        dragged = [port.law for port in ports if port.kind is Kind.SF]
+        lines += [formula(law.expression) for law in dragged if isinstance(law, ExpressionLaw)]
     else:
         lines.append(formula(told[0]))
     return tuple(line for line in lines if line and length(line) <= IN_BLOCK)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.lagging import Lagging
 from bondgraph.nodes.laws import DryFriction, Law
 from bondgraph.nodes.tasks import Machine, Reset, Task, Transition
 
@@ -53,10 +54,11 @@ class Element:
     turns on and off. ``whole``: of a part of a node of several, a stop or a signal, that node, and
     ``declared`` its kind; ``at``: where that is not bonded to the first of these, the part that it is bonded
     to, or itself. ``task``: of a sampled controller, what it does at its instants; ``machine``: of a state
-    machine, its modes. ``start``: of what keeps or makes a state, the value with which runs begin.
-    ``by_inverse``: whether the law counts by its inverse alone, what it gives being the state. ``turned``:
-    whether its law is turned round by what is known of it: a resistance then gives what its law, as it was
-    written, receives. ``needed``: names that have to be positive for that.
+    machine, its modes; ``late``: of a delay, of what and how late it is. ``start``: of what keeps or makes a
+    state, the value with which runs begin. ``by_inverse``: whether the law counts by its inverse alone, what
+    it gives being the state. ``turned``: whether its law is turned round by what is known of it: a
+    resistance then gives what its law, as it was written, receives. ``needed``: names that have to be
+    positive for that.
     """
 
     name: Hashable
@@ -82,6 +84,7 @@ class Element:
     machine: Machine | None = None
     at: Hashable | None = None
     declared: Kind | None = None
+    late: Lagging | None = None
     needed: frozenset[sp.Symbol] = frozenset()
 
     @property
@@ -98,6 +101,11 @@ class Element:
     def of_signals(self) -> bool:
         """Whether it is a part of a node of signals, and carries no power."""
         return self.declared is not None and self.declared.signals
+
+    @property
+    def is_effort_told(self) -> bool:
+        """Whether its effort is a signal that was declared as a node of two values."""
+        return self.declared is Kind.HYSTERESIS and self.name == self.whole
 
     @property
     def one_port(self) -> bool:

@@ -17,7 +17,7 @@ BOUNDS = {"low": 1, "high": -1}
 POSITION = "position"
 """The part of a stop that integrates its flow."""
 
-EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", *_BOUNDED)
+EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", "falling", "time", *_BOUNDED)
 """The attributes that are numbers or expressions."""
 
 _KEPT = ("states", "update", "outputs")
@@ -105,6 +105,22 @@ class Kind(StrEnum):
             frozenset({"modes", "initially", "transitions", "states", "reset", "ports"}),
             place=12,
         ),
+    )
+    HYSTERESIS = (
+        "Hysteresis",
+        Nature(
+            "signal", frozenset({"value", "low", "high", "off", "on", "unit", "ports"}), place=12
+        ),
+    )
+    RATE_LIMITER = (
+        "RateLimiter",
+        Nature(
+            "signal", frozenset({"value", "rate", "falling", "start", "unit", "ports"}), place=13
+        ),
+    )
+    DELAY = (
+        "Delay",
+        Nature("signal", frozenset({"value", "time", "start", "unit", "ports"}), place=14),
     )
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":

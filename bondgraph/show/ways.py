@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
+from bondgraph.nodes.lagging import Lagging
 from bondgraph.nodes.laws import SLIP, DryFriction
 from bondgraph.nodes.tasks import Machine, Reset, Task
 from bondgraph.reduce.structure import Port
@@ -46,6 +47,14 @@ def switching(one: SwitchPort) -> str:
     if one.gap is not None:
         return f"{text}; {_bound(one)}"
     return f"{text}; so {received} is never {least} and {given} never {most}"
+
+
+def lagging(one: Lagging) -> str:
+    """What a delay gives."""
+    return (
+        f"{one.given}: {plain(one.value)} as it was {plain(one.time)} s ago; {plain(one.start)} before a run "
+        "has gone so far"
+    )
 
 
 def going(machine: Machine, switches: Sequence[SwitchPort]) -> str:

@@ -23,7 +23,7 @@ from bondgraph.show.statements import (
     without_functions,
     without_idle,
 )
-from bondgraph.show.ways import going, rubbing, switching, working
+from bondgraph.show.ways import going, lagging, rubbing, switching, working
 
 PUT_IN = "with laws and sources put in"
 
@@ -66,7 +66,7 @@ def ways(model: StateEquations) -> list[str]:
     ]
     machines = [going(one, model.switches) for one in model.machines]
     switches = [*map(switching, model.plain_switches), *machines]
-    return [*frictions, *switches, *map(working, model.tasks)]
+    return [*frictions, *switches, *map(working, model.tasks), *map(lagging, model.delays)]
 
 
 def together(loop: Sequence[sp.Symbol]) -> str:

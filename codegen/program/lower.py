@@ -130,7 +130,10 @@ def _watched(equations: StateEquations) -> frozenset[sp.Symbol]:
     )  # fmt: skip
     tasks = equations.tasks
     set_by_tasks = (value for t in tasks for value in (*(r.value for r in t.resets), *t.reads))
-    return frozenset[sp.Symbol]().union(*(value.free_symbols for value in (*told, *set_by_tasks)))
+    late = (part for one in equations.delays for part in (one.value, one.time, one.start))
+    return frozenset[sp.Symbol]().union(
+        *(value.free_symbols for value in (*told, *set_by_tasks, *late))
+    )
 
 
 def _check_varying(closing: Closing) -> None:

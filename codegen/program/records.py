@@ -257,6 +257,11 @@ class Program:
         return max(len(self.states) + len(self.law_states), 1)
 
     @property
+    def late(self) -> bool:
+        """Whether laws read what friction and switches give, which do not need these laws."""
+        return self.early < len(self.groups)
+
+    @property
     def blocks(self) -> tuple[Block, ...]:
         """Every block that a target evaluates."""
         laws = (group.values for group in (self.known, *self.groups, self.coupled))
@@ -436,8 +441,19 @@ class Program:
 
     @property
     def asked(self) -> tuple[sp.Symbol, ...]:
-        """The external inputs that a run is given by its user."""
+        """The external inputs that are no known sources."""
         return self.external[: len(self.external) - len(self.sources)]
+
+    @property
+    def delayed(self) -> tuple[sp.Symbol, ...]:
+        """Those of them that delays give, which a run finds."""
+        return tuple(one.given for one in self.equations.delays if one.given in self.asked)
+
+    @property
+    def wanted(self) -> tuple[sp.Symbol, ...]:
+        """The others, which a run is given by its user."""
+        delayed = self.delayed
+        return tuple(name for name in self.asked if name not in delayed)
 
 
 def block(expressions: Sequence[sp.Expr], taken: Iterable[sp.Symbol] = ()) -> Block:

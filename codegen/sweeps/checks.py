@@ -109,7 +109,7 @@ def _check_names(name: str, measure: Measure, program: Program) -> None:
     asked, known = measure.arguments[0], known_names(program)
     try:
         if READY[measure.function] in OF_NODES:
-            check_node(asked, program.nodes)
+            check_node(asked, (*program.nodes, *_fields(program)))
             if measure.function in EVENTFUL:
                 check_event(asked, measure.arguments[1], program.transitions)
         elif asked not in known:
@@ -118,3 +118,9 @@ def _check_names(name: str, measure: Measure, program: Program) -> None:
             )
     except SignalError as error:
         raise SignalError(f"measure {name!r}: {error}") from None
+
+
+def _fields(program: Program) -> list[Hashable]:
+    """The nodes of several ports, which are asked for as wholes."""
+    owners = (one.owner for one in program.equations.elements.values())
+    return list(dict.fromkeys(owner for owner in owners if owner is not None))

@@ -27,8 +27,8 @@ from differentials.commands.options import Asked
 from differentials.commands.preparing import prepare
 from differentials.commands.printing import print_json, with_folder, written
 from differentials.commands.subject import Subject
+from differentials.prepared import Prepared
 from differentials.report import table
-from differentials.scenarios import Prepared
 
 SHOWN = 50
 """Rows of a table on the screen."""

@@ -127,10 +127,8 @@ def latex(bench: Bench) -> None:
 
 def drawing(bench: Bench) -> None:
     """Every node is drawn, a switch as one, every bond with its stroke, every signal."""
-    switches = [
-        one for one in bench.kind.equations.switches
-        if not one.switch.stops and one.switch.transition is None
-    ]  # fmt: skip
+    parts = {port.given for port in bench.kind.equations.ports if port.element.whole is not None}
+    switches = [one for one in bench.kind.equations.plain_switches if one.port.given not in parts]
     stops = [node for node, kind in bench.kind.graph.nodes(data="kind") if kind == "Stop"]
     drawn = bg.drawing(bench.kind.graph)
     drawn.save(bench.folder / "kind.svg")

@@ -1,5 +1,6 @@
 """All kinds, in the order of the table."""
 
+from oracles.routes.blocks import BLOCKS
 from oracles.routes.cornered import CORNERED
 from oracles.routes.exchanging import EXCHANGING
 from oracles.routes.friction import FRICTION
@@ -19,7 +20,7 @@ from oracles.routes.tabled import TABLED
 
 EVERY = (
     *FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL, *LOOPED,
-    *SUPPLIED, *TABLED, *SEARCHED, *EXCHANGING, *SIGNALS, *MACHINES,
+    *SUPPLIED, *TABLED, *SEARCHED, *EXCHANGING, *SIGNALS, *BLOCKS, *MACHINES,
 )  # fmt: skip
 
 KINDS = {make.__name__: make for make in EVERY}

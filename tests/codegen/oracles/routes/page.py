@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
+from oracles.routes.blocks import BLOCKS
 from oracles.routes.exchanging import EXCHANGING
 from oracles.routes.friction import FRICTION
 from oracles.routes.going import COMPILED, ROUTES
@@ -54,6 +55,7 @@ def page() -> str:
         ("No port that switches", (*PLAIN, *LAWFUL, *LOOPED)),
         ("Lookup tables", TABLED),
         ("Signals", SIGNALS),
+        ("Blocks", BLOCKS),
         ("State machines", MACHINES),
     ):
         plain = [route for route in ROUTES if route not in COMPILED]

@@ -27,6 +27,7 @@ REFUSALS = (
          "staircase", "per_turn",
          "tabled_resistance", "tabled_storage", "engine_map", "tabled_ratio", "tabled_curve",
          "tabled_level", "meshed_shafts", "joined_cells", "geared_behind", "bouncing_nonlinear",
+         "clamped", "led_back", "limited", "dead_zone", "looked_up",
          "loop_of_nonlinear_laws"),
         ("C, exact",), True,
         "Matrix exponentials need rates that are affine in each mode, and here a law or a ratio bends them. "
