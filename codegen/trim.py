@@ -48,7 +48,7 @@ def trim(
     model = simulator.closed
     mode, initial = told_numbers(model.program.equations.machines, mode, initial)
     choices(model, mode)
-    pieces, start = simulator.steady(inputs or {}, initial)
+    pieces, start = simulator.steady(inputs or {}, initial or {})
     return _named(model, equilibrium(model, pieces, start, mode))
 
 

@@ -11,14 +11,16 @@ from bondgraph.nodes.tasks import Machine
 
 def told_numbers(
     machines: Sequence[Machine], mode: Any, point: Mapping[Any, Any] | None
-) -> tuple[Any, dict[Any, Any]]:
+) -> tuple[Any, Any]:
     """The rest of ``mode``, and ``point`` with the number of each mode that a machine was told to be in.
+
+    What is no mapping is left to whoever looks at it.
 
     Raises `StructureError` for a mode that a machine does not have, and where ``point`` says another number.
     """
+    if not isinstance(mode, Mapping) or not isinstance(point, Mapping | None):
+        return mode, point
     found = {} if point is None else dict(point)
-    if not isinstance(mode, Mapping):
-        return mode, found
     known = {one.name: one for one in machines}
     for name, word in mode.items():
         machine = known.get(name)

@@ -41,8 +41,8 @@ def StateMachine(
     ...          "fill > rest": "h - 2", "rest > fill": ("1 - h", {"fills": "fills + 1"})})],
     ...     "pump > node > tank", "node > leak")
     >>> run = codegen.simulator(bg.derive(tank), {"Q": 5, "A": 1, "R": 1}).run([0, 1, 2])
-    >>> [(event.port, event.kind) for event in run.events], run["valve"].tolist(), run["fills"][-1]
-    ([('valve', 'fill > rest'), ('valve', 'rest > fill'), ('valve', 'fill > rest')], [0.0, 0.0, 1.0], 2.0)
+    >>> [(event.port, event.kind) for event in run.events], run["valve"].tolist()
+    ([('valve', 'fill > rest'), ('valve', 'rest > fill'), ('valve', 'fill > rest')], [0.0, 1.0, 1.0])
     """
     pairs = transitions.items() if isinstance(transitions, Mapping) else ()
     acting = {key: told for key, told in pairs if isinstance(told, list | tuple) and len(told) == 2}

@@ -46,10 +46,10 @@ def _machine(machine: Machine, switches: Sequence[SwitchPort]) -> Iterator[str]:
 
 
 def escaped(mode: str) -> str:
-    """A mode's name as text.
+    r"""A mode's name as text.
 
-    >>> escaped("limp_home")
-    'limp\\_home'
+    >>> print(escaped("limp_home"))
+    limp\_home
     """
     return mode.replace("_", r"\_")
 
