@@ -7,6 +7,9 @@ from bondgraph.analyse.linearize import linearize
 from bondgraph.analyse.loops import Loop, loops
 from bondgraph.analyse.sampled import SampledModel
 from bondgraph.analyse.sticking import holding_efforts
+from bondgraph.blocks.linear import Integrator, StateSpace, TransferFunction
+from bondgraph.blocks.pid import PID
+from bondgraph.blocks.static import DeadZone, Gain, Limiter, LookUp, Sum
 from bondgraph.causality.assign import assign_causality
 from bondgraph.causality.assignments import Assignment, assignments
 from bondgraph.causality.causal_graph import CausalGraph
@@ -47,10 +50,14 @@ from bondgraph.files.disk import read_graphml, read_json, write_graphml, write_j
 from bondgraph.files.graphml import from_graphml, to_graphml
 from bondgraph.files.nodelink import from_json, to_json
 from bondgraph.nodes.controllers import Controller
+from bondgraph.nodes.delays import Delay
 from bondgraph.nodes.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
+from bondgraph.nodes.hysteresis import Hysteresis
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw
+from bondgraph.nodes.machines import StateMachine
 from bondgraph.nodes.one_way import CheckValve, Diode, Freewheel
+from bondgraph.nodes.rate_limiter import RateLimiter
 from bondgraph.nodes.signals import Function, State
 from bondgraph.nodes.stops import Stop
 from bondgraph.rates.explicit import explicit
@@ -62,6 +69,7 @@ from bondgraph.sampling.space import SampledSpace
 
 __all__ = [
     "GY",
+    "PID",
     "TF",
     "AlgebraicLoopError",
     "Assignment",
@@ -76,6 +84,8 @@ __all__ = [
     "CheckValve",
     "Controller",
     "De",
+    "DeadZone",
+    "Delay",
     "DependentSourceError",
     "Df",
     "Diode",
@@ -92,10 +102,15 @@ __all__ = [
     "Formula",
     "Freewheel",
     "Function",
+    "Gain",
+    "Hysteresis",
     "I",
+    "Integrator",
     "JunctionStructure",
     "Kind",
+    "Limiter",
     "LinearModel",
+    "LookUp",
     "LookupTable",
     "Loop",
     "MissingExtraError",
@@ -103,6 +118,7 @@ __all__ = [
     "One",
     "ParameterError",
     "R",
+    "RateLimiter",
     "SampledModel",
     "SampledSpace",
     "Se",
@@ -112,15 +128,19 @@ __all__ = [
     "SingularStorageError",
     "State",
     "StateEquations",
+    "StateMachine",
+    "StateSpace",
     "Step",
     "Stop",
     "StoreError",
     "StrokeVerdict",
     "StructureError",
+    "Sum",
     "Sw",
     "Switch",
     "SwitchPort",
     "TableError",
+    "TransferFunction",
     "WriteError",
     "Zero",
     "assemble",

@@ -54,7 +54,8 @@ def with_given(point: Point, closed: Mapping[sp.Symbol, Law], moving: set[sp.Sym
         for name in ready:
             law = left.pop(name)
             value = law.expression.subs({s: found[s] for s in law.free_symbols & moving})
-            if not law.free_symbols & moving and not is_zero(found.setdefault(name, value) - value):
+            off = (found.setdefault(name, value) - value).subs(point)
+            if not law.free_symbols & moving and not is_zero(off):
                 raise SignalError(
                     f"at: {name} is {found[name]}, but its law gives {value}; leave it out"
                 )

@@ -1,7 +1,7 @@
 """`graph`: a bond graph from nodes, and from bonds written as paths, ``"engine > shaft > J"``."""
 
 import re
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -22,7 +22,7 @@ ARROWS = re.compile(r"[-<=–—→⇀⇁|;]+")
 
 
 def graph(
-    nodes: Iterable[Node | str | int],
+    nodes: Iterable[Node | str | int | list[Node]],
     *paths: str | Sequence[Hashable],
     tables: Iterable[Sampled] = (),
 ) -> BondGraph:
@@ -30,7 +30,8 @@ def graph(
 
     A path is a text of names, ``"a > b > c"``, with commas between several paths; or a list or tuple of
     names, for names with such signs in them. ``"3"`` is the node 3 where none is called so, and
-    ``"field.a"`` the port a of a node with ports. A node that another part declares is its bare name.
+    ``"field.a"`` the port a of a node with ports. A node that another part declares is its bare name; a list
+    among the nodes is nodes as well, those of a block.
     ``tables``: `LookupTable` objects that values and laws call.
 
     With a `Function`, a `State` or a `Controller` at an end, a ``>`` is a wire: the node behind it reads a
@@ -74,7 +75,7 @@ def _add_nodes(result: BondGraph, nodes: Iterable[Any]) -> None:
         raise StructureError(
             f"the nodes are a list, as [Se('force', 'F'), I('m', 'm')], not {nodes!r}"
         )
-    for node in nodes.items() if isinstance(nodes, Mapping) else nodes:
+    for node in nodes.items() if isinstance(nodes, Mapping) else _flat(nodes):
         name, attributes = (node, {}) if isinstance(node, str | int) else _parts(node)
         check_node_name(name)
         if name in result:
@@ -83,6 +84,12 @@ def _add_nodes(result: BondGraph, nodes: Iterable[Any]) -> None:
             )
         result.add_node(name)
         result.nodes[name].update(attributes)
+
+
+def _flat(nodes: Iterable[Any]) -> Iterator[Any]:
+    """The nodes, lists among them one by one."""
+    for node in nodes:
+        yield from _flat(node) if isinstance(node, list) else (node,)
 
 
 def _parts(node: Any) -> tuple[Hashable, Mapping[str, Any]]:

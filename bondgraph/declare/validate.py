@@ -123,13 +123,20 @@ def _add_elements(result: _Validated, graph: Any) -> tuple[set[Hashable], list[B
     fields: set[Hashable] = set()
     controls: list[Bond] = []
     for name, attributes in graph.nodes(data=True):
+        hub = name
         for own, element in elements_of(name, attributes).items():
             _add(result, own, element)
             if element.owner is not None:
                 fields.add(name)
+            elif element.at is not None:
+                if element.at != own:
+                    controls.append((element.at, own))
             elif own != name:
-                # What a source gives counts into the rest.
-                controls.append((own, name) if element.kind.supplies else (name, own))
+                # What sources and what they are at give counts into the rest.
+                joins = element.kind.joins
+                bond = (own, name if joins else hub)
+                controls.append(bond if joins or element.kind.supplies else bond[::-1])
+                hub = own if joins else hub
     return fields, controls
 
 

@@ -8,13 +8,13 @@ from bondgraph.explaining.records import Equation, Step, equation
 from bondgraph.nodes.elements import Element
 from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.show.sums import rate, signed_terms
-from bondgraph.show.ways import switching, working
+from bondgraph.show.ways import going, switching, working
 
 
 def signals_step(equations: StateEquations) -> Step:
     """What functions and states come to; what controllers set at their instants, and where states stay."""
     elements = equations.reduction.structure.elements
-    kept = {name for task in equations.tasks for name in task.states}
+    kept = {name for task in equations.tasks for name in task.states} | equations.kept
     lines = [
         line
         for element in elements.values()
@@ -22,7 +22,8 @@ def signals_step(equations: StateEquations) -> Step:
         for line in _lines(element, elements)
     ]
     sentences = [working(task) for task in equations.tasks]
-    sentences += [switching(one) for one in equations.switches if one.port.element.of_signals]
+    sentences += [going(one, equations.switches) for one in equations.machines]
+    sentences += [switching(one) for one in equations.plain_switches if one.port.element.of_signals]
     return Step("signals", "Signals, which carry no power", tuple(sentences), tuple(lines))
 
 

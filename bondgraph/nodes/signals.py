@@ -63,7 +63,7 @@ def function_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Ele
     where = f"node {name!r}"
     if attributes.get("value") is None:
         raise StructureError(f"{where} has no value; give an expression")
-    effort = _own_name(name, where)
+    effort = own_name(name, where)
     told = law(attributes["value"], where)
     if not isinstance(told, ExpressionLaw):
         raise StructureError(f"{where}: its value is an expression, not {told!r}")
@@ -80,7 +80,7 @@ def state_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Elemen
     where = f"node {name!r}"
     if attributes.get("rate") is None:
         raise StructureError(f"{where} has no rate; give an expression")
-    place, unit = _own_name(name, where), unit_of(attributes, where)
+    place, unit = own_name(name, where), unit_of(attributes, where)
     rate = ExpressionLaw(expression(attributes["rate"], f"{where}, rate"))
     start = start_of(attributes, where)
     demand = symbol(f"rate_{name}", where)
@@ -123,7 +123,7 @@ def _pair(
     ]  # fmt: skip
 
 
-def _own_name(name: Hashable, where: str) -> sp.Symbol:
+def own_name(name: Hashable, where: str) -> sp.Symbol:
     """The signal that a node of this name is."""
     if not isinstance(name, str):
         raise StructureError(

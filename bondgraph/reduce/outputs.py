@@ -35,7 +35,7 @@ def shown_signals(
 ) -> list[tuple[sp.Symbol, PortRow]]:
     """The signal each output node shows: what a one-port receives, what a junction has in common.
 
-    Of a function it is the function. Unless told, those of open ports, and functions.
+    Of a function it is the function. Unless told, those of open ports, functions and hystereses.
     """
     if outputs is None:
         outputs = [
@@ -43,6 +43,7 @@ def shown_signals(
             for port in structure.ports
             if _is_open(port.element) or port.element.is_function
         ]
+        outputs += [one for one in structure.common if structure.elements[one].is_effort_told]
     if isinstance(outputs, str) or not isinstance(outputs, Iterable):
         raise StructureError(f"outputs must be a list of nodes, not {outputs!r}")
     numbers = {port.element.name: at for at, port in enumerate(structure.ports)}

@@ -147,7 +147,10 @@ def _read(model: StateEquations) -> set[sp.Symbol]:
         if isinstance(law, DryFriction):
             used |= {*law.free_symbols} - {SLIP} | {port.received}
     for switch in model.switches:
-        used |= {switch.port.received}.union(*(part.free_symbols for part in switch.read))
+        own = set[sp.Symbol]() if switch.switch.transition else {switch.port.received}
+        used |= own.union(*(part.free_symbols for part in switch.read))
+    for late in model.delays:
+        used |= late.value.free_symbols
     for task in model.tasks:
         used |= {*task.reads}.union(*(one.value.free_symbols for one in task.resets))
     return used

@@ -23,7 +23,7 @@ from bondgraph.show.statements import (
     without_functions,
     without_idle,
 )
-from bondgraph.show.ways import rubbing, switching, working
+from bondgraph.show.ways import going, lagging, rubbing, switching, working
 
 PUT_IN = "with laws and sources put in"
 
@@ -64,7 +64,9 @@ def ways(model: StateEquations) -> list[str]:
         for port in model.ports
         if isinstance(law := model.laws.get(port.element.name), DryFriction)
     ]
-    return [*frictions, *map(switching, model.switches), *map(working, model.tasks)]
+    machines = [going(one, model.switches) for one in model.machines]
+    switches = [*map(switching, model.plain_switches), *machines]
+    return [*frictions, *switches, *map(working, model.tasks), *map(lagging, model.delays)]
 
 
 def together(loop: Sequence[sp.Symbol]) -> str:

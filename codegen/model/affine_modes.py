@@ -39,11 +39,10 @@ class LetGo:
 def let_go(forwards: AffineMap, numbers: Numbers, ports: Sequence[int]) -> LetGo:
     """The same from the map in which all ports slip forwards."""
     base = AffineMap(forwards.sizes, forwards.matrix.copy(), RATE)
-    x, u, du = (base.rows(part) for part in (STATES, INPUTS, RATES_OF_INPUTS))
-    rub, n = u[..., ports, :].copy(), x.shape[-2]
+    u = base.rows(INPUTS)
+    rub = u[..., ports, :].copy()
     u[..., ports, :] = 0.0
-    base.rows(READINGS)[:] = numbers.F @ x + numbers.D @ u + numbers.G @ du
-    base.rows(RATE)[..., :n, :] = numbers.P @ x + numbers.Q @ u
+    _show(base, numbers)
     return LetGo(base, ports, rub, thin(numbers.D[..., ports]), thin(numbers.Q[..., ports]))
 
 
@@ -60,8 +59,33 @@ def in_mode(known: LetGo, mode: Mode, hold: Hold | None, law_rates: Sequence[int
     given, own = u[..., ports, :], rates[..., :n, :]
     readings += known.shown @ given
     own += known.pushed @ given
+    _finish(parts, hold, law_rates)
+    return parts
+
+
+def told(
+    probed: AffineMap, numbers: Numbers, hold: Hold | None, law_rates: Sequence[int]
+) -> AffineMap:
+    """The map of a mode from what a model gives there, where laws read what its ports give."""
+    parts = AffineMap(probed.sizes, probed.matrix.copy(), RATE)
+    _show(parts, numbers)
+    _finish(parts, hold, law_rates)
+    return parts
+
+
+def _show(parts: AffineMap, numbers: Numbers) -> None:
+    """Readings and rates from states and inputs."""
+    x, u, du = (parts.rows(part) for part in (STATES, INPUTS, RATES_OF_INPUTS))
+    parts.rows(READINGS)[:] = numbers.F @ x + numbers.D @ u + numbers.G @ du
+    parts.rows(RATE)[..., : x.shape[-2], :] = numbers.P @ x + numbers.Q @ u
+
+
+def _finish(parts: AffineMap, hold: Hold | None, law_rates: Sequence[int]) -> None:
+    """The rates of states of laws; and no slip that rounding would make of what is held."""
+    readings, rates, du = (parts.rows(part) for part in (READINGS, RATE, RATES_OF_INPUTS))
+    n = parts.rows(STATES).shape[-2]
+    own = rates[..., :n, :]
     rates[..., n : n + len(law_rates), :] = readings[..., list(law_rates), :]
     if hold is not None:
         left = product(hold.slip_x, own) + product(hold.fixed, du)
         own += product(hold.take_away, left)
-    return parts

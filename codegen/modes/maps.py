@@ -1,8 +1,8 @@
-"""The affine maps of a model's modes, all made from that in which friction slips forwards."""
+"""The affine maps of a model's modes: where that tells all, from the one in which friction slips forwards."""
 
 import numpy as np
 
-from codegen.model.affine_modes import LetGo, in_mode, let_go
+from codegen.model.affine_modes import LetGo, in_mode, let_go, told
 from codegen.model.snapshot import Mode
 from codegen.numbers.arrays import Array
 from codegen.numbers.latest import Latest, room_for
@@ -18,7 +18,10 @@ from codegen.standalone.matrices import Numbers
 
 
 class AffineMaps:
-    """The latest maps of an affine model; ``numbers``: its matrices, None of one whose matrices change."""
+    """The latest maps of an affine model; ``numbers``: its matrices, None of one whose matrices change.
+
+    Where no law reads what friction and switches give, all are made from one of them.
+    """
 
     def __init__(
         self, program: Program, form: Form, friction: Friction, numbers: Numbers | None
@@ -44,6 +47,10 @@ class AffineMaps:
 
     def turned(self, mode: Mode, inputs: int, columns: Places) -> AffineMap:
         """Some columns of the map of a mode that has one."""
+        if self._program.late:
+            whole = self.of(mode, inputs)
+            assert whole is not None
+            return AffineMap(whole.sizes, whole.matrix[:, columns], RATE)
         base = self._base(inputs).at(columns)
         return in_mode(base, mode, self._hold(mode), self._program.law_rates)
 
@@ -51,6 +58,10 @@ class AffineMaps:
         hold = self._hold(mode)
         if hold is not None and hold.shares:
             return None
+        if self._program.late:
+            assert self._numbers is not None
+            probed = self._probed(inputs, mode)
+            return told(probed, self._numbers, hold, self._program.law_rates)
         return in_mode(self._base(inputs), mode, hold, self._program.law_rates)
 
     def _hold(self, mode: Mode) -> Hold | None:
@@ -62,18 +73,19 @@ class AffineMaps:
         if inputs not in self._bases:
             assert self._numbers is not None
             ports = [port.input for port in self._program.friction]
-            self._bases[inputs] = let_go(self._probed(inputs), self._numbers, ports)
+            forwards = self._probed(inputs, tuple(1 for _ in ports))
+            self._bases[inputs] = let_go(forwards, self._numbers, ports)
         return self._bases[inputs]
 
-    def _probed(self, inputs: int) -> AffineMap:
-        """The map where all ports slip forwards; what laws give does not depend on friction."""
+    def _probed(self, inputs: int, mode: Mode) -> AffineMap:
+        """A mode's map from what the model gives at as many points; laws may read what friction gives."""
         contact = self._friction if self._program.friction else None
-        forwards, n = tuple(1 for _ in self._program.friction), self._program.size
+        n = self._program.size
 
         def point(v: Array) -> list[Array]:
             s, w, dw = np.split(v, [n, n + inputs])
             with refusals():
-                now = evaluated(self._form, contact, Point(0.0, s, w, dw), forwards, checked=False)
+                now = evaluated(self._form, contact, Point(0.0, s, w, dw), mode, checked=False)
             return [now.x, now.z, now.u, now.du, now.y, now.rate, now.caps]
 
         affine = probed(point, n + 2 * inputs, RATE)

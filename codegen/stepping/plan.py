@@ -56,7 +56,7 @@ class Plan:
         self.switches = {
             str(port.name): (at, {sign: float(port.switch.is_on(sign)) for sign in (-1, 0, 1)})
             for at, port in enumerate(model.program.friction)
-            if port.switch is not None and not port.slides
+            if port.switch is not None and not port.slides and port.transition is None
         }
         self.names = (*self.places, *self.switches)
         self.turned = turned_storages(model)

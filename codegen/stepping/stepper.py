@@ -53,9 +53,9 @@ class Stepper:
         self._start: Start | None = origin.start
         self._places = {name: at for at, name in enumerate(origin.inputs)}
         self._rated = rated_inputs(origin.model)
-        self._events: tuple[Event, ...] = ()
         #: The states that were not named and followed what switches held at first.
-        self.completed = self._begin(origin.start)
+        self.completed, events = self._begin(origin.start)
+        self._events = tuple(events)
 
     @property
     def time(self) -> float:
@@ -69,7 +69,10 @@ class Stepper:
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """What the latest advance came to, its end included, in order; nothing is told twice."""
+        """What the latest advance came to, its end included, in order; nothing is told twice.
+
+        Before the first what state machines did at the begin.
+        """
         return self._events
 
     @property
@@ -138,20 +141,22 @@ class Stepper:
         # States were told for the instant before anything: under the inputs that hold from then on.
         before = self._going.paused()
         try:
-            self._begin(self._start, given)
-            return self._going.advance(time, anew=False)
+            _, events = self._begin(self._start, given)
+            return [*events, *self._going.advance(time, anew=False)]
         except BaseException:
             self._going.take_up(before)
             raise
 
-    def _begin(self, start: Start, given: Sequence[Given] | None = None) -> Mapping[str, float]:
+    def _begin(
+        self, start: Start, given: Sequence[Given] | None = None
+    ) -> tuple[Mapping[str, float], Sequence[Event]]:
+        """Be at the start: the states that were completed, and what happens there."""
         model, t = self._origin.model, self._time
         under = (*(self._given if given is None else given), *self._sources.signals)
         signals = as_signals(under)
         _, begun = started(model, t, dict(start.told), signals, start.on)
         self._going.under(under, t)
-        self._going.begin(t, begun.s, begun.mode)
-        return begun.completed
+        return begun.completed, self._going.begin(t, begun.s, begun.mode)
 
     def _later(self, dt: float) -> tuple[float, float]:
         """The time after a step, and what its rounding leaves out: steps add up as if not rounded."""

@@ -93,6 +93,8 @@ FAMILIES = (
     Family("causal-paths", "bondgraph/checking/test_causal_paths.py", 30, 1_000),
     Family("merged-graphs", "bondgraph/checking/test_merging.py", 30, 1_000),
     Family("derivative-first", "bondgraph/causality/test_derivative_first.py", 40, 2_000),
+    # Blocks.
+    Family("pid-loops", "bondgraph/blocks/test_pid_plants.py", 50, 1_000),
     # Derivation.
     Family(
         "graphs",

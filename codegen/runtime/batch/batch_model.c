@@ -1,5 +1,6 @@
-/* The generated model as the batch of runs uses it. Friction that acts back on nothing at once moves
- * inputs, readings and rates alone: then every mode's map follows from that of slipping forwards. */
+/* The generated model as the batch of runs uses it. Friction that acts back on nothing at once, and
+ * that no law reads, moves inputs, readings and rates alone: then every mode's map follows from that
+ * of slipping forwards. */
 #include "batch_model.h"
 
 #include <math.h>
@@ -53,16 +54,13 @@ static void put_column(int count, const double *values, int column, batch_row *t
 }
 
 /* Evaluates the model where component `at` of [s, w, dw] is BG_FAR and all others are 0. */
-static int probe_base(bg_model *m, int at, batch_map *map)
+static int probe_column(bg_model *m, const int *mode, int at, batch_map *map)
 {
     double point[BG_MAP_COLUMNS] = {0};
     const bg_snapshot *const shot = &m->shot;
-    int forward[BG_ROOM(K)];
-    for (int i = 0; i < BG_ROOM(K); i++)
-        forward[i] = 1;
     point[at] = at < BG_MAP_COLUMNS - 1 ? BG_FAR : 0.0;
     const int status = bg_evaluate(m, 0.0, point, point + BG_SIZE, point + BG_SIZE + BG_EXTERNAL,
-                                   forward, 0, &m->shot);
+                                   mode, 0, &m->shot);
 #define PUT(part, count) put_column(count, shot->part, at, map->part);
     BG_PARTS(PUT)
 #undef PUT
@@ -89,20 +87,30 @@ static void show_all(const bg_numbers *a, batch_map *map)
     add_rows(N, M, a->Q, map->u, map->rate);
 }
 
-static int find_base(batch_instance *own)
+/* A mode's map from the model at as many points. */
+static int probe_mode(bg_model *m, const int *mode, batch_map *map)
 {
     const int last = BG_MAP_COLUMNS - 1, rates = BG_RATED || BG_DRIVEN;
-    batch_row *const rows = own->base.x;
+    batch_row *const rows = map->x;
     int status;
-    memset(&own->base, 0, sizeof own->base);
-    status = probe_base(&own->m, last, &own->base);
+    memset(map, 0, sizeof *map);
+    status = probe_column(m, mode, last, map);
     for (int j = 0; j < (rates ? last : BG_SIZE + BG_EXTERNAL) && status == BG_OK; j++) {
-        status = probe_base(&own->m, j, &own->base);
-        for (size_t i = 0; i < sizeof own->base / sizeof *rows; i++)
+        status = probe_column(m, mode, j, map);
+        for (size_t i = 0; i < sizeof *map / sizeof *rows; i++)
             rows[i][j] = (rows[i][j] - rows[i][last]) / BG_FAR;
     }
     if (!rates)
-        pass_rates(&own->base);
+        pass_rates(map);
+    return status;
+}
+
+static int find_base(batch_instance *own)
+{
+    int forward[BG_ROOM(K)];
+    for (int i = 0; i < BG_ROOM(K); i++)
+        forward[i] = 1;
+    const int status = probe_mode(&own->m, forward, &own->base);
     for (int k = 0; k < K; k++) {
         memcpy(own->forward[k], own->base.u[bg_friction_inputs[k]], sizeof(batch_row));
         memset(own->base.u[bg_friction_inputs[k]], 0, sizeof(batch_row));
@@ -137,6 +145,23 @@ static void hold_ports(const bg_numbers *a, const bg_hold *held, batch_map *map)
         correct(held, map);
 }
 
+static void show_law_rates(batch_map *map)
+{
+    for (int i = 0; i < OWN; i++)
+        memcpy(map->rate[N + i], map->y[bg_law_rates[i]], sizeof(batch_row));
+}
+
+/* A mode's map from the model itself, for laws that read what friction gives. */
+static int read_late(batch_instance *own, const int *mode, const bg_hold *held, batch_map *map)
+{
+    const int status = probe_mode(&own->m, mode, map);
+    show_all(&own->m.numbers, map);
+    for (int turn = 0; turn < 2 && held; turn++)
+        correct(held, map);
+    show_law_rates(map);
+    return status;
+}
+
 /* A mode's map from the base; by rows. */
 static void combine(const batch_instance *own, const int *mode, const bg_hold *held, batch_map *map)
 {
@@ -146,8 +171,7 @@ static void combine(const batch_instance *own, const int *mode, const bg_hold *h
         push_port(a, k, mode[k], own->forward[k], map);
     if (held)
         hold_ports(a, held, map);
-    for (int i = 0; i < OWN; i++)
-        memcpy(map->rate[N + i], map->y[bg_law_rates[i]], sizeof(batch_row));
+    show_law_rates(map);
 }
 
 static double *copy(double *to, int count, batch_row *rows)
@@ -186,14 +210,18 @@ enum batch_found batch_model_mode(batch_instance *own, const int *mode, bg_hold 
         status = bg_hold_of(&own->m, mode, held);
     if (status == BG_NO_HOLD)
         return BATCH_MODE_NONE;
-    if (status == BG_OK && !own->based)
-        status = find_base(own);
     const int shares = status == BG_OK && *held && bg_shares(*held);
+    const int late = BG_EARLY < BG_GROUPS && !shares;
+    if (status == BG_OK && late)
+        status = read_late(own, mode, *held, &own->parts);
+    else if (status == BG_OK && !own->based)
+        status = find_base(own);
     if (status != BG_OK || (shares && (*held)->ruled == 0))
         return BATCH_MODE_REFUSED;
     if (shares)
         return slips_alone(own, mode);
-    combine(own, mode, *held, &own->parts);
+    if (!late)
+        combine(own, mode, *held, &own->parts);
     flatten(&own->parts, own->map);
     return BATCH_MODE_WHOLE;
 }

@@ -198,13 +198,8 @@ def wired() -> Kind:
     """The sampled PI by wires: a detector, a sum of two ports, a source without a value."""
     T, K, Ki = 0.05, 2.0, 6.0
     pi = bg.Controller(
-        "pi",
-        every=T,
-        ports=["e"],
-        states={"z": 0},
-        update={"z": "z + T*K_i*e"},
-        gives={"tau": "K*e + z"},
-    )
+        "pi", every=T, ports=["e"], states={"z": 0}, update={"z": "z + T*K_i*e"}, gives={"tau": "K*e + z"}
+    )  # fmt: skip
     graph = bg.graph(
         [bg.Se("motor"), bg.One("shaft"), bg.I("J", "J", flow="omega"), bg.R("b", "b"), bg.Df("tacho"),
          bg.Function("goal", "1*ref"), bg.Function("error", "plus - minus", ports=["plus", "minus"]), pi],

@@ -27,6 +27,7 @@ REFUSALS = (
          "staircase", "per_turn",
          "tabled_resistance", "tabled_storage", "engine_map", "tabled_ratio", "tabled_curve",
          "tabled_level", "meshed_shafts", "joined_cells", "geared_behind", "bouncing_nonlinear",
+         "clamped", "led_back", "limited", "dead_zone", "looked_up",
          "loop_of_nonlinear_laws"),
         ("C, exact",), True,
         "Matrix exponentials need rates that are affine in each mode, and here a law or a ratio bends them. "
@@ -37,6 +38,19 @@ REFUSALS = (
         ("saturating", "thermostat", "braked"), ("C, exact",), True,
         "Exact steps in C set states by affine maps, and here what a controller sets has cases or bounds. "
         "`method=\"auto\"` locates events with step control instead; exact steps in numpy go.",
+        "not affine",
+    ),
+    Refusal(
+        ("selector", "launch", "begun", "chained", "ticked"), ("C, exact",), True,
+        "A guard counts in one mode alone, and each mode chooses what the model does: no matrix has that. "
+        "`method=\"auto\"` locates events with step control instead.",
+        "not affine",
+    ),
+    Refusal(
+        ("followed",), ("C, exact",), False,
+        "The affine maps of modes are made of one in which all ports are let go, and what laws give is the "
+        "same in all; here a law reads what a port gives. `method=\"auto\"` locates events with step control "
+        "instead.",
         "not affine",
     ),
     Refusal(

@@ -1,0 +1,1 @@
+"""Blocks of block diagrams as functions of nodes: gains, limits, transfer functions, controllers."""
