@@ -65,7 +65,7 @@ def closed_loop(
 
     >>> loop = closed_loop("alsd", "step_steer")
     >>> [str(state) for state in loop.equations.further_states]
-    ['tau_h', 'omega_ref', 'integral', 'demand']
+    ['tau_h', 'integral', 'asked', 'demand', 'omega_ref']
     """
     case, chosen = called(manoeuvre), differential(name)
     declared = loop_graph(name, case.control if case.closed else None, backlash)

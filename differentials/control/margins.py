@@ -52,7 +52,7 @@ def open_loop(
 
     >>> loop = open_loop("alsd", "step_steer")
     >>> loop.inputs, loop.outputs, abs(loop.frequency_response(1.0)).round(1).item()
-    (('cut',), ('back',), 2.5)
+    (('cut',), ('back',), 1.7)
     """
     case = called(manoeuvre)
     ready, at = _settled(name, case, parameters)
