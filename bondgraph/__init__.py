@@ -38,6 +38,7 @@ from bondgraph.errors import (
     StoreError,
     StructureError,
     TableError,
+    UnitError,
     WriteError,
 )
 from bondgraph.explaining.explanation import Explanation, explain
@@ -121,6 +122,7 @@ __all__ = [
     "Switch",
     "SwitchPort",
     "TableError",
+    "UnitError",
     "WriteError",
     "Zero",
     "assemble",
