@@ -13,7 +13,7 @@ from codegen.cosimulation.instants import instants, seconds
 from codegen.cosimulation.library import opened
 from codegen.cosimulation.master import Master
 from codegen.cosimulation.model import ModelPart, checked_initial
-from codegen.cosimulation.part import Part
+from codegen.cosimulation.part import Part, named
 from codegen.cosimulation.record import CoSimulation
 from codegen.cosimulation.results import result_of
 from codegen.cosimulation.unit import UnitPart, readable
@@ -54,7 +54,8 @@ def cosimulate(
     ``connections``: from a signal to the input it goes to, or to several:
     ``{"plant.omega": "controller.omega"}``. ``inputs``: signals or numbers of inputs that are not connected,
     ``{"controller.ref": 30}``; of units, whose inputs have starts of their own, they may be left out.
-    ``initial``: by participants states of a model, or starts of a unit's variables, parameters among them.
+    ``initial``: by participants states of a model, or starts of a unit's variables, parameters among them;
+    of a connected input what it is taken for (else 0) until signals are exchanged for the first time.
 
     At each instant all signals are exchanged, then all go on, their inputs held (Jacobi). ``order``: names
     of all participants; each then goes on in turn, with what those before it have come to already
@@ -81,10 +82,10 @@ def cosimulate(
     times = instants(start, end, every)
     settings = settings_of(method, rtol, atol)
     asked = _asked(participants)
-    named = {name: _inputs_of(one) for name, one in asked.items()}
-    wires = wires_of(connections, named, linear)
+    inlets = {name: _inputs_of(one) for name, one in asked.items()}
+    wires = wires_of(connections, inlets, linear)
     _check_sources(wires, asked)
-    given = open_inputs(inputs, named, wires)
+    given = open_inputs(inputs, inlets, wires)
     turns = _turns(order, asked)
     begun, on = _by_part(initial, asked, "initial"), _by_part(initially_on, asked, "initially_on")
     parts = dict[str, Part]()
@@ -184,7 +185,8 @@ def _model(
     """A model; refuses inputs that nobody gives."""
     ready = one.simulator if isinstance(one, SwitchedSimulator) else one
     wired = [wire.target.signal for wire in wires if wire.target.part == name]
-    signals_for({**given, **dict.fromkeys(wired, 0.0)}, one.inputs, ready.whence)
+    with named(name):
+        signals_for({**given, **dict.fromkeys(wired, 0.0)}, one.inputs, ready.whence)
     return ModelPart(name, one, given, initial, on, settings)
 
 
@@ -212,4 +214,5 @@ def _recorded(parts: Mapping[str, Part], wires: Iterable[Wire], times: Array) ->
         tuple(sorted(events, key=lambda event: event.time)),
         MappingProxyType({str(wire.target): str(wire.source) for wire in wires}),
         MappingProxyType({name: result_of(part, times) for name, part in models.items()}),
+        frozenset(str(wire.target) for wire in wires if wire.linear),
     )

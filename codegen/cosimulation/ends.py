@@ -1,9 +1,12 @@
 """Ends of connections: a signal of a participant, written ``"plant.omega"``."""
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from typing import NamedTuple
 
 from bondgraph.errors import SignalError, nearest
+
+MOST = 20
+"""So many names are listed."""
 
 
 class End(NamedTuple):
@@ -41,5 +44,15 @@ def known_signal(end: End, known: Iterable[str], what: str, kind: str) -> None:
     if end.signal not in names:
         raise SignalError(
             f"{what} {str(end)!r}: {end.part!r} has no {kind} {end.signal!r}"
-            f"{nearest(end.signal, names)}; it has {', '.join(names) or 'none'}"
+            f"{nearest(end.signal, names)}; it has {listed(names)}"
         )
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names as a message lists them; of many those in front, and how many more.
+
+    >>> listed(["u", "v"]), listed([])
+    ('u, v', 'none')
+    """
+    more = f" and {len(names) - MOST} more" if len(names) > MOST else ""
+    return (", ".join(names[:MOST]) or "none") + more

@@ -1,7 +1,7 @@
 """What units of FMI 2 call back: they log with C's variadic arguments, which a proxy of fmpy fills in.
 
-That proxy knows one listener in all the process, and keeps it for ever. So there is one, made when it is first
-needed, which passes on what it hears to whoever made the unit; what it knows nothing of is fmpy's to print.
+That proxy knows one listener in all the process, and keeps it for ever. So there is one, made when it is
+first needed, which passes on what it hears to whoever made the unit; the rest is fmpy's to print.
 """
 
 from collections.abc import Callable

@@ -1,13 +1,12 @@
 """The master: signals are exchanged at communication points, between them all go on."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from math import isfinite
 
-from bondgraph.errors import BondGraphError, SimulationError
+from bondgraph.errors import SimulationError
 from codegen.cosimulation.ends import End
 from codegen.cosimulation.loops import exchange_order
-from codegen.cosimulation.part import Given, Part
+from codegen.cosimulation.part import Given, Part, named
 from codegen.cosimulation.wires import Wire
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING
@@ -30,11 +29,11 @@ class Master:
         """From the first communication point to the last."""
         instants = times.tolist()
         for part in self._parts.values():
-            with named(part):
+            with named(part.name):
                 part.begin(instants[0])
         self._exchange(self._first, instants[0])
         for part in self._parts.values():
-            with named(part):
+            with named(part.name):
                 part.ready()
         for stop in instants[1:]:
             self._step(stop)
@@ -44,13 +43,13 @@ class Master:
         if self._turns is not None:
             for part in self._turns:
                 self._give(part)
-                with named(part):
+                with named(part.name):
                     part.keep()
                     part.advance(stop)
             return
         self._exchange(self._later, next(iter(self._parts.values())).time)
         for part in self._parts.values():
-            with named(part):
+            with named(part.name):
                 part.keep()
                 part.advance(stop)
 
@@ -61,7 +60,7 @@ class Master:
         for part in self._turns or self._parts.values():
             if self._turns is not None:
                 self._give(part)
-            with named(part):
+            with named(part.name):
                 part.keep()
 
     def _exchange(self, order: Sequence[Part], time: float) -> None:
@@ -79,12 +78,12 @@ class Master:
     def _give(self, part: Part) -> bool:
         """Whether a participant is given anything new."""
         given = {wire.target.signal: self._told(wire, part.time) for wire in self._into[part.name]}
-        with named(part):
+        with named(part.name):
             return part.give(given)
 
     def _told(self, wire: Wire, time: float) -> Given:
         source = self._parts[wire.source.part]
-        with named(source):
+        with named(source.name):
             value = source.read(wire.source.signal)
         if not isfinite(value):
             raise SimulationError(f"at t = {source.time!r} s {str(wire.source)!r} is {value}")
@@ -102,15 +101,3 @@ class Master:
             return Given(now[1])
         slope = (now[1] - before[1]) / (now[0] - before[0])
         return Given(now[1] + slope * (time - now[0]), slope)
-
-
-@contextmanager
-def named(part: Part) -> Iterator[None]:
-    """Errors of a participant tell whose they are."""
-    try:
-        yield
-    except BondGraphError as error:
-        told = f"participant {part.name!r}"
-        if str(error).startswith(told):
-            raise
-        raise type(error)(f"{told}: {error}") from error

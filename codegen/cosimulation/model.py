@@ -11,7 +11,7 @@ from codegen.cosimulation.instants import meets
 from codegen.cosimulation.part import Given
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Ramp
-from codegen.numbers.arrays import Array
+from codegen.numbers.arrays import Array, is_finite, is_number
 from codegen.program.units import told_units
 from codegen.runs.track import Event, Settings
 from codegen.simulator import Simulator
@@ -58,13 +58,15 @@ class ModelPart:
         return True
 
     def begin(self, time: float) -> None:
-        """See `Part`. A connected input is 0 until it is given."""
-        self._now = {name: Given(0.0) for name in self.inputs if name not in self.open}
-        self.held = {name: [] for name in self._now}
-        inputs = {**self.open, **dict.fromkeys(self._now, 0.0)}
+        """See `Part`. A connected input is 0, or what was told of it, until it is given."""
+        free = [name for name in self.inputs if name not in self.open]
+        first = {name: number_of(self._initial.get(name, 0.0), name) for name in free}
+        states = {name: value for name, value in self._initial.items() if name not in first}
+        self._now = {name: Given(value) for name, value in first.items()}
+        self.held = {name: [] for name in free}
         method, rtol, atol = self.settings.method, self.settings.rtol, self.settings.atol
         self._stepper = self.origin.stepper(
-            self._initial, inputs, time=time, method=method, rtol=rtol, atol=atol,
+            states, {**self.open, **first}, time=time, method=method, rtol=rtol, atol=atol,
             initially_on=self._on,
         )  # fmt: skip
         self.time = time
@@ -129,6 +131,13 @@ class ModelPart:
 
 def _line(given: Given, time: float) -> float | Signal:
     return given.value if given.slope == 0.0 else Ramp(time, given.slope, given.value)
+
+
+def number_of(value: object, name: str) -> float:
+    """A number that an input begins with; `SignalError` for anything else."""
+    if not is_number(value) or not is_finite(value):
+        raise SignalError(f"initial {name}: {value!r} is not a finite number")
+    return float(value)
 
 
 def checked_initial(initial: Any, name: str) -> Mapping[str, float]:

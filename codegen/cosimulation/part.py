@@ -1,8 +1,10 @@
 """What takes part in a co-simulation: something with inputs and signals that goes from instant to instant."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import NamedTuple, Protocol
 
+from bondgraph.errors import BondGraphError
 from codegen.numbers.arrays import Array
 from codegen.runs.track import Event
 
@@ -56,3 +58,15 @@ class Part(Protocol):
     @property
     def events(self) -> tuple[Event, ...]:
         """What happened, in order."""
+
+
+@contextmanager
+def named(part: str) -> Iterator[None]:
+    """Errors of a participant tell whose they are."""
+    try:
+        yield
+    except BondGraphError as error:
+        told = f"participant {part!r}"
+        if str(error).startswith(told):
+            raise
+        raise type(error)(f"{told}: {error}") from error

@@ -42,6 +42,8 @@ class CoSimulation:
     events: tuple[Event, ...]
     connections: Mapping[str, str] = field(repr=False)
     results: Mapping[str, Result] = field(repr=False)
+    #: Connected inputs that were not held.
+    lines: frozenset[str] = field(repr=False, default=frozenset())
 
     def __getitem__(self, name: str) -> Array:
         """The values of one signal; `KeyError` naming what there is."""
@@ -77,16 +79,15 @@ class CoSimulation:
         )
 
     def created(self, one: str, other: str) -> Array:
-        """Energy [J] that a coupling has made up to each sample, by its two connected inputs.
+        """Energy [J] that the coupling has made up to each sample, at two inputs whose product is power.
 
-        ``one`` is an input whose signal comes from the participant of ``other``, and the other way round: a
-        force or torque one way, a velocity one way; what multiplies them is power. Each participant works
-        with the other's signal as it was held, so that what one gives is not what the other gets. Positive:
-        the coupling gives energy, where both signals are counted so that what ``one`` brings its
-        participant the other loses. It falls with the interval.
+        ``one`` and ``other`` are inputs of two participants, each fed by the other's: an effort one way, a
+        flow the other, counted so that their product is power into the participant of ``one``, out of that
+        of ``other``. Each works with the other's signal as it was held, so one does not get quite what the
+        other gives: this is the difference. It falls with the interval.
 
-        Raises `SignalError` for inputs that are not connected so, and for those of units, of which no
-        integrals are known.
+        Raises `SignalError` for inputs that are not connected so, for those of units, of which no integrals
+        are known, and for inputs along lines, which are not held.
         """
         ends = [end_of(name, self.participants, "created") for name in (one, other)]
         sources = []
@@ -101,6 +102,11 @@ class CoSimulation:
                 f"created: {one!r} comes from {str(sources[0])!r} and {other!r} from {str(sources[1])!r}; "
                 "a power connection has two inputs of two participants, each from the other's"
             )
+        for name in (one, other):
+            if name in self.lines:
+                raise SignalError(
+                    f"created: {name!r} goes along lines; energy is told of held inputs"
+                )
         gets, gives = (
             _held_work(self.of(end.part), end.signal, source.signal)
             for end, source in zip(ends, reversed(sources), strict=True)

@@ -4,6 +4,8 @@ Nothing of them is the toolkit's. Between communication points u is held, so eac
 ``y += (k u - y) (1 - exp(-h/T))``. ``u`` beyond 1000 is an error, with a word in the log.
 """
 
+# ruff: noqa: E501
+
 import subprocess
 import zipfile
 from pathlib import Path
@@ -31,10 +33,13 @@ static double *lag_real(lag *f, unsigned vr)
 }
 """
 
-SECOND = r"""
+SECOND = (
+    r"""
 #define LOG fmi2CallbackFunctions call; char name[64];
 #include "fmi2Functions.h"
-""" + CORE + r"""
+"""
+    + CORE
+    + r"""
 #define F ((lag *)c)
 const char *fmi2GetTypesPlatform(void) { return "default"; }
 const char *fmi2GetVersion(void) { return "2.0"; }
@@ -101,11 +106,15 @@ NOT(fmi2GetBooleanStatus, const fmi2StatusKind k, fmi2Boolean *v)
 NOT(fmi2GetStringStatus, const fmi2StatusKind k, fmi2String *v)
 fmi2Status fmi2CancelStep(fmi2Component c) { return fmi2Error; }
 """
+)
 
-THIRD = r"""
+THIRD = (
+    r"""
 #define LOG fmi3LogMessageCallback log; void *env;
 #include "fmi3Functions.h"
-""" + CORE + r"""
+"""
+    + CORE
+    + r"""
 #include <stdio.h>
 #define F ((lag *)c)
 const char *fmi3GetVersion(void) { return "3.0"; }
@@ -150,6 +159,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 t, fmi3Float64 h, fmi3Boolean 
     return fmi3OK;
 }
 """
+)
 
 SECOND_ABOUT = """<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="lag" guid="{{lag}}">
@@ -197,7 +207,18 @@ def lag_unit(
     text = SECOND if second else THIRD + _missing(THIRD)
     source.write_text(f"#define DISCARDS {int(discards)}\n{text}")
     subprocess.run(
-        ["gcc", "-shared", "-fPIC", "-O1", "-w", f"-I{HEADERS}", str(source), "-o", str(library), "-lm"],
+        [
+            "gcc",
+            "-shared",
+            "-fPIC",
+            "-O1",
+            "-w",
+            f"-I{HEADERS}",
+            str(source),
+            "-o",
+            str(library),
+            "-lm",
+        ],
         check=True,
     )
     about = (SECOND_ABOUT if second else THIRD_ABOUT).format(
@@ -219,7 +240,9 @@ def _missing(text: str) -> str:
 
     wanted = {name for kind in (_FMU3, FMU3Slave) for name in dir(kind) if name.startswith("fmi3")}
     have = set(re.findall(r"\b(fmi3[A-Z]\w+)\(", text))
-    declared = (HEADERS / "fmi3Functions.h").read_text() + (HEADERS / "fmi3FunctionTypes.h").read_text()
+    declared = (HEADERS / "fmi3Functions.h").read_text() + (
+        HEADERS / "fmi3FunctionTypes.h"
+    ).read_text()
     found = []
     for name in sorted(wanted - have):
         typedef = re.search(rf"typedef\s+(\w+)\s+{name}TYPE\s*\((.*?)\);", declared, re.DOTALL)
