@@ -2,13 +2,17 @@
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
-from os import PathLike
 from types import MappingProxyType
-from typing import Any
 
-from bondgraph.errors import SignalError, nearest
-from codegen.cosimulation.described import UnitDescription, check_steps, described
-from codegen.cosimulation.ends import known_signal
+from codegen.cosimulation.asked import (
+    Participant,
+    asked_of,
+    by_part,
+    check_sources,
+    inputs_of,
+    turns_of,
+)
+from codegen.cosimulation.described import UnitDescription, check_steps
 from codegen.cosimulation.instants import instants, seconds
 from codegen.cosimulation.library import opened
 from codegen.cosimulation.master import Master
@@ -16,7 +20,7 @@ from codegen.cosimulation.model import ModelPart, checked_initial
 from codegen.cosimulation.part import Part, named
 from codegen.cosimulation.record import CoSimulation
 from codegen.cosimulation.results import result_of
-from codegen.cosimulation.unit import UnitPart, readable
+from codegen.cosimulation.unit import UnitPart
 from codegen.cosimulation.wires import Wire, open_inputs, wires_of
 from codegen.inputs.signals import as_signal
 from codegen.numbers.arrays import Array
@@ -26,19 +30,14 @@ from codegen.simulator import Simulator
 from codegen.switched.simulator import SwitchedSimulator
 from codegen.tuning import TUNING
 
-Participant = Simulator | SwitchedSimulator | str | PathLike[str]
-"""A model of ours, or the path of a unit for co-simulation."""
-
-Asked = Simulator | SwitchedSimulator | UnitDescription
-
 
 def cosimulate(
     participants: Mapping[str, Participant],
     connections: Mapping[str, str | Iterable[str]],
-    end: float,
-    every: float,
+    end: float | str,
+    every: float | str,
     *,
-    start: float = 0.0,
+    start: float | str = 0.0,
     inputs: Mapping[str, object] | None = None,
     initial: Mapping[str, Mapping[str, float]] | None = None,
     order: Sequence[str] | None = None,
@@ -61,7 +60,7 @@ def cosimulate(
     of all participants; each then goes on in turn, with what those before it have come to already
     (Gauss-Seidel). ``linear``: connected inputs that go on along the line through the last two
     values instead of being held. ``initially_on``, ``method``, ``rtol``, ``atol``: of models, as `run` has
-    them. ``end`` [s] is an instant itself.
+    them. ``end`` [s] is an instant itself; times may be texts, ``"1/3"``.
 
     Raises `SignalError` for unusable arguments, `AlgebraicLoopError` where signals of models tell one another
     at one instant, `UnitError` for a unit that cannot take part or returns an error, `SimulationError`
@@ -81,13 +80,13 @@ def cosimulate(
     """
     times = instants(start, end, every)
     settings = settings_of(method, rtol, atol)
-    asked = _asked(participants)
-    inlets = {name: _inputs_of(one) for name, one in asked.items()}
+    asked = asked_of(participants)
+    inlets = {name: inputs_of(one) for name, one in asked.items()}
     wires = wires_of(connections, inlets, linear)
-    _check_sources(wires, asked)
+    check_sources(wires, asked)
     given = open_inputs(inputs, inlets, wires)
-    turns = _turns(order, asked)
-    begun, on = _by_part(initial, asked, "initial"), _by_part(initially_on, asked, "initially_on")
+    turns = turns_of(order, asked)
+    begun, on = by_part(initial, asked, "initial"), by_part(initially_on, asked, "initially_on")
     parts = dict[str, Part]()
     with ExitStack() as stack:
         for name, one in asked.items():
@@ -103,79 +102,6 @@ def cosimulate(
                 parts[name] = model
         Master(parts, wires, turns).run(times)
     return _recorded(parts, wires, times)
-
-
-def _asked(participants: Mapping[str, Participant]) -> dict[str, Asked]:
-    """Participants by name, units as they describe themselves."""
-    if not isinstance(participants, Mapping) or not participants:
-        raise SignalError(
-            f"participants must map names to simulators and units, not be {participants!r}"
-        )
-    found = dict[str, Asked]()
-    for name, one in participants.items():
-        if not isinstance(name, str) or not name or "." in name:
-            raise SignalError(f"a participant's name is a text without a dot, not {name!r}")
-        if isinstance(one, Simulator | SwitchedSimulator):
-            found[name] = one
-        elif isinstance(one, str | PathLike):
-            found[name] = described(one)
-        else:
-            raise SignalError(
-                f"participant {name!r} must be a simulator or the path of a unit, not {type(one).__name__}; "
-                "codegen.simulator makes one of equations"
-            )
-    return found
-
-
-def _inputs_of(one: Asked) -> tuple[str, ...]:
-    return one.names("input") if isinstance(one, UnitDescription) else one.inputs
-
-
-def _check_sources(wires: Iterable[Wire], asked: Mapping[str, Asked]) -> None:
-    """Refuse what no unit gives, and lines into units that cannot follow them."""
-    for wire in wires:
-        origin, target = asked[wire.source.part], asked[wire.target.part]
-        if isinstance(origin, UnitDescription):
-            variable = origin.variables.get(wire.source.signal)
-            if variable is not None and variable.name not in readable(origin):
-                raise SignalError(
-                    f"connection from {str(wire.source)!r}: the unit's variable is "
-                    f"{_article(variable.causality)}, which gives nothing; connect an output"
-                )
-            known_signal(wire.source, readable(origin), "connection from", "output of one number")
-        if wire.linear and isinstance(target, UnitDescription) and not target.interpolates:
-            raise SignalError(
-                f"linear {str(wire.target)!r}: the unit holds its inputs over a step; leave it out"
-            )
-
-
-def _article(causality: str) -> str:
-    return f"{'an' if causality[0] in 'aeiou' else 'a'} {causality}"
-
-
-def _turns(order: Sequence[str] | None, asked: Mapping[str, Asked]) -> tuple[str, ...] | None:
-    if order is None:
-        return None
-    names = (order,) if isinstance(order, str) else tuple(order)
-    if sorted(names) != sorted(asked):
-        raise SignalError(
-            f"order must name each participant once, {', '.join(asked)}, not be {', '.join(map(str, names))}"
-        )
-    return names
-
-
-def _by_part(told: Any, asked: Mapping[str, Asked], what: str) -> Mapping[str, Any]:
-    if told is None:
-        return {}
-    if not isinstance(told, Mapping):
-        raise SignalError(f"{what} must map participants to what holds of them, not be {told!r}")
-    for name in told:
-        if name not in asked:
-            raise SignalError(
-                f"{what}: there is no participant {name!r}{nearest(str(name), asked)}; there are "
-                f"{', '.join(asked)}"
-            )
-    return told
 
 
 def _model(

@@ -54,6 +54,8 @@ class UnitDescription:
     variable_steps: bool
     fixed_step: float
     interpolates: bool
+    #: Whether a process may have one instance of it only.
+    once: bool
 
     def names(self, *causalities: str) -> tuple[str, ...]:
         """Variables of these causalities."""
@@ -108,6 +110,7 @@ def described(path: str | PathLike[str]) -> UnitDescription:
         bool(about.canHandleVariableCommunicationStepSize),
         float(about.fixedInternalStepSize or 0.0),
         second and bool(about.canInterpolateInputs),
+        bool(about.canBeInstantiatedOnlyOncePerProcess),
     )
 
 

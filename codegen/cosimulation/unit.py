@@ -1,18 +1,17 @@
 """A unit of somebody else's as a participant: what it is given is set, it steps, its outputs are got."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from itertools import groupby
-from typing import Any
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from bondgraph.errors import SignalError, UnitError, nearest
-from codegen.cosimulation.described import INTEGERS, READ, UnitDescription, UnitVariable
+from codegen.cosimulation.described import UnitDescription
+from codegen.cosimulation.fitting import by_kind, fitting
 from codegen.cosimulation.library import Library
 from codegen.cosimulation.part import Given
 from codegen.inputs.signal import Signal
-from codegen.numbers.arrays import Array, is_finite, is_number, read_only
+from codegen.numbers.arrays import Array, read_only
 from codegen.runs.track import Event
 
 
@@ -159,7 +158,7 @@ class UnitPart:
 
     def _got(self, names: Iterable[str]) -> dict[str, float]:
         found = dict[str, float]()
-        for kind, several in _by_kind(self.about.variables[name] for name in names):
+        for kind, several in by_kind(self.about.variables[name] for name in names):
             values = self.library.call(f"get{kind}", [one.reference for one in several])
             found.update(
                 {one.name: float(value) for one, value in zip(several, values, strict=True)}
@@ -167,35 +166,6 @@ class UnitPart:
         return found
 
     def _set(self, values: Mapping[str, float]) -> None:
-        for kind, several in _by_kind(self.about.variables[name] for name in values):
-            told = [self._fitting(one, values[one.name]) for one in several]
+        for kind, several in by_kind(self.about.variables[name] for name in values):
+            told = [fitting(one, values[one.name], self.name) for one in several]
             self.library.call(f"set{kind}", [one.reference for one in several], told)
-
-    def _fitting(self, one: UnitVariable, value: Any) -> Any:
-        """A number as the variable's type has it."""
-        where = f"participant {self.name!r}: {one.name!r}"
-        if isinstance(value, bool):
-            value = int(value)
-        if not is_number(value) or not is_finite(value):
-            raise SignalError(f"{where} takes a finite number, not {value!r}")
-        if one.kind == "Boolean":
-            if value not in (0, 1):
-                raise SignalError(f"{where} is a truth value, 0 or 1, not {value!r}")
-            return bool(value)
-        if one.kind in INTEGERS:
-            if float(value) != math.floor(value):
-                raise SignalError(f"{where} takes whole numbers, not {value!r}")
-            return int(value)
-        return float(value)
-
-
-def _by_kind(
-    variables: Iterable[UnitVariable],
-) -> list[tuple[str, Sequence[UnitVariable]]]:
-    ordered = sorted(variables, key=lambda one: one.kind)
-    return [(kind, [*several]) for kind, several in groupby(ordered, key=lambda one: one.kind)]
-
-
-def readable(about: UnitDescription) -> tuple[str, ...]:
-    """What a connection may come from."""
-    return about.names(*READ)

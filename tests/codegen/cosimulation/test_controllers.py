@@ -55,6 +55,18 @@ def test_a_unit_that_goes_on_with_all_others_is_late_by_an_interval(
     assert off(run["plant.tau"], wanted["tau"]) < 1e-9
 
 
+def test_a_controller_in_python_sees_the_plant_of_the_same_instant() -> None:
+    def step(now: dict[str, float]) -> dict[str, float]:
+        error = now["ref"] - now["omega"]
+        return {"z": now["z"] + 0.04 * error, "tau": error + now["z"]}
+
+    node = bg.Controller(
+        "pi", every=0.01, reads=["ref", "omega"], states={"z": 0}, gives=["tau"], step=step
+    )
+    run = _beside(codegen.simulator(bg.derive(bg.graph([node])), {}))
+    assert off(run["plant.omega"], whole(controller())["omega"]) < 1e-12
+
+
 def test_instants_are_those_of_controllers() -> None:
     run = _beside(codegen.simulator(bg.derive(bg.graph([controller()])), CONTROL))
     assert run.time.tolist() == [k / 100 for k in range(101)]

@@ -159,6 +159,32 @@ def test_types_of_variables(version: str, tmp_path: Path) -> None:
         codegen.cosimulate({"unit": path}, {}, 0.1, 0.1, initial={"unit": {"stepps": 1}})
 
 
+@VERSIONS
+def test_what_passes_through_a_unit_is_late_but_for_the_start(version: str, tmp_path: Path) -> None:
+    """y = 2 u + 1: at the start by the u that is there, later by that of the step before."""
+    gain = bg.derive(bg.graph([bg.Function("y", "2*u + 1")]))
+    path = codegen.write_fmu(tmp_path / "gain.fmu", gain, {}, version=version)
+    clock = codegen.simulator(bg.derive(bg.graph([bg.State("s", 1.0, start=3)])), {})
+    run = codegen.cosimulate({"gain": path, "clock": clock}, {"clock.s": "gain.u"}, 1, 0.25)
+    assert run["gain.u"].round(9).tolist() == [3.0, 3.25, 3.5, 3.75, 4.0]
+    echo = codegen.simulator(bg.derive(bg.graph([bg.Function("x", "v + 0*t")])), {})
+    parts = {"gain": path, "clock": clock, "echo": echo}
+    run = codegen.cosimulate(parts, {"clock.s": "gain.u", "gain.y": "echo.v"}, 1, 0.25)
+    assert run["gain.y"].round(9).tolist() == [7.0, 7.0, 7.5, 8.0, 8.5]
+    assert run["echo.x"].tolist() == run["gain.y"].tolist()
+
+
+@VERSIONS
+def test_a_loop_through_a_unit_at_the_start_is_refused(version: str, tmp_path: Path) -> None:
+    gain = bg.derive(bg.graph([bg.Function("y", "u/2 + 1")]))
+    path = codegen.write_fmu(tmp_path / "gain.fmu", gain, {}, version=version)
+    echo = codegen.simulator(bg.derive(bg.graph([bg.Function("x", "v + 1")])), {})
+    with pytest.raises(
+        bg.SimulationError, match=r"t = 0\.0 s the signals between .* do not settle"
+    ):
+        codegen.cosimulate({"a": path, "b": echo}, {"a.y": "b.v", "b.x": "a.u"}, 1, 0.25)
+
+
 def test_units_that_cannot_take_part(tmp_path: Path) -> None:
     exchange = lag_unit(tmp_path / "a", "2.0", '<ModelExchange modelIdentifier="lag"/>')
     elsewhere = lag_unit(tmp_path / "b", "3.0", platform="riscv-templeos")
@@ -172,6 +198,14 @@ def test_units_that_cannot_take_part(tmp_path: Path) -> None:
     ):
         with pytest.raises(UnitError, match=match):
             codegen.cosimulate({"unit": path}, {}, end=1, every=0.1)
+
+
+def test_a_unit_that_a_process_may_have_once(tmp_path: Path) -> None:
+    kind = KIND.format(more=f'{VARIABLE} canBeInstantiatedOnlyOncePerProcess="true"')
+    path = lag_unit(tmp_path / "unit", "2.0", kind)
+    assert len(codegen.cosimulate({"a": path}, {}, end=1, every=0.5).time) == 3
+    with pytest.raises(UnitError, match=r"'a' and 'b'.*once in a process"):
+        codegen.cosimulate({"a": path, "b": path}, {}, end=1, every=0.5)
 
 
 def test_without_fmpy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
