@@ -1,6 +1,6 @@
 """`CoSimulation`: the record of several models that ran side by side."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from typing import Any
@@ -10,8 +10,9 @@ import numpy as np
 from bondgraph.errors import SignalError, nearest
 from codegen.cosimulation.ends import end_of
 from codegen.numbers.arrays import Array, read_only
+from codegen.pictures.stacked import stacked
 from codegen.record.files import write_mat, write_parquet
-from codegen.record.result import Result
+from codegen.record.result import Result, grouped, marks_of, panel_of
 from codegen.record.tables import dataset, frame, free, write_columns, write_netcdf
 from codegen.runs.track import Event
 
@@ -51,7 +52,10 @@ class CoSimulation:
             return self.columns[name]
         part, _, signal = name.partition(".")
         if part in self.results:
-            return self.results[part][signal]
+            try:
+                return self.results[part][signal]
+            except KeyError as error:
+                raise KeyError(f"participant {part!r}: {error.args[0]}") from None
         raise KeyError(
             f"there is no signal {name!r}{nearest(name, self.columns)}; there are {', '.join(self.columns)}"
         )
@@ -149,6 +153,23 @@ class CoSimulation:
         Raises `SignalError` for a name beyond 63 characters, `WriteError` where it cannot be written.
         """
         write_mat(path, *self._timed(), self.events)
+
+    def plot(self, *names: str | Sequence[str], title: str = "") -> Any:
+        """A `matplotlib.figure.Figure` of signals, with events marked; of those that are exchanged if none
+        are named, each participant's in a panel.
+
+        Names share one panel; with a list among them each name or list has its own, as of `panels`.
+
+        Raises `SignalError` for unknown names, `MissingExtraError` without matplotlib.
+        """
+        groups = grouped(names, ()) if names else self._exchanged()
+        return stacked([panel_of(self, group) for group in groups], marks_of(self), title)
+
+    def _exchanged(self) -> list[list[str]]:
+        """The signals that connections come from by participants; every signal where there are none."""
+        told = dict.fromkeys(self.connections.values()) or self.columns
+        parts = [[name for name in told if name.startswith(f"{one}.")] for one in self.participants]
+        return [names for names in parts if names]
 
     def _timed(self) -> tuple[list[str], list[Array], dict[str, str]]:
         t = free("t", self.columns)

@@ -220,3 +220,13 @@ def test_tables(tmp_path: object) -> None:
         assert again(1.0) == run["b.v"][-1]
     run.write_netcdf(tmp_path / "r.nc")
     assert "2 intervals" in str(run)
+
+
+def test_pictures() -> None:
+    cart = codegen.simulator(bg.derive(CART), {})
+    run = codegen.cosimulate({"a": cart, "b": cart}, {"a.v": "b.F"}, 1, 0.5, inputs={"a.F": 4})
+    assert len(run.plot().axes) == 1
+    assert len(run.plot(["a.v", "b.v"], "a.F").axes) == 2
+    assert run.plot("b.v").axes[0].lines[0].get_ydata().tolist() == run["b.v"].tolist()
+    with pytest.raises(SignalError, match="participant 'b': no signal 'w'"):
+        run.plot("b.w")
