@@ -41,6 +41,7 @@ from bondgraph.errors import (
     StoreError,
     StructureError,
     TableError,
+    UnitError,
     WriteError,
 )
 from bondgraph.explaining.explanation import Explanation, explain
@@ -141,6 +142,7 @@ __all__ = [
     "SwitchPort",
     "TableError",
     "TransferFunction",
+    "UnitError",
     "WriteError",
     "Zero",
     "assemble",

@@ -200,7 +200,7 @@ class Simulator:
             found.events,
             columns,
             observer,
-            self._ledger(run),
+            self.ledger(run),
             told_units(self.closed.equations),
             found.backend,
             begun.completed,
@@ -266,7 +266,8 @@ class Simulator:
         """Who reads an input, and what else its name may have been meant to be, as messages say it."""
         return whence(name, self.closed.equations, self.laws or {}, self.closed.parameters)
 
-    def _ledger(self, run: Run) -> Ledger:
+    def ledger(self, run: Run) -> Ledger:
+        """What integrates accounts of a run that is over."""
         program = self.closed.program
         names = (*program.states, *program.law_states, *program.inputs, *program.asked)
         told = tuple(name.name for name in names)

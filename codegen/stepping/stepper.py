@@ -76,6 +76,11 @@ class Stepper:
         return self._events
 
     @property
+    def origin(self) -> Origin:
+        """What it is made of, and where it began."""
+        return self._origin
+
+    @property
     def backend(self) -> str:
         """What runs it: what C cannot go on with numpy does, from there on."""
         return self._going.backend
@@ -90,6 +95,52 @@ class Stepper:
         the stepper then is where it was.
         """
         time, late = self._later(dt)
+        return self._go(time, late, inputs)
+
+    def advance_to(self, time: float, /, **inputs: object) -> Signals:
+        """As `advance`, on to a time [s] that is told itself: ticks and breakpoints there are met exactly.
+
+        Raises what `advance` raises, and `SignalError` for a time that is not later.
+        """
+        if not is_number(time) or not self._time < time < math.inf:
+            raise SignalError(f"from t = {self._time!r} s a step leads to no time {time!r}")
+        return self._go(float(time), 0.0, inputs)
+
+    def give(self, **inputs: object) -> Signals:
+        """Take these inputs from the present instant on, and stay there; every named signal under them.
+
+        What happens there under them is told by ``events``, beside what was told before.
+
+        Raises what `advance` raises; the stepper then is where it was.
+        """
+        given = self._named(inputs)
+        if given is self._given:
+            return self.signals
+        if self._rated:
+            self._refuse_steps(given, self._time)
+        self._going.under((*given, *self._sources.signals), self._time)
+        try:
+            events = self._renewed(given)
+        except BaseException:
+            self._going.under((*self._given, *self._sources.signals), self._time)
+            raise
+        self._given = given
+        self._events += tuple(self._untold(events))
+        return self.signals
+
+    def _renewed(self, given: Sequence[Given]) -> Sequence[Event]:
+        """Decide the present instant anew; what happens there."""
+        if self._start is None:
+            return self._going.advance(self._time, anew=True)
+        before = self._going.paused()
+        try:
+            self._begin(self._start, given)
+        except BaseException:
+            self._going.take_up(before)
+            raise
+        return ()
+
+    def _go(self, time: float, late: float, inputs: Mapping[str, object]) -> Signals:
         given = self._named(inputs) if inputs else self._given
         anew = given is not self._given
         reached = self._sources.reach(self._time, time)
