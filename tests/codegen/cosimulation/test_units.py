@@ -1,9 +1,12 @@
 """Units of somebody else, written by hand in C, against the closed form of what they do."""
 
+import gc
 import math
 import tempfile
 from pathlib import Path
 
+import fmpy
+import fmpy.validation
 import numpy as np
 import pytest
 from oracles.lag_units import KIND, VARIABLE, lag_unit
@@ -122,6 +125,27 @@ def test_an_error_of_a_unit_shows_its_log(version: str, tmp_path: Path) -> None:
         codegen.cosimulate(
             {"good": path, "bad": path}, {}, end=1, every=0.1, inputs={"bad.u": late}
         )
+
+
+@VERSIONS
+def test_fmpy_takes_the_units_too_and_hears_their_log_afterwards(
+    version: str,
+    tmp_path: Path,
+    capfd: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What listened here is gone, and what fmpy listens by is as it was."""
+    path = lag_unit(tmp_path / "unit", version)
+    test_an_error_of_a_unit_shows_its_log(version, tmp_path)
+    gc.collect()
+    assert fmpy.validation.validate_fmu(str(path)) == []
+    # After an error fmpy leaves behind what it unpacked.
+    theirs = tmp_path / "theirs"
+    theirs.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(theirs))
+    with pytest.raises(fmpy.fmi1.FMICallException):
+        fmpy.simulate_fmu(str(path), start_values={"u": 4000.0})
+    assert "u = 4000 is out of range" in capfd.readouterr().out
 
 
 def test_a_unit_that_ends_the_run(tmp_path: Path) -> None:

@@ -164,6 +164,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 t, fmi3Float64 h, fmi3Boolean 
 SECOND_ABOUT = """<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="lag" guid="{{lag}}">
   {kind}
+  <UnitDefinitions><Unit name="N"><BaseUnit kg="1" m="1" s="-2"/></Unit><Unit name="m/s"><BaseUnit m="1" s="-1"/></Unit></UnitDefinitions>
   <ModelVariables>
     <ScalarVariable name="u" valueReference="0" causality="input" variability="continuous"><Real start="0" unit="N"/></ScalarVariable>
     <ScalarVariable name="y" valueReference="1" causality="output" variability="continuous" initial="calculated"><Real unit="m/s"/></ScalarVariable>
@@ -173,13 +174,14 @@ SECOND_ABOUT = """<?xml version="1.0" encoding="UTF-8"?>
     <ScalarVariable name="high" valueReference="5" causality="output" variability="discrete"><Boolean/></ScalarVariable>
     <ScalarVariable name="label" valueReference="6" causality="output" variability="discrete"><String/></ScalarVariable>
   </ModelVariables>
-  <ModelStructure><Outputs><Unknown index="2"/><Unknown index="5"/><Unknown index="6"/></Outputs></ModelStructure>
+  <ModelStructure><Outputs><Unknown index="2"/><Unknown index="5"/><Unknown index="6"/><Unknown index="7"/></Outputs><InitialUnknowns><Unknown index="2"/><Unknown index="5"/><Unknown index="6"/><Unknown index="7"/></InitialUnknowns></ModelStructure>
 </fmiModelDescription>
 """
 
 THIRD_ABOUT = """<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="3.0" modelName="lag" instantiationToken="{{lag}}">
   {kind}
+  <UnitDefinitions><Unit name="N"><BaseUnit kg="1" m="1" s="-2"/></Unit><Unit name="m/s"><BaseUnit m="1" s="-1"/></Unit></UnitDefinitions>
   <ModelVariables>
     <Float64 name="time" valueReference="9" causality="independent" variability="continuous"/>
     <Float64 name="u" valueReference="0" causality="input" start="0" unit="N"/>
@@ -189,7 +191,7 @@ THIRD_ABOUT = """<?xml version="1.0" encoding="UTF-8"?>
     <Int32 name="steps" valueReference="4" causality="output" initial="calculated"/>
     <Boolean name="high" valueReference="5" causality="output" initial="calculated"/>
   </ModelVariables>
-  <ModelStructure><Output valueReference="1"/><Output valueReference="4"/><Output valueReference="5"/></ModelStructure>
+  <ModelStructure><Output valueReference="1"/><Output valueReference="4"/><Output valueReference="5"/><InitialUnknown valueReference="1"/><InitialUnknown valueReference="4"/><InitialUnknown valueReference="5"/></ModelStructure>
 </fmiModelDescription>
 """
 
