@@ -24,7 +24,7 @@ help:
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -c "import sys; sys.exit('Python 3.11 or newer is needed: make PYTHON=...' if sys.version_info < (3, 11) else 0)"
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[cli,pictures,tables,control,c,sweep,cluster,sundae,export,notebooks,docs,test]"
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[cli,pictures,tables,control,c,sweep,cluster,sundae,fmu,export,notebooks,docs,test]"
 	@touch $(READY)
 
 demo: $(READY)

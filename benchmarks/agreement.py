@@ -20,7 +20,7 @@ from oracles.apart import Apart, apart, order  # noqa: E402
 from oracles.c_model import Pair  # noqa: E402
 from oracles.methods import EVERY, LOCATED, STEPPED, Made, Outcome  # noqa: E402
 
-from differentials.scenarios import SAMPLE  # noqa: E402
+from differentials.prepared import SAMPLE  # noqa: E402
 
 COUNTS = (1, 3, 10, 30, 100)
 """Steps for each sample."""

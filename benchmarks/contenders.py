@@ -23,7 +23,7 @@ import codegen
 from codegen.engine.runs import Prepared
 from codegen.engine.status import Status
 from codegen.runs.arguments import initial_values, signals_for
-from differentials.scenarios import Prepared as Case
+from differentials.prepared import Prepared as Case
 from differentials.scenarios import prepared
 
 OFTEN = 50

@@ -41,6 +41,7 @@ from bondgraph.errors import (
     StoreError,
     StructureError,
     TableError,
+    UnitError,
     WriteError,
 )
 from bondgraph.explaining.explanation import Explanation, explain
@@ -50,10 +51,12 @@ from bondgraph.files.disk import read_graphml, read_json, write_graphml, write_j
 from bondgraph.files.graphml import from_graphml, to_graphml
 from bondgraph.files.nodelink import from_json, to_json
 from bondgraph.nodes.controllers import Controller
+from bondgraph.nodes.delays import Delay
 from bondgraph.nodes.elements import GY, TF, C, De, Df, I, One, R, Se, Sf, Sw, Switch, Zero
 from bondgraph.nodes.hysteresis import Hysteresis
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw
+from bondgraph.nodes.machines import StateMachine
 from bondgraph.nodes.one_way import CheckValve, Diode, Freewheel
 from bondgraph.nodes.rate_limiter import RateLimiter
 from bondgraph.nodes.signals import Function, State
@@ -83,6 +86,7 @@ __all__ = [
     "Controller",
     "De",
     "DeadZone",
+    "Delay",
     "DependentSourceError",
     "Df",
     "Diode",
@@ -125,6 +129,7 @@ __all__ = [
     "SingularStorageError",
     "State",
     "StateEquations",
+    "StateMachine",
     "StateSpace",
     "Step",
     "Stop",
@@ -137,6 +142,7 @@ __all__ = [
     "SwitchPort",
     "TableError",
     "TransferFunction",
+    "UnitError",
     "WriteError",
     "Zero",
     "assemble",

@@ -10,8 +10,9 @@ from bondgraph.algebra.called import unguarded
 from bondgraph.algebra.expressions import TIME, callable_in_text
 from bondgraph.errors import StructureError
 from bondgraph.nodes.elements import Element
+from bondgraph.nodes.lagging import Lagging
 from bondgraph.nodes.laws import ExpressionLaw, Law
-from bondgraph.nodes.tasks import Task
+from bondgraph.nodes.tasks import Machine, Task
 from bondgraph.reduce.record import Reading
 from bondgraph.reduce.sorting import Reduction, held
 from bondgraph.reduce.structure import Port, PortRow
@@ -107,6 +108,15 @@ class StateEquations:
         return self.reduction.structure.states_of_laws
 
     @property
+    def kept(self) -> frozenset[sp.Symbol]:
+        """The states that stay as they are but at instants: what detectors make of nothing at all."""
+        rows = {
+            name: self.reduction.reading(self.signals[rate])
+            for name, rate in self.integrals.items()
+        }
+        return frozenset(name for name, row in rows.items() if not any(row.parts))
+
+    @property
     def held(self) -> Mapping[sp.Symbol, sp.Expr]:
         """What storages hold that are no states: ``p_m``, ``q_C``, over their flows and efforts."""
         taken = {*self.signals, *self.states, *self.inputs, *self.further_states, *self.parameters}
@@ -132,6 +142,21 @@ class StateEquations:
     def tasks(self) -> tuple[Task, ...]:
         """What sampled controllers do, and at which instants, in declaration order."""
         return tuple(one.task for one in self.elements.values() if one.task is not None)
+
+    @property
+    def delays(self) -> tuple[Lagging, ...]:
+        """What is given late, in declaration order."""
+        return tuple(one.late for one in self.elements.values() if one.late is not None)
+
+    @property
+    def machines(self) -> tuple[Machine, ...]:
+        """The state machines, in declaration order."""
+        return tuple(one.machine for one in self.elements.values() if one.machine is not None)
+
+    @property
+    def plain_switches(self) -> tuple[SwitchPort, ...]:
+        """The switches but for those by which state machines take transitions."""
+        return tuple(one for one in self.switches if one.switch.transition is None)
 
     @property
     def tables(self) -> tuple[Sampled, ...]:

@@ -67,6 +67,10 @@ class SimulationError(BondGraphError):
     """A run cannot go on; the message gives the time and the numbers."""
 
 
+class UnitError(BondGraphError):
+    """A functional mock-up unit of others cannot take part, or returned an error; the message has its log."""
+
+
 class ModelWarning(UserWarning):
     """Base of this toolkit's warnings: what is run all the same, but should be looked at."""
 

@@ -4,6 +4,8 @@ from codegen.analysis.comparison import Comparison, compare
 from codegen.analysis.spectrum import Spectrum, spectrum
 from codegen.c.export import to_c
 from codegen.called.function import TimeFunction
+from codegen.cosimulation.cosimulate import cosimulate
+from codegen.cosimulation.record import CoSimulation
 from codegen.energy.audit import Audit
 from codegen.engine.fallback import BackendWarning
 from codegen.family import Family
@@ -52,6 +54,7 @@ __all__ = [
     "Audit",
     "BackendWarning",
     "Block",
+    "CoSimulation",
     "Comparison",
     "Constant",
     "Event",
@@ -85,6 +88,7 @@ __all__ = [
     "balance",
     "bode",
     "compare",
+    "cosimulate",
     "event_count",
     "final",
     "first_event",

@@ -81,7 +81,7 @@ class Family:
     @property
     def inputs(self) -> tuple[str, ...]:
         """The names of what a run must be given, as of every simulator."""
-        return tuple(name.name for name in self.program.asked)
+        return tuple(name.name for name in self.program.wanted)
 
     def simulator(self, /, **changes: object) -> Simulator:
         """A simulator with other numbers for some of the parameters.

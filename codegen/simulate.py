@@ -84,7 +84,7 @@ def bound(
     check_names(program, equations)
     return Simulator(
         tuple(name.name for name in (*program.states, *program.law_states)),
-        tuple(name.name for name in program.asked),
+        tuple(name.name for name in program.wanted),
         tuple(name.name for name in program.outputs),
         tuple(port.name for port in program.switches),
         closed,

@@ -1,7 +1,8 @@
 """`Simulator`: a model with numbers, ready to run."""
 
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ from numpy.typing import ArrayLike
 from bondgraph.declare.switching import checked_modes
 from bondgraph.errors import SignalError
 from codegen.called.function import followed
+from codegen.delays.found import found as found_delays
+from codegen.delays.found import readings
 from codegen.energy.ledger import Ledger
 from codegen.engine.backends import Request, in_c, in_numpy
 from codegen.engine.fallback import Stopped, tell
@@ -41,6 +44,7 @@ from codegen.runs.arguments import (
 )
 from codegen.runs.completion import started, tell_completed
 from codegen.runs.impulses import refuse_impulses
+from codegen.runs.track import Settings
 from codegen.stepping.in_numpy import NumpyGoing
 from codegen.stepping.known import Sources
 from codegen.stepping.plan import Plan
@@ -163,8 +167,10 @@ class Simulator:
         if self.located is None:
             wanted_inputs = followed(wanted_inputs, times)
         given = signals_for(wanted_inputs, self.inputs, self.whence)
-        signals = [*given, *self.sources(float(times[0]), float(times[-1]))]
         settings = settings_of(method, rtol, atol)
+        if self.closed.program.delayed:
+            given = self._with_late(given, times, initial, settings, initially_on)
+        signals = [*given, *self.sources(float(times[0]), float(times[-1]), found=True)]
         refuse_impulses(self.closed, signals, times)
         on = checked_modes(self.switches, initially_on)
         begin = float(times[0])
@@ -195,7 +201,7 @@ class Simulator:
             found.events,
             shown,
             observer,
-            self._ledger(run),
+            self.ledger(run),
             told_units(self.closed.equations),
             found.backend,
             begun.completed,
@@ -240,7 +246,8 @@ class Simulator:
         if not is_number(time) or not is_finite(time):
             raise SignalError(f"the time must be a finite number, not {time!r}")
         given = signals_for({} if inputs is None else inputs, self.inputs, self.whence)
-        sources = Sources(self.sources, float(time))
+        whole = len(self.inputs) == len(self.closed.program.asked)
+        sources = Sources(partial(self.sources, found=whole), float(time))
         told = named_numbers(
             self._told(initial, [*given, *sources.signals], float(time)), self.states
         )
@@ -261,7 +268,8 @@ class Simulator:
         """Who reads an input, and what else its name may have been meant to be, as messages say it."""
         return whence(name, self.closed.equations, self.laws or {}, self.closed.parameters)
 
-    def _ledger(self, run: Run) -> Ledger:
+    def ledger(self, run: Run) -> Ledger:
+        """What integrates accounts of a run that is over."""
         program = self.closed.program
         names = (*program.states, *program.law_states, *program.inputs, *program.asked)
         told = tuple(name.name for name in names)
@@ -293,9 +301,32 @@ class Simulator:
         told = by_states(equations, parameters, initial)
         return {**told_starts(equations, parameters), **told} if equations.starts else told
 
-    def sources(self, begin: float, end: float) -> list[Signal]:
-        """What known sources do from ``begin`` to ``end`` [s]; their pieces follow those of the inputs."""
-        return source_signals(self.closed.program, self.closed.parameters, begin, end)
+    def _with_late(
+        self, given: Sequence[Signal], times: Array, initial: Any, settings: Settings,
+        on: Iterable[Hashable],
+    ) -> list[Signal]:  # fmt: skip
+        """The inputs of a run with those that delays give, found by stepping it."""
+        begin, end, on = float(times[0]), float(times[-1]), tuple(on)
+        program, own = self.closed.program, dict(zip(self.inputs, given, strict=True))
+        delays = readings(self.closed.equations.delays, self.closed.parameters)
+        names = tuple(name.name for name in program.asked)
+        model = replace(self, inputs=names)
+
+        def make(told: Mapping[str, object]) -> Stepper:
+            return model.stepping(
+                initial, {**own, **told}, begin, settings.method, settings.rtol, settings.atol, on
+            )
+
+        known = [*given, *self.sources(begin, end, found=True)]
+        late = found_delays(program, delays, make, known, begin, end)
+        return [late[name] if name in late else own[name] for name in names]
+
+    def sources(self, begin: float, end: float, found: bool = False) -> list[Signal]:
+        """What known sources do from ``begin`` to ``end`` [s]; their pieces follow those of the inputs.
+
+        ``found``: whether what delays give is among these.
+        """
+        return source_signals(self.closed.program, self.closed.parameters, begin, end, found)
 
     def vector(self, t: float, state: Array, given: Array) -> Array:
         """The integrated vector at a state: x less what inputs that drive dependent storages add."""

@@ -3,6 +3,7 @@
 from collections.abc import Hashable, Mapping
 
 from bondgraph.errors import StructureError
+from bondgraph.nodes.machined import told_numbers
 from codegen.instants.equilibrium import equilibrium
 from codegen.model.snapshot import Snapshot
 from codegen.modes.closed import ClosedModel
@@ -21,7 +22,8 @@ def trim(
     What sampled controllers keep rests where they set it to what it is.
 
     ``initial``: states to start the search from. ``mode``: what friction and switches do there, in the
-    words of events, such as ``{"dog": "off", "brake": "stick"}``; of others a mode is found that is
+    words of events, such as ``{"dog": "off", "brake": "stick"}``; of a state machine in which mode it stays,
+    which ``initial`` tells else; of others a mode is found that is
     consistent, from the one that the start shows; so of laws that jump, which no word names. Sticking and
     sliding are preferred where both would do. The result is what `linearize` takes as ``at``, and ``mode``
     what it takes as that.
@@ -44,6 +46,7 @@ def trim(
             f"trim takes what codegen.simulator returns, not a {type(simulator).__name__}"
         )
     model = simulator.closed
+    mode, initial = told_numbers(model.program.equations.machines, mode, initial)
     choices(model, mode)
     pieces, start = simulator.steady(inputs or {}, initial or {})
     return _named(model, equilibrium(model, pieces, start, mode))

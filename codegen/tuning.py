@@ -45,6 +45,7 @@ class Tuning:
     least_cap: float = _told(
         1e-15, "of the largest effort: the least that a port's limit counts as"
     )
+    delayed: float = _told(1e-12, "of what a delay reads: how far its polynomials may be off")
     tiny: float = _told(1e-300, "larger than nothing")
     exchanged: float = _told(1e-14, "of its terms, by which a shared effort may be above its share")
     exchanges: int = _told(10_000, "ports exchanged beyond which rounding alone would go on")
@@ -83,6 +84,8 @@ class Tuning:
     residual_floor: float = _told(1e-3, "added to that magnitude")
     loop_difference: float = _told(1e-7, "relative difference for the slopes of laws")
     loop_floor: float = _told(1e-6, "added to what that is relative to")
+    loop_lost: float = _told(2.0**-44, "of what is left: a smaller change is lost ..")
+    loop_wider: float = _told(1024.0, ".. and the difference is made so much larger")
     root_turns: int = _told(
         1000, "steps of a root's search: four times as many as halve to nothing"
     )
@@ -141,6 +144,10 @@ class Tuning:
 
     # Exact steps
     degree: int = _told(18, "of power series: over |M| h <= 1 what is left out is below rounding")
+    powers: int = _told(30, "terms of a power series in C, at most: as many as its length wants ..")
+    left_out: float = _told(
+        2.0**-57, ".. so that terms left out are below this, where |M| h bounds them"
+    )
     pair_degree: int = _told(21, "the same of pairs: over |M| h <= 1/4 it is below 1e-32")
     rungs: int = _told(62, "doublings beyond which rounding of pairs would show: 2^62 are 1e-13")
     rounded: float = _told(1e4, "so many steps in double precision leave all digits that count")

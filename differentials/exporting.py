@@ -5,13 +5,15 @@ from pathlib import Path
 
 from codegen.exports import target as asked
 from codegen.targets import Export
-from differentials.scenarios import Prepared, Scenario, prepared
+from differentials.control.manoeuvres import Manoeuvre
+from differentials.prepared import Prepared
+from differentials.scenarios import Scenario, prepared
 
 
 def export(
     name: str,
     target: str,
-    scenario: str | Scenario,
+    scenario: str | Scenario | Manoeuvre,
     parameters: Mapping[str, float] | None,
     out: Path,
 ) -> list[Path]:

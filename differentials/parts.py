@@ -17,28 +17,28 @@ from differentials.laws import backlash
 
 def shaft(name: str, speed: str | None = None) -> Part:
     """A rigid shaft: one speed, torques that sum to zero. ``speed`` names it, else ``f_<name>``."""
-    return _part([bg.One(name, flow=speed)])
+    return part([bg.One(name, flow=speed)])
 
 
 def engine(name: str, torque: str, at: str) -> Part:
     """A torque source driving a shaft; a bare name is an input [N m]."""
-    return _part([bg.Se(name, torque)], (name, at))
+    return part([bg.Se(name, torque)], (name, at))
 
 
 def inertia(name: str, value: str, at: str, speed: str | None = None, priority: float = 0) -> Part:
     """A moment of inertia [kg m^2] on a shaft; with a lower ``priority`` it is the dependent one."""
-    return _part([bg.I(name, value, flow=speed, priority=priority)], (at, name))
+    return part([bg.I(name, value, flow=speed, priority=priority)], (at, name))
 
 
 def gear(name: str, ratio: str, driving: str, driven: str) -> Part:
     """A gear of ratio ``w_driving / w_driven``: a transformer of modulus 1/ratio."""
-    return _part([bg.TF(name, f"1/({ratio})")], (driving, name), (name, driven))
+    return part([bg.TF(name, f"1/({ratio})")], (driving, name), (name, driven))
 
 
 def bevel(name: str, case: str, left: str, right: str) -> Part:
     """A bevel differential: ``w_case = (w_left + w_right)/2``, equal torques (Fig. 1)."""
     halves, torque = f"{name}_halves", f"{name}_torque"
-    return _part(
+    return part(
         [bg.TF(halves, 2), bg.Zero(torque)],
         (case, halves), (halves, torque), (torque, left), (torque, right),
     )  # fmt: skip
@@ -50,7 +50,7 @@ def planetary(name: str, ratio: str, sun: str, ring: str, carrier: str) -> Part:
     Torque on the ring is h times that on the sun, the carrier gives both out.
     """
     node, up, down = f"{name}_torque", f"{name}_ring", f"{name}_carrier"
-    return _part(
+    return part(
         [bg.TF(up, ratio), bg.Zero(node), bg.TF(down, f"1/(1 + ({ratio}))")],
         (ring, up), (up, node), (sun, node), (node, down), (down, carrier),
     )  # fmt: skip
@@ -62,7 +62,7 @@ def double_planetary(name: str, ratio: str, driving: str, driven: str, carrier: 
     With its carrier held the driven sun turns h times as fast as the driving one.
     """
     node, up, down = f"{name}_torque", f"{name}_driving", f"{name}_carrier"
-    return _part(
+    return part(
         [bg.TF(up, ratio), bg.Zero(node), bg.TF(down, f"1/(({ratio}) - 1)")],
         (driving, up), (up, node), (node, driven), (node, down), (down, carrier),
     )  # fmt: skip
@@ -79,15 +79,15 @@ def clutch(
     nodes = [bg.Zero(between), bg.R(name, effort=torque, flow=slip)]
     away = [(between, name), (between, driven)]
     if speedup is None:
-        return _part(nodes, (driving, between), *away)
-    return _part(
+        return part(nodes, (driving, between), *away)
+    return part(
         [bg.TF(faster, speedup), *nodes], (driving, faster), (faster, between), *away
     )  # fmt: skip
 
 
 def brake(name: str, torque: str, slip: str, at: str) -> Part:
     """A friction brake between a shaft and the housing as an open port; its slip is the shaft's speed."""
-    return _part([bg.R(name, effort=torque, flow=slip)], (at, name))
+    return part([bg.R(name, effort=torque, flow=slip)], (at, name))
 
 
 def compliant_shaft(
@@ -104,11 +104,11 @@ def compliant_shaft(
     ends = [bg.Zero(name, effort=torque)], (driving, name), (name, driven)
     if gap is not None:
         twisted = bg.C(spring, law=backlash(f"q_{spring}", f"f_{spring}", k, b, gap), effort=torque)
-        return _part([*ends[0], twisted], *ends[1:], (name, spring))
+        return part([*ends[0], twisted], *ends[1:], (name, spring))
     elastic = bg.C(spring, f"1/({k})", effort=spring_torque)
     if b is None:
-        return _part([*ends[0], elastic], *ends[1:], (name, spring))
-    return _part(
+        return part([*ends[0], elastic], *ends[1:], (name, spring))
+    return part(
         [*ends[0], bg.One(twist), elastic, bg.R(damper, b)],
         *ends[1:], (name, twist), (twist, spring), (twist, damper),
     )  # fmt: skip
@@ -126,7 +126,7 @@ def halfshaft(
 def tire(number: int, at: str) -> Part:
     """The road's torque on a wheel as an open port ``tau_t<number>`` at speed ``omega_t<number>``."""
     name = f"tire_{number}"
-    return _part([bg.R(name, effort=f"tau_t{number}", flow=f"omega_t{number}")], (at, name))
+    return part([bg.R(name, effort=f"tau_t{number}", flow=f"omega_t{number}")], (at, name))
 
 
 def wheel(number: int, at: str, value: str, speed: str | None = None) -> Part:
@@ -134,8 +134,16 @@ def wheel(number: int, at: str, value: str, speed: str | None = None) -> Part:
     return assemble(inertia(f"I_w{number}", value, at=at, speed=speed), tire(number, at=at))
 
 
-def _part(nodes: list[Node], *bonds: tuple[str, str]) -> Part:
-    part: nx.DiGraph[Hashable] = nx.DiGraph()
-    part.add_nodes_from(nodes)
-    part.add_edges_from(bonds)
-    return part
+def part(nodes: list[Node], *bonds: tuple[str, str]) -> Part:
+    """Nodes and bonds as a part; a node that a bond names and the list does not is a terminal.
+
+    Raises nothing.
+
+    >>> import bondgraph as bg
+    >>> list(part([bg.R("brake", "b")], ("shaft", "brake")))
+    ['brake', 'shaft']
+    """
+    found: nx.DiGraph[Hashable] = nx.DiGraph()
+    found.add_nodes_from(nodes)
+    found.add_edges_from(bonds)
+    return found

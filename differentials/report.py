@@ -21,14 +21,18 @@ def causality_text(causal: bg.CausalGraph) -> str:
 
 
 def events_text(result: Result) -> str:
-    """When friction ports stuck, slipped and crossed zero, switches changed and stops were met, by lines."""
+    """When friction ports stuck, slipped and crossed zero, switches changed, stops were met and state
+    machines went from mode to mode, by lines."""
     words = {
         "stick": "sticks", "slip": "slips again", "cross": "crosses zero slip",
         "on": "turns on", "off": "turns off",
         "hit": "is hit", "touch": "is touched", "apart": "is left",
         "slide": "slides along a jump", "leave": "leaves the jump",
     }  # fmt: skip
-    lines = [f"t = {e.time:.6f} s   {e.port} {words[e.kind]}" for e in result.events]
+    lines = [
+        f"t = {e.time:.6f} s   {e.port} {words.get(e.kind, f'goes {e.kind}')}"
+        for e in result.events
+    ]
     return (
         "\n".join(lines)
         or "no events: nothing stuck, was released, changed its slip's sign or switched"

@@ -1,19 +1,18 @@
 """The paper's simulations as data, and `simulate`, which runs a differential through one."""
 
-from collections.abc import Container, Hashable, Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 import bondgraph as bg
 import codegen
 from bondgraph.named import Named
+from differentials.control.loop import closed_loop
+from differentials.control.manoeuvres import Manoeuvre, manoeuvres
 from differentials.model import Model, model
 from differentials.parameters import checked
-
-SAMPLE = 1e-3
-"""Sampling interval of a simulation [s]."""
+from differentials.prepared import SAMPLE, Prepared
 
 
 @dataclass(frozen=True)
@@ -63,25 +62,9 @@ scenarios: Mapping[str, Scenario] = Named(
 """Named scenarios: the paper's figures, and two for the passive differentials, which have no figure."""
 
 
-@dataclass(frozen=True)
-class Prepared:
-    """A full model in a scenario: equations, numbers, laws, start, inputs, samples [s].
-
-    ``initially_on``: the switches of a file's graph that are on at first.
-    """
-
-    equations: bg.StateEquations
-    parameters: Mapping[str, float]
-    laws: Mapping[Hashable, object]
-    initial: Mapping[str, float]
-    inputs: Mapping[str, codegen.Signal]
-    times: NDArray[np.float64]
-    initially_on: tuple[Hashable, ...] = ()
-
-
 def simulate(
     name: str,
-    scenario: str | Scenario,
+    scenario: str | Scenario | Manoeuvre,
     parameters: Mapping[str, float] | None = None,
     backend: str = "numpy",
     laws: Mapping[str, object] | None = None,
@@ -91,6 +74,9 @@ def simulate(
 
     ``parameters``: what differs from the scenario's and the defaults. ``laws``: other laws for clutches
     and tires, by node, such as ``{"tire_1": magic_formula_tire(1)}``. ``backlash``: with play in the shafts.
+
+    A manoeuvre, such as "step_steer", is driven in a car, with the differential's controller: see
+    `closed_loop`.
 
     The result has the equations' states, inputs and slips, the torques of the halfshafts ``tau_hs1``..,
     the speeds of input ``omega_e`` and case ``omega_c``, and the hydraulic torques. A passive variant that
@@ -109,13 +95,15 @@ def simulate(
 
 def prepared(
     name: str,
-    scenario: str | Scenario,
+    scenario: str | Scenario | Manoeuvre,
     parameters: Mapping[str, float] | None = None,
     laws: Mapping[str, object] | None = None,
     backlash: bool = False,
 ) -> Prepared:
     """What `simulate` runs, with the same arguments; to be exported, or swept."""
     case = named(scenario)
+    if isinstance(case, Manoeuvre):
+        return closed_loop(name, case, parameters, laws, backlash)
     full = model(name, laws, backlash)
     clutches = full.differential.clutches
     if len(case.clutch_torques) != len(clutches):
@@ -136,13 +124,19 @@ def prepared(
     )
 
 
-def named(scenario: str | Scenario) -> Scenario:
+def named(scenario: str | Scenario | Manoeuvre) -> Scenario | Manoeuvre:
     """A scenario as it is, or the one of that name; `SignalError` with the names there are."""
-    if isinstance(scenario, Scenario):
+    if not isinstance(scenario, str):
         return scenario
-    if scenario not in scenarios:
-        raise bg.SignalError(f"no scenario is called {scenario!r}; there is {', '.join(scenarios)}")
-    return scenarios[scenario]
+    known = named_cases()
+    if scenario not in known:
+        raise bg.SignalError(f"no scenario is called {scenario!r}; there is {', '.join(known)}")
+    return known[scenario]
+
+
+def named_cases() -> dict[str, Scenario | Manoeuvre]:
+    """Everything that a differential can be run through by name: the paper's scenarios, then manoeuvres."""
+    return {**scenarios, **manoeuvres}
 
 
 def _speeds(full: Model, case: Scenario) -> list[float]:

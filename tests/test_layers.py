@@ -19,9 +19,10 @@ ORDER = {
     "causality reduce equations derive sampling analyse show rates explaining checking layout drawing files",
     "codegen": "tuning standalone fixed stops numbers data inputs called targets supplied program model "
     "ports straight modes corners instants energy runs pictures record plots analysis c engine stepping "
-    "simulator simulate trim packing family batch abreast sweeps python switched sparse fmu exports",
+    "delays simulator simulate trim packing family batch abreast sweeps python switched sparse fmu "
+    "cosimulation exports",
     "differentials": "laws parts pieces passive active topologies parameters model identification speeds "
-    "scenarios exporting figures report commands",
+    "prepared control scenarios exporting figures loop_figures report commands",
 }
 """Each imports only earlier ones."""
 

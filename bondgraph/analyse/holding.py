@@ -23,7 +23,7 @@ def stuck_ports(
         raise StructureError(f"stuck must be a list of nodes, not {stuck!r}")
     resisting = {p.element.name: p for p in equations.ports if p.element.kind.resists}
     by_name = {**resisting, **switches}
-    switched = {one.name for one in equations.switches} - switches.keys()
+    switched = {one.name for one in equations.plain_switches} - switches.keys()
     ports: list[Port] = []
     for name in stuck:
         if name in switched:

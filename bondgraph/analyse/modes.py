@@ -78,6 +78,8 @@ def told_modes(
     resting = [port for port in sliders if port in held]
     held = [port for port in held if port not in sliders]
     held += [port for port in sliders if port not in resting]
+    # No transition lasts.
+    told |= {one.name: "off" for one in equations.switches if one.switch.transition is not None}
     missing = [one.name for one in equations.switches if one.name not in told]
     if missing:
         listed = ", ".join(map(repr, missing))
@@ -98,7 +100,7 @@ def _checked(equations: StateEquations, mode: Any) -> dict[Hashable, str]:
         raise StructureError(
             f"mode must map nodes to 'on', 'off', 'stick' or 'slip', not be {mode!r}"
         )
-    switches = {one.name for one in equations.switches}
+    switches = {one.name for one in equations.plain_switches}
     stops = {one.name for one in equations.switches if one.switch.stops}
     told: dict[Hashable, str] = {
         name: STOPS[word] if name in stops and word in STOPS else word
@@ -107,7 +109,7 @@ def _checked(equations: StateEquations, mode: Any) -> dict[Hashable, str]:
     resisting = {p.element.name for p in equations.ports if p.element.kind.resists}
     for name, word in told.items():
         if name not in switches | resisting:
-            listed = ", ".join(map(repr, [one.name for one in equations.switches]))
+            listed = ", ".join(map(repr, [one.name for one in equations.plain_switches]))
             raise StructureError(
                 f"mode: {name!r} is no switch and no port that could stick; there are the switches "
                 f"{listed or 'none'} and the ports {', '.join(map(repr, _listed(equations))) or 'none'}"

@@ -45,7 +45,7 @@ def holding_efforts(
     """
     told = stuck if isinstance(stuck, str) or not isinstance(stuck, Iterable) else [*stuck]
     equations = _with_springs(equations, told)
-    ports = stuck_ports(equations, told, {one.name: one.port for one in equations.switches})
+    ports = stuck_ports(equations, told, {one.name: one.port for one in equations.plain_switches})
     if equations.varying:
         raise StructureError(
             "values of this graph change in time, and with them what a port must give: hold it in a run"

@@ -8,6 +8,7 @@ from bondgraph.causality.causal_graph import CausalGraph
 from bondgraph.checking.arrows import arrows_doubted
 from bondgraph.checking.drawn import strokes_drawn
 from bondgraph.checking.names import parameters_doubted, validated
+from bondgraph.checking.reached import modes_doubted
 from bondgraph.checking.records import Check, Finding, StrokeVerdict
 from bondgraph.checking.shapes import junctions_doubted, junctions_simpler
 from bondgraph.checking.strokes import strokes_judged
@@ -24,9 +25,10 @@ def check(
     """What is to be asked about a declared graph: most likely mistakes first, then what could be simpler.
 
     Doubts: numbers in ``parameters`` that nothing reads; junctions of one bond; arrows out of storages and
-    resistances, into every source, and such that a sum stands where a difference is meant; sources that
-    contradict each other; drawn strokes that are wrong, or take integral causality from a storage that
-    could have it. Hints: bonds without a stroke where others have one; junctions that `merged` takes out.
+    resistances, into every source, and such that a sum stands where a difference is meant; modes of state
+    machines that no transition leads to; sources that contradict each other; drawn strokes that are wrong,
+    or take integral causality from a storage that could have it. Hints: bonds without a stroke where others
+    have one; junctions that `merged` takes out.
 
     ``strokes``: bonds, as declared, to the node at whose end a causal stroke was drawn, as in
     `CausalGraph.strokes`; or ``stroke="tail"`` or ``"head"`` as attribute of a bond. Where they contradict
@@ -64,6 +66,7 @@ def check(
         *(parameters_doubted(with_tables(graph), parameters) if parameters is not None else ()),
         *junctions_doubted(checked),
         *arrows_doubted(checked),
+        *modes_doubted(checked),
         *refusals,
         *_strokes_doubted(verdicts, loop),
         *(() if causal is None else _kept_integral(causal, chosen)),

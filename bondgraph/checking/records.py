@@ -8,7 +8,7 @@ from bondgraph.nodes.elements import Bond
 
 Rule = Literal[
     "parameter", "one bond", "arrow", "source", "supply", "pass-through",
-    "same kind", "causality", "stroke",
+    "same kind", "causality", "stroke", "mode",
 ]  # fmt: skip
 """What a finding is about."""
 

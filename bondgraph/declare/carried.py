@@ -6,7 +6,7 @@ from typing import Any
 
 import networkx as nx
 
-from bondgraph.declare.quantities import kept_names, name_text, quantities
+from bondgraph.declare.quantities import kept_names, listed, name_text, quantities
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import kind_of
 from bondgraph.nodes.elements import OTHER
@@ -47,10 +47,15 @@ def carried(bonds: "nx.DiGraph[Hashable]", name: Hashable, port: str | None = No
 
 
 def _of_signals(name: Hashable, kind: Kind, attributes: Mapping[str, Any]) -> Carried:
-    """A function or a state is its own signal; a controller has what it gives, and what it keeps."""
+    """A function or a state is its own signal; a controller has what it gives, and what it keeps.
+
+    A state machine is the number of its mode, and has the signals of its modes and what it keeps.
+    """
     if kind is not Kind.CONTROLLER:
         own = str(name_text(name))
-        return Carried((own,), own)
+        modes = listed(attributes.get("modes")) if kind is Kind.MACHINE else []
+        kept = kept_names(attributes) if kind is Kind.MACHINE else ()
+        return Carried((own, *(f"{own}_{mode}" for mode in modes), *kept), own)
     gives = list(kept_names({"outputs": attributes.get("outputs")}))
     if not gives:
         raise StructureError(f"node {name!r} gives nothing; name what it gives, gives={{'u': ...}}")

@@ -27,10 +27,12 @@ from bondgraph.nodes.attributes import (
     variable,
 )
 from bondgraph.nodes.controllers import controller_elements
+from bondgraph.nodes.delays import delay_elements
 from bondgraph.nodes.elements import OTHER, Element
 from bondgraph.nodes.hysteresis import hysteresis_elements
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw, law
+from bondgraph.nodes.machines import machine_elements
 from bondgraph.nodes.rate_limiter import rate_limiter_elements
 from bondgraph.nodes.signals import function_elements, state_elements
 from bondgraph.nodes.stops import stop_elements
@@ -42,6 +44,8 @@ COMPOSITE: Mapping[str, Callable[[Hashable, Mapping[str, Any]], list[Element]]] 
     Kind.CONTROLLER: controller_elements,
     Kind.HYSTERESIS: hysteresis_elements,
     Kind.RATE_LIMITER: rate_limiter_elements,
+    Kind.DELAY: delay_elements,
+    Kind.MACHINE: machine_elements,
 }
 """What nodes of several elements are made of, by their kind; the first of them stands for the node.
 

@@ -106,6 +106,8 @@ def read_in(element: Element) -> list[Law | sp.Expr]:
         told += [element.switch.on, element.switch.off]
         resets = element.switch.resets
     told += [part for one in resets for part in (one.state, one.value)]
+    if element.late is not None:
+        told += [element.late.value, element.late.time, element.late.start]
     return [part for part in told if part is not None]
 
 
@@ -124,6 +126,8 @@ def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:
         element = graph.nodes[name]["element"]
         if element.owner is not None:
             joined.add_edge(("node", name), ("field", element.owner))
+        if element.whole is not None:
+            joined.add_edge(("node", name), ("whole", element.whole))
         used = {symbol for part in read_in(element) for symbol in part.free_symbols & owned}
         for _, entry in element.row:
             used |= entry.free_symbols & owned

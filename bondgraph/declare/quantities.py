@@ -7,6 +7,7 @@ from bondgraph.algebra.atoms import normal
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import bare_name
 from bondgraph.nodes.kinds import BOUNDS, POSITION, Kind
+from bondgraph.nodes.parts import LAST, NUMBER, ending
 
 
 def quantities(
@@ -56,8 +57,11 @@ def _stop_parts(attributes: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _of_signals(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str, str, str | None]]:
-    """A function or a state by its own name, a controller by what it keeps and gives; then their parts."""
-    kept = list(kept_names(attributes)) if kind is Kind.CONTROLLER else []
+    """A function or a state by its own name, a controller by what it keeps and gives; then their parts.
+
+    A state machine by its own name, by those of its modes and by what it keeps.
+    """
+    kept = list(kept_names(attributes)) if kind in (Kind.CONTROLLER, Kind.MACHINE) else []
     yield from (("", "", one) for one in kept)
     if kind is not Kind.CONTROLLER:
         yield "", "", None
@@ -69,6 +73,11 @@ def _of_signals(kind: Kind, attributes: Mapping[str, Any]) -> Iterator[tuple[str
         yield "rate_", "", None
         bounds = [key for key in BOUNDS if attributes.get(key) is not None]
         parts += [POSITION, *bounds] if bounds else []
+    if kind is Kind.MACHINE:
+        for mode in listed(attributes.get("modes")):
+            yield from (("", f"_{mode}", None), ("f_", f"_is_{mode}", None))
+        ends = map(ending, listed(attributes.get("transitions")))
+        parts += [NUMBER, *(f"{end}{last}" for end in ends for last in ("", LAST))]
     for part in parts:
         yield from (("e_", f"_{part}", None), ("f_", f"_{part}", None))
 
@@ -78,6 +87,13 @@ PARTS: Mapping[Kind, tuple[str, ...]] = {
     Kind.RATE_LIMITER: ("mass", "drift", "slip", "input", "clutch"),
 }
 """The parts of nodes that are the same whatever their attributes."""
+
+
+def listed(given: Any) -> list[str]:
+    """The names in a list or a mapping, if it is one."""
+    return (
+        [str(name_text(one)) for one in given] if isinstance(given, Mapping | list | tuple) else []
+    )
 
 
 def kept_names(attributes: Mapping[str, Any]) -> Iterator[str]:

@@ -102,9 +102,12 @@ def with_names(name: Hashable, attributes: Mapping[str, Any], names: Names) -> d
 def _mapped_at(
     attributes: Mapping[str, Any], key: str, change: Callable[[sp.Expr], sp.Expr], where: str
 ) -> Any:
-    """An attribute with every expression in it changed; of laws and starts by ports, the ports stay."""
+    """An attribute with every expression in it changed; of laws and starts by ports, the ports stay.
+
+    So do the names of transitions.
+    """
     value = attributes.get(key)
-    if key in ("law", "start") and isinstance(value, Mapping):
+    if key in ("law", "start", "transitions") and isinstance(value, Mapping):
         return {port: _mapped(one, change, f"{where} at {port}") for port, one in value.items()}
     return _mapped(value, change, where)
 

@@ -17,6 +17,8 @@ from bondgraph.nodes.laws import ExpressionLaw
 def switches(graph: Any) -> tuple[Switch, ...]:
     """When each switch and each controlled junction of a graph changes over, in declaration order.
 
+    Those by which state machines take transitions are none of these.
+
     Raises what `validate` raises.
 
     >>> import networkx as nx
@@ -27,7 +29,8 @@ def switches(graph: Any) -> tuple[Switch, ...]:
     >>> [(switch.name, switch.on, switch.off) for switch in switches(g)]
     [('key', gate, -gate)]
     """
-    return tuple(element.switch for element in _elements(validate(graph)) if element.switch)
+    found = (element.switch for element in _elements(validate(graph)) if element.switch)
+    return tuple(one for one in found if one.transition is None)
 
 
 def in_mode(graph: Any, on: Iterable[Hashable] = ()) -> "nx.DiGraph[Hashable]":
@@ -52,7 +55,7 @@ def in_mode(graph: Any, on: Iterable[Hashable] = ()) -> "nx.DiGraph[Hashable]":
     settled = {
         element.name: _settled(element, element.switch, element.switch.name in chosen)
         for element in _elements(checked)
-        if element.switch is not None
+        if element.switch is not None and element.switch.transition is None
     }
     return with_elements(checked, settled)
 

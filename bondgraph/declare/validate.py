@@ -128,6 +128,9 @@ def _add_elements(result: _Validated, graph: Any) -> tuple[set[Hashable], list[B
             _add(result, own, element)
             if element.owner is not None:
                 fields.add(name)
+            elif element.at is not None:
+                if element.at != own:
+                    controls.append((element.at, own))
             elif own != name:
                 # What sources and what they are at give counts into the rest.
                 joins = element.kind.joins

@@ -52,6 +52,8 @@ def reads(element: Element) -> set[sp.Symbol]:
     if element.task is not None:
         parts += [one.value for one in element.task.resets]
         parts += element.task.reads
+    if element.late is not None:
+        parts += [element.late.value, element.late.time, element.late.start]
     found: set[sp.Symbol] = set()
     for part in parts:
         found |= part.free_symbols

@@ -8,6 +8,7 @@ from bondgraph.drawing.rich import MOST, Rich, Run, formula, joined, length, nam
 from bondgraph.nodes.elements import OTHER, Element, Switch
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw
+from bondgraph.nodes.tasks import Transition
 
 IN_BLOCK = 36
 """Letters of a line in a block, which are small, at most."""
@@ -40,6 +41,11 @@ def does(ports: Sequence[Element]) -> tuple[Rich, ...]:
     lines: list[Rich] = []
     if (task := ports[0].task) is not None:
         lines.append((Run(task.instants),))
+    elif (late := ports[0].late) is not None:
+        lines += [formula(late.value), joined([*formula(late.time), Run(" s ago")])]
+    elif ports[0].machine is not None:
+        taken = [port.switch.transition for port in ports if port.switch is not None]
+        lines += [_taken(one) for one in taken if one is not None]
     elif (switch := ports[-1].switch) is not None and switch.reads is not None:
         lines += _turning(switch, switch.reads, *told)
     elif isinstance(clutch := ports[-1].law, DryFriction):
@@ -47,6 +53,11 @@ def does(ports: Sequence[Element]) -> tuple[Rich, ...]:
     elif ports[0].declared is Kind.STATE:
         begin, end = ("∫ (", ")") if told[0].is_Add else ("∫ ", "")
         lines += [joined([Run(begin), *formula(told[0]), Run(end)]), bounds(ports)]
+    elif ports[0].declared is Kind.HYSTERESIS:
+        lines += [_conditions(port.switch) for port in ports if port.switch is not None]
+    elif ports[0].declared is Kind.RATE_LIMITER:
+        dragged = [port.law for port in ports if port.kind is Kind.SF]
+        lines += [formula(law.expression) for law in dragged if isinstance(law, ExpressionLaw)]
     else:
         lines.append(formula(told[0]))
     return tuple(line for line in lines if line and length(line) <= IN_BLOCK)
@@ -73,6 +84,12 @@ def _following(ports: Sequence[Element], clutch: DryFriction) -> list[Rich]:
         else (*formula(-fall), Run(" ≤ "), *rate, Run(" ≤ "), *formula(rise))
     )  # fmt: skip
     return [formula(laws[Kind.SF].expression), led]
+
+
+def _taken(one: Transition) -> Rich:
+    """A transition and its guard, as a line; what is too long for that without it."""
+    line = joined([Run(f"{one.words}: "), *formula(one.guard), Run(" > 0")])
+    return line if length(line) <= IN_BLOCK else (Run(one.words),)
 
 
 def switched(element: Element) -> str:

@@ -9,13 +9,13 @@ from bondgraph.nodes.elements import Element
 from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.show.signal_nodes import SignalNode, signal_nodes
 from bondgraph.show.sums import rate, signed_terms
-from bondgraph.show.ways import switching, working
+from bondgraph.show.ways import going, lagging, switching, working
 
 
 def signals_step(equations: StateEquations) -> Step:
     """What functions and states come to, what has several ways, what controllers set at which instants."""
     nodes = {node.name: node for node in signal_nodes(equations)}
-    kept = {name for task in equations.tasks for name in task.states}
+    kept = {name for task in equations.tasks for name in task.states} | equations.kept
     lines = [
         line
         for element in equations.elements.values()
@@ -27,9 +27,11 @@ def signals_step(equations: StateEquations) -> Step:
     sentences += [working(task) for task in equations.tasks]
     sentences += [
         switching(one)
-        for one in equations.switches
+        for one in equations.plain_switches
         if one.port.element.of_signals and one.port.element.whole not in nodes
     ]
+    sentences += [going(one, equations.switches) for one in equations.machines]
+    sentences += map(lagging, equations.delays)
     return Step("signals", "Signals, which carry no power", tuple(sentences), tuple(lines))
 
 

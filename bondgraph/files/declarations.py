@@ -22,7 +22,7 @@ FRICTION = ("breakaway", "curve", "level")
 
 NAMES = frozenset(
     {"kind", "effort", "flow", "gives", "integrate", "unit", "port", "tail_port", "head_port"}
-) | {"stroke", "signal"}
+) | {"stroke", "signal", "initially"}
 """Attributes of nodes and bonds that are mere names."""
 
 
@@ -97,7 +97,7 @@ def _plain(key: str, value: Any, kind: object, where: str) -> Any:
         return _written(rows, where)
     if key in ("reset", *NAMED) and isinstance(value, Mapping):
         return {_name(state, where): _become(state, told, where) for state, told in value.items()}
-    if key in ("ports", "reads"):
+    if key in ("ports", "reads", "modes"):
         return [_name(one, where) for one in value]
     if key in ("effort", "flow", "gives") and isinstance(value, Mapping):
         names = {_name(port, where): _name(given, where) for port, given in value.items()}

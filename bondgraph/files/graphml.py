@@ -21,7 +21,8 @@ _NO_XML = re.compile("[^\t\n\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Characters that XML cannot hold, and the carriage return, which it turns into another."""
 
 _NESTED = frozenset(
-    {"value", "law", "ports", "effort", "flow", "gives", "reset", "start", "reads", *NAMED}
+    {"value", "law", "ports", "effort", "flow", "gives", "reset", "start", "reads", "modes"}
+    | {*NAMED}
 )
 
 

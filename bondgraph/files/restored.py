@@ -30,6 +30,7 @@ TYPES: Mapping[str, tuple[type, ...]] = {
     "gives": (str, dict),
     "ports": (list,),
     "reads": (list,),
+    "modes": (list,),
     "reset": (dict,),
 }
 """What a file may hold for an attribute; where nothing is said here, a text."""

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import sympy as sp
 
 from bondgraph.nodes.kinds import Kind
+from bondgraph.nodes.lagging import Lagging
 from bondgraph.nodes.laws import DryFriction, Law
-from bondgraph.nodes.tasks import Reset, Task
+from bondgraph.nodes.tasks import Machine, Reset, Task, Transition
 
 Node = tuple[Hashable, dict[str, object]]
 """What networkx's ``add_nodes_from`` takes: a name and its attributes."""
@@ -26,7 +27,8 @@ class Switch:
     zero effort, or zero flow, as ``gives`` says; while off it has zero of the other.
 
     ``stops``: whether it is a bound of a `Stop`; ``restitution``: the part of its speed that what meets the
-    bound keeps. ``resets``: what it sets states to at its events. ``reads``: of a
+    bound keeps. ``resets``: what it sets states to at its events. ``transition``: of a hidden one, on a port
+    that carries nothing, the transition of a state machine that is taken as it turns on. ``reads``: of a
     hysteresis what it compares with its thresholds.
     """
 
@@ -37,6 +39,7 @@ class Switch:
     restitution: sp.Expr = sp.S.Zero
     stops: bool = False
     resets: tuple[Reset, ...] = ()
+    transition: Transition | None = None
     reads: sp.Expr | None = None
 
 
@@ -46,16 +49,18 @@ class Element:
 
     A source's ``value`` is None: what it gives is its input, closed by ``law`` if it is known.
     ``gives`` is "effort" or "flow" where the causality is fixed: sources, open ports, laws, detectors.
-    ``integral``: the state that a detector makes of what it reads. ``row``: of a port of a field, what
-    it has per unit of each port's variable, by the ports' names; ``owner``: the field's node.
-    ``energy``: of a storage with an energy function, that function. ``inverse``: of one with a law, its
-    state as a function of what the law gives, so that it may have derivative causality. ``switch``: of an
-    ideal switch, when it turns on and off. ``whole``: of a part of a node of several, a stop or a signal,
-    that node, and ``declared`` its kind. ``task``: of a sampled controller, what it does at its instants.
-    ``start``: of what keeps or makes a state, the value with which runs begin. ``by_inverse``: whether the
-    law counts by its inverse alone, what it gives being the state. ``turned``: whether its law is turned
-    round by what is known of it: a resistance then gives what its law, as it was written, receives.
-    ``needed``: names that have to be positive for that.
+    ``integral``: the state that a detector makes of what it reads. ``row``: of a port of a field, what it
+    has per unit of each port's variable, by the ports' names; ``owner``: the field's node. ``energy``: of a
+    storage with an energy function, that function. ``inverse``: of one with a law, its state as a function
+    of what the law gives, so that it may have derivative causality. ``switch``: of an ideal switch, when it
+    turns on and off. ``whole``: of a part of a node of several, a stop or a signal, that node, and
+    ``declared`` its kind; ``at``: where that is not bonded to the first of these, the part that it is bonded
+    to, or itself. ``task``: of a sampled controller, what it does at its instants; ``machine``: of a state
+    machine, its modes; ``late``: of a delay, of what and how late it is. ``start``: of what keeps or makes a
+    state, the value with which runs begin. ``by_inverse``: whether the law counts by its inverse alone, what
+    it gives being the state. ``turned``: whether its law is turned round by what is known of it: a
+    resistance then gives what its law, as it was written, receives. ``needed``: names that have to be
+    positive for that.
     """
 
     name: Hashable
@@ -78,7 +83,10 @@ class Element:
     by_inverse: bool = False
     turned: bool = False
     task: Task | None = None
+    machine: Machine | None = None
+    at: Hashable | None = None
     declared: Kind | None = None
+    late: Lagging | None = None
     needed: frozenset[sp.Symbol] = frozenset()
 
     @property
@@ -89,7 +97,7 @@ class Element:
     @property
     def is_function(self) -> bool:
         """Whether what it gives is a signal that was declared as a node."""
-        return self.declared is Kind.FUNCTION and self.kind.supplies
+        return self.declared in (Kind.FUNCTION, Kind.MACHINE) and self.kind.supplies
 
     @property
     def of_signals(self) -> bool:

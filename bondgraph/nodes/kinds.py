@@ -17,11 +17,13 @@ BOUNDS = {"low": 1, "high": -1}
 POSITION = "position"
 """The part of a stop that integrates its flow."""
 
-EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", "falling", *_BOUNDED)
+EXPRESSIONS = ("value", "energy", "inverse", "on", "off", "rate", "falling", "time", *_BOUNDED)
 """The attributes that are numbers or expressions."""
 
-NAMED = ("states", "update", "outputs")
-"""The attributes that map names to expressions."""
+_KEPT = ("states", "update", "outputs")
+
+NAMED = (*_KEPT, "transitions")
+"""The attributes that map names to expressions; those of transitions are no signals."""
 
 INSTANTS = ("every", "offset")
 """The attributes that are numbers of seconds."""
@@ -94,7 +96,15 @@ class Kind(StrEnum):
     )
     CONTROLLER = (
         "Controller",
-        Nature("signal", frozenset({*INSTANTS, "reads", "step", "ports", *NAMED}), place=11),
+        Nature("signal", frozenset({*INSTANTS, "reads", "step", "ports", *_KEPT}), place=11),
+    )
+    MACHINE = (
+        "StateMachine",
+        Nature(
+            "signal",
+            frozenset({"modes", "initially", "transitions", "states", "reset", "ports"}),
+            place=12,
+        ),
     )
     HYSTERESIS = (
         "Hysteresis",
@@ -107,6 +117,10 @@ class Kind(StrEnum):
         Nature(
             "signal", frozenset({"value", "rate", "falling", "start", "unit", "ports"}), place=13
         ),
+    )
+    DELAY = (
+        "Delay",
+        Nature("signal", frozenset({"value", "time", "start", "unit", "ports"}), place=14),
     )
 
     def __new__(cls, text: str, nature: Nature | None = None) -> "Kind":

@@ -1,4 +1,7 @@
-"""What is set at an instant: a `Reset` at an event, a `Task` at instants of its own, which are exact."""
+"""What is set at an instant: a `Reset` at an event, a `Task` at instants of its own, which are exact.
+
+A `Machine` is in one of its modes, and a `Transition` leads from one to another.
+"""
 
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
@@ -63,3 +66,44 @@ class Task:
     def states(self) -> tuple[sp.Symbol, ...]:
         """What it keeps from one instant to the next: its states, then what it gives."""
         return tuple(reset.state for reset in self.resets)
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A state machine: the state that is the ``number`` of its mode, the modes in order, and the first."""
+
+    name: Hashable
+    number: sp.Symbol
+    modes: tuple[str, ...]
+    start: str
+
+    def chosen(self, mode: str, inside: sp.Expr, outside: sp.Expr) -> sp.Expr:
+        """One expression in a mode and another in all others: by the number that is nearest.
+
+        >>> Machine("m", sp.Symbol("m"), ("a", "b"), "a").chosen("a", sp.Symbol("x"), sp.Integer(0))
+        Piecewise((x, m < 1/2), (0, True))
+        """
+        at, last, half = self.modes.index(mode), len(self.modes) - 1, sp.Rational(1, 2)
+        low = [self.number > at - half] if at else []
+        high = [self.number < at + half] if at < last else []
+        return sp.Piecewise((inside, sp.And(*low, *high)), (outside, True))
+
+
+@dataclass(frozen=True)
+class Transition:
+    """A machine's way from one mode to another, taken as its guard rises above zero in the first."""
+
+    machine: Machine
+    source: str
+    target: str
+    guard: sp.Expr
+
+    @property
+    def words(self) -> str:
+        """What its event is called.
+
+        >>> one = Transition(Machine("m", sp.Symbol("m"), ("a", "b"), "a"), "a", "b", sp.Symbol("x"))
+        >>> one.words
+        'a > b'
+        """
+        return f"{self.source} > {self.target}"

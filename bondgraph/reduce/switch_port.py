@@ -54,8 +54,10 @@ class SwitchPort:
 
     @property
     def read(self) -> tuple[sp.Expr, ...]:
-        """What it reads: its conditions, and what it sets states to."""
-        return self.on, self.off, *(one.value for one in self.switch.resets)
+        """What it reads: its conditions, or the guard of its transition, and what it sets states to."""
+        taken = self.switch.transition
+        conditions = (self.on, self.off) if taken is None else (taken.guard,)
+        return *conditions, *(one.value for one in self.switch.resets)
 
     @property
     def gives(self) -> str:

@@ -82,7 +82,8 @@ def statements(model: StateEquations) -> Statements:
     """
     nodes = signal_nodes(model)
     rates = _rates(model, nodes)
-    kept = {rate(name) for task in model.tasks for name in task.states}
+    held = {name for task in model.tasks for name in task.states} | model.kept
+    kept = {rate(name) for name in held}
     stated, hidden = _laws(model, nodes)
     wanted = _read(model, nodes).union(*(one.reads for one in rates if one.left not in kept))
     _add_readings(model, stated, hidden, wanted)
@@ -157,7 +158,10 @@ def _read(model: StateEquations, nodes: Iterable[SignalNode]) -> set[sp.Symbol]:
     for switch in model.switches:
         if switch.port.given in told:
             continue
-        used |= {switch.port.received}.union(*(part.free_symbols for part in switch.read))
+        own = set[sp.Symbol]() if switch.switch.transition else {switch.port.received}
+        used |= own.union(*(part.free_symbols for part in switch.read))
+    for late in model.delays:
+        used |= late.value.free_symbols
     for task in model.tasks:
         used |= {*task.reads}.union(*(one.value.free_symbols for one in task.resets))
     return used

@@ -1,9 +1,12 @@
 """What has two ways, in words: switches and stops, on and off; dry friction, sticking and slipping."""
 
+from collections.abc import Sequence
+
 import sympy as sp
 
+from bondgraph.nodes.lagging import Lagging
 from bondgraph.nodes.laws import SLIP, DryFriction
-from bondgraph.nodes.tasks import Reset, Task
+from bondgraph.nodes.tasks import Machine, Reset, Task
 from bondgraph.reduce.structure import Port
 from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.show.plain import plain
@@ -44,6 +47,29 @@ def switching(one: SwitchPort) -> str:
     if one.gap is not None:
         return f"{text}; {_bound(one)}"
     return f"{text}; so {received} is never {least} and {given} never {most}"
+
+
+def lagging(one: Lagging) -> str:
+    """What a delay gives."""
+    return (
+        f"{one.given}: {plain(one.value)} as it was {plain(one.time)} s ago; {plain(one.start)} before a run "
+        "has gone so far"
+    )
+
+
+def going(machine: Machine, switches: Sequence[SwitchPort]) -> str:
+    """A state machine: its modes by their numbers, and its transitions, by which switches they are taken."""
+    modes = ", ".join(f"{mode} = {at}" for at, mode in enumerate(machine.modes))
+    text = f"{machine.name}: a state machine, {modes}; begins in {machine.start}"
+    for one in switches:
+        taken = one.switch.transition
+        if taken is None or taken.machine != machine:
+            continue
+        text += f"; {taken.words} as {_passes(taken.guard)} zero"
+        sets = [each for each in one.switch.resets if each.state != machine.number]
+        told = " and ".join(f"{each.state} becomes {plain(each.value)}" for each in sets)
+        text += f", and {told}" if told else ""
+    return text
 
 
 def working(task: Task) -> str:

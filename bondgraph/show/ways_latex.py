@@ -1,12 +1,12 @@
 """What has two ways as LaTeX: what holds in each of them, and until when."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
 from bondgraph.equations import StateEquations
 from bondgraph.nodes.laws import SLIP, DryFriction
-from bondgraph.nodes.tasks import Task
+from bondgraph.nodes.tasks import Machine, Task
 from bondgraph.reduce.structure import Port
 from bondgraph.reduce.switch_port import SwitchPort
 from bondgraph.show.signal_nodes import given_inside
@@ -21,7 +21,9 @@ def ways_latex(model: StateEquations) -> Iterator[str]:
         law = model.laws.get(port.element.name)
         if isinstance(law, DryFriction) and port.given not in told:
             yield _cases(_friction(port, law))
-    for one in model.switches:
+    for machine in model.machines:
+        yield from _machine(machine, model.switches)
+    for one in model.plain_switches:
         if one.port.given in told:
             continue
         yield _cases(_switch(one))
@@ -43,6 +45,29 @@ def _set(task: Task) -> Iterator[str]:
     for reset in task.resets:
         yield f"{typeset(reset.state)} &:= {typeset(reset.value)}{when}"
         when = ""
+
+
+def _machine(machine: Machine, switches: Sequence[SwitchPort]) -> Iterator[str]:
+    """The numbers of its modes, and each transition with its guard and what it sets."""
+    modes = ", ".join(rf"{at}\ (\text{{{escaped(one)}}})" for at, one in enumerate(machine.modes))
+    yield rf"{typeset(machine.number)} \in \{{ {modes} \}}"
+    for one in switches:
+        taken = one.switch.transition
+        if taken is None or taken.machine != machine:
+            continue
+        ends = r" \to ".join(rf"\text{{{escaped(mode)}}}" for mode in (taken.source, taken.target))
+        sets = (each for each in one.switch.resets if each.state != machine.number)
+        told = "".join(rf",\ {typeset(each.state)} := {typeset(each.value)}" for each in sets)
+        yield rf"{ends} \quad \text{{as }} {_passed(taken.guard)}{told}"
+
+
+def escaped(mode: str) -> str:
+    r"""A mode's name as text.
+
+    >>> print(escaped("limp_home"))
+    limp\_home
+    """
+    return mode.replace("_", r"\_")
 
 
 def _cases(rows: Iterator[tuple[str, str]]) -> str:

@@ -19,7 +19,7 @@ from bondgraph.show.powers import without_functions, without_idle
 from bondgraph.show.putting_in import closed
 from bondgraph.show.signal_nodes import given_inside
 from bondgraph.show.statements import Statement, Statements, statements
-from bondgraph.show.ways import rubbing, switching, working
+from bondgraph.show.ways import going, lagging, rubbing, switching, working
 
 PUT_IN = "with laws and sources put in"
 
@@ -62,8 +62,10 @@ def ways(model: StateEquations) -> list[str]:
         if isinstance(law := model.laws.get(port.element.name), DryFriction)
         and port.given not in told
     ]
-    switches = [one for one in model.switches if one.port.given not in told]
-    return [*frictions, *map(switching, switches), *map(working, model.tasks)]
+    machines = [going(one, model.switches) for one in model.machines]
+    plain = [one for one in model.plain_switches if one.port.given not in told]
+    switches = [*map(switching, plain), *machines]
+    return [*frictions, *switches, *map(working, model.tasks), *map(lagging, model.delays)]
 
 
 def together(loop: Sequence[sp.Symbol]) -> str:

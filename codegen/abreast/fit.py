@@ -23,7 +23,7 @@ def fits(program: Program, equations: StateEquations, swept: frozenset[str]) -> 
     plain = (
         program.affine and program.guards_affine and not program.varying and not program.switched
         and not program.joint and not program.late and not program.hanging and not program.sides
-        and not program.sources and not equations.starts and not program.clocks
+        and not program.sources and not equations.starts and not program.clocks and not program.delayed
     )  # fmt: skip
     simple = all(
         port.switch is None and port.moving is None and not port.jumps and not port.slides

@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from bondgraph.nodes.tasks import Transition
 from codegen.abreast.fleet import Fleet
 from codegen.abreast.modes import ModesAbreast
 from codegen.energy.audit import Audit
@@ -105,6 +106,10 @@ class Again:
     def nodes(self) -> Sequence[Hashable]:
         """Those of the graph."""
         return self._program.nodes
+
+    def transitions(self) -> tuple[Transition, ...]:
+        """Those of its state machines."""
+        return self._program.transitions
 
     def signal(self, name: str) -> Array:
         """See `Result`; so the others."""

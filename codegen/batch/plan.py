@@ -81,6 +81,7 @@ class Gathering:
     def __init__(self, program: Program, samples: int) -> None:
         self._places, self._samples, self._width = places(program), samples, 0
         self._places_of_events, self._ports = program.happening, len(program.friction)
+        self._taken = program.taken
         self._entries: dict[tuple[int, int, int, int], Entry] = {}
         self._rows: dict[int, int] = {}
         self._factors: dict[int, int] = {}
@@ -102,6 +103,9 @@ class Gathering:
 
     def event(self, what: str, node: Hashable, event: str) -> list[int]:
         """The places of what is kept of events, one for each of the node's ports."""
+        taken = [at for at, words in self._taken.items() if words == event]
+        if taken := [at for at in taken if self._places_of_events[at] == node]:
+            return [self._kept(WHATS.index(what), -1, taken[0], KINDS.index("on"))]
         places = enumerate(self._places_of_events)
         ports = [
             at for at, name in places if name == node and (at >= self._ports) == (event == CORNER)

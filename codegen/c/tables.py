@@ -195,7 +195,7 @@ def program_tables(
     for name, numbers in tables:
         lines += integers(name, numbers)
     rows = [_switch(port) for port in friction]
-    lines += array("const bg_switch bg_switches[]", rows, f"{{{', '.join('0' * 9)}}}")
+    lines += array("const bg_switch bg_switches[]", rows, f"{{{', '.join('0' * 10)}}}")
     rows = [f"{{{one.port}, {one.sign}, {one.place}, {one.value}}}" for one in program.resets]
     lines += array("const bg_reset bg_resets[]", rows, "{0, 0, 0, 0}")
     rows = [f"{{{one.every!r}, {one.offset!r}, {one.unit!r}}}" for one in program.clocks]

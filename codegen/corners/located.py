@@ -22,8 +22,8 @@ SIDE = "side_"
 def with_corners(program: Program) -> Program:
     """The program with the corners of its laws; the same where there are none.
 
-    Not those of parameters, of known sources alone, whose instants are known, nor the slips of friction
-    ports, which are events anyway.
+    Not those of parameters, of known sources alone, whose instants are known, of what stays between instants,
+    nor the slips of friction ports, which are events anyway.
     """
     if not any(expr.has(*KINDS) for code in program.blocks for expr in code.values):
         return program
@@ -74,6 +74,7 @@ class _Sides:
         slips |= {program.readings[port.reading] for port in program.friction}
         self._apart = slips | {-slip for slip in slips}
         self._still = {*program.parameters, *program.external[len(program.asked) :]}
+        self._still |= program.equations.kept
         names = {*program.parameters, *program.external, *program.inputs, *program.readings}
         names |= {*program.states, *program.law_states}
         self._taken = {name.name for name in names}

@@ -1,6 +1,6 @@
 """What C says has happened, as events."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from itertools import repeat
 from typing import Any
 
@@ -15,13 +15,17 @@ EVENT = np.dtype(
 """``bg_event``."""
 
 
-def told_events(ffi: Any, events: Any, count: int, names: Sequence[Hashable]) -> list[Event]:
-    """The first so many of an array of ``bg_event``, ports by these names."""
+def told_events(
+    ffi: Any, events: Any, count: int, names: Sequence[Hashable], taken: Mapping[int, str]
+) -> list[Event]:
+    """The first so many of an array of ``bg_event``, ports by these names; ``taken``: transitions by port."""
     if not count:
         return []
     told = np.frombuffer(ffi.buffer(events, count * ffi.sizeof("bg_event")), EVENT)
     ports = map(names.__getitem__, told["port"].tolist())
-    kinds = map(KINDS.__getitem__, told["kind"].tolist())
+    kinds: Iterable[str] = map(KINDS.__getitem__, told["kind"].tolist())
+    if taken:
+        kinds = (taken.get(at, kind) for at, kind in zip(told["port"].tolist(), kinds, strict=True))
     # A tuple's own constructor takes half the time of the record's, and there may be many.
     rows = zip(told["time"].tolist(), ports, kinds, told["impulse"].tolist(), strict=True)
     return list(map(tuple.__new__, repeat(Event), rows))

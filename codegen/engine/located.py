@@ -153,8 +153,10 @@ class LocatedRuns:
         if status != 0:
             reason = ffi.string(library.bg_model_message(status)).decode()
             return Stopped(reason, float(asked.time), status == Status.EVENTS)
-        names = self.model.program.happening
-        return tuple(told_events(ffi, events, asked.count, names)) if keeping else ()
+        if not keeping:
+            return ()
+        program = self.model.program
+        return tuple(told_events(ffi, events, asked.count, program.happening, program.taken))
 
     @cached_property
     def _rooms(self) -> tuple[Array, Array]:

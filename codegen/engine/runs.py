@@ -1,6 +1,6 @@
 """Runs of affine models by the C engine; what it cannot do is left to event-located runs."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -138,17 +138,17 @@ class Prepared:
 
     def track(self, model: ClosedModel) -> Track:
         """The record of the run."""
-        events = self._told([port.name for port in model.program.friction])
+        events = self._told(model.program.happening, model.program.taken)
         vectors = self.rows[:, : model.size].copy()
         largest = np.abs(vectors).max(axis=0)
         modes = [self.tables.places.known[place] for place in self.modes.tolist()]
         return Track(vectors, modes, largest, events, len(vectors), keeping=self.keeping)
 
-    def _told(self, names: Sequence[Hashable]) -> list[Event]:
-        """The events, ports by these names."""
+    def _told(self, names: Sequence[Hashable], taken: Mapping[int, str]) -> list[Event]:
+        """The events, ports by these names, and transitions by ports."""
         if not self.keeping or not self.task.count:
             return []
-        return told_events(self.engine.ffi, self.events, self.task.count, names)
+        return told_events(self.engine.ffi, self.events, self.task.count, names, taken)
 
     def _room(self) -> None:
         if not self.keeping:

@@ -51,9 +51,14 @@ class SwitchedSteps(PortSteps):
             1 if one is None or one.slides else one.sign(name in on) for name, one in every
         )
 
+    @staticmethod
+    def is_shown(one: Switching | None) -> bool:
+        """Whether it is a switch that whoever runs the model may know of."""
+        return one is not None and not one.slides and not one.machine
+
     def shown(self, mode: Mode) -> list[float]:
         """For each switch 1 while it is on, 0 while it is off."""
-        named = [(i, one) for i, one in enumerate(self.switching) if one and not one.slides]
+        named = [(i, one) for i, one in enumerate(self.switching) if one and self.is_shown(one)]
         return [float(one.is_on(mode[i])) for i, one in named]
 
     def begin(self, at: Point, on: Collection[str], named: Collection[str]) -> Array:
@@ -64,14 +69,14 @@ class SwitchedSteps(PortSteps):
         known = [
             name
             for name, one in zip(self.switches.names, self.switching, strict=True)
-            if one and not one.slides
+            if self.is_shown(one)
         ]
         if unknown := [name for name in on if name not in known]:
             raise ValueError(f"no switch is called {unknown[0]!r}; there is {', '.join(known)}")
         now = self.any_of(at, (1,) * len(self.rubs))
         told = self.told(now)
         mode = self.first = self.mode_of(on)
-        self.first = flipped(mode, [i for i in self.places if self.leaves(i, mode, told)])
+        self.first = flipped(mode, [i for i in self.places if self.is_told(i, mode, told)])
         free = [j for j, name in enumerate(self.names.states[: len(now.x)]) if name not in named]
         if 0 not in self.first or not free:
             return at.s
@@ -80,6 +85,11 @@ class SwitchedSteps(PortSteps):
         s[free] += moved
         self.tell_completed(free, now.x, moved)
         return s
+
+    def is_told(self, port: int, mode: Mode, told: Array) -> bool:
+        """Whether a condition changes a switch over before a run; no transition is taken then."""
+        one = self.switching[port]
+        return one is not None and not one.machine and self.leaves(port, mode, told)
 
     def tell_completed(self, free: Sequence[int], x: Array, moved: Array) -> None:
         """Warn of states that follow switches at the start."""

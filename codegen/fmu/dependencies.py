@@ -1,6 +1,6 @@
 """Which starts, inputs and states each variable of a unit depends on, by structure alone."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 
 import sympy as sp
 
@@ -21,10 +21,10 @@ def dependencies(model: FmuModel) -> Mapping[int, tuple[int, ...]] | None:
     program = model.program
     if program.varying:
         return None
-    reach = _reach(program)
+    known_by = reach(program)
     refs = {(one.kind, one.index): at for at, one in enumerate(model.variables)}
     found: dict[int, tuple[int, ...]] = {}
-    for place, known in reach.items():
+    for place, known in known_by.items():
         if place in refs:
             named = {refs.get(_known(model, one)) for one in known}
             found[refs[place]] = tuple(sorted(at for at in named if at is not None))
@@ -42,27 +42,34 @@ def _known(model: FmuModel, place: Place) -> Place:
     return place
 
 
-def _reach(program: Program) -> Mapping[Place, frozenset[Place]]:
-    """Everything that a place leads back to among the integrated vector, inputs and their slopes."""
+def reach(
+    program: Program, more: Mapping[Place, Set[Place]] | None = None
+) -> Mapping[Place, frozenset[Place]]:
+    """Everything that a place leads back to among the integrated vector, inputs and their slopes.
+
+    ``more``: what places are told by beside the equations.
+    """
     edges = _edges(program)
-    reach: dict[Place, set[Place]] = {place: set() for place in edges}
+    for place, used in (more or {}).items():
+        edges[place] = edges.get(place, set()) | used
+    found: dict[Place, set[Place]] = {place: set() for place in edges}
     for place, used in edges.items():
-        reach[place] |= {one for one in used if one not in edges}
+        found[place] |= {one for one in used if one not in edges}
     changed = True
     while changed:
         changed = False
         for place, used in edges.items():
-            more = set().union(*(reach[one] for one in used if one in edges)) - reach[place]
-            reach[place] |= more
-            changed = changed or bool(more)
-    return {place: frozenset(known) for place, known in reach.items()}
+            new = set().union(*(found[one] for one in used if one in edges)) - found[place]
+            found[place] |= new
+            changed = changed or bool(new)
+    return {place: frozenset(known) for place, known in found.items()}
 
 
 def _edges(program: Program) -> dict[Place, set[Place]]:
     """What each place is worked out of at once."""
     n, own = len(program.states), len(program.law_states)
     bound = _bound(program)
-    where = _symbols(program)
+    where = symbols_of(program)
     edges: dict[Place, set[Place]] = {}
     for i in range(n):
         edges["FMU_STATE", i] = {("FMU_VECTOR", i)}
@@ -110,7 +117,8 @@ def _add_laws(
         edges["FMU_GIVEN", port.input] = set(everything)
 
 
-def _symbols(program: Program) -> dict[sp.Symbol, Place]:
+def symbols_of(program: Program) -> dict[sp.Symbol, Place]:
+    """The place of each symbol."""
     listed = (
         ("FMU_STATE", (*program.states, *program.law_states)),
         ("FMU_READING", program.readings),

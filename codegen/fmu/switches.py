@@ -18,7 +18,8 @@ def switching(program: Program) -> tuple[sp.Expr, ...]:
     """Arguments of Abs, sign and Heaviside, differences that Min, Max and conditions compare, and what
     changes its sign at corners of tables.
 
-    Not those of parameters or of time alone, nor the slips of friction ports, which are events anyway.
+    Not those of parameters, of what is kept between events or of time alone, nor the slips of friction ports,
+    which are events anyway.
     """
     return tuple(size for size in _sizes(program) if not _of_time(size, program))
 
@@ -41,12 +42,13 @@ def _sizes(program: Program) -> tuple[sp.Expr, ...]:
     slips = {program.readings[port.received] for port in program.friction}
     blocks = [program.known.values, *(group.values for group in program.groups)]
     blocks += [program.coupled.values, program.friction_values, program.coefficients]
+    still = {*program.parameters, *program.equations.kept}
     found: dict[sp.Expr, None] = {}
     for code in blocks:
         for expr in _whole(code):
             for argument in _arguments(expr):
                 size = sp.sympify(argument)
-                constant = not size.free_symbols - set(program.parameters)
+                constant = not size.free_symbols - still
                 if not constant and size not in slips and -size not in slips:
                     found.setdefault(-size if -size in found else size)
     return tuple(sorted(found, key=sp.default_sort_key))

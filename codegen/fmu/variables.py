@@ -54,7 +54,7 @@ def variables(
 
 def _described(one: Variable, program: Program, equations: StateEquations) -> Variable:
     """With when switches change over, at switches and at the inputs that they go by."""
-    told = {switch.name: conditions_told(switch) for switch in equations.switches}
+    told = {switch.name: conditions_told(switch) for switch in equations.plain_switches}
     texts: list[str] = []
     if one.kind == "FMU_SWITCH":
         texts = [
@@ -66,7 +66,7 @@ def _described(one: Variable, program: Program, equations: StateEquations) -> Va
         symbol = program.external[one.index]
         texts = [
             f"switch {switch.name} {told[switch.name]}"
-            for switch in equations.switches
+            for switch in equations.plain_switches
             if told[switch.name] and symbol in switch.on.free_symbols | switch.off.free_symbols
         ]
     return replace(one, description=plain(". ".join(texts))) if texts else one
@@ -163,7 +163,7 @@ class _Listing:
                 kind = "FMU_SLIDES" if port.slides else "FMU_MODE"
                 if port.way >= 0:
                     self._made(f"mode({port.name})", kind, at, variability="discrete")
-            else:
+            elif port.transition is None:
                 self._made(str(port.name), "FMU_SWITCH", at, variability="discrete")
         for at in range(indicators):
             self._made(f"event_indicator({at + 1})", "FMU_INDICATOR", at)

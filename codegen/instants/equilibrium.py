@@ -81,7 +81,9 @@ def _told(model: ClosedModel, mode: Mode, wrong: Broken) -> str:
     words = []
     for i in sorted(wrong):
         port = model.program.friction[i]
-        if port.jumps:
+        if (taken := port.transition) is not None:
+            words.append(f"{taken.machine.name!r} would not stay, {taken.words} is taken")
+        elif port.jumps:
             words.append(f"{port.name!r} would not {'stay on its side' if mode[i] else 'slide'}")
         elif port.slides:
             words.append(f"{port.name!r} would not {'stick' if mode[i] else 'slip so'}")

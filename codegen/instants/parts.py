@@ -18,8 +18,11 @@ from codegen.modes.impact import impact
 from codegen.modes.rounding import Peaks
 from codegen.modes.trials import Sight
 from codegen.numbers.arrays import Array
-from codegen.standalone.switchings import Reset
+from codegen.standalone.switchings import Reset, first_taken
 from codegen.tuning import TUNING
+
+AROUND = 12
+"""So many parts of an instant without end are told."""
 
 Decide = Callable[[Occasion, Sight], Decision]
 
@@ -47,7 +50,8 @@ def parts_of(
     """The parts of an instant at which ports may have events; the last has no resets.
 
     ``decide``: what decides a mode. ``due``: the tasks whose instant it is: they set what they set once no
-    event is left. ``begins``: whether a run begins, which is no event of any port.
+    event is left. ``begins``: whether a run begins, which is no event of any port, but may be that of a state
+    machine.
 
     Raises `SimulationError` where there is no mode, where what is set contradicts what is held or is set
     twice, and where resets set off one another without end.
@@ -56,10 +60,9 @@ def parts_of(
     fired: list[Reset] = []
     for _ in range(TUNING.renewals):
         decided = decide(now, here)
-        part = Part(
-            now.previous, decided.mode, decided.impacts, decided.s, clear=decided.clear
-        )  # fmt: skip
-        fired = [] if begins and not found else _fired(now.model, part)
+        mode = first_taken(now.model.switching, now.previous, decided.mode)
+        part = Part(now.previous, mode, decided.impacts, decided.s, clear=decided.clear)
+        fired = _fired(now.model, part, begins and not found)
         if not fired and due:
             fired, due = [one for one in now.model.program.resets if -1 - one.port in due], ()
         if not fired:
@@ -70,6 +73,13 @@ def parts_of(
         assert part.reset is not None
         here = now.seen(part.reset)
         now = now._replace(previous=part.mode, touched=frozenset())
+    if taken := now.model.taken_by(
+        [one for part in found[-AROUND:] for one in _fired(now.model, part)]
+    ):
+        raise SimulationError(
+            f"at t = {now.t:.9g} the transitions of {taken} lead to one another without end; let no guard be "
+            "above zero where another transition has just led"
+        )
     names = sorted({repr(now.model.owner(one)) for one in fired})
     raise SimulationError(
         f"at t = {now.t:.9g} resets at {', '.join(names)} set off one another without end; let what is "
@@ -92,8 +102,8 @@ def hits(
     }
 
 
-def _fired(model: ClosedModel, part: Part) -> list[Reset]:
-    """The resets of ports that changed over, and of stops that were hit."""
+def _fired(model: ClosedModel, part: Part, begins: bool = False) -> list[Reset]:
+    """The resets of ports that changed over, and of stops that were hit; as a run begins of transitions."""
     if not model.program.resets:
         return []
     struck = {i for one in part.impacts for i in one.thrown}
@@ -103,6 +113,8 @@ def _fired(model: ClosedModel, part: Part) -> list[Reset]:
         if one.port < 0:
             continue
         switching = model.switching[one.port]
+        if begins and not (switching is not None and switching.machine):
+            continue
         off = switching is not None and not switching.is_on(one.sign)
         if part.mode[one.port] == one.sign != part.before[one.port] or (one.port in struck and off):
             found.append(one)

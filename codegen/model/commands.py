@@ -37,7 +37,7 @@ def commands(equations: StateEquations, parameters: Mapping[str, Any]) -> tuple[
     """Of each switch that goes by one command alone, at these parameters."""
     numbers = {sp.Symbol(name): value for name, value in parameters.items()}
     found = []
-    for one in equations.switches:
+    for one in equations.plain_switches:
         if one.guard != "commanded" or one.off != -one.on:
             continue
         names = sorted(one.on.free_symbols - {TIME, *numbers}, key=str)

@@ -280,6 +280,12 @@ class ClosedModel:
             return program.friction[one.port].name
         return program.equations.tasks[-1 - one.port].name
 
+    def taken_by(self, fired: Sequence[Reset]) -> str:
+        """The state machines whose transitions these resets are of, and these; nothing of others."""
+        ports = [self.program.friction[one.port] for one in fired if one.port >= 0]
+        taken = dict.fromkeys(one.transition for one in ports if one.transition is not None)
+        return ", ".join(f"{one.machine.name!r} ({one.words})" for one in taken)
+
     @cached_property
     def commands(self) -> tuple[Command, ...]:
         """The commands of switches that go by one alone."""

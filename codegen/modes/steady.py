@@ -35,15 +35,20 @@ def choices(model: ClosedModel, told: Mapping[Hashable, str] | None) -> Choices:
             f"mode must map nodes to 'on', 'off', 'stick' or 'slip', not be {asked!r}"
         )
     ports = model.program.friction
-    names = [port.name for port in ports if not port.jumps]
+    names = [port.name for port in ports if not (port.jumps or port.transition)]
     for name in asked:
         if name not in names:
             listed = ", ".join(map(repr, names)) or "none"
             raise StructureError(
                 f"mode: {name!r} is no switch and has no dry friction; there are {listed}"
             )
-    found = []
+    found: list[tuple[int, ...]] = []
     for port in ports:
+        if port.transition is not None and port.switch is not None:
+            # What leads to another mode does not rest.
+            stays = port.transition.source == port.transition.target
+            found.append((0, 1) if stays else (port.switch.sign(False),))
+            continue
         words = _words(port)
         word = None if port.jumps else asked.get(port.name)
         if port.name in asked and word not in words and not port.jumps:

@@ -92,7 +92,8 @@ class _Steps:
     def __init__(self, equations: StateEquations, still: set[str]) -> None:
         self._equations, self._still = equations, still
         outer = set(equations.inputs) - {port.given for port in equations.ports}
-        self._moving = {*equations.signals, *equations.states, *equations.integrals} - outer
+        moving = {*equations.signals, *equations.states, *equations.integrals}
+        self._moving = moving - outer - equations.kept
 
     def parted(self, law: sp.Expr) -> tuple[sp.Expr, dict[sp.Expr, sp.Expr]]:
         """A law without its jumps, and half of each jump by what it hangs on."""

@@ -55,6 +55,7 @@ def lower(
     declared = equations = supplied(equations, laws, given)
     watched = _watched(equations)
     closing = close_ports(equations, {} if laws is None else laws, given, watched)
+    follows = closing.early < len(closing.order)
     closing, tangents = with_tangents(closing)
     closing, moving = with_moving_slips(closing, tangents.moved)
     equations = closing.equations
@@ -110,7 +111,7 @@ def lower(
         guards_affine=is_affine(guards[:own], given),
         ticks_affine=is_affine(guards[own:], given),
         varying=varying,
-        affine=not (varying or moving) and _is_affine(closing, values, given),
+        affine=not (varying or moving or follows) and _is_affine(closing, values, given),
         smooth=tuple(equations.inputs.index(one.given) for one in closing.smooth),
         hung=tuple(readings.index(one.depends) for one in closing.jumps),
         beyond=tuple(equations.inputs.index(name) for name in tangents.beyond),
@@ -129,7 +130,10 @@ def _watched(equations: StateEquations) -> frozenset[sp.Symbol]:
     )  # fmt: skip
     tasks = equations.tasks
     set_by_tasks = (value for t in tasks for value in (*(r.value for r in t.resets), *t.reads))
-    return frozenset[sp.Symbol]().union(*(value.free_symbols for value in (*told, *set_by_tasks)))
+    late = (part for one in equations.delays for part in (one.value, one.time, one.start))
+    return frozenset[sp.Symbol]().union(
+        *(value.free_symbols for value in (*told, *set_by_tasks, *late))
+    )
 
 
 def _check_varying(closing: Closing) -> None:

@@ -8,10 +8,10 @@ import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
 from bondgraph.algebra.lookups import Handle
+from bondgraph.declare.inner import inner_names
 from bondgraph.equations import StateEquations
 from bondgraph.inverses.inverse import Turning
-from bondgraph.nodes.inner import inner_names
-from bondgraph.nodes.tasks import Called
+from bondgraph.nodes.tasks import Called, Transition
 from bondgraph.tables.record import Sampled
 from codegen.standalone.switchings import Clock, Reset, Switching
 
@@ -69,7 +69,8 @@ class FrictionPort:
     tangents of laws; else None. ``level``, ``slip``: of one way of friction that gives a flow (backwards
     follows forwards), the input that is its level and the reading that is its whole slip. ``offset``: of
     a jump of a law, which is friction, too, the input that is part of what it hangs on. ``hung``: of one of
-    second order, which receives how fast that changes, the guard that is what it hangs on.
+    second order, which receives how fast that changes, the guard that is what it hangs on. ``transition``:
+    of a switch that a state machine takes one by, that.
     """
 
     name: Hashable
@@ -82,6 +83,7 @@ class FrictionPort:
     plain: int | None = None
     offset: int | None = None
     hung: int | None = None
+    transition: Transition | None = None
 
     @property
     def received(self) -> int:
@@ -89,19 +91,20 @@ class FrictionPort:
         return self.reading if self.plain is None else self.plain
 
     @property
-    def in_c(self) -> tuple[int, int, int, int, int, int, int, int, int]:
+    def in_c(self) -> tuple[int, int, int, int, int, int, int, int, int, int]:
         """The fields of its ``bg_switch``: kind, on while held?, side, first condition, way of slipping.
 
         Then those of a stop: the place of its displacement, how its gap opens with that, whether it is
-        declared as one; of the jump of a law its order.
+        declared as one; of the jump of a law its order; of a transition which state machine's.
         """
         one = self.switch
         if one is None:
-            return 0, 0, 0, self.hung or 0, 0, 0, 0, 0, self.order
+            return 0, 0, 0, self.hung or 0, 0, 0, 0, 0, self.order, 0
         kind = 3 if one.stops else 1 if one.side else 2
         place = max(one.place, 0)
         guard = max(one.guard, 0)
-        return kind, int(one.on), one.side, guard, self.way, place, one.opening, int(one.bound), 0
+        told = one.opening, int(one.bound), 0, one.machine
+        return kind, int(one.on), one.side, guard, self.way, place, *told
 
     @property
     def words(self) -> tuple[str, str, str]:
@@ -235,7 +238,8 @@ class Program:
     ticks_affine: bool
     #: Whether coefficients change in time, with states, external inputs or the time itself.
     varying: bool
-    #: Whether each friction mode is an affine system with constant coefficients.
+    #: Whether each friction mode is an affine system with constant coefficients, and no law reads what ports
+    #: that are held or let go give.
     affine: bool
     #: Inputs that held ports' readings along tangents of laws are written with.
     beyond: tuple[int, ...]
@@ -290,9 +294,25 @@ class Program:
 
     @property
     def happening(self) -> tuple[Hashable, ...]:
-        """Where events happen, as C counts it: at ports, then at nodes whose laws have corners."""
+        """Where events happen, as C counts it: at ports or state machines, then at nodes with corners."""
         corners = () if self.corners is None else self.corners.nodes
-        return (*(port.name for port in self.friction), *corners)
+        ports = (port.name if one is None else one.machine.name for port, one in self._ports_taken)
+        return (*ports, *corners)
+
+    @property
+    def taken(self) -> Mapping[int, str]:
+        """By the places of ports the transitions of state machines that are taken as these turn on."""
+        found = enumerate(self._ports_taken)
+        return {at: one.words for at, (_, one) in found if one is not None}
+
+    @property
+    def transitions(self) -> tuple[Transition, ...]:
+        """The transitions of state machines, in declaration order."""
+        return tuple(port.transition for port in self.friction if port.transition is not None)
+
+    @property
+    def _ports_taken(self) -> list[tuple[FrictionPort, Transition | None]]:
+        return [(port, port.transition) for port in self.friction]
 
     @cached_property
     def nodes(self) -> tuple[Hashable, ...]:
@@ -354,7 +374,12 @@ class Program:
 
     @property
     def switches(self) -> tuple[FrictionPort, ...]:
-        """The ports that are ideal switches."""
+        """The ports that are ideal switches, but for those by which state machines take transitions."""
+        return tuple(p for p in self.told_by_guards if p.transition is None)
+
+    @property
+    def told_by_guards(self) -> tuple[FrictionPort, ...]:
+        """The ports that are ideal switches, all of them."""
         return tuple(p for p in self.friction if p.switch is not None and not p.slides)
 
     @property
@@ -422,8 +447,19 @@ class Program:
 
     @property
     def asked(self) -> tuple[sp.Symbol, ...]:
-        """The external inputs that a run is given by its user."""
+        """The external inputs that are no known sources."""
         return self.external[: len(self.external) - len(self.sources)]
+
+    @property
+    def delayed(self) -> tuple[sp.Symbol, ...]:
+        """Those of them that delays give, which a run finds."""
+        return tuple(one.given for one in self.equations.delays if one.given in self.asked)
+
+    @property
+    def wanted(self) -> tuple[sp.Symbol, ...]:
+        """The others, which a run is given by its user."""
+        delayed = self.delayed
+        return tuple(name for name in self.asked if name not in delayed)
 
 
 def block(expressions: Sequence[sp.Expr], taken: Iterable[sp.Symbol] = ()) -> Block:

@@ -1,6 +1,6 @@
 """The sections of a program: matrices, groups of laws and their rates, ports that are held or let go."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 
 import sympy as sp
@@ -135,6 +135,7 @@ def friction(
                 readings.index(shapes.get(name, received)) if name in along else None,
                 mixed.get(name),
                 hung.get(name),
+                None if switch is None else switch.transition,
             )
         )
         curves = [law.curve.subs(SLIP, slip) for slip in (sp.Abs(received), 0)]
@@ -167,6 +168,7 @@ def switches(closing: Closing) -> tuple[dict[sp.Symbol, Switching], list[sp.Expr
     """
     found: dict[sp.Symbol, Switching] = {}
     conditions: list[sp.Expr] = []
+    numbers: dict[Hashable, int] = {}
     for one in closing.equations.switches:
         on = one.held == "on"
         if one.gap is not None:
@@ -179,7 +181,10 @@ def switches(closing: Closing) -> tuple[dict[sp.Symbol, Switching], list[sp.Expr
         elif one.side:
             found[one.port.given] = Switching(on, one.side)
         else:
-            found[one.port.given] = Switching(on, 0, len(conditions))
+            machine = 0
+            if (taken := one.switch.transition) is not None:
+                machine = numbers.setdefault(taken.machine.name, len(numbers) + 1)
+            found[one.port.given] = Switching(on, 0, len(conditions), machine=machine)
             conditions += [one.on, one.off]
     for half in halves_of(closing.sliders).values():
         found[half.given] = Switching(True, -half.way, slides=True)

@@ -215,6 +215,8 @@ def _told(one: Switching) -> str:
     more = _SLIDES * one.slides
     if one.stops:
         more = f", place={one.place}, opening={one.opening}"
+    if one.machine:
+        more = f", machine={one.machine}"
     return f"Switching({one.on}, {one.side}, {one.guard}{more})"
 
 

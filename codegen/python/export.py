@@ -126,7 +126,7 @@ def _head(
         ] or ["none"]
         lines = filled([f"{one}, " for one in listed[:-1]] + listed[-1:], 4)
         rows += [f"{title}: {lines[0].strip()}"] if len(lines) == 1 else [f"{title}:", *lines]
-    for one in equations.switches:
+    for one in equations.plain_switches:
         if told := conditions_told(one):
             words = plain(f"switch {one.name}: {told}").split(" ")
             rows += [line.strip() for line in filled([f"{word} " for word in words], 4)]
@@ -174,7 +174,7 @@ def _functions(program: Program, names: Names) -> list[str]:
 def _conditions(program: Program, names: Names) -> list[str]:
     """What switches change over by, and what states become with them, or as tasks set them."""
     rows = [
-        f"{plain(str(p.name))}: {way}" for p in program.switches
+        f"{plain(str(p.name))}: {way}" for p in program.told_by_guards
         if p.switch is not None for way in p.switch.guards
     ]  # fmt: skip
     rows += [

@@ -109,7 +109,7 @@ def with_switches(
     """The columns, and one for each switch: 1 while it is on, 0 while it is off."""
     found = dict(columns)
     for at, port in enumerate(program.friction):
-        if port.switch is not None and not port.slides:
+        if port.switch is not None and not port.slides and port.transition is None:
             told = {sign: float(port.switch.is_on(sign)) for sign in (-1, 0, 1)}
             found[str(port.name)] = read_only(np.array([told[mode[at]] for mode in modes]))
     return MappingProxyType(found)

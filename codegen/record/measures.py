@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from bondgraph.errors import SignalError, nearest
+from bondgraph.nodes.tasks import Transition
 from codegen.numbers.arrays import Array
 from codegen.record.result import Result, values_of
 from codegen.runs.track import KINDS, Event
@@ -147,11 +148,17 @@ def balance() -> Measure:
 
 
 def _checked(kind: str) -> str:
-    if not isinstance(kind, str) or kind not in KINDS:
+    if not isinstance(kind, str) or (kind not in KINDS and not is_taken(kind)):
         raise SignalError(
-            f"no event is a {kind!r}{nearest(str(kind), KINDS)}; there are {', '.join(KINDS)}"
+            f"no event is a {kind!r}{nearest(str(kind), KINDS)}; there are {', '.join(KINDS)}, and of "
+            "state machines transitions such as 'idle > drive'"
         )
     return kind
+
+
+def is_taken(kind: str) -> bool:
+    """Whether a kind of event is a transition of a state machine."""
+    return len(kind.split(" > ")) == 2
 
 
 def _peak(result: Result, signal: str) -> float:
@@ -187,8 +194,19 @@ def check_node(node: Hashable, nodes: Collection[Hashable]) -> None:
         )
 
 
+def check_event(port: Hashable, kind: str, transitions: Collection[Transition]) -> None:
+    """Refuse, by `SignalError`, a transition that the node does not have."""
+    known = [one.words for one in transitions if one.machine.name == port]
+    if is_taken(kind) and kind not in known:
+        raise SignalError(
+            f"{port!r} has no transition {kind!r}{nearest(kind, known)}; there are "
+            f"{', '.join(known) or 'none'}"
+        )
+
+
 def _events(result: Result, port: Hashable, kind: str) -> list[Event]:
     check_node(port, result.observer.nodes())
+    check_event(port, kind, result.observer.transitions())
     return [event for event in result.events if (event.port, event.kind) == (port, kind)]
 
 

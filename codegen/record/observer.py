@@ -9,6 +9,7 @@ import sympy as sp
 from bondgraph.algebra.expressions import TIME
 from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError, nearest
+from bondgraph.nodes.tasks import Transition
 from bondgraph.reduce.record import Reading
 from codegen.energy.stored import stored_energy
 from codegen.model.exact_values import at_parameters
@@ -44,6 +45,10 @@ class Observer:
     def nodes(self) -> tuple[Hashable, ...]:
         """The nodes of the graph and the ports of its fields."""
         return self.model.program.nodes
+
+    def transitions(self) -> tuple[Transition, ...]:
+        """Those of the graph's state machines."""
+        return self.model.program.transitions
 
     def signal(self, name: str) -> Array:
         """A named effort or flow, or what a storage holds; `KeyError` naming what there is."""

@@ -47,7 +47,10 @@ class Run:
         model = closed_model(equations, self.laws, self.parameters)
         tally = tally_of(model, whole, self.times)
         begin, end = float(self.times[0]), float(self.times[-1])
-        signals = [*self.signals, *source_signals(model.program, model.parameters, begin, end)]
+        signals = [
+            *self.signals,
+            *source_signals(model.program, model.parameters, begin, end, found=True),
+        ]
         with np.errstate(all="ignore"):
             run = run_hybrid(
                 model, self.times, self.start, signals, self.settings, tally, self.first

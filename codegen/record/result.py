@@ -4,7 +4,7 @@ from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Protocol
 
 from bondgraph.errors import SignalError
 from codegen.energy.audit import Audit
@@ -191,7 +191,7 @@ class Result:
 
         Raises `SignalError` for unknown names, `MissingExtraError` without matplotlib.
         """
-        groups, marks = _grouped(names, self.states), marks_of(self)
+        groups, marks = grouped(names, self.states), marks_of(self)
         shown = [panel_of(self, group, units=units) for group in groups]
         if ax is None:
             return stacked(shown, marks, title or "", *([3.0] if len(shown) == 1 else []))
@@ -206,6 +206,25 @@ class Result:
         return ax.figure
 
 
+class Shown(Protocol):
+    """What has signals over the time, and events: a run, or several side by side."""
+
+    @property
+    def time(self) -> Array:
+        """Of the samples [s]."""
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Of signals of which they are known."""
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """What happened."""
+
+    def __getitem__(self, name: str) -> Array:
+        """A signal; `KeyError` for one that there is not."""
+
+
 def values_of(result: Named, name: str) -> Array:
     """A signal of a run; `SignalError` naming what there is."""
     try:
@@ -214,7 +233,7 @@ def values_of(result: Named, name: str) -> Array:
         raise SignalError(error.args[0]) from None
 
 
-def _grouped(names: Sequence[str | Sequence[str]], states: Sequence[str]) -> list[list[str]]:
+def grouped(names: Sequence[str | Sequence[str]], states: Sequence[str]) -> list[list[str]]:
     """The signals of each panel: of one where there are names alone."""
     lists = [[one] if isinstance(one, str) else list(one) for one in names]
     if all(isinstance(one, str) for one in names):
@@ -223,7 +242,7 @@ def _grouped(names: Sequence[str | Sequence[str]], states: Sequence[str]) -> lis
 
 
 def panel_of(
-    result: Result, names: Sequence[str], label: str | None = None,
+    result: Shown, names: Sequence[str], label: str | None = None,
     units: Mapping[str, str] | None = None,
 ) -> Panel:  # fmt: skip
     """Signals of a run as a panel, labelled with their names and units."""
@@ -243,6 +262,6 @@ def panel_of(
     return Panel(own, lines)
 
 
-def marks_of(result: Result) -> Marks:
+def marks_of(result: Shown) -> Marks:
     """A run's events and the spans in which its ports stick."""
     return Marks(result.events, tuple(stuck_spans(result.events, float(result.time[-1]))))

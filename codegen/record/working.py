@@ -3,6 +3,7 @@
 from collections.abc import Collection, Hashable, Sequence
 from typing import Protocol
 
+from bondgraph.nodes.tasks import Transition
 from codegen.energy.audit import Audit
 from codegen.numbers.arrays import Array
 
@@ -35,6 +36,9 @@ class Watcher(Protocol):
 
     def nodes(self) -> Collection[Hashable]:
         """Where events may happen: the nodes of the graph and the ports of its fields."""
+
+    def transitions(self) -> Collection[Transition]:
+        """Those of the graph's state machines."""
 
     def signal(self, name: str) -> Array:
         """A named effort or flow."""

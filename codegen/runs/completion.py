@@ -111,10 +111,10 @@ def tell_all_completed(completed: Mapping[int, Mapping[str, float]], runs: int) 
 
 
 def _as_told(model: ClosedModel, guards: Array, mode: Mode) -> Mode:
-    """The mode with those switches changed over whose conditions say so."""
+    """The mode with those switches changed over whose conditions say so; none takes a transition."""
     result = list(mode)
     for i, switch in enumerate(model.switching):
-        if switch is not None and not switch.side:
+        if switch is not None and not switch.side and not switch.machine:
             _, at, sign = kept_by(model, mode, i)
             result[i] = 1 - mode[i] if sign * guards[at] < 0 else mode[i]
     return tuple(result)

@@ -25,6 +25,7 @@ from codegen.modes.rounding import Peaks, scales
 from codegen.modes.trials import Sight, sides
 from codegen.numbers.arrays import Array
 from codegen.numbers.latest import Latest
+from codegen.program.records import FrictionPort
 from codegen.runs.clock import NONE, Clock
 from codegen.runs.cornered import CorneredLeg
 from codegen.runs.exact import ExactLeg
@@ -189,7 +190,7 @@ class Course:
         parts = self._decided(occasion, here, due)
         self._done = t if due else self._done
         new, self._clear = parts[-1].mode, parts[-1].clear
-        self._note(parts if self._settled is not None else parts[1:])
+        self._note(parts, self._settled is None)
         counted = self._touched - self._crossings.of(self.mode, new)
         thrown = any(one.thrown for part in parts for one in part.impacts)
         if self._settled is not None and counted and not thrown:
@@ -229,10 +230,14 @@ class Course:
             self._excused = True
             return [Part(self.mode, self.mode, (), here.s)]
 
-    def _note(self, parts: Sequence[Part]) -> None:
-        """Tell what has happened."""
+    def _note(self, parts: Sequence[Part], begins: bool) -> None:
+        """Tell what has happened; as a run begins what state machines do before all else."""
         for part in parts:
             modes = part.before, part.mode
+            if begins and part is parts[0]:
+                taken = _transitions(self._model.program.friction, *modes)
+                self.track.note([Event(self.t, *one) for one in taken])
+                continue
             changes = self._changes.of(modes, partial(changes_of, self._model, *modes))
             self.track.note(_told(self._model, self.t, changes, part))
 
@@ -361,6 +366,16 @@ def _at_rest(here: Sight, mode: Mode) -> Array:
     return s
 
 
+def _transitions(ports: Sequence[FrictionPort], old: Mode, new: Mode) -> list[tuple[Hashable, str]]:
+    """The transitions that state machines have taken, by the machine."""
+    return [
+        (taken.machine.name, taken.words)
+        for port, before, after in zip(ports, old, new, strict=True)
+        if (taken := port.transition) is not None
+        and port.switch is not None and before != after and port.switch.is_on(after)
+    ]  # fmt: skip
+
+
 def changes_of(model: ClosedModel, old: Mode, new: Mode) -> list[tuple[Hashable, str]]:
     """What happens to ports whose mode is another: to switches, then what friction does about it."""
     switching: list[tuple[Hashable, str]] = []
@@ -372,7 +387,9 @@ def changes_of(model: ClosedModel, old: Mode, new: Mode) -> list[tuple[Hashable,
             before, after = (way_of(mode, i) if port.way > 0 else 0 for mode in (old, new))
         if before == after:
             continue
-        if port.switch is not None and not port.slides:
+        if port.transition is not None:
+            switching += _transitions((port,), (before,), (after,))
+        elif port.switch is not None and not port.slides:
             switching.append((port.name, port.switch.word(after)))
         else:
             kind = port.words[0 if after == 0 else (1 if before == 0 else 2)]

@@ -9,6 +9,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError
 from codegen.corners.located import with_corners
 from codegen.inputs.signal import Signal
+from codegen.model.sources import refuse_delays
 from codegen.model.starts import by_states, told_starts
 from codegen.modes.closed import ClosedModel
 from codegen.modes.steps import step_at_start
@@ -20,7 +21,8 @@ from codegen.supplied import supplied
 
 
 def check_exported(program: Program) -> None:
-    """Refuse what only Python can call."""
+    """Refuse what only Python can call, and what has a past."""
+    refuse_delays(program)
     if told := stepped_in_python(program):
         raise StructureError(
             f"{told}, which only runs in numpy can call; write what it does as expressions, update={{...}} "

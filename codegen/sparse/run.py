@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bondgraph.errors import SignalError, SimulationError
+from bondgraph.nodes.tasks import Transition
 from codegen.called.function import followed
 from codegen.energy.audit import Audit
 from codegen.inputs.signal import Signal
@@ -41,6 +42,10 @@ class Recorded:
 
     def nodes(self) -> tuple[Hashable, ...]:
         """None: no events happen."""
+        return ()
+
+    def transitions(self) -> tuple[Transition, ...]:
+        """None: it has no state machines."""
         return ()
 
     def signal(self, name: str) -> Array:

@@ -147,6 +147,18 @@ def _bracketed(residual: Residual, end: float) -> Iterator[Array]:
         yield np.array([root(one, 0.0, end)])
 
 
+def _slope(residual: Residual, amounts: Array, now: Array, j: int, size: float) -> Array:
+    """How what is left, ``now``, changes with one amount, by a step that rounding does not lose."""
+    step = TUNING.loop_difference * (abs(amounts[j]) + TUNING.loop_floor)
+    while True:
+        moved = amounts.copy()
+        moved[j] += step
+        change = residual(moved) - now
+        if step >= size or np.abs(change).max() > TUNING.loop_lost * size:
+            return np.asarray(change / step)
+        step *= TUNING.loop_wider
+
+
 def _newton(residual: Residual, amounts: Array) -> Array:
     """Newton's iteration with differences for slopes; a step that does not help is halved."""
     now = residual(amounts)
@@ -155,13 +167,8 @@ def _newton(residual: Residual, amounts: Array) -> Array:
             return amounts
         slopes = np.empty((len(amounts), len(amounts)))
         size = float(np.abs(now).max())
-        # A smaller step than that would be lost in the rounding of what is left.
-        floor = TUNING.loop_floor * max(1.0, size)
         for j in range(len(amounts)):
-            step = TUNING.loop_difference * (abs(amounts[j]) + floor)
-            moved = amounts.copy()
-            moved[j] += step
-            slopes[:, j] = (residual(moved) - now) / step
+            slopes[:, j] = _slope(residual, amounts, now, j, size)
         try:
             change = np.linalg.solve(slopes, -now)
         except np.linalg.LinAlgError:

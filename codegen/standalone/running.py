@@ -102,9 +102,9 @@ def run(
 
 def _row(model: FixedSteps, now: Instant, mode: Mode) -> list[float]:
     """A sample: states, inputs, what is shown, switches. Refuses what is not finite."""
+    shown = model.named(now)
     # What laws give may be infinite where states and rates are not.
     if not np.isfinite([*now.x, *now.z, *now.rate]).all():
         raise ArithmeticError(f"at t = {now.t:g} a value is not finite; give a shorter step")
-    shown = model.named(now)
     values = (shown[name] for name in model.names.shown)
     return [*now.x, *now.z, *now.w, *values, *model.shown(mode)]

@@ -1,7 +1,7 @@
 """When switches change over, and the ways to try: from the one at hand to those farther off."""
 
 import math
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -34,6 +34,7 @@ class Switching:
     displacement; ``guard`` is its gap then, which changes by ``opening`` with that, and the next
     its restitution. It is on while it is apart, and where the gap is closed it has the two sides
     of a one-sided switch. ``bound``: whether it is declared as a stop, which touches and is apart.
+    ``machine``: of a transition of a state machine, taken as it turns on, which, from 1 on.
     """
 
     on: bool
@@ -43,6 +44,7 @@ class Switching:
     place: int = -1
     opening: int = 0
     bound: bool = False
+    machine: int = 0
 
     @property
     def stops(self) -> bool:
@@ -86,7 +88,8 @@ class Reset:
 
     ``port``: its place; ``sign``: the mode that it comes to; ``place``: of the state in s;
     ``value``: of what it becomes, among the guards. Of a task, which has instants of its own,
-    ``port`` is -1 less its place among the clocks.
+    ``port`` is -1 less its place among the clocks. Those of transitions happen at the begin of a
+    run, too.
     """
 
     port: int
@@ -144,6 +147,21 @@ def flipped(mode: Mode, ports: Iterable[int]) -> Mode:
     """
     changed = set(ports)
     return tuple(1 - sign if i in changed else sign for i, sign in enumerate(mode))
+
+
+def first_taken(switching: Sequence[Switching | None], before: Mode, mode: Mode) -> Mode:
+    """The mode in which of each machine's transitions that turn on the first alone does.
+
+    >>> one = Switching(True, 0, 0, machine=1)
+    >>> first_taken((one, one, one), (1, 0, 1), (0, 0, 0))
+    (0, 0, 1)
+    """
+    taken, late = set[int](), list[int]()
+    for i, one in enumerate(switching):
+        if one is not None and one.machine and one.is_on(mode[i]) and mode[i] != before[i]:
+            late += [i] if one.machine in taken else []
+            taken.add(one.machine)
+    return flipped(mode, late) if late else mode
 
 
 def way_of(mode: Mode, port: int) -> int:

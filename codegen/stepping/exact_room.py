@@ -26,7 +26,7 @@ class ExactRoom:
 
     def __init__(self, engine: Engine, model: ClosedModel, patient: bool) -> None:
         self.engine, self._ffi, self._library = engine, engine.ffi, engine.library
-        self._names = [port.name for port in model.program.friction]
+        self._names, self._taken = model.program.happening, model.program.taken
         self._tables, self._context = Tables(engine, model), engine.context()
         self._tables.record.most = 0 if patient else self._tables.places.few
         sizes, told = engine.sizes.numbers, self._ffi.new("unsigned long[2]")
@@ -54,8 +54,13 @@ class ExactRoom:
         """Go on from one buffer to the next; what happens."""
         ends = self._from[1], self._to[1]
         self._call(self._library.ex_pause_next, inputs, *ends, stop, anew, renewed)
+        return self.told()
+
+    def told(self) -> Sequence[Event]:
+        """What the latest call says has happened."""
         count = self._task.count
-        return told_events(self._ffi, self._events, count, self._names) if count else ()
+        told = self._names, self._taken
+        return told_events(self._ffi, self._events, count, *told) if count else ()
 
     def take_up(self, inputs: Packed, paused: Paused) -> None:
         """Be in the buffer that is next where a run has paused."""

@@ -37,9 +37,9 @@ class FallingGoing:
         except GaveUpError as gave:
             self._fall(gave, self._begun, lambda _: None)
 
-    def begin(self, t: float, s: Array, mode: Mode) -> None:
+    def begin(self, t: float, s: Array, mode: Mode) -> Sequence[Event]:
         """See `Going`."""
-        self._do(lambda going: going.begin(t, s, mode))
+        return self._do(lambda going: going.begin(t, s, mode))
 
     def advance(self, stop: float, anew: bool) -> Sequence[Event]:
         """See `Going`."""
@@ -60,13 +60,14 @@ class FallingGoing:
         """See `Going`."""
         self._do(lambda going: going.take_up(paused))
 
-    def _do(self, action: Callable[[Going], None]) -> None:
+    def _do(self, action: Callable[[Going], Made]) -> Made:
         """What says where the run is, whatever was before."""
         try:
-            action(self._going)
+            made = action(self._going)
         except GaveUpError as gave:
-            self._fall(gave, False, action)
+            made = self._fall(gave, False, action)
         self._begun = True
+        return made
 
     def _first(self) -> Going:
         while True:

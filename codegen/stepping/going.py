@@ -57,8 +57,11 @@ class Going(Protocol):
     def under(self, given: Sequence[Given], t: float) -> None:
         """Take this as all external inputs from t [s] on."""
 
-    def begin(self, t: float, s: Array, mode: Mode) -> None:
-        """Be at the beginning of a run, at t [s]: the integrated vector, and the mode before."""
+    def begin(self, t: float, s: Array, mode: Mode) -> Sequence[Event]:
+        """Be at the beginning of a run, at t [s]: the integrated vector, and the mode before.
+
+        What happens there, as state machines go on at once.
+        """
 
     def advance(self, stop: float, anew: bool) -> Sequence[Event]:
         """Go on to ``stop`` [s]; what happens on the way, and at both ends.

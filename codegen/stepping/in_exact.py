@@ -42,11 +42,12 @@ class ExactGoing:
         for at, value in numbers.items():
             self._inputs.constant[:, at] = value
 
-    def begin(self, t: float, s: Array, mode: Mode) -> None:
+    def begin(self, t: float, s: Array, mode: Mode) -> Sequence[Event]:
         """See `Going`."""
         room, inputs = self._at
         room.begin(inputs, t, s, mode)
         self._commit(t)
+        return room.told()
 
     def advance(self, stop: float, anew: bool) -> Sequence[Event]:
         """See `Going`."""

@@ -62,20 +62,26 @@ class LocatedGoing:
         for at, value in numbers.items():
             self._coefficients[self._places[at], 0] = value
 
-    def begin(self, t: float, s: Array, mode: Mode) -> None:
+    def begin(self, t: float, s: Array, mode: Mode) -> Sequence[Event]:
         """See `Going`."""
         self._first[: len(mode)] = mode
         start = np.ascontiguousarray(s)
         self._call(self._library.bg_pause_first, self._to[1], t, self._pointer(start))
         self._commit(t)
+        return self._happened()
 
     def advance(self, stop: float, anew: bool) -> Sequence[Event]:
         """See `Going`."""
         self._call(self._library.bg_pause_next, self._from[1], self._to[1], stop, anew)
         self._commit(stop)
+        return self._happened()
+
+    def _happened(self) -> Sequence[Event]:
+        """What the latest call says has happened."""
         count = self._asked.count
-        names = self._runs.model.program.happening
-        return told_events(self._ffi, self._events, count, names) if count else ()
+        program = self._runs.model.program
+        told = program.happening, program.taken
+        return told_events(self._ffi, self._events, count, *told) if count else ()
 
     def row(self) -> Row:
         """See `Going`."""

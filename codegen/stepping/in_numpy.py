@@ -32,12 +32,13 @@ class NumpyGoing:
         del t
         self._signals = as_signals(given)
 
-    def begin(self, t: float, s: Array, mode: Mode) -> None:
+    def begin(self, t: float, s: Array, mode: Mode) -> Sequence[Event]:
         """See `Going`."""
         course = self._new(t, s, mode)
         with np.errstate(all="ignore"):
             self._paused, self._row = self._shown(course)
         self._course = course
+        return course.track.events
 
     def advance(self, stop: float, anew: bool) -> Sequence[Event]:
         """See `Going`."""

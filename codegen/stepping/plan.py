@@ -56,7 +56,7 @@ class Plan:
         self.switches = {
             str(port.name): (at, {sign: float(port.switch.is_on(sign)) for sign in (-1, 0, 1)})
             for at, port in enumerate(model.program.friction)
-            if port.switch is not None and not port.slides
+            if port.switch is not None and not port.slides and port.transition is None
         }
         inner = model.program.inner
         self.names = tuple(name for name in (*self.places, *self.switches) if name not in inner)
@@ -66,35 +66,36 @@ class Plan:
         """Refuse an instant, as a run does its samples, where a signal is not finite."""
         if not self.turned and math.isfinite(sum(row.values)):
             return
-        columns, observer = self.columns(row)
+        columns, observer = self.columns([row])
         for element in self.turned:
             name = str(element.co_energy)
             values = columns[name] if name in columns else observer.signal(name)
             refuse_beyond(self.model, element, np.array([row.time]), values)
 
-    def columns(self, row: Row) -> tuple[Mapping[str, Array], Observer]:
-        """One instant as the columns of a run of one sample; refuses what is not finite."""
-        parts = np.split(np.array([row.values], dtype=float), self._cuts, axis=1)
-        columns, observer = named_columns(self.model, np.array([row.time]), Snapshots(*parts))
-        return with_switches(columns, self.model.program, [row.mode]), observer
+    def columns(self, rows: Sequence[Row]) -> tuple[Mapping[str, Array], Observer]:
+        """Instants as the columns of a run of so many samples; refuses what is not finite."""
+        parts = np.split(np.array([row.values for row in rows], dtype=float), self._cuts, axis=1)
+        times = np.array([row.time for row in rows])
+        columns, observer = named_columns(self.model, times, Snapshots(*parts))
+        return with_switches(columns, self.model.program, [row.mode for row in rows]), observer
 
 
 class Signals(Mapping[str, float]):
     """Every named signal of an instant, by name; names beside those of columns can be asked for, too."""
 
-    __slots__ = ("__dict__", "_plan", "_row")
+    __slots__ = ("__dict__", "_plan", "row")
 
     def __init__(self, plan: Plan, row: Row) -> None:
-        self._plan, self._row = plan, row
+        self._plan, self.row = plan, row
 
     def __getitem__(self, name: str) -> float:
         """One signal; `KeyError` naming what there is."""
         at = self._plan.places.get(name)
         if at is not None:
-            return float(self._row.values[at])
+            return float(self.row.values[at])
         if name in self._plan.switches:
             port, told = self._plan.switches[name]
-            return told[self._row.mode[port]]
+            return told[self.row.mode[port]]
         return float(self._observer.signal(name)[0])
 
     def __iter__(self) -> Iterator[str]:
@@ -106,7 +107,7 @@ class Signals(Mapping[str, float]):
 
     @cached_property
     def _observer(self) -> Observer:
-        return self._plan.columns(self._row)[1]
+        return self._plan.columns([self.row])[1]
 
     def __repr__(self) -> str:
         return repr(dict(self))

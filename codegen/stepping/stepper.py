@@ -53,9 +53,9 @@ class Stepper:
         self._start: Start | None = origin.start
         self._places = {name: at for at, name in enumerate(origin.inputs)}
         self._rated = rated_inputs(origin.model)
-        self._events: tuple[Event, ...] = ()
         #: The states that were not named and followed what switches held at first.
-        self.completed = self._begin(origin.start)
+        self.completed, events = self._begin(origin.start)
+        self._events = tuple(events)
 
     @property
     def time(self) -> float:
@@ -69,8 +69,16 @@ class Stepper:
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """What the latest advance came to, its end included, in order; nothing is told twice."""
+        """What the latest advance came to, its end included, in order; nothing is told twice.
+
+        Before the first what state machines did at the begin.
+        """
         return self._events
+
+    @property
+    def origin(self) -> Origin:
+        """What it is made of, and where it began."""
+        return self._origin
 
     @property
     def backend(self) -> str:
@@ -87,6 +95,52 @@ class Stepper:
         the stepper then is where it was.
         """
         time, late = self._later(dt)
+        return self._go(time, late, inputs)
+
+    def advance_to(self, time: float, /, **inputs: object) -> Signals:
+        """As `advance`, on to a time [s] that is told itself: ticks and breakpoints there are met exactly.
+
+        Raises what `advance` raises, and `SignalError` for a time that is not later.
+        """
+        if not is_number(time) or not self._time < time < math.inf:
+            raise SignalError(f"from t = {self._time!r} s a step leads to no time {time!r}")
+        return self._go(float(time), 0.0, inputs)
+
+    def give(self, **inputs: object) -> Signals:
+        """Take these inputs from the present instant on, and stay there; every named signal under them.
+
+        What happens there under them is told by ``events``, beside what was told before.
+
+        Raises what `advance` raises; the stepper then is where it was.
+        """
+        given = self._named(inputs)
+        if given is self._given:
+            return self.signals
+        if self._rated:
+            self._refuse_steps(given, self._time)
+        self._going.under((*given, *self._sources.signals), self._time)
+        try:
+            events = self._renewed(given)
+        except BaseException:
+            self._going.under((*self._given, *self._sources.signals), self._time)
+            raise
+        self._given = given
+        self._events += tuple(self._untold(events))
+        return self.signals
+
+    def _renewed(self, given: Sequence[Given]) -> Sequence[Event]:
+        """Decide the present instant anew; what happens there."""
+        if self._start is None:
+            return self._going.advance(self._time, anew=True)
+        before = self._going.paused()
+        try:
+            self._begin(self._start, given)
+        except BaseException:
+            self._going.take_up(before)
+            raise
+        return ()
+
+    def _go(self, time: float, late: float, inputs: Mapping[str, object]) -> Signals:
         given = self._named(inputs) if inputs else self._given
         anew = given is not self._given
         reached = self._sources.reach(self._time, time)
@@ -138,20 +192,22 @@ class Stepper:
         # States were told for the instant before anything: under the inputs that hold from then on.
         before = self._going.paused()
         try:
-            self._begin(self._start, given)
-            return self._going.advance(time, anew=False)
+            _, events = self._begin(self._start, given)
+            return [*events, *self._going.advance(time, anew=False)]
         except BaseException:
             self._going.take_up(before)
             raise
 
-    def _begin(self, start: Start, given: Sequence[Given] | None = None) -> Mapping[str, float]:
+    def _begin(
+        self, start: Start, given: Sequence[Given] | None = None
+    ) -> tuple[Mapping[str, float], Sequence[Event]]:
+        """Be at the start: the states that were completed, and what happens there."""
         model, t = self._origin.model, self._time
         under = (*(self._given if given is None else given), *self._sources.signals)
         signals = as_signals(under)
         _, begun = started(model, t, dict(start.told), signals, start.on)
         self._going.under(under, t)
-        self._going.begin(t, begun.s, begun.mode)
-        return begun.completed
+        return begun.completed, self._going.begin(t, begun.s, begun.mode)
 
     def _later(self, dt: float) -> tuple[float, float]:
         """The time after a step, and what its rounding leaves out: steps add up as if not rounded."""

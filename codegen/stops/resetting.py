@@ -13,7 +13,7 @@ from codegen.fixed.ticking import become
 from codegen.standalone.arrays import Array, EvaluationError, Mode
 from codegen.standalone.evaluation import Point
 from codegen.standalone.stepping import Chosen
-from codegen.standalone.switchings import Reset
+from codegen.standalone.switchings import Reset, first_taken
 from codegen.tuning import TUNING
 
 
@@ -31,18 +31,24 @@ class ResettingSteps(SwitchedSteps):
         for _ in range(TUNING.renewals):
             mode, s = self.chosen(at, before, dead_band, h)
             at = at._replace(s=s)
-            fired = [] if before is None else self.fired(before, mode)
+            mode = first_taken(self.switching, before or self.first, mode)
+            fired = self.fired(before or self.first, mode, begins=before is None)
             if not fired:
                 return mode, self.at_rest(at, mode)
             at, before = at._replace(s=self.reset(at, mode, fired)), mode
         raise EvaluationError(f"at t = {at.t:g} resets set off one another without end")
 
-    def fired(self, before: Mode, mode: Mode) -> list[Reset]:
-        """The resets of ports that changed over, and of stops that were hit."""
+    def fired(self, before: Mode, mode: Mode, begins: bool = False) -> list[Reset]:
+        """The resets of ports that changed over, and of stops that were hit.
+
+        ``begins``: whether a run does, in which state machines alone take transitions.
+        """
         hit = self.hits(before, mode)
         found = []
         for one in self.resets:
             switching = self.switching[one.port]
+            if begins and not (switching and switching.machine):
+                continue
             off = switching is not None and not switching.is_on(one.sign)
             if mode[one.port] == one.sign != before[one.port] or (one.port in hit and off):
                 found.append(one)

@@ -12,7 +12,7 @@ from codegen.inputs.signal import Signal
 from codegen.inputs.swept import Swept, settled
 from codegen.program.records import Program
 from codegen.record.columns import known_names
-from codegen.record.measures import OF_NODES, READY, Measure, check_node
+from codegen.record.measures import EVENTFUL, OF_NODES, READY, Measure, check_event, check_node
 from codegen.runs.arguments import named_numbers, settings_of, signals_for
 from codegen.sweeps.held import starts_of
 from codegen.sweeps.job import Job, Model
@@ -109,10 +109,18 @@ def _check_names(name: str, measure: Measure, program: Program) -> None:
     asked, known = measure.arguments[0], known_names(program)
     try:
         if READY[measure.function] in OF_NODES:
-            check_node(asked, program.nodes)
+            check_node(asked, (*program.nodes, *_fields(program)))
+            if measure.function in EVENTFUL:
+                check_event(asked, measure.arguments[1], program.transitions)
         elif asked not in known:
             raise SignalError(
                 f"no signal {asked!r}{nearest(str(asked), known)}; there are {', '.join(known)}"
             )
     except SignalError as error:
         raise SignalError(f"measure {name!r}: {error}") from None
+
+
+def _fields(program: Program) -> list[Hashable]:
+    """The nodes of several ports, which are asked for as wholes."""
+    owners = (one.owner for one in program.equations.elements.values())
+    return list(dict.fromkeys(owner for owner in owners if owner is not None))

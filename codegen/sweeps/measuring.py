@@ -68,7 +68,9 @@ def batch_of(job: Job) -> Batch | None:
                 settings,
                 job.initially_on,
             )
-            _batches[job] = batch(Asked(model, *asked)) if isinstance(model, Family) else None
+            _batches[job] = None
+            if isinstance(model, Family) and not (model.program.steps or model.program.delayed):
+                _batches[job] = batch(Asked(model, *asked))
         return _batches[job]
 
 

@@ -13,7 +13,7 @@ from codegen.simulate import BACKENDS
 from differentials.commands.names import Assigned, OneOf
 from differentials.commands.signals import law, signal, table_file
 from differentials.commands.subject import TABLES, SubjectType, tables_given
-from differentials.scenarios import scenarios
+from differentials.scenarios import named_cases
 
 Command = Callable[..., Any]
 
@@ -96,7 +96,7 @@ reads = click.option(
     help="A name in values that is an input: the opening of a valve. May be repeated.",
 )  # fmt: skip
 scenario = click.option(
-    "--scenario", type=OneOf(tuple(scenarios), "scenario"), metavar="NAME",
+    "--scenario", type=OneOf(tuple(named_cases()), "scenario"), metavar="NAME",
     help="A scenario that `bondgraph list` shows; by default the differential's own.",
 )  # fmt: skip
 backend = click.option(

@@ -11,7 +11,9 @@ import codegen
 from codegen import Result
 from differentials.commands.printing import with_folder, written
 from differentials.commands.subject import Subject
+from differentials.control.manoeuvres import manoeuvres
 from differentials.figures import Figure, draw, panels, save_picture
+from differentials.loop_figures import loop_panels
 
 FORMATS = (".csv", ".nc", ".parquet", ".mat", ".png")
 """What a run may be written as."""
@@ -36,7 +38,9 @@ def picture(subject: Subject, result: Result, case: str, path: Path) -> None:
         drawn = codegen.panels(result, alike(result.columns), title=subject.title)
         save_picture(drawn, path)
     else:
-        shown = Figure(subject.title, ((subject.name, case),), panels(chosen))
+        driven = manoeuvres.get(case)
+        own = panels(chosen) if driven is None else loop_panels(chosen, driven)
+        shown = Figure(subject.title, ((subject.name, case),), own)
         draw(shown, (result,), path)
 
 

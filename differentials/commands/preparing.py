@@ -13,8 +13,11 @@ from codegen import Result
 from differentials.commands.names import check_names
 from differentials.commands.options import Asked
 from differentials.commands.subject import Subject, nodes_called
+from differentials.control.loop import closed_loop
+from differentials.control.manoeuvres import manoeuvres
 from differentials.model import model
-from differentials.scenarios import SAMPLE, Prepared, named, prepared
+from differentials.prepared import SAMPLE, Prepared
+from differentials.scenarios import named, prepared
 
 LARGEST = 10_000_000
 """Samples of a run beyond which a typing error is more likely than a wish."""
@@ -119,9 +122,13 @@ def _from_catalog(subject: Subject, asked: Asked) -> Prepared:
     assert chosen is not None
     if asked.on:
         raise bg.StructureError(f"{subject.name} has no switches; leave --on out")
-    full = model(subject.name, asked.laws, asked.backlash)
-    check_names(asked.parameters, (*full.parameters, *full.starts), "parameter")
     case = asked.scenario or chosen.scenario
+    if case in manoeuvres:
+        known: Collection[str] = closed_loop(subject.name, case, laws=asked.laws).parameters
+    else:
+        full = model(subject.name, asked.laws, asked.backlash)
+        known = (*full.parameters, *full.starts)
+    check_names(asked.parameters, tuple(known), "parameter")
     ready = prepared(subject.name, case, asked.parameters, asked.laws, asked.backlash)
     if asked.until is not None or asked.sample is not None:
         until = named(case).duration if asked.until is None else asked.until

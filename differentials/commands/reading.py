@@ -1,5 +1,6 @@
 """``list``, ``show``, ``derive``, ``explain``: what there is and what follows from it."""
 
+from dataclasses import fields
 from typing import Any
 
 import click
@@ -10,6 +11,7 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.nodes.laws import SLIP
 from differentials.commands.printing import causality_data, equations_data, headed, print_json
 from differentials.commands.subject import Subject, causality_of, mode_text
+from differentials.control.manoeuvres import manoeuvres
 from differentials.identification import linear_model
 from differentials.model import model
 from differentials.report import modes_text, parameters_text, table
@@ -25,7 +27,8 @@ def list_all(as_json: bool) -> None:
     orders = {name: len(bg.assign_causality(graph(name)).integral) for name in catalog}
     if as_json:
         print_json({"differentials": [_row(name, orders[name]) for name in catalog],
-                    "scenarios": [_case(name) for name in scenarios]})  # fmt: skip
+                    "scenarios": [_case(name) for name in scenarios],
+                    "manoeuvres": [_driven(name) for name in manoeuvres]})  # fmt: skip
         return
     rows = [("name", "states", "clutches", "scenario", "what it is")]
     for name, chosen in catalog.items():
@@ -33,7 +36,8 @@ def list_all(as_json: bool) -> None:
         title = f"{chosen.title} ({chosen.source})"
         rows.append((name, count, str(len(chosen.clutches)), chosen.scenario, title))
     click.echo(table(rows))
-    click.echo(f"\nscenarios: {', '.join(scenarios)}\n\nNext: bondgraph show alsd")
+    click.echo(f"\nscenarios: {', '.join(scenarios)}")
+    click.echo(f"in a car, with a controller: {', '.join(manoeuvres)}\n\nNext: bondgraph show alsd")
 
 
 def _row(name: str, order: int) -> dict[str, object]:
@@ -43,6 +47,11 @@ def _row(name: str, order: int) -> dict[str, object]:
         "full_states": 3 * chosen.wheels if chosen.full else None, "wheels": chosen.wheels,
         "clutches": chosen.clutches, "scenario": chosen.scenario,
     }  # fmt: skip
+
+
+def _driven(name: str) -> dict[str, object]:
+    case = manoeuvres[name]
+    return {"name": name, **{key.name: getattr(case, key.name) for key in fields(case)}}
 
 
 def _case(name: str) -> dict[str, object]:

@@ -1,7 +1,7 @@
 """``sweep``: a model over a grid of its numbers."""
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,8 +27,8 @@ from differentials.commands.options import Asked
 from differentials.commands.preparing import prepare
 from differentials.commands.printing import print_json, with_folder, written
 from differentials.commands.subject import Subject
+from differentials.prepared import Prepared
 from differentials.report import table
-from differentials.scenarios import Prepared
 
 SHOWN = 50
 """Rows of a table on the screen."""
@@ -117,9 +117,13 @@ def _measures(
     family: codegen.Family, ready: Prepared, measured: Mapping[str, tuple[str, ...]]
 ) -> dict[str, Any]:
     signals = [*map(str, ready.equations.signals), *map(str, ready.equations.integrals)]
-    ports = {
-        one.name: STOPPING if one.switch.stops else SWITCHING for one in ready.equations.switches
+    ports: dict[Any, Sequence[str]] = {
+        one.name: STOPPING if one.switch.stops else SWITCHING
+        for one in ready.equations.plain_switches
     }
+    taken = [one.switch.transition for one in ready.equations.switches]
+    for machine in ready.equations.machines:
+        ports[machine.name] = [t.words for t in taken if t and t.machine == machine]
     known = dict.fromkeys((*family.states, *family.inputs, *signals, *map(str, ports)))
     declared = {**ready.equations.laws, **ready.laws}
     rubbing = [node for node, law in declared.items() if isinstance(law, bg.DryFriction)]

@@ -15,19 +15,23 @@ from differentials.commands.printing import headed
 from differentials.commands.subject import causality_of
 from differentials.figures import Figure, draw, figures
 from differentials.identification import linear_model
+from differentials.loop_figures import LOOP_FIGURES
 from differentials.parameters import PRINTED_FREQUENCIES
 from differentials.report import events_text, modes_text, table
 from differentials.scenarios import scenarios, simulate
 from differentials.topologies import catalog, equations, graph
 
+DRAWN = {**figures, **LOOP_FIGURES}
+"""What can be drawn by name."""
 
-@options.command("The paper's Figs. 11 to 14.", "figures --out out", "figures fig11")
-@click.argument("names", nargs=-1, type=OneOf(tuple(figures), "figure"), metavar="[FIGURE]...")
+
+@options.command("The paper's Figs. 11 to 14.", "figures --out out", "figures fig11", "figures ice")
+@click.argument("names", nargs=-1, type=OneOf(tuple(DRAWN), "figure"), metavar="[FIGURE]...")
 @options.folder
 def draw_figures(names: tuple[str, ...], out: Path) -> None:
-    """Run and draw the paper's Figs. 11 to 14, or those that are named."""
+    """Run and draw the paper's Figs. 11 to 14, or those that are named: of closed loops step_steer, ice."""
     for name in names or tuple(figures):
-        told(_drawn(name, figures[name], out))
+        told(_drawn(name, DRAWN[name], out))
 
 
 def _drawn(name: str, figure: Figure, out: Path) -> list[Path]:
@@ -41,7 +45,9 @@ def _drawn(name: str, figure: Figure, out: Path) -> list[Path]:
 
 def _saved(name: str, figure: Figure, results: tuple[Result, ...], out: Path) -> list[Path]:
     """A figure's picture and tables; where there are several, they are called like their scenarios."""
-    cases = [name] if len(results) == 1 else [case for _, case in figure.runs]
+    several = len({subject for subject, _ in figure.runs}) > 1
+    cases = [f"{subject}_{case}" if several else case for subject, case in figure.runs]
+    cases = [name] if len(results) == 1 else cases
     tables = dict(zip(cases, results, strict=True))
     return save_all(name, tables, lambda path: draw(figure, results, path), out)
 

@@ -5,13 +5,22 @@ import inspect
 import pytest
 
 import bondgraph as bg
-from bondgraph.nodes import controllers, elements, hysteresis, rate_limiter, signals, stops
+from bondgraph.nodes import (
+    controllers,
+    delays,
+    elements,
+    hysteresis,
+    machines,
+    rate_limiter,
+    signals,
+    stops,
+)
 from bondgraph.nodes.kinds import Kind
 
 ROLES = {
     "supplies": "Se Sf", "stores": "I C", "resists": "R", "two_port": "TF GY", "gyrates": "GY",
     "joins": "Zero One", "detects": "De Df", "switches": "Stop Sw",
-    "signals": "Function State Controller Hysteresis RateLimiter",
+    "signals": "Function State Controller Hysteresis RateLimiter Delay StateMachine",
     "one_port": "Se Sf I C R De Df Stop Sw", "absorbs": "I C R De Df Stop Sw",
 }  # fmt: skip
 
@@ -52,11 +61,11 @@ def test_no_two_one_ports_have_one_place_beside_their_junction() -> None:
 
 HOMES = {
     "Stop": stops, "Function": signals, "State": signals, "Controller": controllers,
-    "Hysteresis": hysteresis, "RateLimiter": rate_limiter,
+    "Hysteresis": hysteresis, "RateLimiter": rate_limiter, "Delay": delays, "StateMachine": machines,
 }  # fmt: skip
 """Where constructors are that are not with the elements."""
 
-CALLED = {"m": "value", "r": "value", "input": "value", "gives": "outputs"}
+CALLED = {"m": "value", "r": "value", "start": "initially", "input": "value", "gives": "outputs"}
 """Attributes by names that constructors have for them; a controller gives what an attribute lists."""
 
 

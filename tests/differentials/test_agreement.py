@@ -16,7 +16,7 @@ from soak.families import whole
 
 from codegen.fmu import binaries
 from codegen.runs.track import Event
-from differentials.scenarios import SAMPLE
+from differentials.prepared import SAMPLE
 
 CHOSEN = EVERY if whole("agreements") else tuple(OWN.items())
 

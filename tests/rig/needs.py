@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 FILES = (
-    "codegen/batch/test_*.py", "codegen/c/test_c_*.py", "codegen/engine/test_build.py",
+    "codegen/batch/test_*.py", "codegen/c/test_c_*.py", "codegen/cosimulation/test_units.py",
+    "codegen/engine/test_build.py",
     "codegen/engine/test_c_backend.py", "codegen/engine/test_engine_bounds.py",
     "codegen/engine/test_located.py", "codegen/engine/test_memory.py", "codegen/fmu/test_*.py",
     "codegen/ports/test_many_ports.py", "codegen/program/test_awkward_names.py",

@@ -18,7 +18,9 @@ def walked() -> Iterator[None]:
 
     with gathered() as found:
         yield
-    assert [text for equations in found for text in misfits_somewhere(equations)] == []
+    # What a delay gives has no instant of its own: `codegen/delays` looks at whole runs.
+    told = [equations for equations in found if not equations.delays]
+    assert [text for equations in told for text in misfits_somewhere(equations)] == []
 
 
 @pytest.fixture(autouse=True)

@@ -88,7 +88,7 @@ static void show_all(const bg_numbers *a, batch_map *map)
 }
 
 /* A mode's map from the model at as many points. */
-static int probe(bg_model *m, const int *mode, batch_map *map)
+static int probe_mode(bg_model *m, const int *mode, batch_map *map)
 {
     const int last = BG_MAP_COLUMNS - 1, rates = BG_RATED || BG_DRIVEN;
     batch_row *const rows = map->x;
@@ -110,7 +110,7 @@ static int find_base(batch_instance *own)
     int forward[BG_ROOM(K)];
     for (int i = 0; i < BG_ROOM(K); i++)
         forward[i] = 1;
-    const int status = probe(&own->m, forward, &own->base);
+    const int status = probe_mode(&own->m, forward, &own->base);
     for (int k = 0; k < K; k++) {
         memcpy(own->forward[k], own->base.u[bg_friction_inputs[k]], sizeof(batch_row));
         memset(own->base.u[bg_friction_inputs[k]], 0, sizeof(batch_row));
@@ -154,7 +154,7 @@ static void show_law_rates(batch_map *map)
 /* A mode's map from the model itself, for laws that read what friction gives. */
 static int read_late(batch_instance *own, const int *mode, const bg_hold *held, batch_map *map)
 {
-    const int status = probe(&own->m, mode, map);
+    const int status = probe_mode(&own->m, mode, map);
     show_all(&own->m.numbers, map);
     for (int turn = 0; turn < 2 && held; turn++)
         correct(held, map);

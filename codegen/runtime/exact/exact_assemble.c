@@ -134,6 +134,11 @@ void ex_assemble(ex_context *c, ex_entry *e)
         ex_watch_gaps(c, j, stay);
         ex_triggers(c, e->mode, shot, stay, e->trigger[j]);
     }
+    memset(e->rows, 0, sizeof e->rows);
+    for (int j = 0; j < EX_Z; j++) {
+        memcpy(e->rows[j], e->M[j], sizeof e->M[j]);
+        memcpy(e->rows[j] + EX_Z, e->trigger[j], EX_T * sizeof e->trigger[j][0]);
+    }
     memset(e->cap, 0, sizeof e->cap);
     for (int i = 0; i < EX_K; i++)
         e->cap[2 * i + 1] = ex_single(c, e->mode, i);

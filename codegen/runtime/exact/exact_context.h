@@ -17,6 +17,8 @@ enum {
      * much as EX_Z such steps: an event may end its stretch before */
     EX_WALKED = EX_K > 0 && EX_Z > 16 ? EX_Z / 4 - 4 : 0,
     EX_KEPT = EX_K > 0 ? 1 : BG_RUNGS,
+    EX_WIDE = (EX_Z + EX_T + 3) / 4 * 4, /* rates and triggers of a state */
+    EX_LEAST_DEGREE = 5,
     EX_F = EX_Z + EX_W + 1 /* state where nothing is watched */
 };
 
@@ -25,6 +27,12 @@ enum {
 #else
 #define EX_ALIGNED
 #endif
+
+/* sum at[k] tau^k; of degree EX_LEAST_DEGREE at the least */
+typedef struct {
+    int degree;
+    double at[BG_POWERS + 1];
+} ex_powers;
 
 /* A mode with a generator, z' = M z + .., and its exponentials for one step. By columns. */
 typedef struct {
@@ -46,6 +54,7 @@ typedef struct {
     unsigned walking;
     double weight[EX_Z], M[EX_Z][EX_Z];
     double trigger[EX_Z][EX_TRIGGERS];
+    EX_ALIGNED double rows[EX_Z][EX_WIDE]; /* of M, then of triggers */
     double gather[EX_Z][EX_Z];          /* the integral of the exponential over a step */
     EX_ALIGNED double leap[EX_STRIDE][EX_Z][EX_ROW];
     double fourth[EX_Z][EX_TRIGGERS];   /* h^4/384 times bounds on fourth derivatives, per rate */
@@ -106,7 +115,9 @@ struct ex_context {
     double farthest[EX_PORTS];          /* that the displacements of stops have been */
     ex_stretch stretch;
     double work[6][EX_Z][EX_Z];
-    double terms[BG_DEGREE + 1][EX_Z], powers[EX_TRIGGERS][BG_DEGREE + 1];
+    int degree;                         /* of terms */
+    double terms[BG_POWERS + 1][EX_Z];
+    ex_powers powers[EX_TRIGGERS];
     double scratch[EX_BLOCK + 1][EX_ROW];
     int used[EX_ENTRIES];               /* when each was used last; 0 if it is empty */
     int latest[EX_ENTRIES];             /* which was asked for last of a few modes */

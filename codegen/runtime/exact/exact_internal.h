@@ -114,10 +114,12 @@ void ex_exponential(ex_context *c, double (*M)[EX_Z], double norm, double h, dou
                     double (*gather)[EX_Z]);
 void ex_multiply(double (*left)[EX_Z], double (*right)[EX_Z], double (*restrict product)[EX_Z]);
 
-/* exact_roots.c: where sum p[k] tau^k falls to zero in (begin, 1]: 1 if it does, 0 if not, -1 if the
- * search has no end. */
-int ex_first_fall(const double *p, double begin, double *root);
-double ex_value(const double *p, double tau);
+/* exact_roots.c: where a polynomial falls to zero in (begin, 1]: 1 if it does, 0 if not, -1 if the
+ * search has no end. Whether one that begins about zero cannot come to -2 limit, nor to zero once it is
+ * above limit: 0 where that is not sure. */
+int ex_first_fall(const ex_powers *p, double begin, double *root);
+double ex_value(const ex_powers *p, double tau);
+int ex_only_rises(const ex_powers *p, double limit);
 
 /* exact_series.c: from t by `length`, z in place; *ports are those whose event ended it at *end. And
  * the same where none can. */

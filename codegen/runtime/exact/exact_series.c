@@ -4,54 +4,52 @@
 #include <math.h>
 #include <string.h>
 
-/* next = factor (M term + constant), in two sums that don't wait for each other */
+/* Rates and triggers of a term, without constant parts, in two sums that don't wait for each other. */
 static inline void differentiate(const ex_entry *e, const double *restrict term,
-                                 const double *restrict constant, double factor,
                                  double *restrict next)
 {
 #pragma GCC unroll 1
-    for (int i = 0; i < EX_Z; i++) {
-        double sum = constant[i], other = 0.0;
+    for (int i = 0; i < EX_WIDE; i++) {
+        double sum = 0.0, other = 0.0;
 #pragma GCC unroll 32
         for (int j = 0; j < EX_Z / 2; j++)
-            sum += e->M[j][i] * term[j];
+            sum += e->rows[j][i] * term[j];
 #pragma GCC unroll 32
         for (int j = EX_Z / 2; j < EX_Z; j++)
-            other += e->M[j][i] * term[j];
-        next[i] = (sum + other) * factor;
+            other += e->rows[j][i] * term[j];
+        next[i] = sum + other;
     }
 }
 
-/* The powers of the state, z(tau) = sum terms[k] tau^k over a step. */
+/* The powers of the state, z(tau) = sum terms[k] tau^k over a step, and those of the triggers: as many
+ * as count, as |M| step tells. */
 static void expand(ex_context *c, const double *z, double step)
 {
-    const ex_entry *e = c->stretch.entry;
-    double(*terms)[EX_Z] = c->terms;
-    const double none[EX_Z] = {0};
-    for (int i = 0; i < EX_Z; i++)
-        terms[0][i] = z[i];
-    for (int k = 1; k <= BG_DEGREE; k++)
-        differentiate(e, terms[k - 1], k == 1 ? c->stretch.b : none, step / k, terms[k]);
-}
-
-/* The same of the triggers. */
-static void expand_triggers(ex_context *c)
-{
-    const ex_entry *e = c->stretch.entry;
-    for (int k = 0; k <= BG_DEGREE; k++)
-        for (int i = 0; i < EX_T; i++) {
-            double sum = k ? 0.0 : c->stretch.level[i];
-            for (int j = 0; j < EX_Z; j++)
-                sum += e->trigger[j][i] * c->terms[k][j];
-            c->powers[i][k] = sum;
-        }
+    const ex_entry *const e = c->stretch.entry;
+    double(*const terms)[EX_Z] = c->terms;
+    const double reach = e->norm * step;
+    EX_ALIGNED double next[EX_WIDE];
+    double size = 1.0;
+    int k = 0;
+    memcpy(terms[0], z, sizeof terms[0]);
+    do {
+        const double share = step / ++k;
+        differentiate(e, terms[k - 1], next);
+        for (int i = 0; i < EX_Z; i++)
+            terms[k][i] = ((k == 1 ? c->stretch.b[i] : 0.0) + next[i]) * share;
+        for (int i = 0; i < EX_T; i++)
+            c->powers[i].at[k - 1] = (k == 1 ? c->stretch.level[i] : 0.0) + next[EX_Z + i];
+        size *= reach / k;
+    } while (k < BG_POWERS && (size > BG_LEFT_OUT || k <= EX_LEAST_DEGREE));
+    c->degree = k;
+    for (int i = 0; i < EX_T; i++)
+        c->powers[i].degree = k - 1;
 }
 
 static void state(const ex_context *c, double tau, double *z)
 {
-    for (int i = 0; i < EX_Z; i++)
-        z[i] = c->terms[BG_DEGREE][i];
-    for (int k = BG_DEGREE - 1; k >= 0; k--)
+    memcpy(z, c->terms[c->degree], sizeof c->terms[0]);
+    for (int k = c->degree - 1; k >= 0; k--)
         for (int i = 0; i < EX_Z; i++)
             z[i] = z[i] * tau + c->terms[k][i];
 }
@@ -60,26 +58,30 @@ static void state(const ex_context *c, double tau, double *z)
  * moment in which nothing counts. 1: lost at *root. 0: armed at *root, or neither (*root is 2). */
 static int arm(ex_context *c, int trigger, double elapsed, double step, double *root)
 {
-    const double *p = c->powers[trigger], limit = c->stretch.limit[trigger];
-    double rise[BG_DEGREE + 1], fall[BG_DEGREE + 1], armed = 0.0, lost;
+    const ex_powers *const p = c->powers + trigger;
+    const double limit = c->stretch.limit[trigger];
+    ex_powers rise = *p, fall = *p;
+    double armed = 0.0, lost;
     *root = 0.0;
-    if (p[0] >= limit) {
+    if (p->at[0] >= limit) {
         c->stretch.armed[trigger] = 1;
         return 0;
     }
-    for (int k = 0; k <= BG_DEGREE; k++) {
-        rise[k] = -p[k];
-        fall[k] = p[k];
+    *root = 2.0;
+    if (ex_only_rises(p, limit)) {
+        c->stretch.armed[trigger] = ex_value(p, 1.0) >= limit;
+        return 0;
     }
-    rise[0] += limit;
-    fall[0] += 2.0 * limit;
-    const int rises = ex_first_fall(rise, 0.0, &armed);
+    for (int k = 0; k <= p->degree; k++)
+        rise.at[k] = -p->at[k];
+    rise.at[0] += limit;
+    fall.at[0] += 2.0 * limit;
+    const int rises = ex_first_fall(&rise, 0.0, &armed);
     const double blind = bg_lesser(bg_greater((c->stretch.blind - elapsed) / step, 0.0), 1.0);
     lost = blind;
-    const int falls = ex_value(fall, blind) <= 0 ? 1 : ex_first_fall(fall, blind, &lost);
+    const int falls = ex_value(&fall, blind) <= 0 ? 1 : ex_first_fall(&fall, blind, &lost);
     if (rises < 0 || falls < 0)
         return -1;
-    *root = 2.0;
     if (!rises || (falls && lost < armed)) {
         if (!falls || lost >= 1.0)
             return 0;
@@ -94,25 +96,21 @@ static int arm(ex_context *c, int trigger, double elapsed, double step, double *
 /* Where one trigger falls in a step: 1 if it does, 0 if not, -1 if the search has no end. */
 static int fall(ex_context *c, int trigger, double elapsed, double step, double *root)
 {
-    double begin = 0.0, sum = 0.0, below[BG_DEGREE + 1], again;
+    const ex_powers *const p = c->powers + trigger;
+    double begin = 0.0, again;
     if (!c->stretch.armed[trigger]) {
         const int lost = arm(c, trigger, elapsed, step, root);
         if (lost || *root > 1.0)
             return lost;
         begin = *root;
     }
-    const int found = ex_first_fall(c->powers[trigger], begin, root);
-    if (found <= 0)
+    const int found = ex_first_fall(p, begin, root);
+    if (found <= 0 || ex_value(p, 1.0) <= 0)
         return found;
-    for (int k = 0; k <= BG_DEGREE; k++) {
-        below[k] = c->powers[trigger][k];
-        sum += below[k];
-    }
-    if (sum <= 0)
-        return 1;
     /* It comes back: a touch, unless it fell below zero by more than rounding. */
-    below[0] += c->stretch.limit[trigger];
-    return ex_first_fall(below, *root, &again);
+    ex_powers below = *p;
+    below.at[0] += c->stretch.limit[trigger];
+    return ex_first_fall(&below, *root, &again);
 }
 
 /* The first event of a step that has been expanded, in all ports that have it. */
@@ -141,9 +139,14 @@ static int event(ex_context *c, double t, double step, double *tau, bg_set *port
     return BG_OK;
 }
 
+static double parts_of(const ex_context *c, double length)
+{
+    return bg_greater(ceil(c->stretch.entry->norm * length / BG_LONGEST), 1.0);
+}
+
 int ex_series(ex_context *c, double t, double length, double *z, double *end, bg_set *ports)
 {
-    const double parts = bg_greater(ceil(c->stretch.entry->norm * length), 1.0);
+    const double parts = parts_of(c, length);
     memset(ports, 0, sizeof *ports);
     *end = t + length;
     if (length <= 0.0)
@@ -153,7 +156,6 @@ int ex_series(ex_context *c, double t, double length, double *z, double *end, bg
         const double from = t + part * step;
         double tau;
         expand(c, z, step);
-        expand_triggers(c);
         const int status = event(c, from, step, &tau, ports);
         if (status)
             return status;
@@ -171,7 +173,7 @@ int ex_series(ex_context *c, double t, double length, double *z, double *end, bg
 
 void ex_glide(ex_context *c, double length, double *z)
 {
-    const double parts = bg_greater(ceil(c->stretch.entry->norm * length), 1.0);
+    const double parts = parts_of(c, length);
     for (double part = 0.0; length > 0.0 && part < parts; part += 1.0) {
         expand(c, z, length / parts);
         state(c, 1.0, z);

@@ -76,12 +76,13 @@ fmu_error fmu_decide(fmu_instance *f)
     const bg_sight sight = bg_view_sight(&f->located.view);
     bg_log log = {.capacity = INT_MAX};
     bg_instant at = {.t = f->at.time, .time = FMU_SHORTEST, .following = INFINITY, .s = f->at.s,
-                     .log = f->at.decided ? &log : NULL};
+                     .log = &log};
     int slipping[BG_MOST_PORTS] = {0};
     if (K == 0)
         return NULL;
     f->stale = 1;
     bg_begin_log(&log, f->at.mode);
+    log.begins = !f->at.decided;
     fmu_next_break(f, &at.following);
     note_touched(f, at.touched);
     memcpy(slipping, f->at.mode, sizeof f->at.mode);

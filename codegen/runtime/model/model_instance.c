@@ -63,7 +63,7 @@ int bg_model_complete(bg_model *m, double t, const double *w, const int *named, 
 int bg_model_switched(int port, int mode)
 {
     const bg_switch *const s = bg_switches + port;
-    return s->kind == BG_RUBS || s->slides ? -1 : s->on == (mode == 0);
+    return s->kind == BG_RUBS || s->slides || s->machine ? -1 : s->on == (mode == 0);
 }
 
 void bg_model_outputs(const bg_snapshot *shot, double *outputs)

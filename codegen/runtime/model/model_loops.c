@@ -50,19 +50,34 @@ static double one(void *self, double value)
     return left[0];
 }
 
+/* What is left where one value is more, by a step that the rounding of what is left does not
+ * swallow; the step. */
+static double move_on(search *s, double *values, const double *now, int j, double size,
+                      double *moved)
+{
+    const double kept = values[j];
+    double step = BG_LOOP_DIFFERENCE * (fabs(kept) + BG_LOOP_FLOOR);
+    for (;; step *= BG_LOOP_WIDER) {
+        double most = 0.0;
+        values[j] = kept + step;
+        left_over(s, values, moved);
+        values[j] = kept;
+        for (int i = 0; i < s->loop->count; i++)
+            most = fmax(most, fabs(moved[i] - now[i]));
+        if (step >= size || most > BG_LOOP_LOST * size)
+            return step;
+    }
+}
+
 /* Slopes by differences; the change to make, or 0 if there is none. */
 static int newton_change(search *s, double *values, const double *now, double *change)
 {
     double moved[LOOPS];
     double *const slopes = s->m->work.slopes;
     const int n = s->loop->count;
-    /* A smaller step than that would be lost in the rounding of what is left. */
-    const double floor_of_steps = BG_LOOP_FLOOR * fmax(1.0, bg_largest(n, now));
+    const double size = bg_largest(n, now);
     for (int j = 0; j < n; j++) {
-        const double kept = values[j], step = BG_LOOP_DIFFERENCE * (fabs(kept) + floor_of_steps);
-        values[j] = kept + step;
-        left_over(s, values, moved);
-        values[j] = kept;
+        const double step = move_on(s, values, now, j, size, moved);
         for (int i = 0; i < n; i++)
             slopes[i * n + j] = (moved[i] - now[i]) / step;
         change[j] = -now[j];

@@ -119,7 +119,7 @@ static int take_blow(const bg_sight *c, const bg_instant *at, const bg_set *thro
         }
         log->thrown = 1;
         bg_add(&log->back, i);
-        if (bg_append(log, (bg_event){at->t, i, BG_HIT, blow->given[i]}))
+        if (!log->begins && bg_append(log, (bg_event){at->t, i, BG_HIT, blow->given[i]}))
             return BG_EVENTS;
     }
     return BG_OK;

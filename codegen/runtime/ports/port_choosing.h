@@ -76,10 +76,14 @@ int bg_choose_rubbing(bg_choice *choice, int *mode, int *holds, bg_set *broken);
 int bg_choose_once(const bg_sight *sight, const bg_instant *at, const bg_set *barred, int *mode,
                    bg_blow *blow);
 
+/* port_reset.c: of the transitions of each state machine that turn on the first alone does. */
+void bg_take_first(const bg_switch *kinds, int ports, const int *before, int *mode);
+
 /* port_reset.c: which resets are set off by what changed over and by stops that were hit, whether
- * any is; and s with what these set, a status where that is no number or one state is set twice. */
+ * any is; as a run `begins` those of transitions alone. And s with what these set, a status where
+ * that is no number or one state is set twice. */
 int bg_find_fired(const bg_reset *resets, int count, const bg_switch *kinds, const int *before,
-                  const int *mode, const bg_set *hit, int *fired);
+                  const int *mode, const bg_set *hit, int begins, int *fired);
 int bg_set_states(const bg_reset *resets, int count, const int *fired, const double *values,
                   double *s);
 

@@ -34,6 +34,8 @@ static int happened(const bg_switch *with, int switched, const int *before, cons
     if (*now == *before)
         return -1;
     const int on = with->on == (*now == 0);
+    if (with->machine)
+        return on ? BG_ON : -1;
     return with->bound ? (on ? BG_APART : BG_TOUCH) : on ? BG_ON : BG_OFF;
 }
 
@@ -71,7 +73,7 @@ static void begin_part(bg_log *log, int ports, const int *mode)
 
 void bg_begin_log(bg_log *log, const int *mode)
 {
-    log->thrown = 0;
+    log->thrown = log->begins = 0;
     begin_part(log, BG_MOST_PORTS, mode);
 }
 
@@ -97,7 +99,7 @@ bg_set bg_hits(const bg_log *log, int ports, const bg_switch *switches, const in
 
 int bg_note(bg_log *log, double t, int ports, const bg_switch *switches, const int *mode)
 {
-    const double largest = largest_given(log, ports, switches);
+    const double largest = log->begins ? 0.0 : largest_given(log, ports, switches);
     for (int i = 0; i < ports && largest > 0.0; i++)
         if (is_hit(log, switches + i, i, mode, largest)
             && bg_append(log, (bg_event){t, i, BG_HIT, log->given[i]}))
@@ -105,10 +107,11 @@ int bg_note(bg_log *log, double t, int ports, const bg_switch *switches, const i
     for (int switched = 1; switched >= 0; switched--)
         for (int i = 0; i < ports; i++) {
             const int kind = happened(switches + i, switched, log->before + i, mode + i);
-            if (kind >= 0
+            if (kind >= 0 && (switches[i].machine || !log->begins)
                 && bg_append(log, (bg_event){t, i, kind, given_by(log, switches + i, i)}))
                 return -1;
         }
+    log->begins = 0;
     begin_part(log, ports, mode);
     return 0;
 }

@@ -7,10 +7,11 @@
 
 /* The first `count` of at most `capacity` events, which are but counted where `events` is NULL. At
  * the present instant: the mode before what is not told of yet, the impulse that each port gives in
- * that, which stops throw back, and whether any has at this instant. */
+ * that, which stops throw back, and whether any has at this instant; `begins`: whether a run begins
+ * with that, which is no event but of state machines. */
 typedef struct {
     bg_event *events;
-    int capacity, count, thrown;
+    int capacity, count, thrown, begins;
     int before[BG_MOST_PORTS];
     double given[BG_MOST_PORTS];
     bg_set back;
@@ -27,7 +28,8 @@ bg_set bg_hits(const bg_log *log, int ports, const bg_switch *switches, const in
 
 /* Appends a hit for each stop that took a shock and is as it was, then an event for each of `ports`
  * modes that is not what it was, of switches first, with what these have given; 0, or -1 where
- * there is no room. The present mode is that before what comes then. */
+ * there is no room. The present mode is that before what comes then. As a run begins transitions
+ * alone are told. */
 int bg_note(bg_log *log, double t, int ports, const bg_switch *switches, const int *mode);
 
 #endif

@@ -5,15 +5,26 @@
 
 #include "port_choosing.h"
 
+void bg_take_first(const bg_switch *kinds, int ports, const int *before, int *mode)
+{
+    for (int i = 0; i < ports; i++) {
+        const int turns_on = mode[i] != before[i] && kinds[i].on == (mode[i] == 0);
+        for (int k = 0; k < i && kinds[i].machine && turns_on; k++)
+            if (kinds[k].machine == kinds[i].machine && mode[k] != before[k]
+                && kinds[k].on == (mode[k] == 0))
+                mode[i] = before[i];
+    }
+}
+
 int bg_find_fired(const bg_reset *resets, int count, const bg_switch *kinds, const int *before,
-                  const int *mode, const bg_set *hit, int *fired)
+                  const int *mode, const bg_set *hit, int begins, int *fired)
 {
     int any = 0;
     for (int r = 0; r < count; r++) {
         const bg_reset *const one = resets + r;
         const int i = one->port;
         fired[r] = 0;
-        if (i < 0)
+        if (i < 0 || (begins && !kinds[i].machine))
             continue;
         const int comes = mode[i] == one->sign && before[i] != one->sign;
         const int off = kinds[i].on == (one->sign != 0);
@@ -79,7 +90,9 @@ int bg_choose(const bg_sight *c, const bg_instant *at, int *mode)
     for (int k = 0; k < BG_RENEWALS && status == BG_OK; k++) {
         const bg_log *const log = at->log;
         const bg_set hit = bg_hits(log, c->ports, c->kinds, mode);
-        if (!bg_find_fired(c->reset, c->resets, c->kinds, log->before, mode, &hit, fired))
+        bg_take_first(c->kinds, c->ports, log->before, mode);
+        if (!bg_find_fired(c->reset, c->resets, c->kinds, log->before, mode, &hit, log->begins,
+                           fired))
             return BG_OK;
         if (bg_note(at->log, at->t, c->ports, c->kinds, mode))
             return BG_EVENTS;

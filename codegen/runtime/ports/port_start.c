@@ -36,14 +36,15 @@ static int check_gaps(bg_model *m, double t, const double *s)
     return BG_OK;
 }
 
-/* Switches whose conditions say so at `m->now` change over. */
+/* Switches whose conditions say so at `m->now` change over; no transition is taken before a run. */
 static void as_told(bg_model *m, int *mode)
 {
     double guards[BG_ROOM(BG_GUARDS)] = {0};
     if (BG_GUARDS)
         bg_guards(&m->now, guards);
     for (int i = 0; i < K; i++)
-        if (bg_switches[i].kind == BG_TOLD && bg_stay(bg_switches + i, mode[i], 0, 0, guards) < 0)
+        if (bg_switches[i].kind == BG_TOLD && !bg_switches[i].machine
+            && bg_stay(bg_switches + i, mode[i], 0, 0, guards) < 0)
             mode[i] = !mode[i];
 }
 

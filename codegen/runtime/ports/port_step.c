@@ -173,7 +173,7 @@ static int search_once(step_search *c, const int *before)
 
 int bg_decide_step(bg_model *m, double t, double h, double *s, const double *w)
 {
-    int before[BG_ROOM(K)], old[BG_ROOM(K)], again = BG_RESETS && m->started;
+    int before[BG_ROOM(K)], old[BG_ROOM(K)], again = BG_RESETS > 0;
     step_search c = {.m = m, .at = {t, h, s, w, m->work.rates[0], before, m->started}, .s = s};
     memcpy(before, m->mode, sizeof before);
     memcpy(old, m->mode, sizeof old);

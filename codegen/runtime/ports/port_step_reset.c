@@ -56,7 +56,10 @@ int bg_set_in_step(step_search *c, int *before, int *any)
     const bg_set hit = hits_in_step(c, before);
     double values[BG_MOST_RESETS] = {0};
     int fired[BG_MOST_RESETS];
-    *any = bg_find_fired(bg_resets, BG_RESETS, bg_switches, before, c->m->mode, &hit, fired);
+    bg_take_first(bg_switches, K, before, c->m->mode);
+    *any = bg_find_fired(bg_resets, BG_RESETS, bg_switches, before, c->m->mode, &hit,
+                         !c->at.started, fired);
+    c->at.started = 1;
     if (!*any)
         return BG_OK;
     int status = bg_become_in_step(c->m, &c->at, values);

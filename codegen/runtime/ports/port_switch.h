@@ -13,14 +13,15 @@ enum bg_way { BG_RUBS, BG_ONE_SIDED, BG_TOLD, BG_STOPS };
  * changes by `opening`; `bound`: whether it is told as one, that touches and is apart. `order`: of
  * the jump of a law, which rubs, and slides while it is held, the derivative of what it hangs on
  * that it moves, 1 or 2; of second order it receives how fast that changes, and `guard` is its
- * place. */
+ * place. `machine`: of a transition of a state machine, taken as it turns on, which machine, from 1
+ * on. */
 typedef struct {
-    int kind, on, side, guard, slides, place, opening, bound, order;
+    int kind, on, side, guard, slides, place, opening, bound, order, machine;
 } bg_switch;
 
 /* What a state becomes as a port comes to a mode, `sign`, or at an impact of a stop: its place in
  * s, and that of the value among the conditions. Of a task `port` is -1 less its place among the
- * clocks. */
+ * clocks. Those of transitions happen at the begin of a run, too. */
 typedef struct {
     int port, sign, place, value;
 } bg_reset;

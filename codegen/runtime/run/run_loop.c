@@ -115,12 +115,14 @@ static int settle_once(const bg_engine *e, bg_course *c, const int *before, int 
         return status;
     c->at.time = bg_time_constant(fastest, c->at.t - c->began);
     bg_begin_log(&c->log, c->mode);
-    c->at.log = started || c->goes_on ? &c->log : NULL;
+    c->log.begins = !started && !c->goes_on;
+    c->at.log = &c->log;
     status = decide(e, c, started);
     c->at.log = NULL;
     /* A jump that is crossed may be so as often as it is. */
     for (int i = 0; i < sight->ports; i++)
         touched |= c->at.touched[i] && !(is_jump(sight->kinds + i) && before[i] && c->mode[i]);
+    started |= !c->log.begins && !c->goes_on;
     if (status == BG_OK && started) {
         if (bg_note(&c->log, c->at.t, sight->ports, sight->kinds, c->mode))
             status = BG_EVENTS;

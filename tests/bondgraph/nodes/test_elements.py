@@ -34,7 +34,8 @@ def test_constructor_gives_a_node_of_plain_data(node: tuple, expected: tuple) ->
 
 def test_kinds_are_those_of_textbooks_and_a_stop() -> None:
     kinds = ["Se", "Sf", "I", "C", "R", "TF", "GY", "Zero", "One", "De", "Df", "Stop", "Sw",
-             "Function", "State", "Controller", "Hysteresis", "RateLimiter"]  # fmt: skip
+             "Function", "State", "Controller", "StateMachine", "Hysteresis",
+             "RateLimiter", "Delay"]  # fmt: skip
     assert [str(kind) for kind in bg.Kind] == kinds
 
 

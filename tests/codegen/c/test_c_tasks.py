@@ -131,7 +131,7 @@ def test_nothing_is_warned_of(tmp_path: Path) -> None:
 def test_the_main_program_keeps_the_instants(tmp_path: Path) -> None:
     program = compiled(tmp_path, written(tmp_path, _files()), "-O1")
     times = np.linspace(0, END, 121)
-    for how, within in ((("located",), 1e-6), (("step=0.0001",), 2e-3)):
+    for how, within in ((("located",), 1e-9), (("step=0.0001",), 2e-3)):
         told = subprocess.run(
             [program, f"{END}", "0.01", *how], capture_output=True, text=True, check=True
         ).stdout.splitlines()

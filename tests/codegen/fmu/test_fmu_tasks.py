@@ -141,6 +141,23 @@ def test_a_parameter_that_is_tuned_sets_nothing_again(unit: Unit) -> None:
     unit.free(made)
 
 
+def test_a_unit_that_is_reset_begins_again(unit: Unit) -> None:
+    made = unit.started("CoSimulation")
+    made.doStep(currentCommunicationPoint=0.0, communicationStepSize=0.3)
+    assert unit.get(made, "n") == 4
+    made.reset()
+    if unit.version == "2.0":
+        made.setupExperiment(startTime=0.2)
+        made.enterInitializationMode()
+    else:
+        made.enterInitializationMode(startTime=0.2)
+    made.exitInitializationMode()
+    assert unit.get(made, "n", "stamp").tolist() == [1, 0.2]
+    made.doStep(currentCommunicationPoint=0.2, communicationStepSize=0.15)
+    assert unit.get(made, "n", "stamp").tolist() == [2, 0.3]
+    unit.free(made)
+
+
 @pytest.mark.parametrize("version", VERSIONS)
 def test_fixed_steps_keep_the_instants(version: str, tmp_path: Path) -> None:
     loop = Unit(case(), version, tmp_path)

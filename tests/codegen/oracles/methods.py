@@ -15,7 +15,8 @@ import codegen
 from codegen.runs.arguments import signals_for
 from codegen.runs.track import Event
 from differentials.figures import figures
-from differentials.scenarios import SAMPLE, Scenario, prepared, scenarios
+from differentials.prepared import SAMPLE
+from differentials.scenarios import Scenario, prepared, scenarios
 from differentials.topologies import catalog
 from oracles.c_model import Pair
 from oracles.exported import loaded

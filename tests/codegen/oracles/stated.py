@@ -121,7 +121,7 @@ def _begun(
         else Constant(rng.uniform(0.3, 1.5))
         for name in ready.inputs
     }
-    end = t + SETTLED if ready.switches else t
+    end = t + SETTLED if equations.switches else t
     times = end + STEP * np.arange(len(SLOPE))
     run = ready.run(times if end == t else [t, *times], states, signals)
     if any(event.time > end for event in run.events):
@@ -130,7 +130,7 @@ def _begun(
     numbers = {TIME.name: end, **told, **{f"{name}'": 0.0 for name in told}}
     for name, signal in signals.items():
         numbers[name], numbers[f"{name}'"] = signal(end), signal.piece(end).derivative(end)
-    if not ready.switches:
+    if not equations.switches:
         slopes = _rates(ready, t, states, signals)
         numbers |= {f"{name}'": slope for name, slope in zip(states, slopes, strict=True)}
     return Instant(run, numbers, BY_PIECES if ready.closed.program.sources else CLOSE)
@@ -153,6 +153,7 @@ def _parameters(equations: bg.StateEquations) -> list[str]:
     read = [law.free_symbols for law in equations.laws.values()]
     read += [part.free_symbols for switch in equations.switches for part in switch.read]
     read += [start.free_symbols for start in equations.starts.values()]
+    read += [part.free_symbols for late in equations.delays for part in (late.time, late.start)]
     known = {*equations.signals, *equations.states, *equations.inputs, *equations.further_states}
     known |= {*equations.held, TIME}
     return sorted({str(name) for name in used.union(*read)} - {str(name) for name in known})

@@ -11,7 +11,8 @@ from references.build import bond_graph
 import bondgraph as bg
 from codegen import Lag, Result, Simulator, Sine, Step, simulator
 from codegen.runs.sundials import Cvode
-from differentials.scenarios import Prepared, prepared
+from differentials.prepared import Prepared
+from differentials.scenarios import prepared
 
 CATALOG = [
     ("alsd", "fig11"),

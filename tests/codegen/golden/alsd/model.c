@@ -64,7 +64,7 @@ const int bg_momenta_rows[] = {0};
 const int bg_outside_inputs[] = {0};
 const int bg_differentiable[] = {1, 1, 0, 0};
 const int bg_output_readings[] = {1, 4, 5, 6, 7};
-const bg_switch bg_switches[] = {{BG_RUBS, 0, 0, 0, 0, 0, 0, 0, 0}};
+const bg_switch bg_switches[] = {{BG_RUBS, 0, 0, 0, 0, 0, 0, 0, 0, 0}};
 const bg_reset bg_resets[] = {{0, 0, 0, 0}};
 const bg_clock bg_clocks[] = {{0.0, 0.0, 0.0}};
 

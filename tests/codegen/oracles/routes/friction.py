@@ -287,7 +287,26 @@ def warmed() -> Kind:
     )  # fmt: skip
 
 
+def followed() -> Kind:
+    """A signal that repeats what a brake gives, and a state of it, which is how far it has slowed."""
+    N, u, stops = 2.0, 1.5, 0.75
+
+    def known(t: Array, run: Mapping[str, Array]) -> dict[str, Array]:
+        w = np.maximum(u - N * t, 0.0)
+        return {"w": w, "lost": 3 * (u - w)}
+
+    nodes = [bg.One("n"), bg.I("m", "m", flow="w"),
+             bg.R("brake", effort="tau", flow="s", law=bg.DryFriction("N")),
+             bg.State("lost", "copied"), bg.Function("copied", "gain*tau")]  # fmt: skip
+    return Kind(
+        "read by a law that acts on nothing that slips", bond_graph(nodes, "n>m n>brake"),
+        {"m": 1.0, "gain": 3.0}, {"N": f"{N}"}, known, 1.5, {"w": u}, at=stops / 2, mode={"brake": "slip"},
+        rest={"inputs": {"N": N}},
+    )  # fmt: skip
+
+
 FRICTION = (
     coulomb, level_of_input, breakaway, stribeck, asymmetric, level_of_state, curve_of_state,
     ruled_by_load, bollard, on_a_spring, put_later, in_series, together, chain, behind_moving_ratio, warmed,
+    followed,
 )  # fmt: skip

@@ -56,7 +56,8 @@ class Kind:
 
     @property
     def switches(self) -> list[str]:
-        return [str(one.name) for one in self.equations.switches]
+        found = self.equations.switches
+        return [str(one.name) for one in found if one.switch.transition is None]
 
     def times(self, samples: int = 51) -> Array:
         return np.linspace(0.0, self.end, samples)

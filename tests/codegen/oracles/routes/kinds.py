@@ -7,6 +7,7 @@ from oracles.routes.friction import FRICTION
 from oracles.routes.jumping import JUMPING
 from oracles.routes.lawful import LAWFUL
 from oracles.routes.looped import LOOPED
+from oracles.routes.machines import MACHINES
 from oracles.routes.plain import PLAIN
 from oracles.routes.resetting import RESETTING
 from oracles.routes.searched import SEARCHED
@@ -19,7 +20,7 @@ from oracles.routes.tabled import TABLED
 
 EVERY = (
     *FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL, *LOOPED,
-    *SUPPLIED, *TABLED, *SEARCHED, *EXCHANGING, *SIGNALS, *BLOCKS,
+    *SUPPLIED, *TABLED, *SEARCHED, *EXCHANGING, *SIGNALS, *BLOCKS, *MACHINES,
 )  # fmt: skip
 
 KINDS = {make.__name__: make for make in EVERY}

@@ -11,6 +11,7 @@ from oracles.routes.kind import Kind
 from oracles.routes.kinds import KINDS
 from oracles.routes.lawful import LAWFUL
 from oracles.routes.looped import LOOPED
+from oracles.routes.machines import MACHINES
 from oracles.routes.plain import PLAIN
 from oracles.routes.signals import SIGNALS
 from oracles.routes.sloped import SLOPED
@@ -55,6 +56,7 @@ def page() -> str:
         ("Lookup tables", TABLED),
         ("Signals", SIGNALS),
         ("Blocks", BLOCKS),
+        ("State machines", MACHINES),
     ):
         plain = [route for route in ROUTES if route not in COMPILED]
         parts += [f"\n## {title}\n", *_table(kinds, plain), "", *_table(kinds, COMPILED)]

@@ -25,7 +25,8 @@ def inner_names(elements: Iterable[Element]) -> frozenset[str]:
 
 def _declared(part: Element) -> tuple[sp.Symbol | None, ...]:
     """A signal itself; of a state within bounds also the rate that equations name."""
-    if part.is_effort_told or part.is_function:
+    late = part.late is not None and part.name == part.whole
+    if part.is_effort_told or part.is_function or late:
         return (part.effort,)
     if part.kind.stores:
         return (part.flow,)

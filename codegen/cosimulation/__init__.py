@@ -1,0 +1,1 @@
+"""Several models side by side: simulators and units of others, coupled at communication points."""

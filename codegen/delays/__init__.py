@@ -1,0 +1,1 @@
+"""What delays give: found part by part, each no longer than the shortest delay."""
