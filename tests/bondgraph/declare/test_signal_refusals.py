@@ -15,7 +15,7 @@ LEVEL = bg.State("level", "(asked - level)/T", low=0)
 
 def _validated(level: Any = LEVEL, path: str | None = None, **told: Any) -> Any:
     nodes = [
-        bg.One("shaft"), bg.I("J", "J", flow="omega"), bg.R("clutch", law=bg.DryFriction("level")),
+        bg.One("shaft"), bg.I("J", "J", flow="omega"), bg.R("clutch"),
         bg.Function("error", "omega - allowed"), bg.Function("want", "K*error + z"), level,
         bg.Controller("pi", **(GOOD | told)),
     ]  # fmt: skip
@@ -26,7 +26,7 @@ def _validated(level: Any = LEVEL, path: str | None = None, **told: Any) -> Any:
     ("told", "message"),
     [
         ({"reads": ["want"]}, "its expressions read error, which its reads leave out; add what is meant"),
-        ({"reads": ["wnat", "error"]}, "its reads name wnat (did you mean 'want'?), but its expressions read"),
+        ({"reads": ["wnat", "error"]}, "its reads name wnat (did you mean 'want'?), but its expressions"),
         ({"gives": {"asked": "max(0, wnat)"}}, "its reads name want (did you mean 'wnat'?)"),
         ({"states": ["z"]}, "states must map names to expressions, such as states={'z': 0}, not be ['z']"),
         ({"gives": ["asked"]}, "such as gives={'u': 'K*e'}, not be ['asked']"),
