@@ -155,7 +155,7 @@ def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:
         position = {name: at for at, name in enumerate(graph)}
         first, second, *_ = sorted(parts, key=lambda part: min(position[name] for name in part))
         names = [min(part, key=position.__getitem__) for part in (first, second)]
-        meant = _misspelt(graph, second, first) or _misspelt(graph, first, second)
+        meant = _misspelt(graph, owned, second, first) or _misspelt(graph, owned, first, second)
         raise StructureError(
             f"the part of node {names[0]!r} and the part of node {names[1]!r} share neither a bond "
             f"nor a signal; {meant}bond them, or derive each on its own"
@@ -163,14 +163,15 @@ def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:
 
 
 def _misspelt(
-    graph: "nx.DiGraph[Hashable]", part: Iterable[Hashable], other: Iterable[Hashable]
-) -> str:
-    """What a signal's node of one part reads that has nearly the name of a signal of the other, in words."""
+    graph: "nx.DiGraph[Hashable]", owned: set[sp.Symbol], part: Iterable[Hashable],
+    other: Iterable[Hashable],
+) -> str:  # fmt: skip
+    """What a signal of one part reads, which is none, but nearly one of the other, in words."""
     known = [name.name for node in other for name in named_by(graph.nodes[node]["element"])]
     for node in part:
         element = graph.nodes[node]["element"]
-        read = {s.name for told in read_in(element) for s in told.free_symbols}
+        read = {s.name for told in read_in(element) for s in told.free_symbols - owned}
         for name in sorted(read) if element.whole is not None else ():
-            if name not in known and (question := nearest(name, known)):
+            if question := nearest(name, known):
                 return f"{element.whole!r} reads {name}{question}; "
     return ""
