@@ -139,7 +139,7 @@ class Friction:
             if level < 0 or curve < 0 or cap < level * at_rest * (1 - TUNING.breakaway):
                 way_out = (
                     "; bound what gives the level, by max(0, ...) or as a State by low=0"
-                    if level < 0
+                    if min(level, cap) < 0
                     else ""
                 )
                 raise EvaluationError(
