@@ -23,7 +23,11 @@ PICTURES = {
 
 PENDULUM = "pendulum.svg"
 SPEED_LOOP = "speed_loop.svg"
-DRIVE = "quarter_car.svg"
+FIGURES = {
+    "quarter_car.svg": ("tour.md", "# ", "savefig"),
+    "slip_control.svg": ("your-own-differential.md", "## A slip controller", "![Slip"),
+}
+"""Figures of runs: file to page, and the texts between which its examples make it."""
 
 
 def pendulum() -> "nx.DiGraph[str]":
@@ -63,13 +67,14 @@ def picture(file: str) -> str:
     return bg.drawing(differentials.graph(name), title=title).svg()
 
 
-def drive() -> Any:
-    """The figure that the first example of `tour.md` makes."""
-    text = (FOLDER.parent / "tour.md").read_text(encoding="utf-8").partition("savefig")[0]
+def shown(page: str, begin: str, end: str) -> Any:
+    """The figure ``picture`` that the examples of a page make between two of its texts."""
+    text = (FOLDER.parent / page).read_text(encoding="utf-8")
+    text = text[text.index(begin) :].partition(end)[0]
     names: dict[str, Any] = {}
     with redirect_stdout(StringIO()):
         for example in doctest.DocTestParser().get_examples(text):
-            exec(compile(example.source, "tour.md", "exec"), names)
+            exec(compile(example.source, page, "exec"), names)
     return names["picture"]
 
 
@@ -78,6 +83,7 @@ if __name__ == "__main__":
 
     # The versions of matplotlib write other bytes for the same curves.
     matplotlib.rcParams["svg.hashsalt"] = "pictures"
-    drive().savefig(FOLDER / DRIVE, metadata={"Date": None})
+    for file, told in FIGURES.items():
+        shown(*told).savefig(FOLDER / file, metadata={"Date": None})
     for file in (*PICTURES, PENDULUM, SPEED_LOOP):
         write_text(FOLDER / file, picture(file))

@@ -32,6 +32,12 @@ _SPELLED: dict[type, str] = {
 }
 """What belongs somewhere else or is spelled otherwise here."""
 
+_OTHERWISE = dict.fromkeys(
+    ("clip", "clamp", "limit", "sat", "saturate", "saturation"),
+    "a bound is written max(low, min(high, x))",
+) | {"if": "a choice is written Piecewise((a, condition), (b, True))"}
+"""Functions of other languages, and what says the same here."""
+
 _SYMBOLS = (("&&", "and"), ("||", "or"), ("!", "not"), ("=", "=="))
 """Spellings of other languages that are no syntax here."""
 
@@ -140,6 +146,10 @@ def _call(
         return read_pieces(arguments, build, where)
     if name not in functions:
         known = sorted([*functions, PIECEWISE])
+        if name in _OTHERWISE:
+            raise ExpressionError(
+                f"{where}: {name!r} is not a function an expression may use; {_OTHERWISE[name]}"
+            )
         raise ExpressionError(
             f"{where}: {name!r} is not a function an expression may use{nearest(name, known)}; "
             f"there are {', '.join(known)}, and the lookup tables that it is given as tables"

@@ -68,7 +68,8 @@ def linearize(
     simulator, over those declared. ``inputs``: names in laws and values that become inputs; what no signal
     has is a parameter. A law that reads no signal and no such input leaves its port an input. ``outputs``:
     names of signals, else the equations' outputs. ``mode``: node to its mode: "on" or "off" for every
-    switch and controlled junction, of a stop also "apart" or "touch"; "stick" or "slip" for dry friction,
+    switch and controlled junction, of a stop also "apart" or "touch", and
+    "apart" where ``at`` tells that it is off its bound; "stick" or "slip" for dry friction,
     which slips unless told, to the side that ``at`` tells; for a state machine one of its modes, where ``at``
     does not tell its number. ``stuck``: nodes that stick. What is held takes
     a state with it, of the storage of lowest priority, earlier ones first. ``period`` [s]: of a loop with
@@ -97,7 +98,7 @@ def linearize(
     stuck = tuple(stuck) if isinstance(stuck, Iterable) and not isinstance(stuck, str) else stuck
     equations = turned(_opened(equations, inputs), _with_held(equations, laws, stuck, mode))
     merged = merged_laws(equations, {} if laws is None else laws)
-    told = told_modes(equations, merged, stuck, mode)
+    told = told_modes(equations, merged, stuck, mode, at)
     closed = {name: law for name, law in merged.items() if name not in told.names}
     read = {name for law in closed.values() for name in law.free_symbols}
     read |= {name for port in told.held for name in _level(merged.get(port.element.name), port)}

@@ -6,6 +6,8 @@ from typing import Any
 
 import sympy as sp
 
+from bondgraph.algebra.atoms import normal
+from bondgraph.algebra.expressions import expression
 from bondgraph.analyse.closed_rows import ClosedRows
 from bondgraph.analyse.constrained import echelon
 from bondgraph.analyse.holding import split, stuck_ports
@@ -20,6 +22,9 @@ WORDS = {True: ("on", "off"), False: ("stick", "slip")}
 
 STOPS = {"apart": "on", "touch": "off"}
 """The same of stops, in the words of their events."""
+
+NEAR = 1e-9
+"""A gap that is no longer, beside one and the displacement, does not tell whether a stop touches."""
 
 
 @dataclass(frozen=True)
@@ -57,14 +62,16 @@ class ToldModes:
 
 
 def told_modes(
-    equations: StateEquations, laws: Mapping[Hashable, Law], stuck: Iterable[Hashable], mode: Any
-) -> ToldModes:
+    equations: StateEquations, laws: Mapping[Hashable, Law], stuck: Iterable[Hashable], mode: Any,
+    at: Any,
+) -> ToldModes:  # fmt: skip
     """Which ports are held and which let go, in the words of events.
 
-    ``laws``: every closed port's. Raises `StructureError` for a switch that is told no mode, for a word or
-    a node that there is not, and for a port that is told two modes.
+    ``laws``: every closed port's. ``at``: the operating point, which tells of a stop off its bound that it is
+    apart. Raises `StructureError` for a switch that is told no mode, for a word or a node that there is not,
+    and for a port that is told two modes.
     """
-    told = _checked(equations, mode)
+    told = _with_places(equations, _checked(equations, mode), at)
     held = stuck_ports(equations, stuck)
     names = {port.element.name for port in held}
     for name, word in told.items():
@@ -82,14 +89,52 @@ def told_modes(
     told |= {one.name: "off" for one in equations.switches if one.switch.transition is not None}
     missing = [one.name for one in equations.switches if one.name not in told]
     if missing:
-        listed = ", ".join(map(repr, missing))
-        raise StructureError(
-            f"a linear model is of one mode: tell whether {listed} {'is' if len(missing) == 1 else 'are'} on "
-            f"or off, such as mode={{{missing[0]!r}: 'off'}}"
-        )
+        raise StructureError(_untold(equations, missing))
     closed = [one.port for one in equations.switches if told[one.name] == one.held]
     free = [one.port for one in equations.switches if told[one.name] != one.held]
     return ToldModes((*held, *closed), (*free, *resting))
+
+
+def _untold(equations: StateEquations, missing: Sequence[Hashable]) -> str:
+    """What to say of switches that were told no mode; stops have other words and one more way."""
+    listed, verb = ", ".join(map(repr, missing)), "is" if len(missing) == 1 else "are"
+    places = {one.name: one.displacement for one in equations.switches if one.guard == "stop"}
+    if missing[0] not in places:
+        return (
+            f"a linear model is of one mode: tell whether {listed} {verb} on or off, such as "
+            f"mode={{{missing[0]!r}: 'off'}}"
+        )
+    return (
+        f"a linear model is of one mode: tell whether {listed} {verb} apart (on) or touching (off), such as "
+        f"mode={{{missing[0]!r}: 'apart'}}; off its bound the number of {places[missing[0]]} in at tells"
+    )
+
+
+def _with_places(
+    equations: StateEquations, told: dict[Hashable, str], at: Any
+) -> dict[Hashable, str]:
+    """The modes with those of stops of which the point tells that they are apart."""
+    # What is no mapping is left to whoever looks at the point.
+    told_there = at.items() if isinstance(at, Mapping) else ()
+    values = {normal(str(name)): value for name, value in told_there}
+    found = dict(told)
+    for one in equations.switches:
+        if one.gap is None or one.displacement is None:
+            continue
+        reads = one.gap.free_symbols | {one.displacement}
+        point = {
+            name: expression(values[name.name], f"operating point of {name}")
+            for name in reads if name.name in values
+        }  # fmt: skip
+        gap, place = one.gap.subs(point), sp.sympify(point.get(one.displacement))
+        if place is None or not (gap.is_real and gap.is_number and gap > NEAR * (1 + abs(place))):
+            continue
+        if found.setdefault(one.name, "on") == "off":
+            raise StructureError(
+                f"mode: {one.name!r} touches its bound ('off'), but at has {one.displacement} = {place}, "
+                f"{gap} off it; say 'apart', or leave it out"
+            )
+    return found
 
 
 def _checked(equations: StateEquations, mode: Any) -> dict[Hashable, str]:

@@ -8,7 +8,7 @@ import networkx as nx
 import sympy as sp
 
 from bondgraph.algebra.expressions import TIME
-from bondgraph.errors import StructureError
+from bondgraph.errors import StructureError, nearest
 from bondgraph.nodes.elements import Element
 from bondgraph.nodes.laws import DryFriction, ExpressionLaw, Law
 
@@ -20,6 +20,7 @@ def check_names(elements: Sequence[Element]) -> None:
         for name in _owned(element):
             _check_owner(owners, name, element)
     signals = set(owners) | {name for element in elements for name in named_by(element)}
+    _check_reads(elements, signals)
     if TIME in signals:
         owner = next(element for element in elements if TIME in named_by(element))
         raise StructureError(
@@ -72,6 +73,21 @@ def energy_name(element: Element, taken: set[str]) -> sp.Symbol:
         text += "_"
     taken.add(text)
     return sp.Symbol(text)
+
+
+def _check_reads(elements: Sequence[Element], signals: set[sp.Symbol]) -> None:
+    """Refuse a controller that reads a signal which its ``reads``, where it has them, leave out."""
+    for element in elements:
+        if (task := element.task) is None or not task.reads:
+            continue
+        used = {name for one in task.resets for name in one.value.free_symbols}
+        missing = (used & signals) - {*task.reads, *task.states}
+        if missing:
+            listed = ", ".join(sorted(map(str, missing)))
+            raise StructureError(
+                f"node {element.name!r}: its expressions read {listed}, which its reads leave out; add "
+                "what is meant, or leave reads out"
+            )
 
 
 def _check_own_names(elements: Sequence[Element]) -> None:
@@ -132,14 +148,30 @@ def check_one_whole(graph: "nx.DiGraph[Hashable]") -> None:
         for _, entry in element.row:
             used |= entry.free_symbols & owned
         joined.add_edges_from((("node", name), ("signal", s)) for s in {*used, *named_by(element)})
-    position = {name: at for at, name in enumerate(graph)}
-    first = sorted(
-        min(position[name] for kind, name in part if kind == "node")
-        for part in nx.connected_components(joined)
-    )
-    if len(first) > 1:
-        names = [list(graph)[at] for at in first[:2]]
+    parts = [
+        [name for kind, name in part if kind == "node"] for part in nx.connected_components(joined)
+    ]
+    if len(parts) > 1:
+        position = {name: at for at, name in enumerate(graph)}
+        first, second, *_ = sorted(parts, key=lambda part: min(position[name] for name in part))
+        names = [min(part, key=position.__getitem__) for part in (first, second)]
+        meant = _misspelt(graph, owned, second, first) or _misspelt(graph, owned, first, second)
         raise StructureError(
             f"the part of node {names[0]!r} and the part of node {names[1]!r} share neither a bond "
-            "nor a signal; bond them, or derive each on its own"
+            f"nor a signal; {meant}bond them, or derive each on its own"
         )
+
+
+def _misspelt(
+    graph: "nx.DiGraph[Hashable]", owned: set[sp.Symbol], part: Iterable[Hashable],
+    other: Iterable[Hashable],
+) -> str:  # fmt: skip
+    """What a signal of one part reads, which is none, but nearly one of the other, in words."""
+    known = [name.name for node in other for name in named_by(graph.nodes[node]["element"])]
+    for node in part:
+        element = graph.nodes[node]["element"]
+        read = {s.name for told in read_in(element) for s in told.free_symbols - owned}
+        for name in sorted(read) if element.whole is not None else ():
+            if question := nearest(name, known):
+                return f"{element.whole!r} reads {name}{question}; "
+    return ""

@@ -141,6 +141,11 @@ def _end(result: BondGraph, name: Any, where: str) -> End:
         owner, _, port = name.rpartition(".")
         if owner in result and port in (*_inputs(result, owner), *_outputs(result, owner)):
             return owner, port
+        if owner in result and (gives := _outputs(result, owner)):
+            raise StructureError(
+                f"{where}: {owner!r} gives no {port!r}{nearest(port, map(str, gives))}; it gives "
+                f"{', '.join(map(str, gives))}"
+            )
         _check_arrow(result, name, where)
     known = [str(node) for node in result]
     listed = ", ".join([*known[:10], *(["..."] if len(known) > 10 else [])]) or "none"

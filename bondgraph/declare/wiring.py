@@ -184,7 +184,12 @@ def _refusal(
             "a modulated transformer or gyrator, or a condition"
         )
     told = ", ".join(sorted(read)) or "nothing"
+    way_out = "Write the signal where it is meant, by this name, or remove the wire"
+    if {*carried(bonds, wire.reader).names} & {
+        *names_read_at(wire.source, bonds.nodes[wire.source])
+    }:
+        turned = f"{wire.reader!r} > {wire.source!r}"
+        way_out = f"{wire.source!r} reads what it gives: turn the wire round, {turned}"
     return StructureError(
-        f"{wire}: {kind} {wire.reader!r} does not read {what}; it reads {told}. Write the signal where it is "
-        "meant, by this name, or remove the wire"
+        f"{wire}: {kind} {wire.reader!r} does not read {what}; it reads {told}. {way_out}"
     )

@@ -8,7 +8,7 @@ import sympy as sp
 
 from bondgraph.algebra.atoms import number, symbol
 from bondgraph.algebra.expressions import TIME, expression
-from bondgraph.errors import ExpressionError, StructureError
+from bondgraph.errors import ExpressionError, StructureError, nearest
 from bondgraph.nodes.elements import Element, Node
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.tasks import TICK, Called, Reset, Task
@@ -60,7 +60,7 @@ def controller_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[E
     where = f"node {name!r}"
     told = _of_function(attributes, where) if attributes.get("step") is not None else attributes
     starts, updates, gives = (
-        _by_name(told.get(key), f"{where}, {word}")
+        _by_name(told.get(key), word, where)
         for key, word in (("states", "states"), ("update", "update"), ("outputs", "gives"))
     )
     _check(starts, updates, gives, where)
@@ -71,7 +71,7 @@ def controller_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[E
     step = attributes.get("step")
     if step is None:
         _check_read(becomes, reads, where)
-    task = Task(name, *_instants(attributes, where), resets, step, reads if step else ())
+    task = Task(name, *_instants(attributes, where), resets, step, reads)
     effort, flow = (symbol(f"{letter}_{name}", where) for letter in "ef")
     found = [
         Element(name, Kind.ZERO, None, effort, None, whole=name, task=task),
@@ -89,14 +89,24 @@ def controller_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[E
     return found
 
 
-def _by_name(given: Any, where: str) -> dict[sp.Symbol, sp.Expr]:
+_EXAMPLES = {
+    "states": "states={'z': 0}",
+    "update": "update={'z': 'z + e'}",
+    "gives": "gives={'u': 'K*e'}",
+}
+
+
+def _by_name(given: Any, key: str, node: str) -> dict[sp.Symbol, sp.Expr]:
     if given is None:
         return {}
+    where = f"{node}, {key}"
     if not isinstance(given, Mapping):
-        raise StructureError(f"{where} must map names to expressions, not be {given!r}")
+        raise StructureError(
+            f"{where} must map names to expressions, such as {_EXAMPLES[key]}, not be {given!r}"
+        )
     found: dict[sp.Symbol, sp.Expr] = {}
-    for key, value in given.items():
-        one = symbol(key.name if isinstance(key, sp.Symbol) else key, where)
+    for name, value in given.items():
+        one = symbol(name.name if isinstance(name, sp.Symbol) else name, where)
         if one in found:
             raise StructureError(f"{where}: {one} is there twice")
         found[one] = expression(value, f"{where} of {one}")
@@ -117,7 +127,8 @@ def _check(
             )
         if one not in starts:
             raise StructureError(
-                f"{where}: update of {one}, which is no state; tell where it begins, states={{'{one}': 0}}"
+                f"{where}: update of {one}, which is no state; tell where it begins, states={{'{one}': 0}}, "
+                f"or write what others read into gives"
             )
     for one, start in starts.items():
         if one not in updates and one not in gives:
@@ -163,8 +174,10 @@ def _check_read(
     used = {name for value in becomes.values() for name in value.free_symbols}
     for one in names:
         if one not in used:
+            known = sorted(map(str, used))
             raise StructureError(
-                f"{where}: it reads {one}, which none of its expressions does; leave it out"
+                f"{where}: its reads name {one}{nearest(str(one), known)}, but its expressions read "
+                f"{', '.join(known) or 'nothing'}; write one name in both places, or leave {one} out"
             )
 
 

@@ -93,6 +93,7 @@ def state_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Elemen
     if not bounds:
         return _pair(name, own, rate, unit, demand, place, start)
     check_order(bounds, where)
+    _check_start(start, bounds, where)
     flow = symbol(f"f_{name}", where)
     junction = Element(name, Kind.ONE, None, None, flow, whole=name)
     source = Element(
@@ -104,6 +105,14 @@ def state_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Elemen
         gives="effort", integral=place, start=start, whole=name,
     )  # fmt: skip
     return [junction, source, follows, reads, *rigid(name, {}, bounds, place)]
+
+
+def _check_start(start: sp.Expr | None, bounds: Mapping[str, sp.Expr], where: str) -> None:
+    """Refuse a number to start from that is beyond a bound that is a number."""
+    for key, bound in bounds.items():
+        beyond = None if start is None else BOUNDS[key] * (bound - start)
+        if beyond is not None and beyond.is_number and beyond > 0:
+            raise StructureError(f"{where}: start {start} is beyond its bound, {key} {bound}")
 
 
 def _pair(

@@ -32,7 +32,8 @@ class Task:
 
     ``resets``: what it sets, all told by what stood before it. The three numbers of an instant are
     integers below 2^53, so each of its instants is one division, rounded once and the same wherever it
-    is worked out. ``step``: a Python function that tells instead what all becomes, of what it ``reads``.
+    is worked out. ``step``: a Python function that tells instead what all becomes, of what it ``reads``;
+    expressions read no signals but these, any where there are none.
     """
 
     name: Hashable

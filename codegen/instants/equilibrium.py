@@ -47,7 +47,7 @@ def equilibrium(
                 break
     raise SimulationError(
         "no steady state was found: a state may drift without end (a free rotation, an integrator), or "
-        "the search needs a closer start in initial"
+        "the search needs a closer start in initial, such as where a run ends"
         + "".join(f"; {reason}" for reason in list(left)[:SHOWN])
     )
 

@@ -46,6 +46,11 @@ def initial_values(initial: Mapping[str, float], states: Sequence[str]) -> Array
 def named_numbers(initial: Mapping[str, float], states: Sequence[str]) -> dict[str, float]:
     """Initial values by their states' names, checked."""
     if not isinstance(initial, Mapping):
+        if hasattr(initial, "states"):
+            raise SignalError(
+                "initial must map names to values, not be a whole run; where one ends is "
+                "{name: run[name][-1] for name in run.states}"
+            )
         raise SignalError(f"initial must map names to values, not be {initial!r}")
     result: dict[str, float] = {}
     for given, value in initial.items():

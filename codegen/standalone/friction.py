@@ -137,10 +137,15 @@ class Friction:
         """Refuse what no friction has; a row of the table for each port."""
         for name, (level, cap, curve, at_rest) in zip(self.ports.names, table, strict=True):
             if level < 0 or curve < 0 or cap < level * at_rest * (1 - TUNING.breakaway):
+                way_out = (
+                    "; bound what gives the level, by max(0, ...) or as a State by low=0"
+                    if min(level, cap) < 0
+                    else ""
+                )
                 raise EvaluationError(
                     f"at t = {t:g} the friction at {name!r} has level {level:g}, curve {curve:g} "
                     f"and breakaway effort {cap:g}: level and curve must not be negative, the "
-                    "breakaway not below the friction at standstill"
+                    f"breakaway not below the friction at standstill{way_out}"
                 )
 
 

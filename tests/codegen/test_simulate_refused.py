@@ -187,3 +187,15 @@ def test_a_refused_run_leaves_the_simulator_usable() -> None:
         RUN.run(TIMES)
     result = RUN.run(TIMES, inputs={"V": Step(0.5, 1.0)})
     assert np.isfinite(result["v"]).all()
+
+
+def test_a_whole_run_is_no_start_but_where_it_ends_is() -> None:
+    run = RUN.run(TIMES, {}, {"V": 1.0})
+    with pytest.raises(
+        bg.SignalError, match=r"not be a whole run; .*\{name: run\[name\]\[-1\] for name"
+    ):
+        RUN.run(TIMES, run, {"V": 1.0})
+    assert (
+        RUN.run(TIMES, {name: run[name][-1] for name in run.states}, {"V": 1.0})["i"][0]
+        == run["i"][-1]
+    )

@@ -232,3 +232,35 @@ def test_a_linear_model_in_a_mode_is_that_of_the_mode_alone(seed: int) -> None:
                 words,
                 name,
             )
+
+
+def _bounded() -> bg.StateEquations:
+    """``T x' = r - x`` between bounds; at one x stays, so that it has no slope."""
+    return bg.derive(
+        bg.graph([bg.State("x", "(r - x)/T", low="lowest", high=5), bg.Function("y", "x")])
+    )
+
+
+def test_a_point_off_the_bounds_of_a_state_tells_that_it_is_free() -> None:
+    """At x = 3 between 1 and 5 the pole is -1/T; a bound of which nothing is known has to be told."""
+    at = {"x": 3, "lowest": 1}
+    free = bg.linearize(_bounded(), at, inputs=["r"], outputs=["y"])
+    assert [sp.simplify(pole) for pole in free.numeric({"T": 2}).poles()] == [-0.5]
+    told = bg.linearize(_bounded(), {"x": 3}, inputs=["r"], mode={"x.low": "apart"})
+    assert told.numeric({"T": 2}).poles() == [-0.5]
+    with pytest.raises(bg.StructureError, match=r"'x.low' is apart \(on\) or touching \(off\)"):
+        bg.linearize(_bounded(), {"x": 3}, inputs=["r"])
+
+
+@pytest.mark.parametrize(("place", "name"), [(1, "x.low"), (5, "x.high")])
+def test_at_a_bound_the_mode_is_told_and_off_it_not_against_the_point(
+    place: int, name: str
+) -> None:
+    at = {"x": place, "lowest": 1}
+    with pytest.raises(bg.StructureError, match=f"{name}' is apart"):
+        bg.linearize(_bounded(), at, inputs=["r"])
+    assert bg.linearize(_bounded(), at, inputs=["r"], mode={name: "touch"}).numeric({}).poles() == [
+        0
+    ]
+    with pytest.raises(bg.StructureError, match=f"'{name}' touches its bound"):
+        bg.linearize(_bounded(), at | {"x": 3}, inputs=["r"], mode={name: "off"})
