@@ -41,6 +41,15 @@ class Parameters(Structure):
     _fields_ = [(name, c_double) for name in reference.Parameters.__dataclass_fields__]
 
 
+class Controller(Structure):
+    """``fig11_controller``."""
+
+    _fields_ = [
+        *((name, c_double) for name in ("gain", "reset", "wanted", "start")),
+        ("every", c_int),
+    ]
+
+
 class Event(Structure):
     """``fig11_event``."""
 

@@ -5,10 +5,14 @@
 #include <stddef.h>
 #include <string.h>
 
-/* The first sample that is not before a time. */
+/* The first sample that is not before a time, which is not far as a rule. */
 static int first_not_before(const ex_task *task, int low, double stop)
 {
-    int high = task->samples;
+    int high = low;
+    for (int reach = 1; high < task->samples && task->times[high] < stop; reach *= 2) {
+        low = high + 1;
+        high = reach < task->samples - high ? high + reach : task->samples;
+    }
     while (low < high) {
         const int middle = low + (high - low) / 2;
         if (task->times[middle] < stop)

@@ -109,31 +109,23 @@ static void leap_further(double (*leap)[EX_ROW], double (*before)[EX_ROW], doubl
  * rounded again in every step. */
 static void leap_constants(ex_stretch *stretch, const double *row)
 {
-    const ex_entry *e = stretch->entry;
-    double rate[EX_Z], next[EX_ROW] = {0};
+    const ex_entry *const e = stretch->entry;
+    EX_ALIGNED double rate[EX_WIDE], moved[EX_Z] = {0}, next[EX_ROW] = {0};
     memset(stretch->origin, 0, sizeof stretch->origin);
-    memcpy(stretch->origin, row, sizeof rate);
-    memcpy(rate, stretch->b, sizeof rate);
-    for (int j = 0; j < EX_Z; j++)
-        for (int i = 0; i < EX_Z; i++)
-            rate[i] += e->M[j][i] * row[j];
-    for (int j = 0; j < EX_Z; j++)
-        for (int i = 0; i < EX_Z; i++)
-            next[i] += e->gather[j][i] * rate[j];
-    for (int j = 0; j < EX_Z; j++)
-        next[j] += row[j];
+    memcpy(stretch->origin, row, sizeof moved);
+    ex_differentiate(e, row, rate);
+    for (int i = 0; i < EX_Z; i++)
+        rate[i] += stretch->b[i];
+    ex_add_columns(EX_Z, EX_Z, e->gather[0], rate, moved);
+    for (int i = 0; i < EX_Z; i++)
+        next[i] = row[i] + moved[i];
     ex_fill(stretch, next);
-    for (int j = 0; j < EX_Z; j++)
-        next[j] = 0.0;
-    for (int j = 0; j < EX_Z; j++)
-        for (int i = 0; i < EX_Z; i++)
-            next[i] += e->gather[j][i] * rate[j];
+    memcpy(next, moved, sizeof moved);
     for (int r = 0; r < EX_STRIDE; r++) {
-        double *to = stretch->constant[r];
+        double *const to = stretch->constant[r];
         memcpy(to, next, sizeof next);
-        for (int j = 0; r && j < EX_Z; j++)
-            for (int i = 0; i < EX_ROW; i++)
-                to[i] += e->leap[0][j][i] * stretch->constant[r - 1][j];
+        if (r)
+            ex_add_columns(EX_ROW, EX_ROW, e->leap[0][0], stretch->constant[r - 1], to);
     }
 }
 

@@ -131,7 +131,13 @@ struct ex_context {
     bg_course run;
     double point[EX_N], struck[EX_N];   /* room of the loop */
     double seen[EX_L];                  /* what its latest look was at .. */
-    ex_shot shot;                       /* .. and what there was */
+    ex_shot shot;                       /* .. and what there was, which may be shown again: */
+    const ex_mode *shown;               /* in which mode, NULL if in none, .. */
+    ex_key shown_key;
+    double shown_time;                  /* .. when, .. */
+    int shown_segment, rounded;         /* .. and whether its ports are here, with what counts as zero .. */
+    double rounded_time;                /* .. at this time constant */
+    bg_port ports[EX_PORTS];
 };
 
 #endif

@@ -4,6 +4,8 @@
 
 #include "exact_context.h"
 
+#include <string.h>
+
 /* exact_inputs.c: what holds at t and just after, a status; the slots at t in a segment; and w and its
  * rate from them. */
 int ex_span(const ex_inputs *inputs, double t, bg_span *span);
@@ -31,6 +33,10 @@ void ex_vector(ex_context *c, double t, const double *s, double *v);
 int ex_look(ex_context *c, double t, const double *s, const ex_mode *mode, double *shot);
 void ex_ports(const double *shot, bg_port *ports);
 void ex_round(const ex_context *c, const double *shot, double t, bg_port *ports);
+
+/* The same in the context's `shot`, once where nothing has changed since; those of its latest look. */
+int ex_show(ex_context *c, double t, const double *s, const ex_mode *mode);
+void ex_round_shown(ex_context *c, double t, bg_port *ports);
 
 /* exact_switch.c: whether a port is a switch; what keeps those of a mode, at v, and below what that is
  * none, at instants whose magnitudes are below `most` and their map's `shot`, too; their impulses, as
@@ -125,6 +131,30 @@ int ex_only_rises(const ex_powers *p, double limit);
  * the same where none can. */
 int ex_series(ex_context *c, double t, double length, double *z, double *end, bg_set *ports);
 void ex_glide(ex_context *c, double length, double *z);
+
+/* Adds rows, by columns, times z; sums stay in registers, two for each that don't wait for each other. */
+static inline void ex_add_columns(int rows, int width, const double *restrict columns,
+                                  const double *restrict z, double *restrict to)
+{
+#pragma GCC unroll 1
+    for (int i = 0; i < rows; i++) {
+        double sum = to[i], other = 0.0;
+#pragma GCC unroll 32
+        for (int j = 0; j < EX_Z / 2; j++)
+            sum += columns[j * width + i] * z[j];
+#pragma GCC unroll 32
+        for (int j = EX_Z / 2; j < EX_Z; j++)
+            other += columns[j * width + i] * z[j];
+        to[i] = sum + other;
+    }
+}
+
+/* Rates and triggers of a state without constant parts. */
+static inline void ex_differentiate(const ex_entry *e, const double *restrict z, double *restrict to)
+{
+    memset(to, 0, EX_WIDE * sizeof *to);
+    ex_add_columns(EX_WIDE, EX_WIDE, e->rows[0], z, to);
+}
 
 /* exact_leap.c: steps from rows[0]; how many are certain to be without an event. */
 int ex_leap(const ex_stretch *stretch, int count, double (*rows)[EX_ROW]);

@@ -12,22 +12,15 @@
 /* What follows from the state in a sample: triggers, and a third of their change in a step. */
 void ex_fill(const ex_stretch *stretch, double *row)
 {
-    const ex_entry *e = stretch->entry;
-    double rate[EX_Z];
+    const ex_entry *const e = stretch->entry;
+    EX_ALIGNED double now[EX_WIDE], change[EX_WIDE];
+    ex_differentiate(e, row, now);
     for (int i = 0; i < EX_Z; i++)
-        rate[i] = stretch->b[i];
-    for (int j = 0; j < EX_Z; j++)
-        for (int i = 0; i < EX_Z; i++)
-            rate[i] += e->M[j][i] * row[j];
+        now[i] += stretch->b[i];
+    ex_differentiate(e, now, change);
     for (int i = 0; i < EX_T; i++) {
-        const int watched = !e->cap[i];
-        double value = stretch->level[i], change = 0.0;
-        for (int j = 0; j < EX_Z; j++) {
-            value += e->trigger[j][i] * row[j];
-            change += e->trigger[j][i] * rate[j];
-        }
-        row[EX_Z + i] = value;
-        row[EX_Z + EX_T + i] = watched ? e->step / 3.0 * change : 0.0;
+        row[EX_Z + i] = stretch->level[i] + now[EX_Z + i];
+        row[EX_Z + EX_T + i] = e->cap[i] ? 0.0 : e->step / 3.0 * change[EX_Z + i];
     }
 }
 

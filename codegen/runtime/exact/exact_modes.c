@@ -4,6 +4,7 @@
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 static ex_key key_of(const int *mode)
 {
@@ -106,6 +107,8 @@ static int is_rounding(const ex_context *c, double t, const double *v, const ex_
 int ex_look(ex_context *c, double t, const double *s, const ex_mode *mode, double *shot)
 {
     double *const v = c->seen;
+    c->shown = NULL;
+    c->rounded = 0;
     ex_vector(c, t, s, v);
 #pragma GCC unroll 1
     for (int i = 0; i < EX_SHOT; i++) {
@@ -125,6 +128,28 @@ int ex_look(ex_context *c, double t, const double *s, const ex_mode *mode, doubl
             return shot[EX_AT_CAP + i] < 0.0 ? BG_NEGATIVE : BG_NOT_FINITE;
         }
     return BG_OK;
+}
+
+/* Whether that is the look that has been made last. */
+static int is_shown(const ex_context *c, double t, const double *s, const ex_mode *mode)
+{
+    int differ = c->shown != mode || c->shown_time != t
+        || c->shown_segment != c->run.span.segment || !ex_is_same(&c->shown_key, &c->where);
+    for (int i = 0; i < EX_N; i++)
+        differ |= s[i] != c->seen[i];
+    return !differ;
+}
+
+int ex_show(ex_context *c, double t, const double *s, const ex_mode *mode)
+{
+    if (is_shown(c, t, s, mode))
+        return BG_OK;
+    const int status = ex_look(c, t, s, mode, c->shot);
+    c->shown = status == BG_OK ? mode : NULL;
+    c->shown_key = c->where;
+    c->shown_time = t;
+    c->shown_segment = c->run.span.segment;
+    return status;
 }
 
 /* The ports of an instant, without what counts as zero. */
@@ -150,4 +175,14 @@ void ex_round(const ex_context *c, const double *shot, double t, bg_port *ports)
         u[i] = bg_greater(fabs(shot[EX_AT_U + i]), c->peaks.u[i]);
     ex_ports(shot, ports);
     bg_round_ports(EX_X, EX_U, EX_K, &sizes, t, c->run.at.time, x, u, rate, ports);
+}
+
+void ex_round_shown(ex_context *c, double t, bg_port *ports)
+{
+    if (!c->rounded || c->rounded_time != c->run.at.time || c->shown_time != t) {
+        ex_round(c, c->shot, t, c->ports);
+        c->rounded = c->shown && c->shown_time == t;
+        c->rounded_time = c->run.at.time;
+    }
+    memcpy(ports, c->ports, EX_K * sizeof *ports);
 }

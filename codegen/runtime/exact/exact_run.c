@@ -33,7 +33,7 @@ static int look(void *context, double t, const double *s, const int *mode)
         return BG_NO_HOLD;
     if (status && !(status == BG_NOT_AFFINE && found->ruled))
         return status;
-    return ex_look(c, t, s, found, c->shot);
+    return ex_show(c, t, s, found);
 }
 
 static void tell(void *context, const int *mode, const bg_instant *at, bg_port *ports,
@@ -43,7 +43,7 @@ static void tell(void *context, const int *mode, const bg_instant *at, bg_port *
     const ex_mode *found;
     ex_find(c, mode, &found);
     if (at)
-        ex_round(c, c->shot, at->t, ports);
+        ex_round_shown(c, at->t, ports);
     else
         ex_ports(c->shot, ports);
     if (at)
@@ -87,6 +87,7 @@ static int pass(void *context, double t, bg_span *span)
     if (c->inputs->since != since) {
         c->runs++;
         c->known = 0;
+        c->shown = NULL;
         for (int n = 0; n < c->decided; n++)
             c->choices[n].steady = -1;
     }
@@ -100,6 +101,7 @@ static void see(void *context, const int *slipping)
     const ex_mode *mode;
     ex_find(c, slipping, &mode);
     double v[EX_L], terms[EX_U] = {0};
+    c->rounded = 0;
     ex_vector(c, c->run.at.t, c->s, v);
     for (int j = 0; j < EX_L; j++) {
         const double size = j >= EX_N + EX_W && j < EX_L - 1 ? 0.0 : fabs(v[j]);
@@ -188,6 +190,7 @@ void ex_point(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
     c->model = model;
     c->inputs = inputs;
     c->task = task;
+    c->shown = NULL;
     c->advance = ex_advance;
     c->run.log.events = task->events;
     c->run.log.capacity = task->capacity;

@@ -4,43 +4,39 @@
 #include <math.h>
 #include <string.h>
 
-/* Rates and triggers of a term, without constant parts, in two sums that don't wait for each other. */
-static inline void differentiate(const ex_entry *e, const double *restrict term,
-                                 double *restrict next)
+/* The magnitude of a term, as the norm of M has it. */
+static double size_of(const ex_entry *e, const double *term)
 {
-#pragma GCC unroll 1
-    for (int i = 0; i < EX_WIDE; i++) {
-        double sum = 0.0, other = 0.0;
-#pragma GCC unroll 32
-        for (int j = 0; j < EX_Z / 2; j++)
-            sum += e->rows[j][i] * term[j];
-#pragma GCC unroll 32
-        for (int j = EX_Z / 2; j < EX_Z; j++)
-            other += e->rows[j][i] * term[j];
-        next[i] = sum + other;
-    }
+    double sum = 0.0, other = 0.0;
+    for (int i = 0; i < EX_Z / 2; i++)
+        sum += e->weight[i] * fabs(term[i]);
+    for (int i = EX_Z / 2; i < EX_Z; i++)
+        other += e->weight[i] * fabs(term[i]);
+    return sum + other;
 }
 
 /* The powers of the state, z(tau) = sum terms[k] tau^k over a step, and those of the triggers: as many
- * as count, as |M| step tells. */
+ * as count: one is no larger than |M| step over its number times the one before. */
 static void expand(ex_context *c, const double *z, double step)
 {
     const ex_entry *const e = c->stretch.entry;
     double(*const terms)[EX_Z] = c->terms;
-    const double reach = e->norm * step;
     EX_ALIGNED double next[EX_WIDE];
-    double size = 1.0;
-    int k = 0;
+    double first = 0.0;
+    int k = 0, more = 1;
     memcpy(terms[0], z, sizeof terms[0]);
     do {
         const double share = step / ++k;
-        differentiate(e, terms[k - 1], next);
+        ex_differentiate(e, terms[k - 1], next);
         for (int i = 0; i < EX_Z; i++)
             terms[k][i] = ((k == 1 ? c->stretch.b[i] : 0.0) + next[i]) * share;
         for (int i = 0; i < EX_T; i++)
             c->powers[i].at[k - 1] = (k == 1 ? c->stretch.level[i] : 0.0) + next[EX_Z + i];
-        size *= reach / k;
-    } while (k < BG_POWERS && (size > BG_LEFT_OUT || k <= EX_LEAST_DEGREE));
+        if (k == 1)
+            first = size_of(e, terms[1]);
+        else if (k > EX_LEAST_DEGREE)
+            more = size_of(e, terms[k]) > BG_LEFT_OUT * first;
+    } while (more && k < BG_POWERS);
     c->degree = k;
     for (int i = 0; i < EX_T; i++)
         c->powers[i].degree = k - 1;

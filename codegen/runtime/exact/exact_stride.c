@@ -41,20 +41,6 @@ static int suits(const ex_context *c, const ex_stride *k, int entry, const doubl
     return !c->entries[entry].timed || begins_alike(&c->stretch, k, slots);
 }
 
-/* Adds rows, by columns, times z; sums stay in registers. */
-static inline void add_columns(int rows, int width, const double *restrict columns,
-                               const double *restrict z, double *restrict to)
-{
-#pragma GCC unroll 1
-    for (int i = 0; i < rows; i++) {
-        double sum = to[i];
-#pragma GCC unroll 32
-        for (int j = 0; j < EX_Z; j++)
-            sum += columns[j * width + i] * z[j];
-        to[i] = sum;
-    }
-}
-
 void ex_ends_of(const ex_stretch *stretch, const ex_stride *k, const double *restrict z,
                 ex_ends *restrict to)
 {
@@ -63,12 +49,12 @@ void ex_ends_of(const ex_stretch *stretch, const ex_stride *k, const double *res
     memcpy(rate, stretch->b, sizeof rate);
     memcpy(to->begins, stretch->level, sizeof to->begins);
     memset(to->bend, 0, sizeof to->bend);
-    add_columns(EX_Z, EX_Z, e->M[0], z, rate);
-    add_columns(EX_T, EX_TRIGGERS, e->trigger[0], z, to->begins);
+    ex_add_columns(EX_Z, EX_Z, e->M[0], z, rate);
+    ex_add_columns(EX_T, EX_TRIGGERS, e->trigger[0], z, to->begins);
     for (int i = 0; i < EX_Z; i++)
         size[i] = fabs(rate[i]);
-    add_columns(EX_LIFT, EX_LIFT, k->lift[0], rate, lifted);
-    add_columns(EX_T, EX_TRIGGERS, k->bend[0], size, to->bend);
+    ex_add_columns(EX_LIFT, EX_LIFT, k->lift[0], rate, lifted);
+    ex_add_columns(EX_T, EX_TRIGGERS, k->bend[0], size, to->bend);
     for (int i = 0; i < EX_Z; i++)
         to->z[i] = z[i] + lifted[EX_TO_STATE + i];
     memcpy(to->rates, lifted + EX_TO_RATES, sizeof to->rates);

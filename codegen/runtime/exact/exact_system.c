@@ -108,7 +108,6 @@ static int bearable(ex_context *c, const ex_entry *e, double span)
 int ex_begin(ex_context *c, double stop)
 {
     ex_stretch *stretch = &c->stretch;
-    ex_shot now;
     bg_port ports[EX_PORTS];
     int status = entry(c, &stretch->entry);
     if (status)
@@ -127,11 +126,11 @@ int ex_begin(ex_context *c, double stop)
     stretch->blind = bg_moment(c->run.at.time);
     if (EX_K == 0)
         return BG_OK;
-    status = ex_look(c, c->run.at.t, c->s, stretch->entry->mode, now);
+    status = ex_show(c, c->run.at.t, c->s, stretch->entry->mode);
     if (status)
         return status;
-    ex_round(c, now, c->run.at.t, ports);
-    ex_round_stay(c, stretch->entry->mode, c->seen, now, c->run.at.t, ports);
+    ex_round_shown(c, c->run.at.t, ports);
+    ex_round_stay(c, stretch->entry->mode, c->seen, c->shot, c->run.at.t, ports);
     ex_round_hung(c, stretch->entry->mode, c->seen, c->run.at.t, ports);
     for (int i = 0; i < EX_T; i++) {
         const int port = i / 2, rests = ex_rests(stretch->entry->mode, port);

@@ -41,6 +41,7 @@ static void take_up_exact(ex_context *c, const ex_kept *from, double stop)
     memcpy(c->s, from->s, sizeof c->s);
     memcpy(c->farthest, from->farthest, sizeof c->farthest);
     c->peaks = from->peaks;
+    c->shown = NULL;
     bg_take_up(&c->run, &from->run, stop, c->s);
 }
 
@@ -49,6 +50,7 @@ static void renew_inputs(ex_context *c)
 {
     c->runs++;
     c->known = 0;
+    c->shown = NULL;
     for (int n = 0; n < c->decided; n++)
         c->choices[n].steady = -1;
 }
