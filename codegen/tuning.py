@@ -144,10 +144,8 @@ class Tuning:
 
     # Exact steps
     degree: int = _told(18, "of power series: over |M| h <= 1 what is left out is below rounding")
-    powers: int = _told(
-        30, "terms of a power series in C, at most: |M| h is no larger than `longest` .."
-    )
-    left_out: float = _told(2.0**-57, ".. and a term of this part of the first is the last")
+    powers: int = _told(30, "terms of a power series in C at most, over |M| h <= `longest` ..")
+    left_out: float = _told(2.0**-57, ".. where one of this part of the first is the last")
     pair_degree: int = _told(21, "the same of pairs: over |M| h <= 1/4 it is below 1e-32")
     rungs: int = _told(62, "doublings beyond which rounding of pairs would show: 2^62 are 1e-13")
     rounded: float = _told(1e4, "so many steps in double precision leave all digits that count")

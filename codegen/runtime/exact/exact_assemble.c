@@ -116,6 +116,16 @@ static void tell_moves(ex_entry *e)
     }
 }
 
+/* Polynomials of time go on for as long as they are: the size of a term tells nothing of the next. */
+static int least_degree(const ex_chains *chains)
+{
+    int deepest = 1;
+    for (int i = 0; i < chains->count; i++)
+        deepest = chains->depth[i] > deepest ? chains->depth[i] : deepest;
+    const int least = EX_LEAST_DEGREE + (deepest > 1 ? deepest : 0);
+    return least < BG_POWERS ? least : BG_POWERS - 1;
+}
+
 void ex_assemble(ex_context *c, ex_entry *e)
 {
     double slots[EX_G][EX_SHOT], keeping[EX_G][EX_PORTS], stay[EX_PORTS];
@@ -134,6 +144,7 @@ void ex_assemble(ex_context *c, ex_entry *e)
         ex_watch_gaps(c, j, stay);
         ex_triggers(c, e->mode, shot, stay, e->trigger[j]);
     }
+    e->least = least_degree(&e->chains);
     memset(e->rows, 0, sizeof e->rows);
     for (int j = 0; j < EX_Z; j++) {
         memcpy(e->rows[j], e->M[j], sizeof e->M[j]);

@@ -52,6 +52,7 @@ typedef struct {
     double h, step;                     /* between samples, and its part that is a step */
     int walked;                         /* steps that might have been leaps, in which run */
     unsigned walking;
+    int least;                          /* degree of its power series, at the least */
     double weight[EX_Z], M[EX_Z][EX_Z];
     double trigger[EX_Z][EX_TRIGGERS];
     EX_ALIGNED double rows[EX_Z][EX_WIDE]; /* of M, then of triggers */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* The magnitude of a term, as the norm of M has it. */
-static double size_of(const ex_entry *e, const double *term)
+static double weighed(const ex_entry *e, const double *term)
 {
     double sum = 0.0, other = 0.0;
     for (int i = 0; i < EX_Z / 2; i++)
@@ -16,7 +16,8 @@ static double size_of(const ex_entry *e, const double *term)
 }
 
 /* The powers of the state, z(tau) = sum terms[k] tau^k over a step, and those of the triggers: as many
- * as count: one is no larger than |M| step over its number times the one before. */
+ * as count: one is no larger than |M| step over its number times the one before, but of inputs that
+ * are polynomials all count. */
 static void expand(ex_context *c, const double *z, double step)
 {
     const ex_entry *const e = c->stretch.entry;
@@ -33,9 +34,9 @@ static void expand(ex_context *c, const double *z, double step)
         for (int i = 0; i < EX_T; i++)
             c->powers[i].at[k - 1] = (k == 1 ? c->stretch.level[i] : 0.0) + next[EX_Z + i];
         if (k == 1)
-            first = size_of(e, terms[1]);
-        else if (k > EX_LEAST_DEGREE)
-            more = size_of(e, terms[k]) > BG_LEFT_OUT * first;
+            first = weighed(e, terms[1]);
+        else if (k > e->least)
+            more = weighed(e, terms[k]) > BG_LEFT_OUT * first;
     } while (more && k < BG_POWERS);
     c->degree = k;
     for (int i = 0; i < EX_T; i++)
