@@ -124,13 +124,19 @@ def halfshaft(
 
 
 def tire(number: int, at: str) -> Part:
-    """The road's torque on a wheel as an open port ``tau_t<number>`` at speed ``omega_t<number>``."""
+    """The road's torque on a wheel as an open port ``tau_t<number>`` at speed ``omega_t<number>``.
+
+    Its node is ``tire_<number>``: a law for it, of that speed, goes under this name.
+    """
     name = f"tire_{number}"
     return part([bg.R(name, effort=f"tau_t{number}", flow=f"omega_t{number}")], (at, name))
 
 
 def wheel(number: int, at: str, value: str, speed: str | None = None) -> Part:
-    """A wheel's inertia ``I_w<number>`` of that value and its tire, on a shaft."""
+    """A wheel's inertia ``I_w<number>`` of that value and its `tire`, on a shaft.
+
+    ``speed`` names its state, else ``f_I_w<number>``.
+    """
     return assemble(inertia(f"I_w{number}", value, at=at, speed=speed), tire(number, at=at))
 
 

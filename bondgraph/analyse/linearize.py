@@ -68,16 +68,16 @@ def linearize(
     simulator, over those declared. ``inputs``: names in laws and values that become inputs; what no signal
     has is a parameter. A law that reads no signal and no such input leaves its port an input. ``outputs``:
     names of signals, else the equations' outputs. ``mode``: node to its mode: "on" or "off" for every
-    switch and controlled junction, of a stop also "apart" or "touch", and
-    "apart" where ``at`` tells that it is off its bound; "stick" or "slip" for dry friction,
-    which slips unless told, to the side that ``at`` tells; for a state machine one of its modes, where ``at``
-    does not tell its number. ``stuck``: nodes that stick. What is held takes
-    a state with it, of the storage of lowest priority, earlier ones first. ``period`` [s]: of a loop with
-    sampled controllers, for the model from one instant to the next; without one what they keep stays.
+    switch and controlled junction, of a stop also "apart" or "touch", the first where ``at`` tells that it
+    is off its bound; "stick" or "slip" for dry friction, which slips unless told, to the side that ``at``
+    tells; for a state machine one of its modes, where ``at`` does not tell its number. ``stuck``: nodes that
+    stick. What is held takes a state with it, of the storage of lowest priority, earlier ones first.
+    ``period`` [s]: of a loop with sampled controllers, for the model from one instant to the next; without
+    one what they keep stays.
 
     Raises `SignalError` where a slope needs a value that ``at`` lacks or the law has a corner there,
-    `StructureError` for a switch without a mode and for one that there is not, `DependentSourceError`
-    where only sources rule what is to be held.
+    `StructureError` for a switch without a mode, for one that there is not, and for a stop that is told to
+    touch off its bound, `DependentSourceError` where only sources rule what is to be held.
 
     >>> import bondgraph as bg, networkx as nx
     >>> g = nx.DiGraph()

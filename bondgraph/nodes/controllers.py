@@ -29,7 +29,7 @@ def Controller(
     expressions read what stood before the instant, after events there: so what it gives is told by its
     states before their update, and controllers that work at one instant do not see one another's new values.
     What it gives is 0 before its first instant, or what ``states`` tells of it. ``reads``: the signals that
-    the expressions may read; any unless told.
+    the expressions may read, where one that is left out is refused; any unless told.
 
     ``step``: a Python function instead of expressions, called at each instant with the values of ``reads``,
     of its states and of ``t`` by name; it returns what its states become and what it gives, by name.
