@@ -6,6 +6,7 @@ from codegen.inputs.signals import as_signal
 from codegen.model.sources import source_signals
 from codegen.numbers.arrays import Array, read_only
 from codegen.record.beyond import refuse_all_beyond
+from codegen.record.columns import listed_columns
 from codegen.record.replay import Run
 from codegen.record.result import Result
 from codegen.runs.completion import started
@@ -27,18 +28,20 @@ def result_of(part: ModelPart, times: Array) -> Result:
         ready.laws, model.parameters, times, read_only(begun.s), tuple(signals), part.settings,
         begun.mode,
     )  # fmt: skip
+    shown, inner = listed_columns(columns, model.program)
     found = Result(
         times,
         ready.states,
         ready.inputs,
         ready.outputs,
         part.events,
-        columns,
+        shown,
         observer,
         ready.ledger(run),
         part.units,
         stepper.backend,
         begun.completed,
+        inner,
     )
     refuse_all_beyond(model, found)
     return found

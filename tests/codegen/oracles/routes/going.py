@@ -206,11 +206,13 @@ def stepper_in_c(bench: Bench) -> None:
 def _stepped_outside(bench: Bench, ready: codegen.Simulator, within: float) -> None:
     kind = bench.kind
     one = ready.stepper(kind.initial, kind.signals, initially_on=kind.on)
-    rows, told = [dict(one.signals)], [*one.events]
+    names = dict.fromkeys([*one.signals, *kind.switches])
+    rows, told = [[one.signals[name] for name in names]], [*one.events]
     for t in kind.times()[1:]:
-        rows.append(dict(one.advance(t - one.time)))
+        found = one.advance(t - one.time)
+        rows.append([found[name] for name in names])
         told += one.events
-    bench.check({name: np.array([row[name] for row in rows]) for name in rows[0]}, within)
+    bench.check(dict(zip(names, np.array(rows).T, strict=True)), within)
     assert [(e.port, e.kind) for e in told] == [(e.port, e.kind) for e in bench.run.events]
 
 
