@@ -55,7 +55,6 @@ def lower(
     declared = equations = supplied(equations, laws, given)
     watched = _watched(equations)
     closing = close_ports(equations, {} if laws is None else laws, given, watched)
-    follows = closing.early < len(closing.order)
     closing, tangents = with_tangents(closing)
     closing, moving = with_moving_slips(closing, tangents.moved)
     equations = closing.equations
@@ -111,7 +110,7 @@ def lower(
         guards_affine=is_affine(guards[:own], given),
         ticks_affine=is_affine(guards[own:], given),
         varying=varying,
-        affine=not (varying or moving or follows) and _is_affine(closing, values, given),
+        affine=not (varying or moving) and _is_affine(closing, values, given),
         smooth=tuple(equations.inputs.index(one.given) for one in closing.smooth),
         hung=tuple(readings.index(one.depends) for one in closing.jumps),
         beyond=tuple(equations.inputs.index(name) for name in tangents.beyond),

@@ -122,7 +122,7 @@ def run_sparse(
             model, system, driven, times, state, signals, settings.method, rtol, atol
         )
         columns = _columns(model, system, driven, times, vectors, signals)
-    recorded = Recorded(columns, model.held)
+    recorded = Recorded(MappingProxyType(columns), model.held)
     return Result(
         times, model.states, asked, model.outputs, (), MappingProxyType(columns), recorded, recorded
     )

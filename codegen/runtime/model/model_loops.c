@@ -50,6 +50,9 @@ static double one(void *self, double value)
     return left[0];
 }
 
+/* From the narrowest step to the size of anything. */
+enum { MOST_WIDER = 40 };
+
 /* What is left where one value is more, by a step that the rounding of what is left does not
  * swallow; the step. */
 static double move_on(search *s, double *values, const double *now, int j, double size,
@@ -57,7 +60,7 @@ static double move_on(search *s, double *values, const double *now, int j, doubl
 {
     const double kept = values[j];
     double step = BG_LOOP_DIFFERENCE * (fabs(kept) + BG_LOOP_FLOOR);
-    for (;; step *= BG_LOOP_WIDER) {
+    for (int widened = 0; widened < MOST_WIDER; widened++, step *= BG_LOOP_WIDER) {
         double most = 0.0;
         values[j] = kept + step;
         left_over(s, values, moved);
@@ -65,8 +68,9 @@ static double move_on(search *s, double *values, const double *now, int j, doubl
         for (int i = 0; i < s->loop->count; i++)
             most = fmax(most, fabs(moved[i] - now[i]));
         if (step >= size || most > BG_LOOP_LOST * size)
-            return step;
+            break;
     }
+    return step;
 }
 
 /* Slopes by differences; the change to make, or 0 if there is none. */

@@ -47,13 +47,6 @@ REFUSALS = (
         "not affine",
     ),
     Refusal(
-        ("followed",), ("C, exact",), False,
-        "The affine maps of modes are made of one in which all ports are let go, and what laws give is the "
-        "same in all; here a law reads what a port gives. `method=\"auto\"` locates events with step control "
-        "instead.",
-        "not affine",
-    ),
-    Refusal(
         ("together", "bridge", "two_dogs", "resting"), ("C, exact",), True,
         "Redundant ports (two brakes at rest, two dogs, two jumps, four diodes without a current) share a "
         "load so that the largest part of what one can bear is the least: which one that is changes with "
