@@ -5,14 +5,12 @@ from typing import Any
 
 import sympy as sp
 
-from bondgraph.algebra.atoms import symbol
 from bondgraph.algebra.expressions import expression
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import unit_of
 from bondgraph.nodes.elements import Element, Node, Switch
 from bondgraph.nodes.kinds import Kind
-from bondgraph.nodes.laws import ExpressionLaw
-from bondgraph.nodes.signals import own_name
+from bondgraph.nodes.signals import own_name, source_of, variables_of
 from bondgraph.nodes.stops import check_order
 
 KEY = "switch"
@@ -62,24 +60,14 @@ def hysteresis_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[E
             f"{where}: its input reads {own} itself, which jumps as it turns; let it read a state between"
         )
     switch = Switch(f"{name}.{KEY}", read - told["high"], told["low"] - read, "effort", reads=read)
-    effort, flow = _variables(name, KEY)
+    effort, flow = variables_of(name, KEY)
     return [
         Element(name, Kind.ZERO, None, own, None, whole=name, unit=unit_of(attributes, where)),
-        Element(f"{name}.load", Kind.R, sp.Integer(1), *_variables(name, "load"), whole=name),
-        _source(name, "off", Kind.SF, told["off"]),
-        Element(f"{name}.branch", Kind.ONE, None, None, _variables(name, "branch")[1], whole=name),
-        _source(name, "on", Kind.SE, told["on"]),
+        Element(f"{name}.load", Kind.R, sp.Integer(1), *variables_of(name, "load"), whole=name),
+        source_of(name, "off", Kind.SF, told["off"]),
+        Element(
+            f"{name}.branch", Kind.ONE, None, None, variables_of(name, "branch")[1], whole=name
+        ),
+        source_of(name, "on", Kind.SE, told["on"]),
         Element(f"{name}.{KEY}", Kind.SW, None, effort, flow, switch=switch, whole=name),
     ]
-
-
-def _source(name: Hashable, part: str, kind: Kind, given: sp.Expr) -> Element:
-    return Element(
-        f"{name}.{part}", kind, None, *_variables(name, part), law=ExpressionLaw(given),
-        gives=kind.gives, whole=name,
-    )  # fmt: skip
-
-
-def _variables(name: Hashable, part: str) -> tuple[sp.Symbol, sp.Symbol]:
-    effort, flow = (symbol(f"{letter}_{name}_{part}", f"node {name!r}") for letter in "ef")
-    return effort, flow

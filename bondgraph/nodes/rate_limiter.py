@@ -11,8 +11,8 @@ from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import start_of, unit_of
 from bondgraph.nodes.elements import Element, Node
 from bondgraph.nodes.kinds import Kind
-from bondgraph.nodes.laws import DryFriction, ExpressionLaw
-from bondgraph.nodes.signals import own_name
+from bondgraph.nodes.laws import DryFriction
+from bondgraph.nodes.signals import own_name, source_of, variables_of
 
 
 def RateLimiter(
@@ -69,18 +69,18 @@ def rate_limiter_elements(name: Hashable, attributes: Mapping[str, Any]) -> list
         raise StructureError(f"{where}: its input reads {own} itself; a State has a rate of itself")
     rise, fall = rates[0], rates[-1]
     start = _start(attributes, read, where)
-    drift = [] if rise == fall else [_source(name, "drift", Kind.SE, (rise - fall) / 2)]
+    drift = [] if rise == fall else [source_of(name, "drift", Kind.SE, (rise - fall) / 2)]
     return [
         Element(name, Kind.ONE, None, None, symbol(f"f_{name}", where), whole=name),
         Element(
-            f"{name}.mass", Kind.I, sp.Integer(1), _variables(name, "mass")[0], own,
+            f"{name}.mass", Kind.I, sp.Integer(1), variables_of(name, "mass")[0], own,
             start=start, unit=unit_of(attributes, where), whole=name,
         ),
         *drift,
-        Element(f"{name}.slip", Kind.ZERO, None, _variables(name, "slip")[0], None, whole=name),
-        _source(name, "input", Kind.SF, read),
+        Element(f"{name}.slip", Kind.ZERO, None, variables_of(name, "slip")[0], None, whole=name),
+        source_of(name, "input", Kind.SF, read),
         Element(
-            f"{name}.clutch", Kind.R, None, *_variables(name, "clutch"), whole=name,
+            f"{name}.clutch", Kind.R, None, *variables_of(name, "clutch"), whole=name,
             law=DryFriction((rise + fall) / 2),
         ),
     ]  # fmt: skip
@@ -94,15 +94,3 @@ def _start(attributes: Mapping[str, Any], read: sp.Expr, where: str) -> sp.Expr 
     found = read.subs(TIME, 0)
     # Of a table there is no exact number.
     return found if found.is_finite and found.is_real else number(found.evalf(), where)
-
-
-def _source(name: Hashable, part: str, kind: Kind, given: sp.Expr) -> Element:
-    return Element(
-        f"{name}.{part}", kind, None, *_variables(name, part), law=ExpressionLaw(given),
-        gives=kind.gives, whole=name,
-    )  # fmt: skip
-
-
-def _variables(name: Hashable, part: str) -> tuple[sp.Symbol, sp.Symbol]:
-    effort, flow = (symbol(f"{letter}_{name}_{part}", f"node {name!r}") for letter in "ef")
-    return effort, flow

@@ -141,5 +141,19 @@ def own_name(name: Hashable, where: str) -> sp.Symbol:
     return symbol(name, where)
 
 
+def source_of(name: Hashable, part: str, kind: Kind, given: sp.Expr) -> Element:
+    """A part of a node of several that gives an expression."""
+    return Element(
+        f"{name}.{part}", kind, None, *variables_of(name, part), law=ExpressionLaw(given),
+        gives=kind.gives, whole=name,
+    )  # fmt: skip
+
+
+def variables_of(name: Hashable, part: str) -> tuple[sp.Symbol, sp.Symbol]:
+    """Effort and flow of such a part."""
+    effort, flow = (symbol(f"{letter}_{name}_{part}", f"node {name!r}") for letter in "ef")
+    return effort, flow
+
+
 def _told(attributes: Mapping[str, object]) -> dict[str, object]:
     return {key: value for key, value in attributes.items() if value is not None}

@@ -12,37 +12,16 @@ from numpy.typing import ArrayLike
 from bondgraph.errors import SignalError
 from codegen.called.fitting import fits
 from codegen.inputs.pieces import Piece, constant_piece
-from codegen.inputs.signal import Signal
+from codegen.inputs.signal import Pieced, Signal
 from codegen.numbers.arrays import Array, is_finite, is_number, real_array
 from codegen.tuning import TUNING
 
 
 @dataclass(frozen=True, repr=False)
-class Followed(Signal):
-    """A function over the stretch that it was asked for, as polynomials; before and after, its end values.
-
-    ``smooth``: breakpoints at which it goes on smoothly.
-    """
+class Followed(Pieced):
+    """A function over the stretch that it was asked for: a level, polynomials, a level."""
 
     name: str
-    points: tuple[float, ...]
-    parts: tuple[Piece, ...]
-    smooth: frozenset[float]
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Where one polynomial takes over from another, and the ends."""
-        return self.points
-
-    @property
-    def seams(self) -> frozenset[float]:
-        """Where the function itself goes on smoothly."""
-        return self.smooth
-
-    @property
-    def pieces(self) -> tuple[Piece, ...]:
-        """A level, the polynomials, a level."""
-        return self.parts
 
     def __repr__(self) -> str:
         told = repr((self.points, [piece.terms for piece in self.parts]))
@@ -140,7 +119,7 @@ class TimeFunction:
         # The last sample is still the function's, its rate as well.
         points = (*found.begins.tolist(), math.nextafter(end, math.inf))
         smooth = frozenset(found.begins[found.smooth].tolist())
-        return Followed(self._name, points, (first, *parts, last), smooth)
+        return Followed(points, (first, *parts, last), smooth, self._name)
 
     def _called(self, times: Array) -> Array:
         return np.array([self(t) for t in times.tolist()], dtype=np.float64)

@@ -14,8 +14,8 @@ import sympy as sp
 
 from bondgraph.errors import ParameterError
 from bondgraph.nodes.lagging import Lagging
-from codegen.delays.history import CHECKS, History, Told, missed, nodes
-from codegen.inputs.signal import Signal
+from codegen.delays.history import CHECKS, History, missed, nodes
+from codegen.inputs.signal import Pieced, Signal
 from codegen.model.exact_values import at_parameters
 from codegen.numbers.lambdified import lambdified
 from codegen.program.records import Program
@@ -77,7 +77,7 @@ def _by_name(function: Callable[..., object], names: Sequence[str]) -> Callable[
 def found(
     program: Program, delays: Sequence[Reading], make: Make, signals: Sequence[Signal],
     begin: float, end: float,
-) -> dict[str, Told]:  # fmt: skip
+) -> dict[str, Pieced]:  # fmt: skip
     """A signal of what each delay gives from ``begin`` to ``end`` [s], to rounding of what it reads."""
     course = _Course(delays, make, [*signals], program.clocks, begin, end)
     while course.t < end:
@@ -99,7 +99,7 @@ class _Course:
         self._length, self._smooth = end - begin, False
         self._sizes = np.zeros(len(delays))
 
-    def told(self) -> dict[str, Told]:
+    def told(self) -> dict[str, Pieced]:
         """What each gives as far as it is known."""
         pairs = zip(self._delays, self._histories, strict=True)
         return {one.name: history.signal() for one, history in pairs}

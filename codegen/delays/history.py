@@ -1,12 +1,11 @@
 """What a delay has read so far, as a signal of what it gives: polynomials between breakpoints."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from codegen.inputs.pieces import Piece
-from codegen.inputs.signal import Signal
+from codegen.inputs.signal import Pieced
 from codegen.numbers.arrays import Array
 
 NODES = 12
@@ -14,30 +13,6 @@ NODES = 12
 
 CHECKS = (0.07, 0.39, 0.83)
 """Where in a part it is compared with what there is."""
-
-
-@dataclass(frozen=True)
-class Told(Signal):
-    """Pieces between breakpoints; ``smooth``: breakpoints at which it goes on smoothly."""
-
-    points: tuple[float, ...] = field(repr=False)
-    parts: tuple[Piece, ...] = field(repr=False)
-    smooth: frozenset[float] = field(repr=False)
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Corners, jumps and seams."""
-        return self.points
-
-    @property
-    def seams(self) -> frozenset[float]:
-        """Where one polynomial takes over from another."""
-        return self.smooth
-
-    @property
-    def pieces(self) -> tuple[Piece, ...]:
-        """What it is between them."""
-        return self.parts
 
 
 class History:
@@ -59,9 +34,9 @@ class History:
         )
         self._points.append(end + self.late)
 
-    def signal(self) -> Told:
+    def signal(self) -> Pieced:
         """What it gives as far as it is known; the last piece goes on beyond."""
-        return Told(tuple(self._points[:-1]), tuple(self._parts), frozenset(self._smooth))
+        return Pieced(tuple(self._points[:-1]), tuple(self._parts), frozenset(self._smooth))
 
     def following(self, t: float) -> float:
         """The next breakpoint after t that is known."""

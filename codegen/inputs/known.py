@@ -1,6 +1,6 @@
 """Known sources: expressions of time as signals, whose pieces hide nothing that the expression does."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -10,37 +10,16 @@ from codegen.inputs.branches import known, smooth_parts
 from codegen.inputs.harmonics import terms_of
 from codegen.inputs.pieces import Piece
 from codegen.inputs.segments import polynomial_segments
-from codegen.inputs.signal import Signal
+from codegen.inputs.signal import Pieced
 
 __all__ = ["Known", "known", "known_signal"]
 
 
 @dataclass(frozen=True)
-class Known(Signal):
-    """An expression of time over the stretch that it was made for; before and after, its outer pieces.
-
-    ``smooth``: breakpoints at which it goes on smoothly.
-    """
+class Known(Pieced):
+    """An expression of time over the stretch that it was made for; before and after, its outer pieces."""
 
     expression: sp.Expr
-    points: tuple[float, ...] = field(repr=False)
-    parts: tuple[Piece, ...] = field(repr=False)
-    smooth: frozenset[float] = field(repr=False)
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Corners, jumps and seams."""
-        return self.points
-
-    @property
-    def seams(self) -> frozenset[float]:
-        """Where one polynomial takes over from another."""
-        return self.smooth
-
-    @property
-    def pieces(self) -> tuple[Piece, ...]:
-        """What it is between them."""
-        return self.parts
 
 
 @lru_cache(maxsize=32)
@@ -71,7 +50,7 @@ def known_signal(expr: sp.Expr, begin: float, end: float) -> Known:
                 if at:
                     seams.add(start)
             pieces.append(piece)
-    return Known(expr, tuple(points), tuple(pieces), frozenset(seams))
+    return Known(tuple(points), tuple(pieces), frozenset(seams), expr)
 
 
 def _pieces(expr: sp.Expr, begin: float, end: float) -> list[tuple[float, Piece]]:

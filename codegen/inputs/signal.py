@@ -9,7 +9,7 @@ import math
 from abc import ABC, abstractmethod
 from bisect import bisect_right
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -137,6 +137,33 @@ class Signal(ABC):
         return self.scaled(float(factor))
 
     __rmul__ = __mul__
+
+
+@dataclass(frozen=True)
+class Pieced(Signal):
+    """Pieces between breakpoints; before and after, the outer ones.
+
+    ``smooth``: breakpoints at which it goes on smoothly, where one polynomial takes over from another.
+    """
+
+    points: tuple[float, ...] = field(repr=False)
+    parts: tuple[Piece, ...] = field(repr=False)
+    smooth: frozenset[float] = field(repr=False)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Corners, jumps and seams."""
+        return self.points
+
+    @property
+    def seams(self) -> frozenset[float]:
+        """Where one polynomial takes over from another."""
+        return self.smooth
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """What it is between them."""
+        return self.parts
 
 
 class Endless(Signal):
