@@ -13,7 +13,8 @@ from bondgraph.algebra.atoms import normal, number
 from bondgraph.algebra.elimination import ResidueRows
 from bondgraph.algebra.exact import rows_of
 from bondgraph.algebra.residues import residues
-from bondgraph.errors import MissingExtraError, ParameterError, SignalError
+from bondgraph.errors import ParameterError, SignalError
+from bondgraph.sampling.control import control_space
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -186,17 +187,7 @@ class StateSpace:
 
         Raises `MissingExtraError` without python-control.
         """
-        try:
-            import control
-        except ImportError:
-            raise MissingExtraError(
-                "to_control needs python-control; install the optional extra: "
-                "pip install bondgraph-toolkit[control]"
-            ) from None
-        return control.ss(
-            *self.proper(),
-            states=list(self.states), inputs=list(self.inputs), outputs=list(self.outputs),
-        )  # fmt: skip
+        return control_space(self.proper(), self.states, self.inputs, self.outputs)
 
 
 def state_space(

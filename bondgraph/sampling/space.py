@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bondgraph.errors import MissingExtraError, ParameterError
+from bondgraph.errors import ParameterError
+from bondgraph.sampling.control import control_space
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -89,17 +90,8 @@ class SampledSpace:
 
         Raises `MissingExtraError` without python-control.
         """
-        try:
-            import control
-        except ImportError:
-            raise MissingExtraError(
-                "to_control needs python-control; install the optional extra: "
-                "pip install bondgraph-toolkit[control]"
-            ) from None
-        return control.ss(
-            self.P, self.Q, self.F, self.D, self.period,
-            states=list(self.states), inputs=list(self.inputs), outputs=list(self.outputs),
-        )  # fmt: skip
+        matrices = (self.P, self.Q, self.F, self.D, self.period)
+        return control_space(matrices, self.states, self.inputs, self.outputs)
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,22 @@ MOST_NAMES = 8
 """Of longer lists the middle is counted only."""
 
 
+class Space(Protocol):
+    """A linear model in numbers; its arrays are P, Q, R, F, D and G."""
+
+    @property
+    def states(self) -> Sequence[str]:
+        """Their names; so of inputs and outputs."""
+
+    @property
+    def inputs(self) -> Sequence[str]:
+        """See ``states``."""
+
+    @property
+    def outputs(self) -> Sequence[str]:
+        """See ``states``."""
+
+
 class Matrices(Protocol):
     """What is shown: ``A x' = J x + B u + E u'``, ``y = F x + D u + G u'``."""
 

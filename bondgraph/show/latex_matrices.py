@@ -1,30 +1,11 @@
 """The matrices of equations as LaTeX."""
 
-from collections.abc import Sequence
-from typing import Protocol
-
 import sympy as sp
 
-from bondgraph.show.display import MOST_SIGNS, MOST_STATES, Matrices, structure
+from bondgraph.show.display import MOST_SIGNS, MOST_STATES, Matrices, Space, structure
 from bondgraph.show.sums import typeset
 
 RATE = r"\frac{d}{dt}"
-
-
-class Space(Protocol):
-    """A linear model in numbers; its arrays are P, Q, R, F, D and G."""
-
-    @property
-    def states(self) -> Sequence[str]:
-        """Their names; so of inputs and outputs."""
-
-    @property
-    def inputs(self) -> Sequence[str]:
-        """See ``states``."""
-
-    @property
-    def outputs(self) -> Sequence[str]:
-        """See ``states``."""
 
 
 def matrices_latex(equations: Matrices) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from bondgraph.show.blocks import aligned
-from bondgraph.show.display import counted
+from bondgraph.show.display import Space, counted
 from bondgraph.show.html import html_lines, html_table
 
 MOST = 20
@@ -27,20 +27,8 @@ class Swinging(Protocol):
         """``-Re pole / |pole|``."""
 
 
-class Sized(Protocol):
-    """A linear model in numbers."""
-
-    @property
-    def states(self) -> Sequence[str]:
-        """Their names; so of inputs and outputs."""
-
-    @property
-    def inputs(self) -> Sequence[str]:
-        """See ``states``."""
-
-    @property
-    def outputs(self) -> Sequence[str]:
-        """See ``states``."""
+class Sized(Space, Protocol):
+    """A linear model in numbers, and its poles."""
 
     def modes(self) -> Sequence[Swinging]:
         """Poles and pairs, slowest first."""

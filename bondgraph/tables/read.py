@@ -29,7 +29,7 @@ def read_points(name: str, path: str | os.PathLike[str]) -> tuple[list[object], 
     if width < 2:
         raise TableError(f"{where}: one column; a table needs x and z, or a grid")
     if width == 2:
-        body = lines if _is_number(lines[0][1][0]) else lines[1:]
+        body = lines if is_number(lines[0][1][0]) else lines[1:]
         rows = [[_number(cell, where, number) for cell in cells] for number, cells in body]
         return [row[0] for row in rows], [row[1] for row in rows]
     (number, head), *body = lines
@@ -56,7 +56,8 @@ def _lines(path: str | os.PathLike[str], where: str) -> list[Line]:
     return [(at, row) for at, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
 
 
-def _is_number(cell: str) -> bool:
+def is_number(cell: str) -> bool:
+    """Whether a cell of a file reads as a number, be it finite or not."""
     try:
         float(cell)
     except ValueError:
@@ -67,7 +68,7 @@ def _is_number(cell: str) -> bool:
 def _number(cell: str, where: str, line: int) -> float:
     if not cell.strip():
         raise TableError(f"{where}, line {line}: an empty cell; fill the gap or leave the line out")
-    if not _is_number(cell):
+    if not is_number(cell):
         raise TableError(f"{where}, line {line}: {cell.strip()[:40]!r} is not a number")
     value = float(cell)
     if not math.isfinite(value):

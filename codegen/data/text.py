@@ -11,6 +11,7 @@ from typing import TextIO
 import numpy as np
 
 from bondgraph.errors import SignalError
+from bondgraph.tables.read import is_number
 from codegen.data.record import Column, Columns, chosen
 
 MARKS = ",;\t"
@@ -38,7 +39,7 @@ def _read(file: TextIO, source: str, wanted: Sequence[Column] | None) -> Columns
     if not first:
         raise SignalError(f"{source} is empty; it needs a line of names and one for each sample")
     number, cells = first[0]
-    named = not all(map(_is_number, cells))
+    named = not all(map(is_number, cells))
     names = cells if named else [str(at) for at in range(1, len(cells) + 1)]
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)
@@ -84,21 +85,13 @@ def _place(source: str, names: Sequence[str], wanted: Column) -> int:
     return names.index(chosen(source, names, wanted))
 
 
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
-
-
 def _refusal(where: str, name: str, cell: str) -> str:
     if not cell:
         return f"{where}, column {name!r}: an empty cell; fill the gap, or leave the line out"
-    if _is_number(cell):
+    if is_number(cell):
         return (
             f"{where}, column {name!r}: {cell[:40]} is not a finite number; fill the gap, or leave the "
             "line out"
         )
-    comma = "; write decimals with a point" if _is_number(cell.replace(",", ".")) else ""
+    comma = "; write decimals with a point" if is_number(cell.replace(",", ".")) else ""
     return f"{where}, column {name!r}: {cell[:40]!r} is not a number{comma}"
