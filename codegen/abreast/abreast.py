@@ -12,11 +12,12 @@ from codegen.abreast.fit import Sound, even, fits, suits
 from codegen.abreast.fleet import Fleet
 from codegen.abreast.leading import Leader, Precedents
 from codegen.abreast.modes import ModesAbreast
-from codegen.abreast.results import Shared, names_of, result_of
+from codegen.abreast.results import Shared, result_of
 from codegen.inputs.present import Inputs
 from codegen.numbers.arrays import Array, Flags
 from codegen.program.layout import STATES
 from codegen.program.units import told_units
+from codegen.record.columns import column_places
 from codegen.record.result import Result
 from codegen.runs.impulses import refuse_impulses
 from codegen.runs.methods import EXACT
@@ -54,7 +55,10 @@ class Abreast:
         self._asked, self._ready, self.model = asked, ready, ready.closed
         self._inputs, self._precedents = Sized(asked), Precedents()
         self._sound = Sound(asked.family.equations, asked.swept)
-        self._names, self._units = names_of(self.model.program), told_units(self.model.equations)
+        self._names, self._units = (
+            column_places(self.model.program),
+            told_units(self.model.equations),
+        )
         refuse_impulses(self.model, self._inputs.units, asked.times)
 
     def results(self, rows: Array, alone: Alone) -> list[Result | None]:

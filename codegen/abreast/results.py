@@ -11,7 +11,7 @@ from codegen.abreast.fleet import Fleet
 from codegen.abreast.modes import ModesAbreast
 from codegen.energy.audit import Audit
 from codegen.numbers.arrays import Array, read_only
-from codegen.program.layout import EXTERNAL, INPUTS, LAW_STATES, READINGS, STATES
+from codegen.program.layout import EXTERNAL
 from codegen.program.records import Program
 from codegen.record.result import Result
 
@@ -29,21 +29,6 @@ class Shared:
     rates: Array
     sizes: Array
     names: Mapping[str, tuple[int, int]]
-
-
-def names_of(program: Program) -> dict[str, tuple[int, int]]:
-    """What a run records, by name: part and place there, as `record.columns` has it."""
-    groups = (
-        (STATES, program.states, None), (LAW_STATES, program.law_states, None),
-        (INPUTS, program.inputs, {*program.shown_inputs}), (EXTERNAL, program.asked, None),
-        (READINGS, program.readings, {*program.shown}),
-    )  # fmt: skip
-    found: dict[str, tuple[int, int]] = {}
-    for part, names, shown in groups:
-        for at, name in enumerate(names):
-            if shown is None or at in shown:
-                found.setdefault(name.name, (part, at))
-    return found
 
 
 class RunColumns(Mapping[str, Array]):
