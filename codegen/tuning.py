@@ -46,6 +46,15 @@ class Tuning:
         1e-15, "of the largest effort: the least that a port's limit counts as"
     )
     delayed: float = _told(1e-12, "of what a delay reads: how far its polynomials may be off")
+    remembered: float = _told(0.1, "the same of a run's relative tolerance, if that is more")
+    part_halves: int = _told(12, "a part that a delay reads is halved so often, at most")
+    seam: float = _told(
+        1e-9, "of what a delay reads: what steps over a seam of its parts may err by"
+    )
+    seam_rounding: float = _told(1e-12, "the same by rounding, times the lengths of parts over theirs")
+    seam_reach: float = _told(2.0**-5, "of a delay: no step over a seam counts as shorter")
+    least_memory: int = _told(1024, "parts that exported C remembers for its delays, at the least ..")
+    most_memory: int = _told(65536, ".. and at the most, unless its caller tells")
     tiny: float = _told(1e-300, "larger than nothing")
     exchanged: float = _told(1e-14, "of its terms, by which a shared effort may be above its share")
     exchanges: int = _told(10_000, "ports exchanged beyond which rounding alone would go on")

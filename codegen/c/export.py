@@ -26,14 +26,15 @@ from codegen.c.turnings import turned_laws
 from codegen.energy.holdings import holdings
 from codegen.model.commands import conditions_told
 from codegen.model.doubts import warn_of_doubts
+from codegen.model.lags import lags
 from codegen.model.resting import warn_of_rests
 from codegen.modes.closed import ClosedModel
-from codegen.modes.steps import is_implicit
+from codegen.modes.steps import is_implicit, round_step
 from codegen.ports.holds import check_sets
 from codegen.program.layout import layout_text
 from codegen.program.records import Block, Program, block
 from codegen.runs.start import Start, start_of
-from codegen.tuning import tuning_text
+from codegen.tuning import TUNING, tuning_text
 
 STEPPED = ("model", "ports", "run")
 """Folders of what is the same for every model."""
@@ -147,7 +148,8 @@ def exported(
     closed = start.closed
     longest = math.inf if implicit else start.longest
     defaults = [float(closed.parameters[symbol.name]) for symbol in closed.program.parameters]
-    files = texts(closed, name, defaults, prefix, longest, start.on, implicit)
+    memory = memory_of(closed, longest)
+    files = texts(closed, name, defaults, prefix, longest, start.on, implicit, memory)
     if main:
         states = [*closed.program.states, *closed.program.law_states]
         named = [state.name in start.told for state in states]
@@ -164,9 +166,11 @@ def texts(
     longest: float | None = None,
     on: Collection[Hashable] = (),
     implicit: bool = False,
+    memory: int = 0,
 ) -> dict[str, str]:
     """The files of a model without a main program; ``longest``: its longest stable step, if that is told;
-    ``on``: the switches that are on before a run; ``implicit``: whether fixed steps are linearly implicit.
+    ``on``: the switches that are on before a run; ``implicit``: whether fixed steps are linearly implicit;
+    ``memory``: how many parts of a run delays remember, 0 where what they give is given.
 
     Its parameters are in ``defaults`` and ``longest`` alone, and in which sticking ports are redundant.
     """
@@ -187,15 +191,25 @@ def texts(
         "",
         *slip_tables(closed.slips, len(program.states), program.coupled.inputs),
         *held_tables(kept),
-        *_functions(program, kept.values),
+        *_functions(program, kept.values, program.delaying if memory else block([])),
         "",
         *refused(program),
         *group_tables(program),
         *(straight_rates(program, fast) if fast else plain_rates()),
     ]
-    sizes = config(program, fast, kept, name, macros, longest, implicit)
+    sizes = config(program, fast, kept, name, macros, longest, implicit, memory)
     told = {"config.h": sizes, "layout.h": layout_text(), "tuning.h": tuning_text()}
     return {**told, "model.c": "\n".join(lines) + "\n", **runtime}
+
+
+def memory_of(closed: ClosedModel, longest: float) -> int:
+    """How many parts delays remember: steps of the usual length twice over; 0 where there are no delays."""
+    if not closed.program.delayed:
+        return 0
+    late = max(one.late for one in lags(closed.equations.delays, closed.parameters))
+    usual = round_step(min(TUNING.usual_step, longest / 2))
+    least, most = TUNING.least_memory, TUNING.most_memory
+    return min(max(math.ceil(2 * late / usual), least), most)
 
 
 def stepped(files: Mapping[str, str]) -> dict[str, str]:
@@ -206,8 +220,9 @@ def stepped(files: Mapping[str, str]) -> dict[str, str]:
 
 def _head(program: Program, equations: StateEquations, name: str, prefix: str) -> list[str]:
     parts = (
-        ("states", (*program.states, *program.law_states)), ("inputs", program.external),
+        ("states", (*program.states, *program.law_states)), ("inputs", program.wanted),
         ("outputs", program.outputs), ("parameters", program.parameters),
+        *([("late, given by delays", program.delayed)] if program.delayed else []),
     )  # fmt: skip
     rows: list[str] = []
     for what, symbols in parts:
@@ -230,7 +245,7 @@ def _head(program: Program, equations: StateEquations, name: str, prefix: str) -
     return text.splitlines() + [""]
 
 
-def _functions(program: Program, held: Block) -> list[str]:
+def _functions(program: Program, held: Block, delaying: Block) -> list[str]:
     """The blocks of the program as functions."""
     where, on = places(program), program.on_sides
     rows = [
@@ -242,6 +257,7 @@ def _functions(program: Program, held: Block) -> list[str]:
         ("bg_guards", "Conditions of switches, to turn on and to turn off in turn", program.guards, None),
         ("bg_momenta", "What storages hold that impulses exchange", program.momenta, None),
         ("bg_held_values", "How states follow from what storages hold at a start", held, None),
+        ("bg_delaying", "Of each delay what it reads, how late it is, what it gives before", delaying, None),
         ("bg_corners", "What corners hang on, and for each whether it counts", *_hung(program)),
     ]  # fmt: skip
     lines: list[str] = []

@@ -38,17 +38,19 @@ def config(
     macros: Sequence[str] = (),
     longest: float | None = None,
     implicit: bool = False,
+    memory: int = 0,
 ) -> str:
     """config.h: the sizes of everything, and macros that rename external symbols.
 
     ``longest``: the longest stable step at the default point [s], None for no word on it; ``implicit``:
-    whether fixed steps are linearly implicit.
+    whether fixed steps are linearly implicit. ``memory``: how many parts of a run delays remember; of 0 what
+    they give is given.
     """
     lines = [*comment(f"Sizes of {name}; written by bondgraph-toolkit."), "#ifndef BG_CONFIG_H"]
     lines += [
         "#define BG_CONFIG_H",
         "",
-        *_cost(step_cost(program, implicit), bool(program.clocks)),
+        *_cost(step_cost(program, implicit), bool(program.clocks), memory > 0),
         "",
     ]
     lines += [f"#define BG_{key} {value}" for key, value in _sizes(program, fast).items()]
@@ -57,14 +59,15 @@ def config(
         f"#define BG_HOLDING_VALUES {len(held.places)}",
     ]
     lines += [f"#define BG_ROSENBROCK {int(implicit)}"]
+    lines += _memory(program, memory)
     lines += ["", *_steps(longest, len(program.friction))]
     lines += ["", *macros] if macros else []
     lines += [*lookup_names(program.tables), *turning_names(program.turnings)]
     return "\n".join([*lines, "", "#endif", ""])
 
 
-def _cost(cost: StepCost, ticks: bool) -> list[str]:
-    """What a real-time step takes, in operations; ``ticks``: whether there are sampled tasks."""
+def _cost(cost: StepCost, ticks: bool, late: bool) -> list[str]:
+    """What a real-time step takes, in operations; whether there are sampled tasks, and delays."""
     told = [
         "What a real-time step takes, in operations of floating point; tables count as if full.",
         f"One evaluation of the rates: {cost.evaluation}.",
@@ -79,12 +82,32 @@ def _cost(cost: StepCost, ticks: bool) -> list[str]:
         told += [
             "Each instant of a task inside a step costs a step more; what tasks set is beside these."
         ]
+    if late:
+        told += [
+            "Four evaluations more are for what delays read; a break in what they give costs a step more."
+        ]
     lines = [line for text in told for line in comment(text)]
     return [
         *lines,
         f"#define BG_STEP_OPERATIONS {cost.usual.total}",
         f"#define BG_STEP_MOST_OPERATIONS {cost.most.total}",
     ]
+
+
+def _memory(program: Program, parts: int) -> list[str]:
+    """How much delays remember."""
+    if not parts:
+        return ["#define BG_DELAYS 0", "#define BG_DELAYED_FROM 0", "#define BG_MEMORY 1"]
+    return [
+        f"#define BG_DELAYS {len(program.delayed)}",
+        f"#define BG_DELAYED_FROM {program.external.index(program.delayed[0])}",
+        "",
+        *comment("Delays remember so many parts of a run: of fixed steps each is one, and more where "
+                 "these are cut."),
+        "#ifndef BG_MEMORY",
+        f"#define BG_MEMORY {parts}",
+        "#endif",
+    ]  # fmt: skip
 
 
 def _steps(longest: float | None, ports: int) -> list[str]:

@@ -5,18 +5,17 @@ steps: Bellen, Zennaro 2003, section 3.4). It ends at whatever is not smooth: an
 task, a breakpoint of an input or of a delay; so jumps and corners travel on as what they are.
 """
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import sympy as sp
 
-from bondgraph.errors import ParameterError
 from bondgraph.nodes.lagging import Lagging
 from codegen.delays.history import CHECKS, History, missed, nodes
 from codegen.inputs.signal import Pieced, Signal
 from codegen.model.exact_values import at_parameters
+from codegen.model.lags import lags
 from codegen.numbers.lambdified import lambdified
 from codegen.program.records import Program
 from codegen.standalone.switchings import Clock
@@ -42,29 +41,15 @@ def readings(
 ) -> tuple[Reading, ...]:
     """The delays with numbers for their parameters.
 
-    Raises `ParameterError` for a delay that is not above zero, and for names without a number.
+    Raises what `lags` raises.
     """
     found = []
-    for one in delays:
-        late, start = (_number(one.given, part, parameters) for part in (one.time, one.start))
-        if not late > 0 or not math.isfinite(start):
-            raise ParameterError(
-                f"delay {one.given}: its time is {late:g} and its start {start:g}; a delay is above zero"
-            )
+    for one, (late, start) in zip(delays, lags(delays, parameters), strict=True):
         value = at_parameters(one.value, parameters)
         names = sorted(map(str, value.free_symbols))
         function = lambdified([sp.Symbol(name) for name in names], [value])
         found.append(Reading(one.given.name, late, start, _by_name(function, names)))
     return tuple(found)
-
-
-def _number(name: sp.Symbol, part: sp.Expr, parameters: Mapping[str, sp.Rational]) -> float:
-    """A time or a start; `ParameterError` where it lacks a number."""
-    told = at_parameters(part, parameters)
-    if told.free_symbols:
-        missing = ", ".join(sorted(map(str, told.free_symbols)))
-        raise ParameterError(f"delay {name}: missing parameter(s) {missing}; give each a number")
-    return float(told)
 
 
 def _by_name(function: Callable[..., object], names: Sequence[str]) -> Callable[..., float]:

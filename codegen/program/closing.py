@@ -177,13 +177,16 @@ def _external(
     law_states: set[sp.Symbol],
     parameters: set[str],
 ) -> tuple[sp.Symbol, ...]:
-    """Inputs nothing in the model gives: open ports and sources first, then what else is asked for."""
+    """Inputs nothing in the model gives: open ports and sources first, then what else is asked for.
+
+    What delays give comes last of the ports.
+    """
     known = {*equations.signals, *equations.inputs, *law_states, TIME}
     names = watched.union(*(closed.free_symbols for closed in laws.values()))
     asked = {name for name in names - known if name.name not in parameters}
-    return tuple(name for name in equations.inputs if name not in laws) + tuple(
-        sorted(asked, key=str)
-    )
+    late = {one.given for one in equations.delays}
+    ports = sorted((name for name in equations.inputs if name not in laws), key=late.__contains__)
+    return (*ports, *sorted(asked, key=str))
 
 
 Sorted = tuple[

@@ -107,6 +107,7 @@ def lower(
         clocks=clocks(closing),
         momenta=block([*exchanged.states, *exchanged.readings.values()], taken),
         momenta_rows=tuple(readings.index(name) for name in exchanged.readings),
+        delaying=block(_delaying(closing), taken),
         guards_affine=is_affine(guards[:own], given),
         ticks_affine=is_affine(guards[own:], given),
         varying=varying,
@@ -133,6 +134,13 @@ def _watched(equations: StateEquations) -> frozenset[sp.Symbol]:
     return frozenset[sp.Symbol]().union(
         *(value.free_symbols for value in (*told, *set_by_tasks, *late))
     )
+
+
+def _delaying(closing: Closing) -> list[sp.Expr]:
+    """What each delay reads, how late it is and what it gives before, in the order of the inputs."""
+    late = {one.given: one for one in closing.equations.delays}
+    found = [late[name] for name in closing.external if name in late]
+    return [part for one in found for part in (one.value, one.time, one.start)]
 
 
 def _check_varying(closing: Closing) -> None:

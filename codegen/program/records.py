@@ -232,6 +232,8 @@ class Program:
     #: What impulses exchange where they move slopes in A: of each state, then of these readings.
     momenta: Block
     momenta_rows: tuple[int, ...]
+    #: Of each delay in turn what it reads, how late it is [s], and what it gives before.
+    delaying: Block
     #: Whether all conditions are affine, as long as everything else is.
     guards_affine: bool
     #: Whether all that tasks set is.
@@ -284,7 +286,7 @@ class Program:
     def _values(self) -> Iterator[sp.Expr]:
         """All that is evaluated."""
         sided = () if self.corners is None else (self.corners.values, self.corners.on_sides)
-        yield from (value for code in (*self.blocks, *sided) for value in code.values)
+        yield from (value for code in (*self.blocks, *sided, self.delaying) for value in code.values)
         yield from self.sources
 
     @property
@@ -452,8 +454,9 @@ class Program:
 
     @property
     def delayed(self) -> tuple[sp.Symbol, ...]:
-        """Those of them that delays give, which a run finds."""
-        return tuple(one.given for one in self.equations.delays if one.given in self.asked)
+        """Those of them that delays give, one after the other."""
+        late = {one.given for one in self.equations.delays}
+        return tuple(name for name in self.asked if name in late)
 
     @property
     def wanted(self) -> tuple[sp.Symbol, ...]:

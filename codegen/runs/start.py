@@ -9,7 +9,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError
 from codegen.corners.located import with_corners
 from codegen.inputs.signal import Signal
-from codegen.model.sources import refuse_delays
+from codegen.model.lags import with_first
 from codegen.model.starts import by_states, told_starts
 from codegen.modes.closed import ClosedModel
 from codegen.modes.steps import step_at_start
@@ -21,8 +21,7 @@ from codegen.supplied import supplied
 
 
 def check_exported(program: Program) -> None:
-    """Refuse what only Python can call, and what has a past."""
-    refuse_delays(program)
+    """Refuse what only Python can call."""
     if told := stepped_in_python(program):
         raise StructureError(
             f"{told}, which only runs in numpy can call; write what it does as expressions, update={{...}} "
@@ -68,8 +67,9 @@ def start_of(
     check_exported(program)
     closed = ClosedModel(program, equations, parameters)
     names = [symbol.name for symbol in (*program.states, *program.law_states)]
-    external = [symbol.name for symbol in program.external]
-    signals = signals_for({**dict.fromkeys(external, 0.0), **(inputs or {})}, external)
+    wanted = [symbol.name for symbol in program.wanted]
+    told = signals_for({**dict.fromkeys(wanted, 0.0), **(inputs or {})}, wanted)
+    signals = with_first(program, told, closed.parameters)
     told = by_states(program.equations, parameters, initial or {})
     states = initial_values({**told_starts(program.equations, parameters), **told}, names)
     on = checked_modes([port.name for port in program.switches], initially_on)

@@ -87,7 +87,8 @@ static int assign(command *asked, const char *text)
         asked->given[at] = 1, asked->states[at] = value;
     else if ((at = find(BG_HOLDINGS, bg_held_names, text, length)) >= 0)
         asked->told[at] = 1, asked->held[at] = value;
-    else if ((at = find(BG_EXTERNAL, bg_input_names, text, length)) >= 0)
+    else if ((at = find(BG_EXTERNAL, bg_input_names, text, length)) >= 0
+             && !(at >= BG_DELAYED_FROM && at < BG_DELAYED_FROM + BG_DELAYS))
         hold_input(asked, at, value);
     else if (length == 4 && strncmp(text, "band", 4) == 0)
         asked->band = value;

@@ -41,6 +41,9 @@ int bg_corners_watch(bg_located *c, double fastest);
 int bg_corners_step(bg_located *c, double *time);
 int bg_corners_cross(bg_located *c);
 
+/* located_remember.c: what delays read in the latest step, up to a time. */
+int bg_located_remember(bg_located *c, double until);
+
 /* located_sides.c: as a stretch, from corner to corner. located_run.c: from the present instant to
  * `stop`, or to the first event, or corner where laws are on one side of each: that in `ended`, 0
  * where there is none. Its first step is tried as long as `first`, if that is above zero. */

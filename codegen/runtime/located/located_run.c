@@ -9,12 +9,17 @@ static int inputs_now(const void *self, double t, double *w, double *dw)
 {
     const bg_located *const c = self;
     bg_signals_at(c->signals, &c->run.span, t, w, dw);
+    if (BG_DELAYS)
+        bg_recall(c->model, t, w, dw);
     return 1;
 }
 
 static int pass_on(void *run, double t, bg_span *span)
 {
-    *span = bg_signals_span(((const bg_located *)run)->signals, t);
+    const bg_located *const c = run;
+    *span = bg_signals_span(c->signals, t);
+    if (BG_DELAYS)
+        bg_pass_memory(c->model, t, c->run.end, span);
     return BG_OK;
 }
 
@@ -108,7 +113,9 @@ static int sample(bg_located *c, double until)
 /* The longest step: events and inputs must not fall between, nor the interpolant be strained. */
 static double longest_now(const bg_located *c, int method, double fastest)
 {
-    const double bound = bg_longest_step(c->run.at.t - c->run.began);
+    double bound = bg_longest_step(c->run.at.t - c->run.began);
+    if (BG_DELAYS)
+        bound = fmin(bound, bg_memory_shortest(&c->model->memory));
     const double driven = bg_signals_fastest(c->signals, &c->run.span);
     if (method == BG_RADAU)
         return driven > 0 ? fmin(bound, BG_FOLLOWED / driven) : bound;
@@ -141,6 +148,8 @@ static int step(bg_located *c, double stop, int *ended)
         status = find_end(c, &until, ended);
     if (status == BG_OK)
         status = sample(c, *ended ? until : c->solver.t);
+    if (BG_DELAYS && status == BG_OK)
+        status = bg_located_remember(c, *ended ? until : c->solver.t);
     if (status == BG_OK && asked->smooth)
         status = asked->smooth(asked->to, c, c->run.at.t, *ended ? until : c->solver.t);
     if (status == BG_OK && *ended)
@@ -171,6 +180,7 @@ int bg_located_stretch(bg_located *c, double stop, double first, int *ended)
     int status = bg_located_fastest(c, c->run.at.t, c->s, &fastest);
     int method = c->asked->method;
     *ended = 0;
+    c->turned = 1;
     if (method == BG_AUTO)
         method = fastest > c->stiff ? BG_RADAU : BG_DOP853;
     if (status == BG_OK)
@@ -273,6 +283,8 @@ static int set_up(bg_located *c, bg_model *m, const bg_signals *signals, bg_requ
     memset(&c->peaks, 0, sizeof c->peaks);
     c->view.measured = 0;
     memset(m->seen, 0, sizeof m->seen);
+    if (BG_DELAYS)
+        bg_memory_begin(&m->memory, c->run.at.t);
     inputs_now(c, c->run.at.t, w, dw);
     int status = bg_model_vector(m, c->run.at.t, asked->states, w, c->s);
     for (int i = 0; i < ALL && asked->moved; i++)

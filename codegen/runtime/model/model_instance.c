@@ -17,7 +17,8 @@ int bg_model_init(bg_model *m, const double *parameters)
 int bg_model_init_with(bg_model *m, const double *parameters, const bg_own_tables *own)
 {
     int status;
-    memset(m, 0, sizeof *m);
+    memset(m, 0, offsetof(bg_model, memory));
+    memset(&m->memory.is, 0, sizeof m->memory.is);
     m->where = -1;
     m->ticked = -INFINITY;
     m->now.tables = own ? own->tables : bg_tables;
@@ -28,8 +29,9 @@ int bg_model_init_with(bg_model *m, const double *parameters, const bg_own_table
         m->band[i] = BG_BAND;
         m->mode[i] = bg_first_modes[i];
     }
-    if (BG_VARYING)
-        return BG_OK;
+    status = BG_DELAYS ? bg_set_lags(m) : BG_OK;
+    if (BG_VARYING || status != BG_OK)
+        return status;
     status = bg_assemble(m);
     if (status == BG_OK && BG_STRAIGHT)
         bg_prepare_rhs(m);
@@ -46,6 +48,11 @@ int bg_model_vector(bg_model *m, double t, const double *states, const double *w
         return BG_OK;
     for (int i = 0; i < BG_ROOM(K); i++)
         mode[i] = 1;
+    if (BG_DELAYS) {
+        memcpy(m->work.recalled, w, sizeof(double) * BG_EXTERNAL);
+        bg_recall(m, t, m->work.recalled, NULL);
+        w = m->work.recalled;
+    }
     status = bg_model_evaluate(m, t, s, w, NULL, mode, &m->shot);
     if (status != BG_OK)
         return status;
@@ -166,7 +173,11 @@ const char *bg_model_message(int status)
         "the error of a step is beyond 1 % of a state's range; the step was taken: shorten it",
         "no impulse is found that keeps what nonlinear storages hold: their laws may have no value "
         "in common",
-        "a step crosses more instants of tasks than it may be cut at; shorten it",
+        "a step crosses more instants of tasks or breaks that come late than it may be cut at; "
+        "shorten it",
+        "a delay is no positive number of seconds, or what it gives first is not finite",
+        "a delay reaches farther back than its memory does: steps leave no gap, and BG_MEMORY of "
+        "config.h is how many parts it has",
     };
     const int count = (int)(sizeof messages / sizeof *messages);
     return status >= 0 && status < count ? messages[status] : "unknown status";

@@ -106,6 +106,8 @@ void bg_guards(const bg_values *v, double *out);
 void bg_momenta(const bg_values *v, double *out);
 extern const int bg_momenta_rows[];
 void bg_held_values(const bg_values *v, double *out);
+/* Of each delay what it reads, how late it is [s], what it gives before. */
+void bg_delaying(const bg_values *v, double *out);
 /* What a start may tell of storages: where the values of each begin, and their end; the states that
  * it is a sum of, times these; or the one that a law gives, whose value it is. */
 extern const int bg_held_begins[], bg_held_states[], bg_held_by_law[];
@@ -214,6 +216,26 @@ typedef struct {
 double bg_cut_step(const bg_model *m, double t, double end);
 int bg_due_in_step(const bg_model *m, double t, double h, int *due, double *instant);
 int bg_set_by_tasks_in_step(bg_model *m, const bg_start *at, const int *due, double *s);
+
+/* model_recall.c: how late delays are at the model's parameters, and what they give first: BG_NOT_LATE
+ * where that is nothing. What they read at the instant that was evaluated. What they give at t, which
+ * external inputs become, and its slope; `dw` may be NULL. */
+int bg_set_lags(bg_model *m);
+void bg_read_late(const bg_model *m, double *values);
+void bg_recall(const bg_model *m, double t, double *w, double *dw);
+
+/* The pieces of external inputs with what delays give of a run to `end`, from t on. */
+void bg_pass_memory(bg_model *m, double t, double end, bg_span *span);
+
+/* Of fixed steps: makes ready for one of h from t; the inputs at its start, middle and end with what
+ * delays give there; takes in what these read in it. */
+int bg_memory_ready(bg_model *m, double t, double h);
+const double *bg_recalled(bg_model *m, double t, double h, const double *w);
+int bg_remember_step(bg_model *m, double t, double h, const double *begin, const double *end,
+                     const double *w, const int *mode);
+
+/* model_step.c: inputs at a part of a step, on the parabola through their three values. */
+void bg_on_parabola(double part, const double *w, double *of);
 
 /* port_look.c: everything in a mode, in m->shot; in the first that can be of those that slip as
  * this one, which it becomes in `tried`. */

@@ -8,6 +8,7 @@
 
 #include "config.h"
 #include "layout.h"
+#include "model_memory.h"
 #include "port_box.h"
 #include "port_set.h"
 #include "run_status.h"
@@ -27,6 +28,7 @@ enum {
     /* The integrated vector s: states less what driven dependent storages add, then law states. */
     BG_SIZE = BG_ROOM(BG_STATES + BG_LAW_STATES),
     BG_STAGES = 6, /* of a step, at the most */
+    BG_CUT = BG_CLOCKS > 0 || BG_DELAYS > 0, /* whether steps are cut */
     BG_MAP_COLUMNS = BG_SIZE + 2 * BG_EXTERNAL + 1,
     /* What ranks are found over: what friction and the laws that it moves give; states; inputs. */
     BG_RANKED = BG_FRICTION + BG_COUPLED + BG_STATES + BG_INPUTS
@@ -145,6 +147,7 @@ typedef struct {
     double stage[BG_STAGES][BG_SIZE], point[BG_SIZE];
     double weight[BG_SIZE], reach[BG_SIZE], image[BG_SIZE], next[BG_SIZE];
     double given[3][BG_ROOM(BG_EXTERNAL)], rates[3][BG_ROOM(BG_EXTERNAL)];
+    double recalled[3 * BG_ROOM(BG_EXTERNAL)];
     double origin[BG_MAP_ROWS], external[2][BG_ROOM(BG_EXTERNAL)];
     double mean[BG_ROOM(BG_FRICTION)], mean_caps[BG_ROOM(BG_FRICTION)]; /* over a step */
     double begun[BG_ROOM(BG_FRICTION)]; /* slips where it begins */
@@ -169,6 +172,12 @@ typedef struct {
     int rounds;
 } bg_fastest;
 
+/* How the latest step ended. */
+typedef struct {
+    double s[BG_SIZE], w[BG_ROOM(BG_EXTERNAL)];
+    int mode[BG_ROOM(BG_FRICTION)];
+} bg_latest;
+
 /* One instance. `band` [unit of each slip]: the dead band inside which a step lets a port stick;
  * `mode`: 0 sticking, 1 or -1 the sign of the slip; of a switch 0 where it is held, 1 where it is
  * let go; as the last step left it (`started`: there was one), or as switches are before the first.
@@ -187,6 +196,8 @@ typedef struct {
     unsigned asked; /* how often for what holds ports */
     bg_snapshot shot;
     bg_work work;
+    bg_latest latest;
+    bg_memory memory; /* of delays; the last, as it may be large */
 } bg_model;
 
 /* Names, units ("" where none is told) and defaults, in the order of the arrays; in model.c. */
@@ -209,7 +220,8 @@ int bg_model_init(bg_model *m, const double *parameters);
 /* The same with tables of the caller's, which `bg_tables_init` makes as the model was generated.
  * `bg_tables_set` gives one new values at its points, row by row of x, and works out what is
  * between them; BG_TABLE_VALUE where one is not finite. As with a parameter an instance is then
- * made again, which may go on with its `mode`, `seen`, `started`, `ticked` and `unclocked`. */
+ * made again, which may go on with its `mode`, `seen`, `started`, `ticked` and `unclocked`, and after
+ * `bg_model_remember` with what delays have read, which was `memory.is`. */
 int bg_model_init_with(bg_model *m, const double *parameters, const bg_own_tables *own);
 void bg_tables_init(bg_own_tables *own);
 int bg_tables_set(bg_own_tables *own, int table, const double *values);
@@ -222,6 +234,7 @@ typedef struct {
     const char *table, *argument, *never;
 } bg_leaving;
 int bg_model_left(const bg_model *m, int status, bg_leaving *told);
+void bg_model_remember(bg_model *m, const bg_remembered *was);
 
 /* s from the states (law states last) and the external inputs: they differ where inputs drive
  * dependent storages. */
@@ -255,7 +268,9 @@ int bg_model_rhs(bg_model *m, double t, const double *s, const double *w, const 
                  double *rate);
 
 /* One step of h from t, s in place; w: the external inputs at t, t + h/2 and t + h, one after
- * the other. Work is bounded; config.h counts it. `bg_model_settle` decides which ports hold,
+ * the other. What delays give, BG_DELAYS of these from place BG_DELAYED_FROM on, steps look up
+ * themselves: they follow one another or go back, and are cut at what breaks come late, as at
+ * instants of tasks. BG_FORGETS where BG_MEMORY parts of the past are too few. Work is bounded; config.h counts it. `bg_model_settle` decides which ports hold,
  * sets `mode`, gives the impulses of switches that come to hold to s and takes the slips of
  * sticking ports away; `bg_model_advance` goes on in that mode by Runge's and Kutta's method of
  * fourth order, or the linearly implicit one that the model was generated for, and stops or

@@ -1,6 +1,7 @@
 /* One step in bounded time: which ports hold is decided at its start, then it is one of a
  * method's in that mode, and what changes inside it is made up for at its end. Tasks that are due
- * set what they set at its start; one that crosses their instants is cut there. */
+ * set what they set at its start; one that crosses their instants, or breaks in what delays give, is
+ * cut there. */
 #include <math.h>
 #include <string.h>
 
@@ -32,15 +33,38 @@ static int settle_start(bg_model *m, double t, double h, double *s, const double
     return status == BG_OK ? m->decided : status;
 }
 
+void bg_on_parabola(double x, const double *w, double *of)
+{
+    const double y = 1.0 - x;
+    for (int i = 0; i < BG_EXTERNAL; i++) {
+        const double a = w[i], b = w[BG_EXTERNAL + i], c = w[2 * BG_EXTERNAL + i];
+        of[i] = a * y * (y - x) + 4.0 * b * x * y + c * x * (x - y);
+    }
+}
+
+/* The external inputs at the start, the middle and the end of a part of a step. */
+static void inputs_of_part(double from, double part, const double *w, double *of)
+{
+    for (int k = 0; k < 3; k++)
+        bg_on_parabola(from + 0.5 * k * part, w, of + k * BG_EXTERNAL);
+}
+
 int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w)
 {
     int due[BG_ROOM(BG_CLOCKS)];
-    double instant = 0.0;
+    double instant = 0.0, part[3 * BG_ROOM(BG_EXTERNAL)];
     if (!(h > 0) || !isfinite(h))
         return BG_BAD_STEP;
+    const int ready = BG_DELAYS ? bg_memory_ready(m, t, h) : BG_OK;
+    if (ready)
+        return ready;
+    const double until = BG_CUT ? bg_cut_step(m, t, t + h) - t : h;
+    if (BG_DELAYS) {
+        inputs_of_part(0.0, until / h, w, part);
+        w = bg_recalled(m, t, until, part);
+    }
     if (BG_RATED)
-        external_rates(h, w, m->work.rates);
-    const double until = BG_CLOCKS ? bg_cut_step(m, t, t + h) - t : h;
+        external_rates(BG_DELAYS ? until : h, w, m->work.rates);
     const int decided = settle_start(m, t, until, s, w);
     if (!BG_CLOCKS || !bg_is_taken(decided) || !bg_due_in_step(m, t, h, due, &instant))
         return decided;
@@ -54,7 +78,7 @@ int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w)
 }
 
 /* A step in one mode, and what changes at its end. */
-static int advance_plain(bg_model *m, double t, double h, double *s, const double *w)
+static int advance_whole(bg_model *m, double t, double h, double *s, const double *w)
 {
     if (BG_RATED)
         external_rates(h, w, m->work.rates);
@@ -70,16 +94,29 @@ static int advance_plain(bg_model *m, double t, double h, double *s, const doubl
     return status;
 }
 
-/* The external inputs at the start, the middle and the end of a part of a step: on the parabola
- * through their three values. */
-static void inputs_of_part(double from, double part, const double *w, double *of)
+/* The same of a model with delays: they read what it makes; it is not taken where they cannot. */
+static int advance_late(bg_model *m, double t, double h, double *s, const double *w)
 {
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < BG_EXTERNAL; i++) {
-            const double x = from + 0.5 * k * part, y = 1.0 - x;
-            const double a = w[i], b = w[BG_EXTERNAL + i], c = w[2 * BG_EXTERNAL + i];
-            of[k * BG_EXTERNAL + i] = a * y * (y - x) + 4.0 * b * x * y + c * x * (x - y);
-        }
+    double begun[BG_SIZE];
+    int mode[BG_ROOM(K)];
+    const int ready = bg_memory_ready(m, t, h);
+    if (ready)
+        return ready;
+    w = bg_recalled(m, t, h, w);
+    memcpy(begun, s, sizeof begun);
+    memcpy(mode, m->mode, sizeof mode);
+    const int status = advance_whole(m, t, h, s, w);
+    const int read = bg_is_taken(status) ? bg_remember_step(m, t, h, begun, s, w, mode) : BG_OK;
+    if (read == BG_OK)
+        return status;
+    memcpy(s, begun, sizeof begun);
+    memcpy(m->mode, mode, sizeof mode);
+    return read;
+}
+
+static int advance_plain(bg_model *m, double t, double h, double *s, const double *w)
+{
+    return BG_DELAYS ? advance_late(m, t, h, s, w) : advance_whole(m, t, h, s, w);
 }
 
 /* The same by parts, from one instant of tasks to the next; s and the mode are as they were where
@@ -93,9 +130,12 @@ static int advance_by_parts(bg_model *m, double t, double h, double *s, const do
     memcpy(begun, s, sizeof begun);
     memcpy(mode, m->mode, sizeof mode);
     for (int k = 0; k < BG_CUTS && a < end && bg_is_taken(status); k++) {
+        const int ready = BG_DELAYS ? bg_memory_ready(m, a, end - a) : BG_OK;
         const double b = bg_cut_step(m, a, end);
         inputs_of_part((a - t) / h, (b - a) / h, w, part);
-        if (a > t)
+        if (ready)
+            status = ready;
+        if (a > t && bg_is_taken(status))
             status = bg_model_settle(m, a, b - a, s, part);
         told = status ? status : told;
         if (bg_is_taken(status))
@@ -118,8 +158,11 @@ int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w
 {
     if (!(h > 0) || !isfinite(h))
         return BG_BAD_STEP;
-    return BG_CLOCKS && bg_cut_step(m, t, t + h) < t + h ? advance_by_parts(m, t, h, s, w)
-                                                        : advance_plain(m, t, h, s, w);
+    const int ready = BG_DELAYS ? bg_memory_ready(m, t, h) : BG_OK;
+    if (ready)
+        return ready;
+    return BG_CUT && bg_cut_step(m, t, t + h) < t + h ? advance_by_parts(m, t, h, s, w)
+                                                     : advance_plain(m, t, h, s, w);
 }
 
 int bg_model_step(bg_model *m, double t, double h, double *s, const double *w)

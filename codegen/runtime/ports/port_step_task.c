@@ -1,5 +1,5 @@
-/* Sampled tasks in fixed steps: what is due at the start of a step, and where a step is cut. An
- * instant that is a rounding off the start or the end of a step is there. */
+/* Sampled tasks in fixed steps: what is due at the start of a step, and where a step is cut; that by
+ * delays, too. An instant that is a rounding off the start or the end of a step is there. */
 #include <math.h>
 #include <string.h>
 
@@ -16,6 +16,9 @@ double bg_cut_step(const bg_model *m, double t, double end)
     double first = INFINITY;
     for (int k = 0; k < BG_CLOCKS && !m->unclocked; k++)
         first = fmin(first, bg_clock_after(bg_clocks + k, from));
+    /* What delays give is known no farther than what they have read. */
+    if (BG_DELAYS)
+        first = fmin(first, fmin(m->memory.is.following, t + bg_memory_shortest(&m->memory)));
     return first < to ? first : end;
 }
 

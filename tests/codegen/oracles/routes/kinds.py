@@ -2,6 +2,7 @@
 
 from oracles.routes.blocks import BLOCKS
 from oracles.routes.cornered import CORNERED
+from oracles.routes.delayed import DELAYED
 from oracles.routes.exchanging import EXCHANGING
 from oracles.routes.friction import FRICTION
 from oracles.routes.jumping import JUMPING
@@ -20,7 +21,7 @@ from oracles.routes.tabled import TABLED
 
 EVERY = (
     *FRICTION, *JUMPING, *SLOPED, *SWITCHES, *STOPS, *RESETTING, *CORNERED, *PLAIN, *LAWFUL, *LOOPED,
-    *SUPPLIED, *TABLED, *SEARCHED, *EXCHANGING, *SIGNALS, *BLOCKS, *MACHINES,
+    *SUPPLIED, *TABLED, *SEARCHED, *EXCHANGING, *SIGNALS, *BLOCKS, *MACHINES, *DELAYED,
 )  # fmt: skip
 
 KINDS = {make.__name__: make for make in EVERY}
