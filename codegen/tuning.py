@@ -53,6 +53,7 @@ class Tuning:
     )
     seam_rounding: float = _told(1e-12, "the same by rounding, times the lengths of parts over theirs")
     seam_reach: float = _told(2.0**-5, "of a delay: no step over a seam counts as shorter")
+    renewed: int = _told(40, "so often a unit renews what its delays read between an importer's points")
     least_memory: int = _told(1024, "parts that exported C remembers for its delays, at the least ..")
     most_memory: int = _told(65536, ".. and at the most, unless its caller tells")
     tiny: float = _told(1e-300, "larger than nothing")

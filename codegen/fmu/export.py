@@ -26,6 +26,7 @@ from codegen.fmu.xml import build_description, description
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, as_signal
 from codegen.model.doubts import warn_of_doubts
+from codegen.model.lags import with_first
 from codegen.model.resting import warn_of_rests
 from codegen.modes.pace import time_constant
 from codegen.modes.steps import round_step, step_at_start
@@ -121,15 +122,17 @@ def _model(
     check_exported(ready.closed.program)
     told = bare_simulator(equations, parameters, laws)
     program, exact = ready.closed.program, ready.closed.parameters
-    signals = _signals(ready, inputs)
+    wanted = dict(zip(ready.inputs, _signals(ready, inputs), strict=True))
+    every = [Constant(one) if isinstance(one, float) else one for one in wanted.values()]
+    every = with_first(program, every, exact)
+    signals = [wanted.get(name.name, one) for name, one in zip(program.asked, every, strict=True)]
     inside = {at: one for at, one in enumerate(signals) if not isinstance(one, float)}
-    every = [Constant(one) if isinstance(one, float) else one for one in signals]
     refuse_impulses(ready.closed, every, np.array([0.0, math.inf]))
     initial = ready.starting(initial)
     start = initial_values(initial, ready.states)
     named = named_numbers(initial, ready.states)
     on = checked_modes(ready.switches, initially_on)
-    own = {ready.inputs[at]: one for at, one in inside.items()}
+    own = {program.asked[at].name: one for at, one in inside.items()}
     warn_of_rests(equations, parameters, own, on)
     shortest = _shortest(told, start.tolist(), every)
     switches = switching(program)
@@ -179,7 +182,7 @@ def _signals(ready: Simulator, inputs: Mapping[str, object]) -> list[Signal | fl
 
 def _shortest(ready: Simulator, start: list[float], signals: list[Signal]) -> float:
     """The shortest time constant [s] at the start, friction slipping."""
-    signals = [*signals, *ready.sources(0.0, 0.0)]
+    signals = [*signals, *ready.sources(0.0, 0.0, found=True)]
     pieces = [signal.piece(0.0) for signal in signals]
     mode = tuple(1 for _ in ready.closed.program.friction)
     settings = Settings()

@@ -28,9 +28,9 @@ fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean kept, fmi2Boolean *event,
                                        fmi2Boolean *end)
 {
-    (void)c, (void)kept;
+    (void)kept;
     *event = *end = fmi2False;
-    return fmi2OK;
+    return fmu2_tell(c, fmu_completed_step(CORE(c)));
 }
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time)

@@ -34,9 +34,9 @@ fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c)
 fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean kept, fmi3Boolean *event,
                                        fmi3Boolean *end)
 {
-    (void)c, (void)kept;
+    (void)kept;
     *event = *end = fmi3False;
-    return fmi3OK;
+    return fmu3_tell(c, fmu_completed_step(CORE(c)));
 }
 
 fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 time)

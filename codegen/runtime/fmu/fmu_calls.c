@@ -54,6 +54,14 @@ fmu_error fmu_update(fmu_instance *f, int *states_changed)
     return f->at.phase == FMU_EVENT ? fmu_event(f, states_changed) : "not in event mode";
 }
 
+fmu_error fmu_completed_step(fmu_instance *f)
+{
+    fmu_error failed = NULL;
+    if (BG_DELAYS && f->at.phase == FMU_CONTINUOUS)
+        failed = fmu_read_late(f);
+    return failed || !BG_DELAYS || f->at.phase != FMU_CONTINUOUS ? failed : fmu_go_on_late(f, 0);
+}
+
 fmu_error fmu_step(fmu_instance *f, double time, double step)
 {
     return f->at.phase == FMU_STEPPING ? fmu_advance(f, time, step)

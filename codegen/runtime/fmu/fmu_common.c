@@ -70,7 +70,10 @@ fmu_error fmu_apply(fmu_instance *f)
     failed = fmu_fit_tables(f);
     if (failed)
         return failed;
+    const bg_remembered remembered = f->model.memory.is;
     status = bg_model_init_with(&f->model, f->at.parameters, &f->own);
+    if (BG_DELAYS)
+        bg_model_remember(&f->model, &remembered);
     memcpy(f->model.mode, f->at.mode, sizeof f->model.mode);
     memcpy(f->model.seen, f->at.seen, sizeof f->model.seen);
     f->model.started = f->at.stepped;

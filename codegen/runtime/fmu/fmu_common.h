@@ -26,6 +26,13 @@ typedef struct {
     int kind, index;
 } fmu_variable;
 
+/* Where delays have read last: the time, the states, their rates and what the importer gave; whether
+ * what follows may not go on smoothly. */
+typedef struct {
+    double time, s[BG_SIZE], rate[BG_SIZE], given[BG_ROOM(BG_EXTERNAL)];
+    int turned;
+} fmu_read;
+
 /* All that a run depends on: what is saved and restored. Plain numbers. `began`: when it did; `step`:
  * of fixed internal steps, 0 where events are located; `tolerance`: relative, 0 where none is told;
  * `seen`: as of the model. `named`: start values that are kept as they are. `rest`, `margin`: how far a
@@ -40,14 +47,16 @@ typedef struct {
     double switch_peak[BG_ROOM(FMU_SWITCHES)], switch_rest[BG_ROOM(FMU_SWITCHES)];
     int side[BG_ROOM(FMU_SWITCHES)], mode[BG_ROOM(BG_FRICTION)];
     bg_span span; /* of the sources inside */
+    fmu_read read; /* in model exchange */
     int named[BG_ROOM(FMU_STATES)], phase, decided, exchange, stepped;
     bg_fastest fastest;
 } fmu_memory;
 
-/* The same with the values of all tables, one after the other. */
+/* The same with the values of all tables, one after the other, and with what delays have read. */
 typedef struct {
     fmu_memory at;
     double tables[BG_ROOM(BG_TABLE_VALUES)];
+    bg_memory memory;
 } fmu_saved;
 
 typedef struct fmu_instance {
@@ -99,6 +108,7 @@ const char *fmu_completed(fmu_instance *f);
 const char *fmu_warning(const fmu_instance *f);
 fmu_error fmu_enter(fmu_instance *f, int phase);
 fmu_error fmu_update(fmu_instance *f, int *states_changed);
+fmu_error fmu_completed_step(fmu_instance *f);
 fmu_error fmu_step(fmu_instance *f, double time, double step);
 void fmu_end(fmu_instance *f);
 fmu_error fmu_get_all(fmu_instance *f, const unsigned *references, size_t count, double *values,
@@ -156,6 +166,12 @@ void fmu_indicators_of(fmu_instance *f, const bg_snapshot *now, double *values);
 fmu_error fmu_indicators(fmu_instance *f, double *values);
 fmu_error fmu_initialize(fmu_instance *f);
 fmu_error fmu_event(fmu_instance *f, int *states_changed);
+
+/* fmu_late.c, of models with delays: these begin at a start; what they read in model exchange up to the
+ * instance's time, as its states came there; and that it goes on from there. */
+void fmu_begin_late(fmu_instance *f);
+fmu_error fmu_read_late(fmu_instance *f);
+fmu_error fmu_go_on_late(fmu_instance *f, int turned);
 
 /* fmu_step.c: a communication step; what went wrong at t. fmu_fixed.c, fmu_locate.c: from t to the end
  * in fixed internal steps, or as a run with events located. */

@@ -132,8 +132,10 @@ static fmu_error settle_event(fmu_instance *f, int *states_changed)
     int due[BG_ROOM(BG_CLOCKS)] = {0};
     fmu_error failed;
     memcpy(before, f->at.s, sizeof before);
+    failed = BG_DELAYS && f->at.exchange ? fmu_read_late(f) : NULL;
     fmu_pass(f, f->at.time);
-    failed = fmu_apply(f);
+    if (!failed)
+        failed = fmu_apply(f);
     bg_have_seen(&f->model, f->at.s);
     memcpy(f->at.seen, f->model.seen, sizeof f->at.seen);
     const int any = fmu_due(f, due);
@@ -146,6 +148,8 @@ static fmu_error settle_event(fmu_instance *f, int *states_changed)
     if (!failed)
         failed = fmu_refresh(f);
     *states_changed = memcmp(before, f->at.s, sizeof before) != 0;
+    if (!failed && BG_DELAYS && f->at.exchange)
+        failed = fmu_go_on_late(f, 1);
     if (failed)
         return failed;
     note_sides(f);
@@ -158,6 +162,8 @@ fmu_error fmu_initialize(fmu_instance *f)
 {
     int moved = 0;
     fmu_error failed;
+    if (BG_DELAYS)
+        fmu_begin_late(f);
     fmu_pass(f, f->at.time);
     failed = fmu_refresh(f);
     if (failed)

@@ -21,11 +21,15 @@ void fmu_externals(const fmu_instance *f, const bg_span *span, double t, double 
                 w[i] = 0.0;
             dw[i] = f->at.slopes[i];
         }
+    if (BG_DELAYS)
+        bg_recall(&f->model, t, w, dw);
 }
 
 void fmu_pass(fmu_instance *f, double t)
 {
     f->at.span = bg_signals_span(&fmu_signals, bg_reached(t));
+    if (BG_DELAYS)
+        bg_pass_memory(&f->model, t, INFINITY, &f->at.span);
     f->stale = 1;
 }
 

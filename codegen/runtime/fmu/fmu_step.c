@@ -14,10 +14,13 @@ fmu_error fmu_advance(fmu_instance *f, double t, double h)
         return failed ? failed : h == 0 ? NULL : "a step must not go backwards";
     fmu_set_time(f, t);
     const fmu_memory before = f->at;
+    f->model.memory.is.back = t;
     failed = f->at.step > 0 ? fmu_fixed(f, t, end) : fmu_locate(f, t, end);
     if (failed) {
         /* Nothing has happened: the states are those of the instance's time. */
         fmu_restore(f, &before);
+        if (BG_DELAYS)
+            bg_memory_back(&f->model.memory, t);
         return failed;
     }
     memcpy(f->at.seen, f->model.seen, sizeof f->at.seen);

@@ -107,6 +107,7 @@ fmu_error fmu_save(const fmu_instance *f, fmu_saved *to)
     if (!to)
         return "no memory for the state";
     to->at = f->at;
+    to->memory = f->model.memory;
     values[0] = 0.0;
     for (int i = 0; i < BG_TABLES; values += points_of(i), i++)
         memcpy(values, f->own.tables[i].values, points_of(i) * sizeof *values);
@@ -117,6 +118,7 @@ void fmu_load(fmu_instance *f, const fmu_saved *from)
 {
     const double *values = from->tables;
     fmu_restore(f, &from->at);
+    f->model.memory = from->memory;
     for (int i = 0; i < BG_TABLES; values += points_of(i), i++) {
         const size_t bytes = points_of(i) * sizeof *values;
         if (memcmp(f->own.tables[i].values, values, bytes) != 0) {
