@@ -12,7 +12,8 @@ from bondgraph.declare.switching import checked_modes
 from bondgraph.errors import SignalError
 from codegen.called.function import followed
 from codegen.delays.found import found as found_delays
-from codegen.delays.found import readings
+from codegen.delays.readings import readings
+from codegen.delays.stepper import LateStepper
 from codegen.energy.ledger import Ledger
 from codegen.engine.backends import Request, in_c, in_numpy
 from codegen.engine.fallback import Stopped, tell
@@ -245,9 +246,10 @@ class Simulator:
         """As `stepper`, without a word on states that were completed."""
         if not is_number(time) or not is_finite(time):
             raise SignalError(f"the time must be a finite number, not {time!r}")
+        if len(self.inputs) < len(self.closed.program.asked):
+            return self._stepping_late(initial, inputs, time, method, rtol, atol, initially_on)
         given = signals_for({} if inputs is None else inputs, self.inputs, self.whence)
-        whole = len(self.inputs) == len(self.closed.program.asked)
-        sources = Sources(partial(self.sources, found=whole), float(time))
+        sources = Sources(partial(self.sources, found=True), float(time))
         told = named_numbers(
             self._told(initial, [*given, *sources.signals], float(time)), self.states
         )
@@ -258,6 +260,22 @@ class Simulator:
         going = going_of(plan, settings, self.engine, self.located, NumpyGoing)
         origin = Origin(self.closed, self.inputs, plan, going, float(time), start)
         return Stepper(origin, given, sources)
+
+    def _stepping_late(
+        self, initial: Mapping[str, float] | str | None, inputs: Mapping[str, object] | None, time: float,
+        *settings: Any,
+    ) -> Stepper:  # fmt: skip
+        """The same of a model with delays, which the stepper itself looks after."""
+        program, own = self.closed.program, {} if inputs is None else inputs
+        signals_for(own, self.inputs, self.whence)
+        model = replace(self, inputs=tuple(name.name for name in program.asked))
+
+        def make(told: Mapping[str, object]) -> Stepper:
+            return model.stepping(initial, {**own, **told}, time, *settings)
+
+        delays = readings(self.closed.equations.delays, self.closed.parameters)
+        sources = Sources(partial(self.sources, found=True), float(time))
+        return LateStepper(make, delays, program.clocks, self.inputs, sources, float(time))
 
     def _told(self, initial: Any, signals: Sequence[Signal], begin: float) -> Any:
         """Initial values by states, as told for a run under these signals."""

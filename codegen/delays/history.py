@@ -1,11 +1,14 @@
 """What a delay has read so far, as a signal of what it gives: polynomials between breakpoints."""
 
+from bisect import bisect_right
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from codegen.inputs.pieces import Piece
 from codegen.inputs.signal import Pieced
+from codegen.model.lags import Lag
 from codegen.numbers.arrays import Array
 
 NODES = 12
@@ -15,33 +18,52 @@ CHECKS = (0.07, 0.39, 0.83)
 """Where in a part it is compared with what there is."""
 
 
-class History:
-    """What one delay gives: ``start``, and from ``begin + late`` [s] on what was read so much earlier."""
+@dataclass(frozen=True)
+class Past:
+    """What one delay gives: its start, and from its ``late`` [s] after the begin on what was read so much earlier.
 
-    def __init__(self, begin: float, late: float, start: float) -> None:
-        self.late = late
-        self._points, self._parts = [begin + late], [Piece(0.0, ((0.0, (start,)),))]
-        self._smooth = set[float]()
+    Between the ``points`` hold the ``parts``, of which the first goes back without end; ``smooth``: the points
+    at which it goes on smoothly. Beyond the last of them nothing is known.
+    """
 
-    def take(self, begin: float, end: float, values: Array, smooth: bool) -> None:
-        """What was read at the nodes of a part; ``smooth``: whether it goes on from the part before."""
-        if smooth:
-            self._smooth.add(self._points[-1])
+    late: float
+    points: tuple[float, ...]
+    parts: tuple[Piece, ...]
+    smooth: frozenset[float] = frozenset()
+
+    def taken(self, begin: float, end: float, values: Array, smooth: bool) -> "Past":
+        """With what was read at the nodes of a part; ``smooth``: whether it goes on from the part before."""
         half = 0.5 * (end - begin)
         powers = from_nodes() @ values / half ** np.arange(NODES)
-        self._parts.append(
-            Piece(begin + half + self.late, ((0.0, tuple(powers.tolist())),), 0.5 / half)
+        part = Piece(begin + half + self.late, ((0.0, tuple(powers.tolist())),), 0.5 / half)
+        smoothly = self.smooth | {self.points[-1]} if smooth else self.smooth
+        return replace(
+            self, points=(*self.points, end + self.late), parts=(*self.parts, part), smooth=smoothly
         )
-        self._points.append(end + self.late)
+
+    def since(self, t: float) -> "Past":
+        """Without what is given before t [s]."""
+        over = bisect_right(self.points, t)
+        if not 0 < over < len(self.points):
+            return self
+        points = self.points[over:]
+        return replace(
+            self, points=points, parts=self.parts[over:], smooth=self.smooth & {*points}
+        )
 
     def signal(self) -> Pieced:
         """What it gives as far as it is known; the last piece goes on beyond."""
-        return Pieced(tuple(self._points[:-1]), tuple(self._parts), frozenset(self._smooth))
+        return Pieced(self.points[:-1], self.parts, self.smooth)
 
     def following(self, t: float) -> float:
         """The next breakpoint after t that is known."""
-        found = [point for point in self._points[:-1] if point > t]
-        return min(found, default=np.inf)
+        over = bisect_right(self.points, t)
+        return self.points[over] if over < len(self.points) - 1 else np.inf
+
+
+def begun(lag: Lag, begin: float) -> Past:
+    """A delay of which nothing is known but its start, at the begin [s] of a run."""
+    return Past(lag.late, (begin + lag.late,), (Piece(0.0, ((0.0, (lag.start,)),)),))
 
 
 def nodes() -> Array:

@@ -76,6 +76,11 @@ class Stepper:
         return self._events
 
     @property
+    def given(self) -> tuple[Given, ...]:
+        """The inputs that hold, in turn: numbers, or signals over the time."""
+        return self._given
+
+    @property
     def origin(self) -> Origin:
         """What it is made of, and where it began."""
         return self._origin
@@ -229,10 +234,7 @@ class Stepper:
         for name, value in inputs.items():
             at = self._places.get(name)
             if at is None:
-                raise SignalError(
-                    f"unknown input {name!r}{nearest(name, self._origin.inputs)}; the model's inputs are "
-                    f"{', '.join(self._origin.inputs) or 'none'}"
-                )
+                raise unknown_input(name, self._origin.inputs)
             told = told_input(value, name)
             changed |= told != given[at]
             given[at] = told
@@ -262,6 +264,12 @@ class Stepper:
         program = self._origin.model.program
         states = tuple(name.name for name in (*program.states, *program.law_states))
         return states, self._origin.inputs, tuple(port.name for port in program.friction)
+
+
+def unknown_input(name: str, inputs: Sequence[str]) -> SignalError:
+    """What is said of an input that a model does not have."""
+    told = f"unknown input {name!r}{nearest(name, inputs)}"
+    return SignalError(f"{told}; the model's inputs are {', '.join(inputs) or 'none'}")
 
 
 def plainly(given: Sequence[Given]) -> tuple[Given, ...]:
