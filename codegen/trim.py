@@ -3,11 +3,13 @@
 from collections.abc import Hashable, Mapping
 
 from bondgraph.errors import StructureError
+from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.nodes.machined import told_numbers
 from codegen.instants.equilibrium import equilibrium
 from codegen.model.snapshot import Snapshot
 from codegen.modes.closed import ClosedModel
 from codegen.modes.steady import choices
+from codegen.simulate import bare_simulator
 from codegen.simulator import Simulator
 
 
@@ -19,7 +21,7 @@ def trim(
 ) -> dict[str, float]:
     """A point at which all states rest under constant inputs: every signal's value by name.
 
-    What sampled controllers keep rests where they set it to what it is.
+    What sampled controllers keep rests where they set it to what it is; delays give what they read.
 
     ``initial``: states to start the search from. ``mode``: what friction and switches do there, in the
     words of events, such as ``{"dog": "off", "brake": "stick"}``; of a state machine in which mode it stays,
@@ -45,11 +47,23 @@ def trim(
         raise StructureError(
             f"trim takes what codegen.simulator returns, not a {type(simulator).__name__}"
         )
+    simulator = _timeless(simulator)
     model = simulator.closed
     mode, initial = told_numbers(model.program.equations.machines, mode, initial)
     choices(model, mode)
     pieces, start = simulator.steady(inputs or {}, initial or {})
     return _named(model, equilibrium(model, pieces, start, mode))
+
+
+def _timeless(simulator: Simulator) -> Simulator:
+    """The same model with what delays read at once in place of what they give: at rest that is one."""
+    closed = simulator.closed
+    if not closed.program.delayed:
+        return simulator
+    late = {one.given: ExpressionLaw(one.value) for one in closed.equations.delays}
+    at_once = {name.name: late[name] for name in closed.program.delayed}
+    laws = {**(simulator.laws or {}), **at_once}
+    return bare_simulator(closed.equations, closed.parameters, laws)
 
 
 def _named(model: ClosedModel, now: Snapshot) -> dict[str, float]:

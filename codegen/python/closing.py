@@ -5,6 +5,7 @@ from codegen.energy.holdings import Holdings
 from codegen.program.records import Group, Program
 from codegen.python.beginning import beginning, held_table
 from codegen.python.blocks import bound, law_names
+from codegen.python.lagging import delayed_table, lagging
 from codegen.python.looking import model_words, table_shapes
 from codegen.python.tables import slip_rows
 from codegen.python.text import RULE, listing, quoted
@@ -74,7 +75,7 @@ def simulate(time, initial, inputs, parameters=None, step=STEP, dead_band=1e-6{a
     """Integrate with steps of at most ``step`` [s] and sample at the times given.
 
     ``initial``: states{also_held} by name, the rest start at {rest}. ``inputs``: a number or a
-    function of time for each of INPUTS. ``dead_band``: slips below it may stick. {told}The
+    function of time for each of INPUTS{but}. ``dead_band``: slips below it may stick. {told}The
     work of a step is bounded: nothing is located inside it. Returns arrays by name: t, states,
     inputs, outputs, {what}.{values}
 
@@ -123,6 +124,7 @@ def needed(program: Program, slips: SlipRows | None, implicit: bool, held: bool)
     events = {"stopping": program.stopped, "resetting": program.events, "hanging": program.hanging}
     names += [f"codegen.stops.{name}" for name, wanted in events.items() if wanted]
     names += ["codegen.fixed.ticking"] if program.clocks else []
+    names += ["codegen.fixed.remembering"] if program.delayed else []
     names += ["codegen.fixed.tabled"] if program.tables else []
     names += ["codegen.fixed.starting"] if held else []
     back = any(table.turned for table in program.tables)
@@ -154,6 +156,9 @@ def closing(
     if program.clocks:
         base = f"TickingSteps, {base}"
         lines += clocks(program)
+    if program.delayed:
+        base = f"RememberingSteps, {base}"
+        lines += delayed_table(program)
     if program.tables:
         lines += ["", *table_shapes(program)]
     base = f"InsideTables, {base}" if refusals(program) else base
@@ -165,10 +170,12 @@ def closing(
     words = (_SWITCHED if program.guarded else _PLAIN) | (_TOLD if told else _FROM_ZERO)
     resets = "\n    resets = RESETS\n" if program.events else ""
     resets += "\n    clocks, ticks = CLOCKS, TICKS\n" if program.clocks else ""
+    resets += "\n    delayed = DELAYED\n" if program.delayed else ""
     resets += "\n    refusing = REFUSING\n" if refusals(program) else ""
     words |= model_words(program)
     words |= beginning(words, held)
-    words["own"] += ticking(program)
+    words["but"] = " but DELAYED" if program.delayed else ""
+    words["own"] += ticking(program) + lagging(program)
     model = _MODEL.format(base=base, arguments=arguments, resets=resets, **words)
     return [*lines, *model.splitlines()]
 

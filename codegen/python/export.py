@@ -25,6 +25,7 @@ from codegen.python.blocks import (
     values_function,
 )
 from codegen.python.closing import closing, needed
+from codegen.python.lagging import lagging_functions
 from codegen.python.looking import lookup_tables
 from codegen.python.modules import written_out
 from codegen.python.tables import friction_tables, places, public, step_settings
@@ -102,6 +103,7 @@ def to_python(
         *(friction_tables(program, closed.slips) if program.friction else ()),
         *step_settings(longest, len(program.friction)),
         *_functions(program, names),
+        *lagging_functions(program, names),
         *held_function(held, program, names),
     ]
     same = [RULE, "# What follows is the same for every model.", "", "", fixed]
@@ -117,6 +119,7 @@ def _head(
     groups = (
         ("states", (*program.states, *program.law_states)),
         ("inputs", program.external),
+        *([("of these by delays", program.delayed)] if program.delayed else []),
         ("outputs", program.outputs),
     )
     rows = []

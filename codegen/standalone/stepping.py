@@ -1,7 +1,7 @@
 """A model in fixed steps: rates, outputs, and one classical Runge-Kutta step in a bounded
 time."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike as Values
 from codegen.standalone.arrays import Array, Mode
 from codegen.standalone.evaluation import Contact, Form, Point, evaluated, vector
 from codegen.standalone.fastest import Fastest
+from codegen.standalone.given import Signal, functions
 from codegen.standalone.instant import Instant
 from codegen.tuning import TUNING
 
@@ -85,6 +86,10 @@ class FixedSteps:
                 now = evaluated(self.form, self.contact, at._replace(seen=self.seen), mode)
             self._latest = what, now
         return self._latest[1]
+
+    def signals(self, inputs: Mapping[str, object]) -> list[Signal]:
+        """A function of time for each external input."""
+        return functions(inputs, self.names.external)
 
     def begin(self, at: Point, on: Collection[str], named: Collection[str]) -> Array:
         """The vector s with which a run begins; no port is a switch, or could be ``on``."""

@@ -25,7 +25,7 @@ def past() -> Kind:
         [bg.Se("motor", "K*(ref - late)"), bg.One("shaft"), bg.I("J", "J", flow="omega"),
          bg.Delay("late", "omega", time="T")], "motor>shaft>J")  # fmt: skip
     return Kind("loop over a delay", graph, {"J": J, "K": K, "T": T}, {"ref": f"{REF}"}, known, 1.6, at=0.31,
-                rest={"inputs": {"ref": REF}})  # fmt: skip
+                rest={"inputs": {"ref": 0.0}, "initial": {"omega": 1.0}})  # fmt: skip
 
 
 def line() -> Kind:
@@ -51,7 +51,7 @@ def line() -> Kind:
          bg.Controller("p", every=every, gives={"tau": "K*(ref - omega)"}),
          bg.Delay("arrived", "tau", time="T")], "motor>shaft>J shaft>b")  # fmt: skip
     return Kind("sampled controller over a line", graph, {"J": J, "b": B, "K": K, "T": T}, {"ref": f"{REF}"},
-                known, 1.03, at=0.32, rest={"inputs": {"ref": REF}})  # fmt: skip
+                known, 1.03, at=0.32, rest={"inputs": {"ref": 0.0}, "initial": {"omega": 1.0}})  # fmt: skip
 
 
 def pushed_late() -> Kind:

@@ -47,6 +47,12 @@ REFUSALS = (
         "not affine",
     ),
     Refusal(
+        ("past", "line", "pushed_late"), ("linearize",), True,
+        "What a delay gives hangs on a whole stretch of the past, so about a point there are no finitely many "
+        "states, and no A, J and B; a `bg.TransferFunction` in its place stands for it as closely as its user wants.",
+        "a delay has no finite number of states",
+    ),
+    Refusal(
         ("together", "bridge", "two_dogs", "resting"), ("C, exact",), True,
         "Redundant ports (two brakes at rest, two dogs, two jumps, four diodes without a current) share a "
         "load so that the largest part of what one can bear is the least: which one that is changes with "
