@@ -113,11 +113,13 @@ class Course:
         return np.maximum(self.at.sizes, np.abs(read.values).max(axis=1))
 
     def _take(self, stop: float, read: _Read, limit: float) -> None:
-        t, smooth = self.at.t, self.at.smooth
-        pairs = zip(self.at.pasts, read.values, strict=True)
-        pasts = tuple(past.since(t).taken(t, stop, row, smooth) for past, row in pairs)
+        t, turns = self.at.t, not self.at.smooth
         sizes = tuple(self._largest(read).tolist())
-        self.at = Reached(stop, pasts, sizes, 2 * (stop - t), stop < limit)
+        rows = zip(self.at.pasts, read.values, sizes, strict=True)
+        pasts = tuple(past.since(t).taken(t, stop, row, turns, size) for past, row, size in rows)
+        # A part that ended where it had to tells nothing of how long others may be.
+        length = 2 * (stop - t) if stop < limit else max(2 * (stop - t), self.at.length)
+        self.at = Reached(stop, pasts, sizes, length, stop < limit)
 
     def _over(self, stepper: Stepper, instant: float) -> tuple[Event, ...]:
         """Over what is no more than a rounding ahead."""

@@ -1,5 +1,6 @@
 """What a delay has read so far, as a signal of what it gives: polynomials between breakpoints."""
 
+import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -10,6 +11,7 @@ from codegen.inputs.pieces import Piece
 from codegen.inputs.signal import Pieced
 from codegen.model.lags import Lag
 from codegen.numbers.arrays import Array
+from codegen.tuning import TUNING
 
 NODES = 12
 """So many points of a part make its polynomial."""
@@ -31,12 +33,16 @@ class Past:
     parts: tuple[Piece, ...]
     smooth: frozenset[float] = frozenset()
 
-    def taken(self, begin: float, end: float, values: Array, smooth: bool) -> "Past":
-        """With what was read at the nodes of a part; ``smooth``: whether it goes on from the part before."""
+    def taken(self, begin: float, end: float, values: Array, turns: bool, size: float) -> "Past":
+        """With what was read at the nodes of a part.
+
+        ``turns``: whether it may not go on smoothly from the part before; ``size``: the largest that was read.
+        """
         half = 0.5 * (end - begin)
         powers = from_nodes() @ values / half ** np.arange(NODES)
         part = Piece(begin + half + self.late, ((0.0, tuple(powers.tolist())),), 0.5 / half)
-        smoothly = self.smooth | {self.points[-1]} if smooth else self.smooth
+        broken = turns and breaks_off(self.parts[-1], part, self.points[-1], self.late, size)
+        smoothly = self.smooth if broken else self.smooth | {self.points[-1]}
         return replace(
             self, points=(*self.points, end + self.late), parts=(*self.parts, part), smooth=smoothly
         )
@@ -56,14 +62,40 @@ class Past:
         return Pieced(self.points[:-1], self.parts, self.smooth)
 
     def following(self, t: float) -> float:
-        """The next breakpoint after t that is known."""
-        over = bisect_right(self.points, t)
-        return self.points[over] if over < len(self.points) - 1 else np.inf
+        """The next point after t that is known, and at which it does not go on smoothly."""
+        ahead = self.points[bisect_right(self.points, t) : -1]
+        return next((point for point in ahead if point not in self.smooth), np.inf)
 
 
 def begun(lag: Lag, begin: float) -> Past:
     """A delay of which nothing is known but its start, at the begin [s] of a run."""
     return Past(lag.late, (begin + lag.late,), (Piece(0.0, ((0.0, (lag.start,)),)),))
+
+
+def breaks_off(before: Piece, after: Piece, seam: float, late: float, size: float) -> bool:
+    """Whether steps over a seam [s] would err there by more than is nothing of what is read.
+
+    Values and slopes up to the third are compared, over steps as long as the parts, or a good part of the
+    delay; where parts are short, slopes of high order are rounding (Markov's bound).
+    """
+    lengths = [1 / one.pace for one in (before, after) if one.pace]
+    h = max(*lengths, TUNING.seam_reach * late)
+    jumps = np.abs(_rises(after, seam, h) - _rises(before, seam, h))
+    magnified = (h / min(lengths)) ** np.arange(4) * MARKOV
+    return bool((jumps > TUNING.delayed * magnified * size).any())
+
+
+MARKOV = np.array([1.0, NODES**2, NODES**4 / 3, NODES**6 / 15])
+"""So much larger than a polynomial's error its slopes' errors may be, at the ends of a part."""
+
+
+def _rises(piece: Piece, t: float, h: float) -> Array:
+    """A polynomial's value and slopes at a time as it would rise over steps of h."""
+    powers = np.array(piece.terms[0][1])
+    tau, k = t - piece.start, np.arange(len(powers))
+    rows = [np.array([math.comb(n, order) for n in k.tolist()]) * tau ** np.maximum(k - order, 0) * h**order
+            for order in range(4)]  # fmt: skip
+    return np.array([row @ powers for row in rows])
 
 
 def nodes() -> Array:
