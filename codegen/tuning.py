@@ -51,10 +51,16 @@ class Tuning:
     seam: float = _told(
         1e-9, "of what a delay reads: what steps over a seam of its parts may err by"
     )
-    seam_rounding: float = _told(1e-12, "the same by rounding, times the lengths of parts over theirs")
+    seam_rounding: float = _told(
+        1e-12, "the same by rounding, times the lengths of parts over theirs"
+    )
     seam_reach: float = _told(2.0**-5, "of a delay: no step over a seam counts as shorter")
-    renewed: int = _told(40, "so often a unit renews what its delays read between an importer's points")
-    least_memory: int = _told(1024, "parts that exported C remembers for its delays, at the least ..")
+    renewed: int = _told(
+        40, "so often a unit renews what its delays read between an importer's points"
+    )
+    least_memory: int = _told(
+        1024, "parts that exported C remembers for its delays, at the least .."
+    )
     most_memory: int = _told(65536, ".. and at the most, unless its caller tells")
     tiny: float = _told(1e-300, "larger than nothing")
     exchanged: float = _told(1e-14, "of its terms, by which a shared effort may be above its share")

@@ -16,7 +16,8 @@ def Delay(name: Hashable, value: object, time: object, start: object = 0, **more
     """A signal of this name: an expression as it was ``time`` [s] ago; ``start`` until a run has gone so far.
 
     Jumps and corners travel on: each is a breakpoint so much later. Nothing rational stands in for it, so it
-    has no transfer function of finite order: `linearize` and exports refuse it.
+    has no transfer function of finite order, and `linearize` refuses it. Runs, sweeps, steppers and exports
+    remember as much of the past as it needs; at rest, for `trim`, it gives what it reads.
 
     Raises nothing: `validate` looks at nodes.
 

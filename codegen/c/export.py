@@ -26,8 +26,8 @@ from codegen.c.turnings import turned_laws
 from codegen.energy.holdings import holdings
 from codegen.model.commands import conditions_told
 from codegen.model.doubts import warn_of_doubts
-from codegen.model.lags import lags
 from codegen.model.resting import warn_of_rests
+from codegen.model.sources import lags
 from codegen.modes.closed import ClosedModel
 from codegen.modes.steps import is_implicit, round_step
 from codegen.ports.holds import check_sets

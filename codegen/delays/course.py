@@ -110,7 +110,7 @@ class Course:
         return bool((np.array(wrong) <= TUNING.delayed * self._largest(read) + TUNING.tiny).all())
 
     def _largest(self, read: _Read) -> Array:
-        return np.maximum(self.at.sizes, np.abs(read.values).max(axis=1))
+        return np.asarray(np.maximum(self.at.sizes, np.abs(read.values).max(axis=1)))
 
     def _take(self, stop: float, read: _Read, limit: float) -> None:
         t, turns = self.at.t, not self.at.smooth

@@ -9,7 +9,7 @@ import numpy as np
 
 from codegen.inputs.pieces import Piece
 from codegen.inputs.signal import Pieced
-from codegen.model.lags import Lag
+from codegen.model.sources import Lag
 from codegen.numbers.arrays import Array
 from codegen.tuning import TUNING
 
@@ -22,10 +22,10 @@ CHECKS = (0.07, 0.39, 0.83)
 
 @dataclass(frozen=True)
 class Past:
-    """What one delay gives: its start, and from its ``late`` [s] after the begin on what was read so much earlier.
+    """What one delay gives: its start, and ``late`` [s] after the begin what was read so much earlier.
 
-    Between the ``points`` hold the ``parts``, of which the first goes back without end; ``smooth``: the points
-    at which it goes on smoothly. Beyond the last of them nothing is known.
+    Between the ``points`` hold the ``parts``, of which the first goes back without end; ``smooth``: the
+    points at which it goes on smoothly. Beyond the last of them nothing is known.
     """
 
     late: float
@@ -36,7 +36,7 @@ class Past:
     def taken(self, begin: float, end: float, values: Array, turns: bool, size: float) -> "Past":
         """With what was read at the nodes of a part.
 
-        ``turns``: whether it may not go on smoothly from the part before; ``size``: the largest that was read.
+        ``turns``: whether it may not go on smoothly from the part before; ``size``: the largest so far.
         """
         half = 0.5 * (end - begin)
         powers = from_nodes() @ values / half ** np.arange(NODES)
@@ -53,9 +53,7 @@ class Past:
         if not 0 < over < len(self.points):
             return self
         points = self.points[over:]
-        return replace(
-            self, points=points, parts=self.parts[over:], smooth=self.smooth & {*points}
-        )
+        return replace(self, points=points, parts=self.parts[over:], smooth=self.smooth & {*points})
 
     def signal(self) -> Pieced:
         """What it gives as far as it is known; the last piece goes on beyond."""

@@ -8,7 +8,7 @@ import sympy as sp
 
 from bondgraph.nodes.lagging import Lagging
 from codegen.model.exact_values import at_parameters
-from codegen.model.lags import Lag, lags
+from codegen.model.sources import Lag, lags
 from codegen.numbers.lambdified import lambdified
 
 

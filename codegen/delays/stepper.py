@@ -8,6 +8,7 @@ from bondgraph.errors import SignalError
 from codegen.delays.course import Course, Reached
 from codegen.delays.readings import Reading
 from codegen.inputs.signal import Pieced, Signal
+from codegen.runs.track import Event
 from codegen.standalone.switchings import Clock
 from codegen.stepping.going import as_signals
 from codegen.stepping.known import Sources
@@ -80,7 +81,7 @@ class LateStepper(Stepper):
 
     def _go(self, time: float, late: float, inputs: Mapping[str, object]) -> Signals:
         self._refuse_unknown(inputs)
-        before, events = self.state, ()
+        before, events = self.state, tuple[Event, ...]()
         try:
             if inputs:
                 self._events = ()

@@ -1,6 +1,6 @@
 """What delays have read of a run in fixed steps, and what they give of it.
 
-Polynomials, one after the other, of what each read in a step; as codegen/runtime/model/model_memory.c.
+Polynomials, one after the other, of what each read in a step; as model_memory.c has them.
 """
 
 from bisect import bisect_right
@@ -39,10 +39,10 @@ class Past:
 
 
 class Memory:
-    """What was read from ``since`` up to ``until`` [s]; what begins at a break has jumps or corners.
+    """What was read from ``since`` up to ``until`` [s]; at a break there is a jump or a corner.
 
-    ``late``: each delay [s]; ``start``: what it gives before. It gives what holds in the ``stretch``
-    between two breaks.
+    ``late``: each delay [s]; ``start``: what it gives before. It gives what holds in the
+    ``stretch`` between two breaks.
     """
 
     def __init__(self, late: Array, start: Array) -> None:
@@ -82,7 +82,7 @@ class Memory:
         return float(self._parts[begun - 1].rises(t - late, 1.0)[0, delay])
 
     def take(self, end: float, values: Array, turns: bool) -> None:
-        """What was read up to ``end`` [s]: a row for each delay, at PLACES; whether it may not go on smoothly."""
+        """What was read up to ``end`` [s], delays by rows; ``turns``: a break may be there."""
         part = Past(self.until, end, values @ POWERS.T)
         self.sizes = np.maximum(self.sizes, np.abs(values).max(axis=1))
         if (turns or not self._parts) and self._breaks_off(part):
@@ -98,7 +98,7 @@ class Memory:
         return bisect_right(times, t + near, key=lambda time: time + late)
 
     def _breaks_off(self, part: Past) -> bool:
-        """Whether a step over its begin would err by more than is nothing; of short parts that is rounding."""
+        """Whether a step over its begin would err by more than rounding, and a little."""
         length = part.end - part.begin
         h, shortest = max(length, TUNING.seam_reach * float(self.late.min())), length
         before = np.array([self.start, 0 * self.start, 0 * self.start])

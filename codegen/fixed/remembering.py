@@ -3,16 +3,15 @@
 What a delay reads in a step is told by the states there, between its ends by Hermite's polynomial.
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
 from codegen.fixed.memory import PLACES, Memory
 from codegen.standalone.arrays import Array, Mode
 from codegen.standalone.evaluation import Point
-from codegen.standalone.given import Signal, functions
 from codegen.standalone.instant import Formula
-from codegen.standalone.stepping import FixedSteps, Given
+from codegen.standalone.stepping import FixedSteps, Given, Signal
 from codegen.tuning import TUNING
 
 
@@ -26,14 +25,17 @@ class RememberingSteps(FixedSteps):
     memory: Memory
     _end: tuple[bytes, bytes, Mode] | None = None
 
-    def signals(self, inputs: Mapping[str, object]) -> list[Signal]:
-        """A function of time for each input; of what delays give one that remembers."""
-        names = self.names.external
-        wanted = [name for name in names if name not in self.delayed]
-        given = iter(functions(inputs, wanted))
+    @property
+    def wanted(self) -> Sequence[str]:
+        """The external inputs that no delay gives."""
+        return [name for name in self.names.external if name not in self.delayed]
+
+    def recalling(self, signals: list[Signal]) -> list[Signal]:
+        """A function of time for each external input; of what delays give one that remembers."""
+        given = iter(signals)
         return [
             self._remembered(self.delayed.index(name)) if name in self.delayed else next(given)
-            for name in names
+            for name in self.names.external
         ]
 
     def _remembered(self, delay: int) -> Signal:
@@ -66,7 +68,9 @@ class RememberingSteps(FixedSteps):
             y = 1 - x
             between = y * y * (1 + 2 * x) * s + x * x * (3 - 2 * x) * end
             between = between + h * x * y * (y * rates[0] - x * rates[1])
-            now = self.at(Point(t + x * h, between, self._inputs(t + x * h, x, given), given[1][1]), mode)
+            now = self.at(
+                Point(t + x * h, between, self._inputs(t + x * h, x, given), given[1][1]), mode
+            )
             values.append(self.read_late(now))
         self.memory.take(t + h, np.array(values).T, turns)
         self._end = end.tobytes(), given[2][0].tobytes(), after
@@ -88,5 +92,7 @@ def lags_told(numbers: Sequence[float], names: Sequence[str]) -> tuple[Array, Ar
     late, start = np.array(numbers, dtype=float).reshape(2, -1)
     for name, time, first in zip(names, late, start, strict=True):
         if not 0 < time < np.inf or not np.isfinite(first):
-            raise ValueError(f"{name}: a delay is above zero and starts at a number, not {time}, {first}")
+            raise ValueError(
+                f"{name}: a delay is above zero and starts at a number, not {time}, {first}"
+            )
     return late, start

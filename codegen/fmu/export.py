@@ -26,8 +26,8 @@ from codegen.fmu.xml import build_description, description
 from codegen.inputs.signal import Signal
 from codegen.inputs.signals import Constant, as_signal
 from codegen.model.doubts import warn_of_doubts
-from codegen.model.lags import with_first
 from codegen.model.resting import warn_of_rests
+from codegen.model.sources import with_first
 from codegen.modes.pace import time_constant
 from codegen.modes.steps import round_step, step_at_start
 from codegen.program.identifiers import identifiers

@@ -286,7 +286,9 @@ class Program:
     def _values(self) -> Iterator[sp.Expr]:
         """All that is evaluated."""
         sided = () if self.corners is None else (self.corners.values, self.corners.on_sides)
-        yield from (value for code in (*self.blocks, *sided, self.delaying) for value in code.values)
+        yield from (
+            value for code in (*self.blocks, *sided, self.delaying) for value in code.values
+        )
         yield from self.sources
 
     @property

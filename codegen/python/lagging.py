@@ -16,7 +16,9 @@ def lagging_functions(program: Program, names: Names) -> list[str]:
     lines = values_function("read_late", "What each delay reads.", read, rows, names)
     numbers = block([*told[1::3], *told[2::3]])
     rows = [*(f"how late {name} is [s]" for name in given), *(f"{name} before" for name in given)]
-    return lines + values_function("lags", "Of each delay its time and its start.", numbers, rows, names)
+    return lines + values_function(
+        "lags", "Of each delay its time and its start.", numbers, rows, names
+    )
 
 
 def delayed_table(program: Program) -> list[str]:

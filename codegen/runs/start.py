@@ -9,7 +9,7 @@ from bondgraph.equations import StateEquations
 from bondgraph.errors import ParameterError, StructureError
 from codegen.corners.located import with_corners
 from codegen.inputs.signal import Signal
-from codegen.model.lags import with_first
+from codegen.model.sources import with_first
 from codegen.model.starts import by_states, told_starts
 from codegen.modes.closed import ClosedModel
 from codegen.modes.steps import step_at_start
@@ -68,8 +68,8 @@ def start_of(
     closed = ClosedModel(program, equations, parameters)
     names = [symbol.name for symbol in (*program.states, *program.law_states)]
     wanted = [symbol.name for symbol in program.wanted]
-    told = signals_for({**dict.fromkeys(wanted, 0.0), **(inputs or {})}, wanted)
-    signals = with_first(program, told, closed.parameters)
+    given = signals_for({**dict.fromkeys(wanted, 0.0), **(inputs or {})}, wanted)
+    signals = with_first(program, given, closed.parameters)
     told = by_states(program.equations, parameters, initial or {})
     states = initial_values({**told_starts(program.equations, parameters), **told}, names)
     on = checked_modes([port.name for port in program.switches], initially_on)

@@ -1,6 +1,6 @@
 """Runs in fixed steps, sampled at given times."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,9 +9,40 @@ from numpy.typing import ArrayLike
 from codegen.standalone.arrays import Array, Mode
 from codegen.standalone.evaluation import Point, vector
 from codegen.standalone.instant import Instant
-from codegen.standalone.given import Signal, named
-from codegen.standalone.stepping import FixedSteps, Given
+from codegen.standalone.stepping import FixedSteps, Given, Signal
 from codegen.tuning import TUNING
+
+
+def named(
+    changed: Mapping[str, object], defaults: Mapping[str, float], what: str
+) -> dict[str, float]:
+    """Defaults with some of them changed, as floats; names that are not known are refused."""
+    if unknown := [name for name in changed if name not in defaults]:
+        raise ValueError(f"no {what} is called {unknown[0]!r}; there is {', '.join(defaults)}")
+    values = {**defaults, **changed}
+    return {name: number(values[name], f"{what} {name}") for name in defaults}
+
+
+def number(value: Any, what: str) -> float:
+    """A float; what is no finite real number is refused."""
+    if isinstance(value, (str, complex)) or not np.isfinite(float(value)):
+        raise ValueError(f"{what} must be a finite real number, not {value!r}")
+    return float(value)
+
+
+def functions(inputs: Mapping[str, object], names: Sequence[str]) -> list[Signal]:
+    """A function of time for each input; a number is held."""
+    if wrong := {*names} ^ {*inputs}:
+        raise ValueError(f"inputs must be exactly {names}; not so: {sorted(wrong)}")
+    return [_signal(name, inputs[name]) for name in names]
+
+
+def _signal(name: str, given: object) -> Signal:
+    if callable(given):
+        return given
+    value = number(given, f"input {name}")
+    return lambda t: value
+
 
 def sampled(signals: Sequence[Signal], t: float, h: float) -> list[Given]:
     """The inputs and their rates at the start, the middle and the end of a step.
@@ -36,7 +67,8 @@ def run(
     initially_on: Collection[str] = (),
 ) -> dict[str, Array]:
     """Integrate with steps of at most ``step`` [s] and sample at the times given."""
-    signals, names = model.signals(inputs), model.names
+    names = model.names
+    signals = model.recalling(functions(inputs, model.wanted))
     time = np.array(time, dtype=float)
     if time.ndim != 1 or len(time) == 0 or not np.isfinite(time).all() or (np.diff(time) < 0).any():
         raise ValueError("time must be a list of finite points that do not go back")

@@ -1,7 +1,7 @@
 """A model in fixed steps: rates, outputs, and one classical Runge-Kutta step in a bounded
 time."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike as Values
 from codegen.standalone.arrays import Array, Mode
 from codegen.standalone.evaluation import Contact, Form, Point, evaluated, vector
 from codegen.standalone.fastest import Fastest
-from codegen.standalone.given import Signal, functions
 from codegen.standalone.instant import Instant
 from codegen.tuning import TUNING
 
@@ -18,6 +17,9 @@ CHECK_STEP = True
 """Whether each step is checked for stability, at two evaluations more."""
 
 Chosen = Mode | None
+
+Signal = Callable[[float], float]
+"""An external input over the time."""
 
 Given = tuple[Array, Array]
 """The external inputs and their rates at one time."""
@@ -87,9 +89,14 @@ class FixedSteps:
             self._latest = what, now
         return self._latest[1]
 
-    def signals(self, inputs: Mapping[str, object]) -> list[Signal]:
-        """A function of time for each external input."""
-        return functions(inputs, self.names.external)
+    @property
+    def wanted(self) -> Sequence[str]:
+        """The external inputs that a run is given: all of them."""
+        return self.names.external
+
+    def recalling(self, signals: list[Signal]) -> list[Signal]:
+        """A function of time for each external input, of those for the wanted ones."""
+        return signals
 
     def begin(self, at: Point, on: Collection[str], named: Collection[str]) -> Array:
         """The vector s with which a run begins; no port is a switch, or could be ``on``."""

@@ -206,8 +206,8 @@ int bg_memory_take(bg_memory *m, double end, int count, const double *places,
         write_out(count, places, values[i], to->powers[i]);
     }
     int broken = 0;
-    for (int i = 0; i < BG_DELAYS && (turns || is->count == 1); i++)
-        broken |= breaks_off(m, i);
+    for (int i = 0; i < BG_DELAYS; i++)
+        broken |= (turns || is->count == 1) && breaks_off(m, i);
     if (broken)
         m->breaks[(is->first_break + is->breaks++) % BG_MEMORY] = is->until;
     is->until = end;

@@ -1,5 +1,6 @@
 """Delays against solutions by hand: polynomials of the method of steps, shifted inputs, held segments."""
 
+import pickle
 from math import exp, factorial
 
 import numpy as np
@@ -90,22 +91,85 @@ def test_sweeps_and_records_of_runs_with_delays() -> None:
     assert run.integral("past")[-1] == pytest.approx(1 - run["x"][-1], abs=1e-9)
 
 
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_breaks_that_no_step_sees_are_none(backend: str) -> None:
+    """Instants and two delays without a common measure: jumps wear off, so parts do not grow in number."""
+    graph = bg.graph(
+        [bg.Se("motor", "1*line"), bg.One("shaft"), bg.I("J", "J", flow="omega"), bg.R("b", "b"),
+         bg.Controller("p", every=0.05, gives={"u": "K*(1 - seen)"}),
+         bg.Delay("line", "u", time=0.0323), bg.Delay("seen", "omega", time=0.0113)],
+        "motor > shaft > J, shaft > b")  # fmt: skip
+    J, b, K, end = 0.1, 0.2, 0.5, 0.4
+    model = codegen.simulator(bg.derive(graph), {"J": J, "b": b, "K": K}, backend=backend)
+    w, torque, at, sent = 0.0, 0.0, 0.0, list[tuple[float, float]]()
+    ticks = [(0.05 * k, 1, 0.0) for k in range(8)]
+    # What is seen at an instant was omega so much earlier: before that instant it is noted.
+    notes = [(0.05 * k - 0.0113, 0, 0.0) for k in range(1, 8)]
+    arrivals = [(0.05 * k + 0.0323, 2, 0.0) for k in range(8)]
+    seen = [0.0]
+    for time, what, _ in sorted([*ticks, *notes, *arrivals, (end, 3, 0.0)]):
+        w = torque / b + (w - torque / b) * exp(-b / J * (time - at))
+        at = time
+        if what == 0:
+            seen.append(w)
+        elif what == 1:
+            sent.append((time, K * (1 - seen.pop(0))))
+        elif what == 2:
+            torque = sent.pop(0)[1]
+    run = model.run([0.0, end])
+    assert run["omega"][-1] == pytest.approx(w, abs=1e-11)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_stepper_remembers(backend: str) -> None:
+    graph = bg.graph(
+        [bg.State("x", "-past + u", start=1), bg.Delay("past", "x", time="T", start=1)]
+    )
+    ready = codegen.simulator(bg.derive(graph), {"T": 1}, backend=backend)
+    stepper = ready.stepper(inputs={"u": 0})
+    assert stepper.backend == backend
+    times = np.arange(1, 41) * 0.125
+    found = [stepper.advance(0.125)["x"] for _ in times]
+    np.testing.assert_allclose(found, _hayes(times), atol=1e-12)
+    assert stepper.signals["past"] == pytest.approx(float(_hayes(np.array([4.0]))[0]), abs=1e-12)
+    kept = pickle.loads(pickle.dumps(stepper.state))
+    there = stepper.advance(1.5, u=2.0)["x"]
+    stepper.restore(kept)
+    assert (stepper.time, stepper.signals["x"]) == (5.0, found[-1])
+    assert stepper.advance(1.5, u=2.0)["x"] == pytest.approx(there, abs=1e-14)
+    one = ready.run([0.0, 6.5], inputs={"u": codegen.Step(5.0, 2.0)})
+    assert there == pytest.approx(one["x"][-1], abs=1e-12)
+    with pytest.raises(bg.SignalError, match="unknown input 'past'; the model's inputs are u"):
+        stepper.advance(0.1, past=1.0)
+    with pytest.raises(bg.SignalError, match="unknown input 'past'"):
+        stepper.give(past=1.0)
+    with pytest.raises(bg.SignalError, match="goes back to what its state was"):
+        stepper.restore("before")
+    assert stepper.advance(0.0625)["x"] != there
+
+
+def test_at_rest_a_delay_gives_what_it_reads() -> None:
+    graph = bg.graph([bg.State("x", "u - 2*past"), bg.Delay("past", "x + x**3", time="T", start=5)])
+    point = codegen.trim(codegen.simulator(bg.derive(graph), {"T": 1}), {"u": 4.0}, {"x": 0.5})
+    assert point["x"] == pytest.approx(1.0, abs=1e-9)
+    assert point["past"] == pytest.approx(2.0, abs=1e-9)
+
+
 def test_what_has_no_past_refuses_delays_by_name() -> None:
     graph = bg.graph([bg.State("x", "-past", start=1), bg.Delay("past", "x", time="T", start=1)])
     equations = bg.derive(graph)
     ready = codegen.simulator(equations, {"T": 1})
     with pytest.raises(bg.SignalError, match="delay past: a delay has no finite number of states"):
         bg.linearize(equations)
+    with pytest.raises(bg.StructureError, match="delay past: what it gives is told by the past"):
+        ready.rhs(0.0, [1.0])
     for ask in (
-        lambda: codegen.to_c(equations, {"T": 1}), lambda: codegen.to_python(equations, {"T": 1}),
-        lambda: codegen.trim(ready), lambda: ready.stepper(), lambda: ready.rhs(0.0, [1.0]),
+        lambda: codegen.simulator(equations, {"T": 0}).run([0, 1]),
+        lambda: codegen.simulator(equations, {"T": 0}).stepper(),
+        lambda: codegen.to_c(equations, {"T": 0}), lambda: codegen.to_python(equations, {"T": 0}),
     ):  # fmt: skip
-        with pytest.raises(
-            bg.StructureError, match="delay past: what it gives is told by the past"
-        ):
+        with pytest.raises(bg.ParameterError, match="delay past: its time is 0"):
             ask()
-    with pytest.raises(bg.ParameterError, match="delay past: its time is 0"):
-        codegen.simulator(equations, {"T": 0}).run([0, 1])
     with pytest.raises(bg.ParameterError, match=r"delay past: missing parameter\(s\) T"):
         codegen.simulator(equations, {}).run([0, 1], inputs={"T": 1})
     with pytest.raises(bg.StructureError, match="its time is -1"):

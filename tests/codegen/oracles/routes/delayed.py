@@ -8,7 +8,7 @@ from references.build import bond_graph
 
 import bondgraph as bg
 from oracles.routes.kind import Array, Kind
-from oracles.routes.signals import B, J, REF
+from oracles.routes.signals import REF, B, J
 
 
 def past() -> Kind:
@@ -36,7 +36,9 @@ def line() -> Kind:
         instants = np.arange(0, t[-1] + every, every)
         changes = sorted([(at, False) for at in instants] + [(at + T, True) for at in instants])
         w, torque, at, sent, found = 0.0, 0.0, 0.0, list[float](), np.zeros_like(t)
-        for (begin, arrives), end in zip(changes, [*(c[0] for c in changes[1:]), np.inf], strict=True):
+        for (begin, arrives), end in zip(
+            changes, [*(c[0] for c in changes[1:]), np.inf], strict=True
+        ):
             w = torque / B + (w - torque / B) * np.exp(-B / J * (begin - at))
             at = begin
             torque = sent.pop(0) if arrives else torque
@@ -63,10 +65,11 @@ def pushed_late() -> Kind:
         return {"v": np.maximum(2 / m * first - 1 / m * then, 0)}
 
     graph = bond_graph(
-        [bg.Se("push", "1*late"), bg.One("n"), bg.I("m", "m", flow="v"), bg.R("floor", law=bg.DryFriction("N")),
-         bg.Delay("late", "P", time="T")], "push>n>m n>floor")  # fmt: skip
-    return Kind("friction that a late push lets go", graph, {"m": m, "N": 1.0, "T": T}, {"P": "constant(3) + step(0.3, -3)"},
-                known, 1.53, at=0.31, mode={"floor": "slip"}, rest={"inputs": {"P": 0.5}})  # fmt: skip
+        [bg.Se("push", "1*late"), bg.One("n"), bg.I("m", "m", flow="v"), bg.Delay("late", "P", time="T"),
+         bg.R("floor", law=bg.DryFriction("N"))], "push>n>m n>floor")  # fmt: skip
+    return Kind("friction that a late push lets go", graph, {"m": m, "N": 1.0, "T": T},
+                {"P": "constant(3) + step(0.3, -3)"}, known, 1.53, at=0.31, mode={"floor": "slip"},
+                rest={"inputs": {"P": 0.5}})  # fmt: skip
 
 
 DELAYED = (past, line, pushed_late)

@@ -48,8 +48,8 @@ REFUSALS = (
     ),
     Refusal(
         ("past", "line", "pushed_late"), ("linearize",), True,
-        "What a delay gives hangs on a whole stretch of the past, so about a point there are no finitely many "
-        "states, and no A, J and B; a `bg.TransferFunction` in its place stands for it as closely as its user wants.",
+        "What a delay gives hangs on a whole stretch of the past: there are no finitely many states about a "
+        "point, and no A, J and B. A `bg.TransferFunction` stands for it as closely as its user wants.",
         "a delay has no finite number of states",
     ),
     Refusal(
