@@ -12,10 +12,10 @@ import numpy as np
 from codegen.standalone.arrays import Array
 from codegen.tuning import TUNING
 
-PLACES = np.array([-1.0, -1 / 3, 1 / 3, 1.0])
+READ_AT = np.array([-1.0, -1 / 3, 1 / 3, 1.0])
 """Where a step is read, from -1 to 1."""
 
-POWERS = np.linalg.inv(np.vander(PLACES, increasing=True))
+TO_POWERS = np.linalg.inv(np.vander(READ_AT, increasing=True))
 """From values there to powers of the place."""
 
 
@@ -31,7 +31,7 @@ class Past:
         """Values, slopes and half the curvatures at a time, over steps of h; delays by columns."""
         half = 0.5 * (self.end - self.begin)
         x, ratio = (t - self.begin) / half - 1, h / half
-        k = np.arange(len(PLACES))
+        k = np.arange(len(READ_AT))
         first, second = k * x ** np.maximum(k - 1, 0), 0.5 * k * (k - 1) * x ** np.maximum(k - 2, 0)
         weights = np.array([x**k, first * ratio, second * ratio**2])
         found: Array = weights @ self.powers.T
@@ -83,7 +83,7 @@ class Memory:
 
     def take(self, end: float, values: Array, turns: bool) -> None:
         """What was read up to ``end`` [s], delays by rows; ``turns``: a break may be there."""
-        part = Past(self.until, end, values @ POWERS.T)
+        part = Past(self.until, end, values @ TO_POWERS.T)
         self.sizes = np.maximum(self.sizes, np.abs(values).max(axis=1))
         if (turns or not self._parts) and self._breaks_off(part):
             self._breaks.append(self.until)

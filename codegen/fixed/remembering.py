@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from codegen.fixed.memory import PLACES, Memory
+from codegen.fixed.memory import READ_AT, Memory
 from codegen.standalone.arrays import Array, Mode
 from codegen.standalone.evaluation import Point
 from codegen.standalone.instant import Formula
@@ -64,7 +64,7 @@ class RememberingSteps(FixedSteps):
         ends = [self.at(Point(t, s, *given[0]), mode), self.at(Point(t + h, end, *given[2]), mode)]
         rates = [now.rate for now in ends]
         values = []
-        for x in 0.5 * (PLACES + 1):
+        for x in 0.5 * (READ_AT + 1):
             y = 1 - x
             between = y * y * (1 + 2 * x) * s + x * x * (3 - 2 * x) * end
             between = between + h * x * y * (y * rates[0] - x * rates[1])

@@ -4,7 +4,7 @@
 
 #include "fmu_common.h"
 
-enum { POINTS = BG_PAST_VALUES };
+enum { FMU_POINTS = BG_PAST_VALUES };
 
 void fmu_begin_late(fmu_instance *f)
 {
@@ -26,18 +26,18 @@ fmu_error fmu_go_on_late(fmu_instance *f, int turned)
 
 /* Weights by which values at the places give the integral from the first place to each: of the
  * polynomials that are 1 at one place. */
-static void integrals(const double *places, double weights[POINTS][POINTS])
+static void integrals(const double *places, double weights[FMU_POINTS][FMU_POINTS])
 {
-    for (int k = 0; k < POINTS; k++) {
-        double powers[POINTS + 1] = {1.0};
-        for (int j = 0; j < POINTS; j++)
-            for (int p = POINTS - 1; p >= 0 && j != k; p--)
+    for (int k = 0; k < FMU_POINTS; k++) {
+        double powers[FMU_POINTS + 1] = {1.0};
+        for (int j = 0; j < FMU_POINTS; j++)
+            for (int p = FMU_POINTS - 1; p >= 0 && j != k; p--)
                 powers[p] = ((p > 0 ? powers[p - 1] : 0.0) - places[j] * powers[p])
                     / (places[k] - places[j]);
-        for (int i = 0; i < POINTS; i++) {
+        for (int i = 0; i < FMU_POINTS; i++) {
             double at = 1.0, first = 1.0;
             weights[i][k] = 0.0;
-            for (int p = 0; p < POINTS; p++) {
+            for (int p = 0; p < FMU_POINTS; p++) {
                 at *= places[i];
                 first *= places[0];
                 weights[i][k] += powers[p] * (at - first) / (p + 1);
@@ -48,9 +48,9 @@ static void integrals(const double *places, double weights[POINTS][POINTS])
 
 /* Between two points, as their states and rates tell: where the search begins. */
 static void begin_between(const fmu_read *a, const fmu_instance *b, const double *rate, double h,
-                          const double *places, double s[POINTS][BG_SIZE])
+                          const double *places, double s[FMU_POINTS][BG_SIZE])
 {
-    for (int k = 0; k < POINTS; k++) {
+    for (int k = 0; k < FMU_POINTS; k++) {
         const double x = 0.5 * (places[k] + 1.0), y = 1.0 - x;
         for (int i = 0; i < BG_SIZE; i++)
             s[k][i] = y * y * (1.0 + 2.0 * x) * a->s[i] + x * x * (3.0 - 2.0 * x) * b->at.s[i]
@@ -60,20 +60,21 @@ static void begin_between(const fmu_read *a, const fmu_instance *b, const double
 
 /* States as the integrals of their rates, from the first point, and less by and by what they miss of
  * the last; how far they went, of the largest. */
-static double renew(const fmu_instance *b, double h, double weights[POINTS][POINTS],
-                    const double *places, double rates[POINTS][BG_SIZE], double s[POINTS][BG_SIZE])
+static double renew_between(const fmu_instance *b, double h,
+                            double weights[FMU_POINTS][FMU_POINTS], const double *places,
+                            double rates[FMU_POINTS][BG_SIZE], double s[FMU_POINTS][BG_SIZE])
 {
     double most = 0.0;
     for (int i = 0; i < BG_SIZE; i++) {
-        double found[POINTS], size = BG_TINY;
-        for (int k = 0; k < POINTS; k++) {
+        double found[FMU_POINTS], size = BG_TINY;
+        for (int k = 0; k < FMU_POINTS; k++) {
             found[k] = s[0][i];
-            for (int j = 0; j < POINTS; j++)
+            for (int j = 0; j < FMU_POINTS; j++)
                 found[k] += 0.5 * h * weights[k][j] * rates[j][i];
             size = fmax(size, fabs(found[k]));
         }
-        const double missed = found[POINTS - 1] - b->at.s[i];
-        for (int k = 1; k < POINTS; k++) {
+        const double missed = found[FMU_POINTS - 1] - b->at.s[i];
+        for (int k = 1; k < FMU_POINTS; k++) {
             found[k] -= 0.5 * (places[k] + 1.0) * missed;
             most = fmax(most, fabs(found[k] - s[k][i]) / size);
             s[k][i] = found[k];
@@ -83,14 +84,14 @@ static double renew(const fmu_instance *b, double h, double weights[POINTS][POIN
 }
 
 /* Rates at all points, and what is read there; what the importer gives is on a line. */
-static int look(fmu_instance *f, const double *places, double s[POINTS][BG_SIZE],
-                double rates[POINTS][BG_SIZE], double values[BG_LAGS][BG_PAST_VALUES])
+static int look_between(fmu_instance *f, const double *places, double s[FMU_POINTS][BG_SIZE],
+                double rates[FMU_POINTS][BG_SIZE], double values[BG_LAGS][BG_PAST_VALUES])
 {
     const double half = 0.5 * (f->at.time - f->at.read.time);
     double read[BG_LAGS];
     int status = BG_OK;
-    for (int k = 0; k < POINTS && status == BG_OK; k++) {
-        const double t = k + 1 < POINTS ? f->at.read.time + half * (places[k] + 1.0) : f->at.time;
+    for (int k = 0; k < FMU_POINTS && status == BG_OK; k++) {
+        const double t = k + 1 < FMU_POINTS ? f->at.read.time + half * (places[k] + 1.0) : f->at.time;
         status = bg_view_look(&f->located.view, t, s[k], f->at.mode);
         memcpy(rates[k], f->located.view.shot.rate, sizeof rates[k]);
         bg_read_late(&f->model, read);
@@ -104,26 +105,26 @@ static int look(fmu_instance *f, const double *places, double s[POINTS][BG_SIZE]
  * rates are stiff. */
 static int read_between(fmu_instance *f, double h)
 {
-    double places[POINTS], weights[POINTS][POINTS], last = INFINITY, went = INFINITY;
-    double s[POINTS][BG_SIZE], rates[POINTS][BG_SIZE], values[BG_LAGS][BG_PAST_VALUES];
-    for (int k = 0; k < POINTS; k++)
-        places[k] = -cos(k * acos(-1.0) / (POINTS - 1));
+    double places[FMU_POINTS], weights[FMU_POINTS][FMU_POINTS], last = INFINITY, went = INFINITY;
+    double s[FMU_POINTS][BG_SIZE], rates[FMU_POINTS][BG_SIZE], values[BG_LAGS][BG_PAST_VALUES];
+    for (int k = 0; k < FMU_POINTS; k++)
+        places[k] = -cos(k * acos(-1.0) / (FMU_POINTS - 1));
     integrals(places, weights);
     double rate[BG_SIZE];
     memcpy(rate, f->located.view.shot.rate, sizeof rate);
     begin_between(&f->at.read, f, rate, h, places, s);
-    int status = look(f, places, s, rates, values);
+    int status = look_between(f, places, s, rates, values);
     for (int turn = 0; turn < BG_RENEWED && status == BG_OK && went > BG_DELAYED; turn++) {
         last = went;
-        went = renew(f, h, weights, places, rates, s);
+        went = renew_between(f, h, weights, places, rates, s);
         if (went >= last)
             begin_between(&f->at.read, f, rate, h, places, s);
-        status = look(f, places, s, rates, values);
+        status = look_between(f, places, s, rates, values);
         if (went >= last)
             break;
     }
     if (status == BG_OK)
-        status = bg_memory_take(&f->model.memory, f->at.time, POINTS, places, values,
+        status = bg_memory_take(&f->model.memory, f->at.time, FMU_POINTS, places, values,
                                 f->at.read.turned);
     f->at.read.turned = 0;
     return status;

@@ -48,7 +48,8 @@ static int read_part(bg_located *c, double until)
     for (int halves = 0; halves <= BG_PART_HALVES && status == BG_OK && off > most; halves++) {
         const double half = 0.5 * (until - begin);
         for (int k = 0; k < BG_PAST_VALUES && status == BG_OK; k++) {
-            status = read_at(c, k + 1 < BG_PAST_VALUES ? begin + half * (1.0 + places[k]) : until, read);
+            const double t = k + 1 < BG_PAST_VALUES ? begin + half * (1.0 + places[k]) : until;
+            status = read_at(c, t, read);
             for (int i = 0; i < BG_DELAYS; i++)
                 values[i][k] = read[i];
         }

@@ -79,7 +79,7 @@ typedef struct {
     int list[BG_LIST(BG_SIZE, BG_SIZE)];
     double own;                /* the largest rate of an affine model in the mode `rated`, if .. */
     int known, rated[BG_ROOM(BG_FRICTION)]; /* .. it is known */
-    int next, turned;          /* the next sample; whether rates may have turned since the latest step */
+    int next, turned;          /* the next sample; whether rates may have turned since a step */
     bg_watch watch;
     bg_corner_watch corners;
     bg_progress progress;

@@ -83,7 +83,7 @@ double bg_memory_shortest(const bg_memory *m)
 }
 
 /* A polynomial of a part at a time, and its slope. */
-static double value_of(const bg_past *of, int delay, double t, double *slope)
+static double part_value(const bg_past *of, int delay, double t, double *slope)
 {
     const double half = 0.5 * (of->end - of->begin), x = (t - of->begin) / half - 1.0;
     double value = 0.0, rise = 0.0;
@@ -114,7 +114,9 @@ void bg_memory_at(const bg_memory *m, double t, double *values, double *slopes)
     for (int i = 0; i < BG_DELAYS; i++) {
         const int k = m->is.begun ? part_given(m, m->is.late[i], t) : -1;
         slopes[i] = 0.0;
-        values[i] = k < 0 ? m->is.start[i] : value_of(part(m, k), i, t - m->is.late[i], slopes + i);
+        values[i] = m->is.start[i];
+        if (k >= 0)
+            values[i] = part_value(part(m, k), i, t - m->is.late[i], slopes + i);
     }
 }
 

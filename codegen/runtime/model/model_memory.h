@@ -10,16 +10,17 @@ enum {
     BG_LAGS = BG_DELAYS > 0 ? BG_DELAYS : 1
 };
 
-/* A part of a run: what each delay has read in it, by powers of the place, which goes from -1 to 1. */
+/* A part of a run: what each delay has read in it, by powers of the place, which goes from -1 on to
+ * 1. */
 typedef struct {
     double begin, end, powers[BG_LAGS][BG_PAST_VALUES];
     int count;
 } bg_past;
 
-/* Where a memory is: `begun` since when; up to `until` [s] it knows what was read; what it gives is of
- * the stretch from the break `stretch`, or the start, to the next, `following`. Parts and breaks lie
- * in rings, `count` from place `first` on, round the end. `back` [s]: to where the run may go back;
- * `late` [s], `start`: of each delay; `size`: the largest magnitude that it has read. */
+/* Where a memory is: `begun` since when; up to `until` [s] it knows what was read; what it gives is
+ * of the stretch from the break `stretch`, or the start, to the next, `following`. Parts and breaks
+ * lie in rings, `count` from place `first` on, round the end. `back` [s]: to where the run may go
+ * back; `late` [s], `start`: of each delay; `size`: the largest magnitude that it has read. */
 typedef struct {
     int begun, first, count, first_break, breaks;
     double since, until, stretch, following, back;

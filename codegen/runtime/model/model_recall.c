@@ -86,7 +86,8 @@ const double *bg_recalled(bg_model *m, double t, double h, const double *w)
 }
 
 /* A step's states where its ends and the rates there tell them (Hermite's polynomial). */
-static void between(double x, double h, double ends[2][BG_SIZE], double rates[2][BG_SIZE], double *s)
+static void in_step(double x, double h, double ends[2][BG_SIZE], double rates[2][BG_SIZE],
+                    double *s)
 {
     const double y = 1.0 - x, a = y * y * (1.0 + 2.0 * x), b = x * x * (3.0 - 2.0 * x);
     for (int i = 0; i < BG_SIZE; i++)
@@ -119,7 +120,7 @@ int bg_remember_step(bg_model *m, double t, double h, const double *begin, const
         if (k < 2)
             memcpy(s, ends[k], sizeof s);
         else
-            between(x, h, ends, rates, s);
+            in_step(x, h, ends, rates, s);
         bg_on_parabola(x, w, now);
         bg_recall(m, t + x * h, now, NULL);
         status = bg_evaluate(m, t + x * h, s, now, m->work.rates[0], mode, 0, &m->shot);

@@ -220,7 +220,7 @@ int bg_model_init(bg_model *m, const double *parameters);
 /* The same with tables of the caller's, which `bg_tables_init` makes as the model was generated.
  * `bg_tables_set` gives one new values at its points, row by row of x, and works out what is
  * between them; BG_TABLE_VALUE where one is not finite. As with a parameter an instance is then
- * made again, which may go on with its `mode`, `seen`, `started`, `ticked` and `unclocked`, and after
+ * made again, which may go on with its `mode`, `seen`, `started`, `ticked` and `unclocked`, and by
  * `bg_model_remember` with what delays have read, which was `memory.is`. */
 int bg_model_init_with(bg_model *m, const double *parameters, const bg_own_tables *own);
 void bg_tables_init(bg_own_tables *own);
@@ -269,8 +269,10 @@ int bg_model_rhs(bg_model *m, double t, const double *s, const double *w, const 
 
 /* One step of h from t, s in place; w: the external inputs at t, t + h/2 and t + h, one after
  * the other. What delays give, BG_DELAYS of these from place BG_DELAYED_FROM on, steps look up
- * themselves: they follow one another or go back, and are cut at what breaks come late, as at
- * instants of tasks. BG_FORGETS where BG_MEMORY parts of the past are too few. Work is bounded; config.h counts it. `bg_model_settle` decides which ports hold,
+ * themselves: they follow one another or go back, and are cut where breaks come late, as at
+ * instants of tasks. BG_FORGETS where BG_MEMORY parts of the past are too few.
+ *
+ * Work is bounded; config.h counts it. `bg_model_settle` decides which ports hold,
  * sets `mode`, gives the impulses of switches that come to hold to s and takes the slips of
  * sticking ports away; `bg_model_advance` goes on in that mode by Runge's and Kutta's method of
  * fourth order, or the linearly implicit one that the model was generated for, and stops or

@@ -1,7 +1,7 @@
 /* One step in bounded time: which ports hold is decided at its start, then it is one of a
  * method's in that mode, and what changes inside it is made up for at its end. Tasks that are due
- * set what they set at its start; one that crosses their instants, or breaks in what delays give, is
- * cut there. */
+ * set what they set at its start; one that crosses their instants, or breaks in what delays give,
+ * is cut there. */
 #include <math.h>
 #include <string.h>
 

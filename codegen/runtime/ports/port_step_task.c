@@ -1,4 +1,4 @@
-/* Sampled tasks in fixed steps: what is due at the start of a step, and where a step is cut; that by
+/* Sampled tasks in fixed steps: what is due at the start of a step, and where a step is cut; by
  * delays, too. An instant that is a rounding off the start or the end of a step is there. */
 #include <math.h>
 #include <string.h>

@@ -52,6 +52,9 @@
 #define BG_HOLDINGS 6
 #define BG_HOLDING_VALUES 6
 #define BG_ROSENBROCK 0
+#define BG_DELAYS 0
+#define BG_DELAYED_FROM 0
+#define BG_MEMORY 1
 
 /* The longest step [s] that is stable at the default start, parameters and inputs, in every
  * friction mode; 1e300 if nothing bounds it. */

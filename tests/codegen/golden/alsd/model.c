@@ -212,6 +212,13 @@ void bg_held_values(const bg_values *v, double *out)
     out[5] = I_w;
 }
 
+/* Of each delay what it reads, how late it is, what it gives before: 0 operations. */
+void bg_delaying(const bg_values *v, double *out)
+{
+    (void)v;
+    (void)out;
+}
+
 /* What corners hang on, and for each whether it counts: 0 operations. */
 void bg_corners(const bg_values *v, double *out)
 {
