@@ -58,8 +58,8 @@ static void begin_between(const fmu_read *a, const fmu_instance *b, const double
     }
 }
 
-/* States as the integrals of their rates, from the first point, and less by and by what they miss of
- * the last; how far they went, of the largest. */
+/* States as the integrals of their rates, from the first point, and less by and by what they miss
+ * of the last; how far they went, of the largest. */
 static double renew_between(const fmu_instance *b, double h,
                             double weights[FMU_POINTS][FMU_POINTS], const double *places,
                             double rates[FMU_POINTS][BG_SIZE], double s[FMU_POINTS][BG_SIZE])
@@ -91,7 +91,8 @@ static int look_between(fmu_instance *f, const double *places, double s[FMU_POIN
     double read[BG_LAGS];
     int status = BG_OK;
     for (int k = 0; k < FMU_POINTS && status == BG_OK; k++) {
-        const double t = k + 1 < FMU_POINTS ? f->at.read.time + half * (places[k] + 1.0) : f->at.time;
+        const double inside = f->at.read.time + half * (places[k] + 1.0);
+        const double t = k + 1 < FMU_POINTS ? inside : f->at.time;
         status = bg_view_look(&f->located.view, t, s[k], f->at.mode);
         memcpy(rates[k], f->located.view.shot.rate, sizeof rates[k]);
         bg_read_late(&f->model, read);
