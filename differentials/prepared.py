@@ -1,13 +1,17 @@
 """`Prepared`: what a run of a differential needs, ready to be run, swept or exported."""
 
+from __future__ import annotations
+
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING
 
 import bondgraph as bg
 import codegen
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 SAMPLE = 1e-3
 """Sampling interval of a simulation [s]."""
@@ -27,3 +31,11 @@ class Prepared:
     inputs: Mapping[str, codegen.Signal]
     times: NDArray[np.float64]
     initially_on: tuple[Hashable, ...] = ()
+
+
+def samples(duration: float) -> NDArray[np.float64]:
+    """Times [s] every `SAMPLE` from 0 to the end of a run."""
+    # What lists scenarios does without numpy.
+    import numpy as np
+
+    return np.linspace(0.0, duration, round(duration / SAMPLE) + 1)

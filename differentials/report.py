@@ -5,6 +5,7 @@ from collections.abc import Hashable, Mapping, Sequence
 import bondgraph as bg
 from bondgraph.analyse.state_space import StateSpace
 from codegen import Result
+from differentials.aligned import table
 from differentials.parameters import Parameter
 
 
@@ -72,16 +73,6 @@ def parameters_text(parameters: Mapping[str, Parameter]) -> str:
         for name, p in parameters.items()
     ]
     return table(rows)
-
-
-def table(rows: Sequence[Sequence[str]]) -> str:
-    """Columns as wide as their widest cell, a rule below the headings."""
-    widths = [max(len(row[at]) for row in rows) for at in range(len(rows[0]))]
-    lines = [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]
-    return "\n".join([lines[0], "  ".join("-" * width for width in widths), *lines[1:]])
 
 
 def _listed(names: tuple[Hashable, ...]) -> str:

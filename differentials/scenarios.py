@@ -1,9 +1,9 @@
 """The paper's simulations as data, and `simulate`, which runs a differential through one."""
 
+from __future__ import annotations
+
 from collections.abc import Container, Mapping
 from dataclasses import dataclass, field
-
-import numpy as np
 
 import bondgraph as bg
 import codegen
@@ -12,7 +12,7 @@ from differentials.control.loop import closed_loop
 from differentials.control.manoeuvres import Manoeuvre, manoeuvres
 from differentials.model import Model, model
 from differentials.parameters import checked
-from differentials.prepared import SAMPLE, Prepared
+from differentials.prepared import Prepared, samples
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ def prepared(
             f"{len(case.clutch_torques)} clutch torques; {full.differential.scenario!r} suits it"
         )
     values = _parameters(full, case, parameters or {})
-    times = np.linspace(0.0, case.duration, round(case.duration / SAMPLE) + 1)
+    times = samples(case.duration)
     states = {state.name for state in full.equations.states}
     return Prepared(
         full.equations,

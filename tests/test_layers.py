@@ -15,14 +15,15 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 ORDER = {
-    "bondgraph": "errors named writing searching tables algebra solving inverses nodes declare blocks "
-    "causality reduce equations derive sampling analyse show rates explaining checking layout drawing files",
+    "bondgraph": "offering errors named writing searching tables algebra solving inverses nodes declare "
+    "blocks causality reduce equations derive sampling analyse show rates explaining checking layout drawing "
+    "files",
     "codegen": "tuning standalone fixed stops numbers data inputs called targets supplied program model "
     "ports straight modes corners instants energy runs pictures record plots analysis c engine stepping "
     "delays simulator simulate trim packing family batch abreast sweeps python switched sparse fmu "
     "cosimulation exports",
-    "differentials": "laws parts pieces passive active topologies parameters model identification speeds "
-    "prepared control scenarios exporting figures loop_figures report commands",
+    "differentials": "aligned laws parts pieces passive active topologies parameters model identification "
+    "speeds prepared control scenarios exporting figures loop_figures report commands",
 }
 """Each imports only earlier ones."""
 

@@ -9,15 +9,8 @@ from typing import Any, NoReturn
 import click
 
 import bondgraph as bg
-import differentials.commands.options as options
-from differentials.commands.checking import check
-from differentials.commands.exporting import export
-from differentials.commands.graphs import convert, draw
-from differentials.commands.linearising import linear, modes
-from differentials.commands.reading import derive, explain, list_all, show
-from differentials.commands.running import simulate
-from differentials.commands.sweeping import sweep
-from differentials.commands.tours import demo, draw_figures
+from differentials.commands.helping import examples
+from differentials.commands.homes import COMMANDS, Homes
 
 FAILED, REFUSED = 1, 2
 """Status where something went wrong on the way, and where the command can't be meant so."""
@@ -29,6 +22,11 @@ class App(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The commands from the first look to the last use."""
         return list(self.commands)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """What each does in short, as its home says; none has to be imported for that."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, home.short) for name, home in COMMANDS.items()])
 
     def main(
         self,
@@ -97,8 +95,9 @@ def _complain(where: str, message: str) -> None:
 @click.group(
     "bondgraph",
     cls=App,
+    commands=Homes(),
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
-    epilog=options.examples(
+    epilog=examples(
         "list", "show superposition_tvd", "simulate alsd --scenario fig11 --set k=4300 --out out",
         "sweep alsd --grid k=4300:17200:3 --peak tau_k1 --workers 0", "figures --out out",
         "export alsd --to c --scenario fig11 --set I_1=0.008 --out out",
@@ -111,13 +110,3 @@ def app() -> None:
     MODEL is one of the differentials of Deur, Hancock and Assadian (IMECE2008-69248) that `bondgraph
     list` shows, or a graph in a .json or .graphml file. All numbers are in SI units.
     """
-
-
-for _name, _command in {
-    "list": list_all, "show": show, "draw": draw, "check": check,
-    "derive": derive, "explain": explain, "modes": modes,
-    "linear": linear, "simulate": simulate, "sweep": sweep,
-    "export": export, "convert": convert, "figures": draw_figures,
-    "demo": demo,
-}.items():  # fmt: skip
-    app.add_command(_command, _name)

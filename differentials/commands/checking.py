@@ -15,7 +15,6 @@ ALL = "all"
 
 
 @options.command(
-    "What is to be asked about a graph: doubts, hints, strokes.",
     "check alsd",
     "check examples/oscillator.json --set m=2 --set k=800 --set b=4",
     "check examples/oscillator.json --json",

@@ -18,7 +18,6 @@ from differentials.exporting import write
 
 
 @options.command(
-    "Write it as Python, C or an FMU.",
     "export alsd --to python --scenario fig11 --set I_1=0.008 --out out",
     "export alsd --to c --out out",
     "export examples/oscillator.json --to c --set m=2 --set k=800 --set b=4 --initial v=1",

@@ -13,7 +13,6 @@ from differentials.commands.subject import ENDINGS, Subject
 
 
 @options.command(
-    "The bond graph, in the terminal or as a picture.",
     "draw alsd",
     "draw alsd -o alsd.svg",
     "draw alsd --names --numbers --layout horizontal -o alsd.svg",
@@ -57,7 +56,6 @@ def draw(
 
 
 @options.command(
-    "Write the graph as JSON or GraphML, to be changed.",
     "convert alsd -o alsd.json",
     "convert alsd --halfshafts -o alsd.graphml",
     "convert examples/oscillator.json -o oscillator.graphml",

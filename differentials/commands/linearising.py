@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 import bondgraph as bg
 import differentials.commands.options as options
 from bondgraph.analyse.state_space import StateSpace
+from differentials.aligned import table
 from differentials.commands.names import check_names
 from differentials.commands.options import MODE, START, Command
 from differentials.commands.printing import print_json
 from differentials.commands.subject import Subject, nodes_called
 from differentials.identification import numbers
 from differentials.model import model
-from differentials.report import modes_text, table
+from differentials.report import modes_text
 
 SPEED = 80.0
 """Wheel speed [rad/s] at which tires are linearised."""
@@ -85,7 +86,6 @@ def _told(
 
 
 @options.command(
-    "Frequencies, damping, poles and mode shapes.",
     "modes alsd",
     "modes alsd --stuck clutch --set k=4300 --json",
     "modes examples/oscillator.json --set m=2 --set k=800 --set b=4",
@@ -107,7 +107,6 @@ def modes(as_json: bool, **which: Any) -> None:
 
 
 @options.command(
-    "The matrices for small deviations, in numbers.",
     "linear alsd --speed 20",
     "linear passive --json",
     "linear examples/oscillator.json --set m=2 --set k=800 --set b=4",

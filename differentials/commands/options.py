@@ -10,12 +10,13 @@ import click
 
 import bondgraph as bg
 from codegen.simulate import BACKENDS
+from differentials.commands.helping import Command as Command
+from differentials.commands.helping import as_json as as_json
+from differentials.commands.helping import command as command
 from differentials.commands.names import Assigned, OneOf
 from differentials.commands.signals import law, signal, table_file
 from differentials.commands.subject import TABLES, SubjectType, tables_given
 from differentials.scenarios import named_cases
-
-Command = Callable[..., Any]
 
 NUMBER = Assigned("NAME=NUMBER", "k=4300", float)
 START = Assigned("STATE=NUMBER", "omega_1=80", float)
@@ -23,16 +24,6 @@ SIGNAL = Assigned("INPUT=SIGNAL", "tau_e=step(0.1, 350)", signal)
 LAW = Assigned("NODE=LAW", "clutch=friction(1000)", law, lambda ctx: {"tables": tables_given(ctx)})
 TABLE = Assigned("NAME=FILE[,...]", "map=map.csv,method=pchip", table_file)
 MODE = Assigned("NODE=MODE", "dog=off", str)
-
-
-def examples(*lines: str) -> str:
-    """Commands to be shown below a help text, one a line."""
-    return "\b\nExamples:\n" + "\n".join(f"  bondgraph {line}" for line in lines)
-
-
-def command(short: str, *lines: str) -> Callable[[Command], click.Command]:
-    """A command with what a list of commands says of it, and examples below its help."""
-    return click.command(short_help=short, epilog=examples(*lines))
 
 
 def _pairs(ctx: Any, param: Any, given: tuple[tuple[str, Any], ...]) -> dict[str, Any]:
@@ -71,7 +62,6 @@ def subject(run: Command) -> Command:
     return argument(tables(run))
 
 
-as_json = click.option("--json", "as_json", is_flag=True, help="Data for programs, as JSON.")
 parameters = assigned(
     "--set", "parameters", NUMBER, "A parameter's value, in SI units (`bondgraph show` lists them)."
 )

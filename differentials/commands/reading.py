@@ -1,6 +1,5 @@
 """``list``, ``show``, ``derive``, ``explain``: what there is and what follows from it."""
 
-from dataclasses import fields
 from typing import Any
 
 import click
@@ -11,58 +10,13 @@ from bondgraph.algebra.expressions import TIME
 from bondgraph.nodes.laws import SLIP
 from differentials.commands.printing import causality_data, equations_data, headed, print_json
 from differentials.commands.subject import Subject, causality_of, mode_text
-from differentials.control.manoeuvres import manoeuvres
 from differentials.identification import linear_model
 from differentials.model import model
-from differentials.report import modes_text, parameters_text, table
-from differentials.scenarios import scenarios
+from differentials.report import modes_text, parameters_text
 from differentials.speeds import zero_slip_ratios
-from differentials.topologies import catalog, graph
-
-
-@options.command("The differentials and scenarios there are.", "list", "list --json")
-@options.as_json
-def list_all(as_json: bool) -> None:
-    """The catalog's differentials, and the scenarios there are."""
-    orders = {name: len(bg.assign_causality(graph(name)).integral) for name in catalog}
-    if as_json:
-        print_json({"differentials": [_row(name, orders[name]) for name in catalog],
-                    "scenarios": [_case(name) for name in scenarios],
-                    "manoeuvres": [_driven(name) for name in manoeuvres]})  # fmt: skip
-        return
-    rows = [("name", "states", "clutches", "scenario", "what it is")]
-    for name, chosen in catalog.items():
-        count = str(orders[name]) + (f" or {3 * chosen.wheels}" if chosen.full else "")
-        title = f"{chosen.title} ({chosen.source})"
-        rows.append((name, count, str(len(chosen.clutches)), chosen.scenario, title))
-    click.echo(table(rows))
-    click.echo(f"\nscenarios: {', '.join(scenarios)}")
-    click.echo(f"in a car, with a controller: {', '.join(manoeuvres)}\n\nNext: bondgraph show alsd")
-
-
-def _row(name: str, order: int) -> dict[str, object]:
-    chosen = catalog[name]
-    return {
-        "name": name, "title": chosen.title, "source": chosen.source, "states": order,
-        "full_states": 3 * chosen.wheels if chosen.full else None, "wheels": chosen.wheels,
-        "clutches": chosen.clutches, "scenario": chosen.scenario,
-    }  # fmt: skip
-
-
-def _driven(name: str) -> dict[str, object]:
-    case = manoeuvres[name]
-    return {"name": name, **{key.name: getattr(case, key.name) for key in fields(case)}}
-
-
-def _case(name: str) -> dict[str, object]:
-    case = scenarios[name]
-    keys = ("wheel_speed", "speed_difference", "engine_torque", "clutch_torques", "engine_step",
-            "clutch_step", "duration", "lag", "parameters")  # fmt: skip
-    return {"name": name, **{key: getattr(case, key) for key in keys}}
 
 
 @options.command(
-    "Equations, causality, parameters, modes.",
     "show stationary_tvd",
     "show alsd --halfshafts --json",
     "show examples/oscillator.json",
@@ -153,7 +107,6 @@ def _ratios_text(derived: bg.StateEquations, values: dict[str, float]) -> str:
 
 
 @options.command(
-    "The state equations: text, LaTeX or JSON.",
     "derive alsd",
     "derive alsd --halfshafts --latex",
     "derive examples/oscillator.json --output spring --json",
@@ -188,7 +141,6 @@ def derive(
 
 
 @options.command(
-    "How the equations come about, step by step.",
     "explain passive",
     "explain alsd --halfshafts --latex",
     "explain examples/oscillator.json",

@@ -18,7 +18,6 @@ from differentials.report import events_text
 
 
 @options.command(
-    "Run it: events, every signal as a table, a picture.",
     "simulate alsd --scenario fig11 --set k=4300 --out out",
     "simulate alsd -o alsd.csv --json",
     "simulate examples/oscillator.json --set m=2 --set k=800 --set b=4 "

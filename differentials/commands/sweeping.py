@@ -13,6 +13,7 @@ import differentials.commands.options as options
 from bondgraph.writing import write_bytes
 from codegen.record.files import write_mat, write_parquet
 from codegen.record.tables import write_columns
+from differentials.aligned import table
 from differentials.commands.grids import (
     FORM,
     GRID,
@@ -28,14 +29,12 @@ from differentials.commands.preparing import prepare
 from differentials.commands.printing import print_json, with_folder, written
 from differentials.commands.subject import Subject
 from differentials.prepared import Prepared
-from differentials.report import table
 
 SHOWN = 50
 """Rows of a table on the screen."""
 
 
 @options.command(
-    "Run it over a grid of numbers; a table of measures.",
     "sweep alsd --grid k=4300:17200:3 --peak tau_k1 --first clutch:stick --workers 0",
     "sweep alsd --grid k=4300,8600 --grid b=0:4:2 --final omega_1 --store runs -o sweep.csv",
     "sweep examples/oscillator.json --set m=2 --set b=4 --grid k=200:800:4 --initial v=1 "

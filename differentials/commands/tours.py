@@ -9,6 +9,7 @@ import bondgraph as bg
 import differentials.commands.options as options
 from bondgraph.writing import made_folder
 from codegen import Result
+from differentials.aligned import table
 from differentials.commands.names import OneOf
 from differentials.commands.pictures import save_all, told
 from differentials.commands.printing import headed
@@ -17,7 +18,7 @@ from differentials.figures import Figure, draw, figures
 from differentials.identification import linear_model
 from differentials.loop_figures import LOOP_FIGURES
 from differentials.parameters import PRINTED_FREQUENCIES
-from differentials.report import events_text, modes_text, table
+from differentials.report import events_text, modes_text
 from differentials.scenarios import scenarios, simulate
 from differentials.topologies import catalog, equations, graph
 
@@ -25,7 +26,7 @@ DRAWN = {**figures, **LOOP_FIGURES}
 """What can be drawn by name."""
 
 
-@options.command("The paper's Figs. 11 to 14.", "figures --out out", "figures fig11", "figures ice")
+@options.command("figures --out out", "figures fig11", "figures ice")
 @click.argument("names", nargs=-1, type=OneOf(tuple(DRAWN), "figure"), metavar="[FIGURE]...")
 @options.folder
 def draw_figures(names: tuple[str, ...], out: Path) -> None:
@@ -52,7 +53,7 @@ def _saved(name: str, figure: Figure, results: tuple[Result, ...], out: Path) ->
     return save_all(name, tables, lambda path: draw(figure, results, path), out)
 
 
-@options.command("A tour: equations, causality, modes, two simulations.", "demo --out out")
+@options.command("demo --out out")
 @options.folder
 def demo(out: Path) -> None:
     """A tour: equations, causality, modes and two simulations."""

@@ -1,8 +1,8 @@
 """Closed loops ready to run: car, differential, actuators and controller as one graph."""
 
-from collections.abc import Hashable, Mapping
+from __future__ import annotations
 
-import numpy as np
+from collections.abc import Hashable, Mapping
 
 import bondgraph as bg
 import codegen
@@ -15,7 +15,7 @@ from differentials.control.numbers import numbers
 from differentials.laws import coulomb_clutch
 from differentials.parameters import Parameter, checked
 from differentials.parts import Part
-from differentials.prepared import SAMPLE, Prepared
+from differentials.prepared import Prepared, samples
 from differentials.topologies import Differential, differential, graph
 
 PERIOD = "1/100"
@@ -76,7 +76,7 @@ def closed_loop(
     states = {str(state) for state in equations.states}
     initial = {f"omega_{side}{j}": speed for j in range(1, chosen.wheels + 1) for side in ("", "t")}
     initial = {state: speed for state, speed in initial.items() if state in states}
-    times = np.linspace(0.0, case.duration, round(case.duration / SAMPLE) + 1)
+    times = samples(case.duration)
     return Prepared(equations, values, own, initial, _inputs(name, case), times)
 
 
