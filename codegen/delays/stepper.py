@@ -14,7 +14,7 @@ from codegen.stepping.going import as_signals
 from codegen.stepping.known import Sources
 from codegen.stepping.plan import Signals
 from codegen.stepping.state import StepperState
-from codegen.stepping.stepper import Stepper, unknown_input
+from codegen.stepping.stepper import Stepper, refuse_unknown
 
 Make = Callable[[Mapping[str, Pieced]], Stepper]
 """A stepper of which what delays give are inputs as well, under these for them."""
@@ -103,4 +103,4 @@ class LateStepper(Stepper):
     def _refuse_unknown(self, inputs: Mapping[str, object]) -> None:
         for name in inputs:
             if name not in self._origin.inputs:
-                raise unknown_input(name, self._origin.inputs)
+                refuse_unknown(name, self._origin.inputs)

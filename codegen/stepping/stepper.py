@@ -4,6 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NoReturn
 
 from bondgraph.errors import SignalError, nearest
 from codegen.inputs.signals import Constant, as_signal
@@ -234,7 +235,7 @@ class Stepper:
         for name, value in inputs.items():
             at = self._places.get(name)
             if at is None:
-                raise unknown_input(name, self._origin.inputs)
+                refuse_unknown(name, self._origin.inputs)
             told = told_input(value, name)
             changed |= told != given[at]
             given[at] = told
@@ -266,10 +267,10 @@ class Stepper:
         return states, self._origin.inputs, tuple(port.name for port in program.friction)
 
 
-def unknown_input(name: str, inputs: Sequence[str]) -> SignalError:
-    """What is said of an input that a model does not have."""
+def refuse_unknown(name: str, inputs: Sequence[str]) -> NoReturn:
+    """Refuse an input that a model does not have; `SignalError`."""
     told = f"unknown input {name!r}{nearest(name, inputs)}"
-    return SignalError(f"{told}; the model's inputs are {', '.join(inputs) or 'none'}")
+    raise SignalError(f"{told}; the model's inputs are {', '.join(inputs) or 'none'}")
 
 
 def plainly(given: Sequence[Given]) -> tuple[Given, ...]:

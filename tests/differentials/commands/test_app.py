@@ -10,6 +10,7 @@ import pytest
 from click.testing import Result
 
 from differentials.commands.app import app
+from differentials.commands.homes import COMMANDS
 
 Call = Callable[..., Result]
 
@@ -165,3 +166,23 @@ def test_without_click_it_says_what_to_install() -> None:
         "the command line needs click; install the optional extra: "
         "pip install bondgraph-toolkit[cli]\n"
     )
+
+
+def test_help_imports_no_command() -> None:
+    code = (
+        "import sys; from differentials.__main__ import main\n"
+        "try: main(['--help'])\n"
+        "except SystemExit: pass\n"
+        "assert 'sympy' not in sys.modules and 'numpy' not in sys.modules"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert [line.split()[0] for line in done.stdout.split("Commands:")[1].splitlines()[1:15]] == [
+        *COMMANDS
+    ]
+
+
+def test_each_command_has_its_home() -> None:
+    for name, home in COMMANDS.items():
+        assert app.commands[name].name is not None
+        assert home.short.endswith(".")
+    assert [*app.commands] == [*COMMANDS]
