@@ -1,7 +1,9 @@
 """C sources as shared libraries: compiled once, kept in the user's cache, loaded through cffi."""
 
 import hashlib
+import os
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -13,6 +15,9 @@ from codegen.engine.compiler import call, compiler, machine, version, words
 
 FLAGS = ("-O3", "-std=c99", "-ffp-contract=fast", "-march=native")
 """For code that runs on this machine: all its instructions, fused multiplications among them."""
+
+PARTS = 4
+"""So many compilers may run side by side."""
 
 
 def check_tools() -> None:
@@ -60,15 +65,62 @@ def _made(
         with telling(room):
             for name, text in sources.items():
                 (room / name).write_text(text, encoding="utf-8")
-        made = room / "library.so"
-        units = sorted(name for name in sources if name.endswith(".c"))
         try:
-            call([*command, "-shared", "-fPIC", "-I.", "-o", made.name, *units, "-lm"], room, made)
+            made = room / "library.so"
+            units = sorted(name for name in sources if name.endswith(".c"))
+            link([*command, "-fPIC", "-I."], ["-lm"], shares(sources, units, PARTS), made)
         except SimulationError as error:
             if "No space left on device" in str(error):
                 raise WriteError(f"{room} cannot be written: No space left on device") from None
             raise
         return keep(made, folder, fingerprint)
+
+
+def link(
+    command: Sequence[str], libraries: Sequence[str], parts: Sequence[Sequence[str]], made: Path
+) -> None:
+    """Compile files that lie in a library's folder, parts side by side, and link them to the library.
+
+    A part is one text of all its files: to start a compiler for each takes far longer. What is not optimised
+    is compiled by one call, as there is nothing to wait for.
+
+    Raises what `call` raises.
+    """
+    room = made.parent
+    if [one for one in command if one.startswith("-O")][-1:] == ["-O0"]:
+        every = [file for part in parts for file in part]
+        call([*command, "-shared", "-o", made.name, *every, *libraries], room, made)
+        return
+    names = [f"part_{at}" for at in range(len(parts))]
+    with telling(room):
+        for name, files in zip(names, parts, strict=True):
+            text = "".join(f'#include "{file}"\n' for file in files)
+            (room / f"{name}.c").write_text(text, encoding="utf-8", newline="\n")
+
+    def compile_part(name: str) -> None:
+        call([*command, "-c", "-o", f"{name}.o", f"{name}.c"], room, room / f"{name}.o")
+
+    with ThreadPoolExecutor(max_workers=min(len(parts), os.cpu_count() or 1)) as threads:
+        for _ in threads.map(compile_part, names):
+            pass
+    objects = [f"{name}.o" for name in names]
+    call([*command, "-shared", "-o", made.name, *objects, *libraries], room, made)
+
+
+def shares(sources: Mapping[str, str], units: Sequence[str], count: int) -> list[list[str]]:
+    """Files in so many parts of about one length, the same on every machine: what is compiled together
+    may round otherwise than alone.
+
+    >>> shares({"a.c": "longest", "b.c": "long", "c.c": "two"}, ["a.c", "b.c", "c.c"], 2)
+    [['a.c'], ['b.c', 'c.c']]
+    """
+    parts: list[list[str]] = [[] for _ in range(count)]
+    lengths = [0] * count
+    for name in sorted(units, key=lambda one: (-len(sources[one]), one)):
+        least = lengths.index(min(lengths))
+        parts[least].append(name)
+        lengths[least] += len(sources[name])
+    return [part for part in parts if part]
 
 
 def loaded(library: Path, declarations: str) -> tuple[Any, Any]:

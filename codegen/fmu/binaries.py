@@ -11,10 +11,11 @@ from pathlib import Path
 
 from bondgraph.errors import MissingExtraError, SignalError, SimulationError
 from bondgraph.writing import telling
+from codegen.engine.build import PARTS, link, shares
 from codegen.engine.cache import workshop
-from codegen.engine.compiler import call, system_compiler, words
+from codegen.engine.compiler import system_compiler, words
 
-FLAGS = ("-std=c99", "-O2", "-g0", "-fvisibility=hidden", "-shared")
+FLAGS = ("-std=c99", "-O2", "-g0", "-fvisibility=hidden")
 
 HEADERS: Mapping[str, tuple[str, ...]] = {
     "2.0": ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
@@ -91,42 +92,38 @@ def binaries(
     ``CFLAGS`` of the environment come after its flags, and override them.
     """
     made: dict[str, dict[str, bytes]] = {}
-    units = _units(sources)
+    parts = _parts(sources)
     with workshop(Path(tempfile.gettempdir())) as folder:
         with telling(folder):
-            for name, text in (*sources.items(), *units.items()):
+            for name, text in sources.items():
                 (folder / name).write_text(text, encoding="utf-8", newline="\n")
         for name in platforms:
             one = PLATFORMS[name]
             place = one.name if version == "3.0" else one.second
             path = f"binaries/{place}/{identifier}{one.ending}"
-            made.setdefault(path, {})[name] = _compiled(folder, list(units), identifier, one)
+            made.setdefault(path, {})[name] = _compiled(folder, parts, identifier, one)
     return {path: _joined(found) for path, found in made.items()}
 
 
-def _units(sources: Mapping[str, str]) -> dict[str, str]:
-    """All files as two, the unit's own and the model's: to start a compiler for each takes far longer."""
+def _parts(sources: Mapping[str, str]) -> list[list[str]]:
+    """The files in parts, the unit's own apart from the model's."""
     files = sorted(name for name in sources if name.endswith(".c"))
     own = [name for name in files if name.startswith("fmu")]
-    both = {"fmu_all.c": own, "all_model.c": [name for name in files if name not in own]}
-    return {
-        name: "".join(f'#include "{one}"\n' for one in group)
-        for name, group in both.items()
-        if group
-    }
+    return [own, *shares(sources, [name for name in files if name not in own], PARTS - 1)]
 
 
-def _compiled(folder: Path, units: Sequence[str], identifier: str, where: Platform) -> bytes:
-    library = f"{identifier}{where.ending}"
-    flags = [*FLAGS, *([] if where.ending == ".dll" else ["-fPIC"])]
+def _compiled(
+    folder: Path, parts: Sequence[Sequence[str]], identifier: str, where: Platform
+) -> bytes:
+    made = folder / f"{identifier}{where.ending}"
+    alone = where.ending == ".dll"
     compiler, own = _compiler(where)
-    command = [*compiler, *flags, *own, "-I.", "-o", library, *units]
-    command += [] if where.ending == ".dll" else ["-lm"]
+    command = [*compiler, *FLAGS, *([] if alone else ["-fPIC"]), *own, "-I."]
     try:
-        call(command, folder, folder / library)
+        link(command, [] if alone else ["-lm"], parts, made)
     except SimulationError as error:
         raise SimulationError(f"{where.name}: {error}") from None
-    return (folder / library).read_bytes()
+    return made.read_bytes()
 
 
 def _compiler(where: Platform) -> tuple[tuple[str, ...], tuple[str, ...]]:
