@@ -222,3 +222,31 @@ def test_a_compiler_that_makes_rubbish_is_told(
     monkeypatch.setenv("CC", str(fake))
     with pytest.raises(bg.SimulationError, match=r"so does not open"):
         build.loaded(build.compiled(SOURCE, FLAGS), "int one(void);")
+
+
+def test_parts_are_compiled_as_one_text_each_and_linked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seven files in four parts, which know of one another's functions and not of their own names."""
+    files = {
+        f"f{k}.c": f"int f{k}(void) {{ return {'+'.join([str(k)] * (k + 1))}; }}\n"
+        for k in range(6)
+    }
+    said = "".join(f"int f{k}(void);\n" for k in range(6))
+    total = " + ".join(f"f{k}()" for k in range(6))
+    files["sum.c"] = f"{said}int all(void) {{ return {total}; }}\n"
+    calls = list[Sequence[str]]()
+
+    def call(command: Sequence[str], folder: Path, makes: Path) -> str:
+        calls.append(command)
+        return tools.call(command, folder, makes)
+
+    monkeypatch.setattr(build, "call", call)
+    monkeypatch.setenv("CFLAGS", "-O1")
+    _, library = build.loaded(build.compiled(files, FLAGS), "int all(void);")
+    assert library.all() == sum(k * (k + 1) for k in range(6))
+    assert len(calls) == build.PARTS + 1
+    assert sorted(one[-1] for one in calls[:-1]) == [f"part_{k}.c" for k in range(build.PARTS)]
+    assert calls[-1][-1] == "-lm"
+    monkeypatch.setenv("CFLAGS", "-O0")
+    calls.clear()
+    build.compiled(files, FLAGS)
+    assert len(calls) == 1
