@@ -12,6 +12,7 @@ class Offering(ModuleType):
     """A package that offers names of its modules: each is imported when it is first asked for."""
 
     _homes: dict[str, str]
+    _beside: tuple[str, ...]
 
     def __getattr__(self, name: str) -> Any:
         """A public name from its home, or a module of this package."""
@@ -35,14 +36,14 @@ class Offering(ModuleType):
 
     def __dir__(self) -> list[str]:
         """What is public; the modules that hold it are found by their own imports."""
-        return list(self.__all__)
+        return [*self.__all__, *self._beside]
 
 
-def offer(package: str, more: tuple[str, ...] = ()) -> list[str]:
+def offer(package: str, beside: tuple[str, ...] = ()) -> list[str]:
     """Make a package offer what its stub, ``__init__.pyi``, imports; the public names.
 
-    Type checkers and pages of the API read the stub, so there is one list. ``more``: modules that are shown
-    beside them.
+    Type checkers and pages of the API read the stub, so there is one list. ``beside``: modules that
+    are shown with them.
 
     >>> import bondgraph
     >>> offer("bondgraph") == bondgraph.__all__
@@ -55,6 +56,6 @@ def offer(package: str, more: tuple[str, ...] = ()) -> list[str]:
         for alias in node.names
     }  # fmt: skip
     module = sys.modules[package]
-    module.__dict__["_homes"] = homes
+    module.__dict__.update(_homes=homes, _beside=beside)
     module.__class__ = Offering
-    return sorted([*homes, *more])
+    return sorted(homes)

@@ -2,4 +2,4 @@
 
 from bondgraph.offering import offer
 
-__all__ = offer(__name__)
+__all__ = offer(__name__, ("parts",))

@@ -193,6 +193,7 @@ static int run_stepped(bg_model *m, const command *asked, const bg_signals *sign
         if (refused(m, bg_model_settle(m, t, h, s, w), &told))
             return 1;
         if (k % parts == 0) {
+            bg_model_recall(m, t, w, dw);
             if (failed(m, bg_model_evaluate(m, t, s, w, dw, m->mode, &shot)))
                 return 1;
             print_row(t, m->mode, &shot);

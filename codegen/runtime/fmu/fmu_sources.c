@@ -22,7 +22,7 @@ void fmu_externals(const fmu_instance *f, const bg_span *span, double t, double 
             dw[i] = f->at.slopes[i];
         }
     if (BG_DELAYS)
-        bg_recall(&f->model, t, w, dw);
+        bg_model_recall(&f->model, t, w, dw);
 }
 
 void fmu_pass(fmu_instance *f, double t)

@@ -10,7 +10,7 @@ static int inputs_now(const void *self, double t, double *w, double *dw)
     const bg_located *const c = self;
     bg_signals_at(c->signals, &c->run.span, t, w, dw);
     if (BG_DELAYS)
-        bg_recall(c->model, t, w, dw);
+        bg_model_recall(c->model, t, w, dw);
     return 1;
 }
 

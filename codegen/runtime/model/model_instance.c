@@ -50,7 +50,7 @@ int bg_model_vector(bg_model *m, double t, const double *states, const double *w
         mode[i] = 1;
     if (BG_DELAYS) {
         memcpy(m->work.recalled, w, sizeof(double) * BG_EXTERNAL);
-        bg_recall(m, t, m->work.recalled, NULL);
+        bg_model_recall(m, t, m->work.recalled, NULL);
         w = m->work.recalled;
     }
     status = bg_model_evaluate(m, t, s, w, NULL, mode, &m->shot);

@@ -218,11 +218,9 @@ int bg_due_in_step(const bg_model *m, double t, double h, int *due, double *inst
 int bg_set_by_tasks_in_step(bg_model *m, const bg_start *at, const int *due, double *s);
 
 /* model_recall.c: how late delays are at the model's parameters, and what they give first:
- * BG_NOT_LATE where that is nothing. What they read at the instant that was evaluated. What they
- * give at t, which external inputs become, and its slope; `dw` may be NULL. */
+ * BG_NOT_LATE where that is nothing. What they read at the instant that was evaluated. */
 int bg_set_lags(bg_model *m);
 void bg_read_late(const bg_model *m, double *values);
-void bg_recall(const bg_model *m, double t, double *w, double *dw);
 
 /* The pieces of external inputs with what delays give of a run to `end`, from t on. */
 void bg_pass_memory(bg_model *m, double t, double end, bg_span *span);

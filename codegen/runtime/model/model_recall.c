@@ -38,7 +38,7 @@ void bg_read_late(const bg_model *m, double *values)
         values[i] = told[TOLD * i];
 }
 
-void bg_recall(const bg_model *m, double t, double *w, double *dw)
+void bg_model_recall(const bg_model *m, double t, double *w, double *dw)
 {
     double values[BG_LAGS], slopes[BG_LAGS];
     bg_memory_at(&m->memory, t, values, slopes);
@@ -81,7 +81,7 @@ const double *bg_recalled(bg_model *m, double t, double h, const double *w)
     double *const own = m->work.recalled;
     memcpy(own, w, sizeof(double) * 3 * BG_EXTERNAL);
     for (int i = 0; i < 3; i++)
-        bg_recall(m, t + 0.5 * i * h, own + i * BG_EXTERNAL, NULL);
+        bg_model_recall(m, t + 0.5 * i * h, own + i * BG_EXTERNAL, NULL);
     return own;
 }
 
@@ -122,7 +122,7 @@ int bg_remember_step(bg_model *m, double t, double h, const double *begin, const
         else
             in_step(x, h, ends, rates, s);
         bg_on_parabola(x, w, now);
-        bg_recall(m, t + x * h, now, NULL);
+        bg_model_recall(m, t + x * h, now, NULL);
         status = bg_evaluate(m, t + x * h, s, now, m->work.rates[0], mode, 0, &m->shot);
         if (k < 2)
             memcpy(rates[k], m->shot.rate, sizeof rates[k]);

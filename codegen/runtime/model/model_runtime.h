@@ -289,6 +289,10 @@ int bg_model_step(bg_model *m, double t, double h, double *s, const double *w);
 int bg_model_settle(bg_model *m, double t, double h, double *s, const double *w);
 int bg_model_advance(bg_model *m, double t, double h, double *s, const double *w);
 
+/* What delays give at t, in the stretch of a run that was settled last: external inputs of w, and
+ * their slopes, where `dw` is not NULL. Steps do so themselves; `bg_model_evaluate` does not. */
+void bg_model_recall(const bg_model *m, double t, double *w, double *dw);
+
 /* Sampled tasks, such as controllers. By itself a step sets at its start what is due there, once at
  * each instant, and is cut at instants inside it, at the cost of a step more for each; its inputs
  * there are on the parabola through their three values. BG_INSTANTS where it would be more than

@@ -58,6 +58,30 @@ def test_fixed_steps_are_of_fourth_order_over_breaks(program: Path) -> None:
     assert errors[0] / errors[1] > 12
 
 
+def test_outputs_show_what_delays_give(tmp_path: Path) -> None:
+    """A source of effort that is late, and what a detector has of it, at the samples of a run."""
+    graph = bg.graph(
+        [bg.Se("source", "1*late"), bg.Zero("node"), bg.R("load", "R"), bg.De("volt"),
+         bg.State("x", "1 - late"), bg.Delay("late", "x", time="T", start=0.25)],
+        "source > node > load, node > volt")  # fmt: skip
+    equations, numbers = bg.derive(graph, outputs=["volt"]), {"R": 2.0, "T": LATE}
+    run = codegen.simulator(equations, numbers).run(np.linspace(0, 2, 21))
+    files = codegen.to_c(equations, numbers, main=True)
+    program = compiled(tmp_path, written(tmp_path, files))
+    for how, within in (("located", 1e-9), ("step=0.02", 1e-7)):
+        told = subprocess.run(
+            [program, "2", "0.1", how], capture_output=True, text=True, check=True
+        )
+        head, *rows = told.stdout.splitlines()
+        table = np.array([row.split(",") for row in rows], dtype=float)
+        found = dict(zip(head.split(","), table.T, strict=True))
+        np.testing.assert_allclose(found["e_volt"], run["late"], atol=within)
+        assert np.ptp(found["e_volt"]) > 0.5
+    module = loaded(codegen.to_python(equations, numbers))
+    again = module.simulate(np.linspace(0, 2, 21), {}, {}, step=0.02)
+    np.testing.assert_allclose(again["e_volt"], run["late"], atol=1e-7)
+
+
 def test_a_step_longer_than_a_delay_is_cut(program: Path) -> None:
     times, x = printed(program, "step=0.1", "T=0.03", end=0.5)
     np.testing.assert_allclose(x, exact(times, 0.03), atol=1e-7)
