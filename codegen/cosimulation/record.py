@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -11,14 +10,14 @@ from bondgraph.errors import SignalError, nearest
 from codegen.cosimulation.ends import end_of
 from codegen.numbers.arrays import Array, read_only
 from codegen.pictures.stacked import stacked
-from codegen.record.files import write_mat, write_parquet
 from codegen.record.result import Result, grouped, marks_of, panel_of
-from codegen.record.tables import dataset, frame, free, write_columns, write_netcdf
+from codegen.record.tables import dataset
+from codegen.record.timed import Timed
 from codegen.runs.track import Event
 
 
 @dataclass(frozen=True)
-class CoSimulation:
+class CoSimulation(Timed):
     """Every participant's signals at the communication points: ``result["plant.omega"]``.
 
     ``time`` [s]; ``participants``: their names; ``columns``: signals by name, read-only arrays; ``units``: of
@@ -117,42 +116,10 @@ class CoSimulation:
         )
         return read_only(gets - gives)
 
-    def write_csv(self, path: str | PathLike[str]) -> None:
-        """Write time and every column as comma-separated columns with one line of names.
-
-        Raises `WriteError` where that cannot be; what was there is kept.
-        """
-        write_columns(path, ["t", *self.columns], [self.time, *self.columns.values()])
-
     def to_xarray(self) -> Any:
         """An `xarray.Dataset` of every column over "time" [s]; `MissingExtraError` without xarray."""
         attributes = {name: {"units": unit} for name, unit in self.units.items()}
         return dataset(self.time, self.columns, attributes, self.events)
-
-    def to_pandas(self) -> Any:
-        """A `pandas.DataFrame` of every column over time [s]; `MissingExtraError` without pandas."""
-        return frame(self.time, self.columns)
-
-    def write_netcdf(self, path: str | PathLike[str]) -> None:
-        """Write `to_xarray` as a netCDF file.
-
-        Raises `MissingExtraError` without xarray or h5netcdf, `WriteError` where the file cannot be written.
-        """
-        write_netcdf(self.to_xarray(), path)
-
-    def write_parquet(self, path: str | PathLike[str]) -> None:
-        """Write time, as "t", and every column as a parquet file; see `Result.write_parquet`.
-
-        Raises `MissingExtraError` without pyarrow, `WriteError` where the file cannot be written.
-        """
-        write_parquet(path, *self._timed(), self.events)
-
-    def write_mat(self, path: str | PathLike[str]) -> None:
-        """Write time, as "t", and every column as variables of a MAT file; see `Result.write_mat`.
-
-        Raises `SignalError` for a name beyond 63 characters, `WriteError` where it cannot be written.
-        """
-        write_mat(path, *self._timed(), self.events)
 
     def plot(self, *names: str | Sequence[str], title: str = "") -> Any:
         """A `matplotlib.figure.Figure` of signals, with events marked; of those that are exchanged if none
@@ -170,10 +137,6 @@ class CoSimulation:
         told = dict.fromkeys(self.connections.values()) or self.columns
         parts = [[name for name in told if name.startswith(f"{one}.")] for one in self.participants]
         return [names for names in parts if names]
-
-    def _timed(self) -> tuple[list[str], list[Array], dict[str, str]]:
-        t = free("t", self.columns)
-        return [t, *self.columns], [self.time, *self.columns.values()], {**self.units, t: "s"}
 
     def __str__(self) -> str:
         first, last = float(self.time[0]), float(self.time[-1])

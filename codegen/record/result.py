@@ -2,7 +2,6 @@
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from os import PathLike
 from types import MappingProxyType
 from typing import Any, Protocol
 
@@ -12,9 +11,9 @@ from codegen.numbers.arrays import Array
 from codegen.pictures.labels import common, measured, pretty
 from codegen.pictures.marks import Marks, stuck_spans
 from codegen.pictures.stacked import Line, Panel, along, fill, stacked
-from codegen.record.files import write_mat, write_parquet
 from codegen.record.summary import summary
-from codegen.record.tables import dataset, frame, free, write_columns, write_netcdf
+from codegen.record.tables import dataset
+from codegen.record.timed import Timed
 from codegen.record.views import run_html
 from codegen.record.working import Accountant, Named, Watcher
 from codegen.runs.track import Event
@@ -33,7 +32,7 @@ def _nothing() -> Mapping[str, float]:
 
 
 @dataclass(frozen=True)
-class Result:
+class Result(Timed):
     """The record of a run: ``result["omega_1"]`` is any named signal of the graph over ``result.time``.
 
     ``events``: what happened at friction ports and switches, in order. At a step or an event a sample
@@ -104,13 +103,6 @@ class Result:
         """
         return self.ledger.audit()
 
-    def write_csv(self, path: str | PathLike[str]) -> None:
-        """Write time and every column as comma-separated columns with one line of names.
-
-        Raises `WriteError` where that cannot be; what was there is kept.
-        """
-        write_columns(path, ["t", *self.columns], [self.time, *self.columns.values()])
-
     def to_xarray(self) -> Any:
         """An `xarray.Dataset` of every column over "time" [s], with units and roles as attributes.
 
@@ -125,39 +117,6 @@ class Result:
         for name, unit in self.units.items():
             attributes.setdefault(name, {})["units"] = unit
         return dataset(self.time, self.columns, attributes, self.events)
-
-    def to_pandas(self) -> Any:
-        """A `pandas.DataFrame` of every column over time [s]; `MissingExtraError` without pandas."""
-        return frame(self.time, self.columns)
-
-    def write_netcdf(self, path: str | PathLike[str]) -> None:
-        """Write `to_xarray` as a netCDF file, which ``xarray.open_dataset`` reads back digit for digit.
-
-        Raises `MissingExtraError` without xarray or h5netcdf, `WriteError` where the file cannot be written.
-        """
-        write_netcdf(self.to_xarray(), path)
-
-    def write_parquet(self, path: str | PathLike[str]) -> None:
-        """Write time, as "t", and every column as a parquet file, digit for digit.
-
-        Units are metadata of its columns, ``unit``; events, as JSON, are metadata of the table. Raises
-        `MissingExtraError` without pyarrow, `WriteError` where the file cannot be written.
-        """
-        write_parquet(path, *self._timed(), self.events)
-
-    def write_mat(self, path: str | PathLike[str]) -> None:
-        """Write time, as "t", and every column as variables of a MAT file, for MATLAB and Octave.
-
-        The variable ``signals`` lists variable, signal and unit, as not every name is one in MATLAB; events
-        are ``event_time``, ``event_port`` and ``event_kind``. Raises `SignalError` for a name beyond 63
-        characters, `WriteError` where the file cannot be written.
-        """
-        write_mat(path, *self._timed(), self.events)
-
-    def _timed(self) -> tuple[list[str], list[Array], dict[str, str]]:
-        """Names, columns and units with those of time in front."""
-        t = free("t", self.columns)
-        return [t, *self.columns], [self.time, *self.columns.values()], {**self.units, t: "s"}
 
     def summary(self) -> str:
         """Samples, where states begin, end and turn, and events, as a short text."""
