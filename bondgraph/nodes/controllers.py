@@ -186,7 +186,7 @@ def _instants(attributes: Mapping[str, Any], where: str) -> tuple[int, int, int]
     if attributes.get("every") is None:
         raise StructureError(f"{where} has no period; give every=..., a number of seconds")
     every, offset = (
-        _seconds(attributes.get(key, 0), f"{where}, {key}") for key in ("every", "offset")
+        exact_seconds(attributes.get(key, 0), f"{where}, {key}") for key in ("every", "offset")
     )
     if every <= 0 or offset < 0:
         raise StructureError(
@@ -201,8 +201,11 @@ def _instants(attributes: Mapping[str, Any], where: str) -> tuple[int, int, int]
     return found
 
 
-def _seconds(value: Any, where: str) -> sp.Rational:
-    """A number, or a text that is one, ``"1/3"``."""
+def exact_seconds(value: Any, where: str) -> sp.Rational:
+    """A number of seconds, exactly as it is written: 0.1 is a tenth; or a text that is one, ``"1/3"``.
+
+    Raises `StructureError` for anything else.
+    """
     try:
         found = expression(value, where) if isinstance(value, str) else number(value, where)
     except ExpressionError as error:

@@ -5,9 +5,8 @@ from math import lcm
 import numpy as np
 import sympy as sp
 
-from bondgraph.algebra.atoms import number
-from bondgraph.algebra.expressions import expression
-from bondgraph.errors import ExpressionError, SignalError
+from bondgraph.errors import SignalError, StructureError
+from bondgraph.nodes.controllers import exact_seconds
 from bondgraph.nodes.tasks import Task
 from codegen.numbers.arrays import Array, read_only
 
@@ -48,14 +47,11 @@ def instants(start: object, end: object, every: object) -> Array:
 
 
 def seconds(value: object, what: str) -> sp.Rational:
-    """A number of seconds, exactly as it is written: 0.1 is a tenth; or a text, ``"1/3"``."""
+    """As `exact_seconds`, of what a run is told: `SignalError` for what is no number of them."""
     try:
-        found = expression(value, what) if isinstance(value, str) else number(value, what)
-    except ExpressionError as error:
-        raise SignalError(f"{error}; give a number of seconds") from None
-    if not isinstance(found, sp.Rational):
-        raise SignalError(f"{what}: {found} is not a number of seconds")
-    return found
+        return exact_seconds(value, what)
+    except StructureError as error:
+        raise SignalError(str(error)) from None
 
 
 def meets(task: Task, start: sp.Rational, every: sp.Rational) -> bool:
