@@ -9,7 +9,7 @@ import sympy as sp
 from bondgraph.algebra.atoms import number, symbol
 from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.errors import ExpressionError, StructureError, nearest
-from bondgraph.nodes.elements import Element, Node
+from bondgraph.nodes.elements import Element, Node, stated
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.tasks import TICK, Called, Reset, Task
 
@@ -49,10 +49,9 @@ def Controller(
         "every": every, "offset": offset, "reads": reads, "states": states, "update": update,
         "outputs": gives, "step": step, **more,
     }  # fmt: skip
-    told = {key: value for key, value in given.items() if value is not None}
-    if told.get("offset") == 0:
-        del told["offset"]
-    return name, {"kind": str(Kind.CONTROLLER), **told}
+    if offset == 0:
+        del given["offset"]
+    return stated(name, Kind.CONTROLLER, given)
 
 
 def controller_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element]:

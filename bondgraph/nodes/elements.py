@@ -1,6 +1,6 @@
 """`Element`, a node that has been checked, and the constructors of nodes of every kind."""
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 
 import sympy as sp
@@ -342,5 +342,14 @@ def _node(name: Hashable, kind: Kind, **attributes: object) -> Node:
         del attributes["priority"]
     if attributes.get("gives") == "effort":
         del attributes["gives"]
-    given = {key: value for key, value in attributes.items() if value is not None}
-    return name, {"kind": str(kind), **given}
+    return stated(name, kind, attributes)
+
+
+def stated(name: Hashable, kind: Kind, attributes: Mapping[str, object]) -> Node:
+    """The node with those of these attributes that say something.
+
+    >>> stated("m", Kind.I, {"constant": 2, "flow": None})
+    ('m', {'kind': 'I', 'constant': 2})
+    """
+    said = {key: value for key, value in attributes.items() if value is not None}
+    return name, {"kind": str(kind), **said}

@@ -8,7 +8,7 @@ import sympy as sp
 from bondgraph.algebra.expressions import expression
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import unit_of
-from bondgraph.nodes.elements import Element, Node, Switch
+from bondgraph.nodes.elements import Element, Node, Switch, stated
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.signals import own_name, source_of, variables_of
 from bondgraph.nodes.stops import check_order
@@ -38,9 +38,8 @@ def Hysteresis(
     >>> run["T"].round(2).tolist(), run["heat"].tolist()
     ([15.0, 19.95, 20.19, 19.94], [1.0, 1.0, 0.0, 1.0])
     """
-    told = {"value": input, "low": low, "high": high, **more}
-    told |= {key: value for key, value in {"off": off, "on": on}.items() if value is not None}
-    return name, {"kind": str(Kind.HYSTERESIS), **told}
+    told = {"value": input, "low": low, "high": high, **more, "off": off, "on": on}
+    return stated(name, Kind.HYSTERESIS, told)
 
 
 def hysteresis_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element]:

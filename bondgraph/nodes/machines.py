@@ -7,7 +7,7 @@ import sympy as sp
 
 from bondgraph.algebra.atoms import symbol
 from bondgraph.errors import StructureError
-from bondgraph.nodes.elements import Element, Node, Switch
+from bondgraph.nodes.elements import Element, Node, Switch, stated
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.nodes.parts import LAST, NUMBER, ending
@@ -51,8 +51,7 @@ def StateMachine(
         "modes": modes, "transitions": guards or transitions, "initially": start, "states": states,
         "reset": {key: told[1] for key, told in acting.items()} or None, **more,
     }  # fmt: skip
-    told = {key: value for key, value in given.items() if value is not None}
-    return name, {"kind": str(Kind.MACHINE), **told}
+    return stated(name, Kind.MACHINE, given)
 
 
 def machine_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element]:

@@ -9,7 +9,7 @@ from bondgraph.algebra.atoms import number, symbol
 from bondgraph.algebra.expressions import TIME, expression
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import start_of, unit_of
-from bondgraph.nodes.elements import Element, Node
+from bondgraph.nodes.elements import Element, Node, stated
 from bondgraph.nodes.kinds import Kind
 from bondgraph.nodes.laws import DryFriction
 from bondgraph.nodes.signals import own_name, source_of, variables_of
@@ -41,8 +41,7 @@ def RateLimiter(
     [0.0, 2.0, 3.0, 2.0, 1.0]
     """
     told = {"value": input, "rate": rate, "falling": falling, "start": start, **more}
-    given = {key: value for key, value in told.items() if value is not None}
-    return name, {"kind": str(Kind.RATE_LIMITER), **given}
+    return stated(name, Kind.RATE_LIMITER, told)
 
 
 def rate_limiter_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element]:

@@ -14,7 +14,7 @@ from bondgraph.algebra.atoms import symbol
 from bondgraph.algebra.expressions import expression
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import start_of, unit_of
-from bondgraph.nodes.elements import Element, Node
+from bondgraph.nodes.elements import Element, Node, stated
 from bondgraph.nodes.kinds import BOUNDS, POSITION, Kind
 from bondgraph.nodes.laws import ExpressionLaw, law
 from bondgraph.nodes.stops import check_order, rigid
@@ -35,7 +35,7 @@ def Function(name: Hashable, value: object, **more: object) -> Node:
     >>> print(bg.explicit(bg.derive(motor)))
     omega' = K*(-omega + ref)/J
     """
-    return name, {"kind": str(Kind.FUNCTION), "value": value, **_told(more)}
+    return stated(name, Kind.FUNCTION, {"value": value, **more})
 
 
 def State(
@@ -55,7 +55,7 @@ def State(
     x' = (-x + sin(t))/T
     """
     told = {"rate": rate, "start": start, "low": low, "high": high, **more}
-    return name, {"kind": str(Kind.STATE), **_told(told)}
+    return stated(name, Kind.STATE, told)
 
 
 def function_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element]:
@@ -153,7 +153,3 @@ def variables_of(name: Hashable, part: str) -> tuple[sp.Symbol, sp.Symbol]:
     """Effort and flow of such a part."""
     effort, flow = (symbol(f"{letter}_{name}_{part}", f"node {name!r}") for letter in "ef")
     return effort, flow
-
-
-def _told(attributes: Mapping[str, object]) -> dict[str, object]:
-    return {key: value for key, value in attributes.items() if value is not None}

@@ -9,7 +9,7 @@ from bondgraph.algebra.atoms import symbol
 from bondgraph.algebra.expressions import expression
 from bondgraph.errors import StructureError
 from bondgraph.nodes.attributes import variable
-from bondgraph.nodes.elements import Element, Node, Switch
+from bondgraph.nodes.elements import Element, Node, Switch, stated
 from bondgraph.nodes.kinds import BOUNDS, POSITION, Kind
 from bondgraph.nodes.laws import ExpressionLaw
 from bondgraph.nodes.resets import resets_of
@@ -44,10 +44,9 @@ def Stop(
         "low": low, "high": high, "restitution": restitution, "start": start,
         "stiffness": stiffness, "damping": damping, "flow": flow, "reset": reset,
     }  # fmt: skip
-    told = {key: value for key, value in given.items() if value is not None}
-    if told.get("restitution") == 0:
-        del told["restitution"]
-    return name, {"kind": str(Kind.STOP), **told}
+    if restitution == 0:
+        del given["restitution"]
+    return stated(name, Kind.STOP, given)
 
 
 def stop_elements(name: Hashable, attributes: Mapping[str, Any]) -> list[Element]:
