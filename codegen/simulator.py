@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike
 from bondgraph.declare.switching import checked_modes
 from bondgraph.errors import SignalError
 from codegen.called.function import followed
+from codegen.delays.course import Make
 from codegen.delays.found import found as found_delays
-from codegen.delays.readings import readings
+from codegen.delays.readings import Reading, readings
 from codegen.delays.stepper import LateStepper
 from codegen.energy.ledger import Ledger
 from codegen.engine.backends import Request, in_c, in_numpy
@@ -266,16 +267,23 @@ class Simulator:
         *settings: Any,
     ) -> Stepper:  # fmt: skip
         """The same of a model with delays, which the stepper itself looks after."""
-        program, own = self.closed.program, {} if inputs is None else inputs
+        own = {} if inputs is None else inputs
         signals_for(own, self.inputs, self.whence)
-        model = replace(self, inputs=tuple(name.name for name in program.asked))
+        delays, make = self._told_late(initial, own, time, *settings)
+        clocks, sources = self.closed.program.clocks, partial(self.sources, found=True)
+        begin = float(time)
+        return LateStepper(make, delays, clocks, self.inputs, Sources(sources, begin), begin)
+
+    def _told_late(
+        self, initial: Any, own: Mapping[str, object], time: float, *settings: Any
+    ) -> tuple[Sequence[Reading], Make]:
+        """What delays read, and what makes a stepper that is told what they give beside its ``own``."""
+        model = replace(self, inputs=tuple(name.name for name in self.closed.program.asked))
 
         def make(told: Mapping[str, object]) -> Stepper:
             return model.stepping(initial, {**own, **told}, time, *settings)
 
-        delays = readings(self.closed.equations.delays, self.closed.parameters)
-        sources = Sources(partial(self.sources, found=True), float(time))
-        return LateStepper(make, delays, program.clocks, self.inputs, sources, float(time))
+        return readings(self.closed.equations.delays, self.closed.parameters), make
 
     def _told(self, initial: Any, signals: Sequence[Signal], begin: float) -> Any:
         """Initial values by states, as told for a run under these signals."""
@@ -324,20 +332,14 @@ class Simulator:
         on: Iterable[Hashable],
     ) -> list[Signal]:  # fmt: skip
         """The inputs of a run with those that delays give, found by stepping it."""
-        begin, end, on = float(times[0]), float(times[-1]), tuple(on)
-        program, own = self.closed.program, dict(zip(self.inputs, given, strict=True))
-        delays = readings(self.closed.equations.delays, self.closed.parameters)
-        names = tuple(name.name for name in program.asked)
-        model = replace(self, inputs=names)
-
-        def make(told: Mapping[str, object]) -> Stepper:
-            return model.stepping(
-                initial, {**own, **told}, begin, settings.method, settings.rtol, settings.atol, on
-            )
-
+        begin, end, program = float(times[0]), float(times[-1]), self.closed.program
+        own = dict(zip(self.inputs, given, strict=True))
+        delays, make = self._told_late(
+            initial, own, begin, settings.method, settings.rtol, settings.atol, tuple(on)
+        )
         known = [*given, *self.sources(begin, end, found=True)]
-        late = found_delays(program, delays, make, known, begin, end)
-        return [late[name] if name in late else own[name] for name in names]
+        every = own | found_delays(program, delays, make, known, begin, end)
+        return [every[name.name] for name in program.asked]
 
     def sources(self, begin: float, end: float, found: bool = False) -> list[Signal]:
         """What known sources do from ``begin`` to ``end`` [s]; their pieces follow those of the inputs.

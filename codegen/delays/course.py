@@ -23,6 +23,10 @@ Known = Callable[[float, float], Sequence[Signal]]
 """Inputs and sources, as far as they are known between two times [s]."""
 
 
+Make = Callable[[Mapping[str, Pieced]], Stepper]
+"""A stepper of which what delays give are inputs as well, under these for them."""
+
+
 @dataclass(frozen=True)
 class Reached:
     """How far a run has come: its time [s], and of each delay what it has read and the largest of it.

@@ -1,16 +1,12 @@
 """What the delays of a model give in a whole run: it is stepped, part by part."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 
-from codegen.delays.course import Course
+from codegen.delays.course import Course, Make
 from codegen.delays.history import Past, begun
 from codegen.delays.readings import Reading
 from codegen.inputs.signal import Pieced, Signal
 from codegen.program.records import Program
-from codegen.stepping.stepper import Stepper
-
-Make = Callable[[Mapping[str, object]], Stepper]
-"""A stepper at the begin of the run, under these inputs for what delays give."""
 
 
 def found(

@@ -1,13 +1,13 @@
 """A stepper of a model with delays: each advance goes part by part."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from bondgraph.errors import SignalError
-from codegen.delays.course import Course, Reached
+from codegen.delays.course import Course, Make, Reached
 from codegen.delays.readings import Reading
-from codegen.inputs.signal import Pieced, Signal
+from codegen.inputs.signal import Signal
 from codegen.runs.track import Event
 from codegen.standalone.switchings import Clock
 from codegen.stepping.going import as_signals
@@ -15,9 +15,6 @@ from codegen.stepping.known import Sources
 from codegen.stepping.plan import Signals
 from codegen.stepping.state import StepperState
 from codegen.stepping.stepper import Stepper, refuse_unknown
-
-Make = Callable[[Mapping[str, Pieced]], Stepper]
-"""A stepper of which what delays give are inputs as well, under these for them."""
 
 
 @dataclass(frozen=True)

@@ -65,9 +65,9 @@ def _made(
         with telling(room):
             for name, text in sources.items():
                 (room / name).write_text(text, encoding="utf-8")
+        made = room / "library.so"
+        units = [name for name in sources if name.endswith(".c")]
         try:
-            made = room / "library.so"
-            units = sorted(name for name in sources if name.endswith(".c"))
             link([*command, "-fPIC", "-I."], ["-lm"], shares(sources, units, PARTS), made)
         except SimulationError as error:
             if "No space left on device" in str(error):

@@ -12,8 +12,8 @@ import numpy as np
 from codegen.standalone.arrays import Array
 from codegen.tuning import TUNING
 
-READ_AT = np.array([-1.0, -1 / 3, 1 / 3, 1.0])
-"""Where a step is read, from -1 to 1."""
+READ_AT = np.array([-1.0, 1.0, -1 / 3, 1 / 3])
+"""Where a step is read, from -1 to 1: its ends, then inside."""
 
 TO_POWERS = np.linalg.inv(np.vander(READ_AT, increasing=True))
 """From values there to powers of the place."""

@@ -62,16 +62,14 @@ class RememberingSteps(FixedSteps):
         start = s.tobytes(), given[0][0].tobytes(), mode
         turns = start != self._end or self.memory.stretch >= self.memory.until
         ends = [self.at(Point(t, s, *given[0]), mode), self.at(Point(t + h, end, *given[2]), mode)]
-        rates = [now.rate for now in ends]
-        values = []
-        for x in 0.5 * (READ_AT + 1):
+        first, last = (now.rate for now in ends)
+        values = [self.read_late(now) for now in ends]
+        for x in 0.5 * (READ_AT[2:] + 1):
             y = 1 - x
             between = y * y * (1 + 2 * x) * s + x * x * (3 - 2 * x) * end
-            between = between + h * x * y * (y * rates[0] - x * rates[1])
-            now = self.at(
-                Point(t + x * h, between, self._inputs(t + x * h, x, given), given[1][1]), mode
-            )
-            values.append(self.read_late(now))
+            between = between + h * x * y * (y * first - x * last)
+            inputs = self._inputs(t + x * h, x, given), given[1][1]
+            values.append(self.read_late(self.at(Point(t + x * h, between, *inputs), mode)))
         self.memory.take(t + h, np.array(values).T, turns)
         self._end = end.tobytes(), given[2][0].tobytes(), after
         return after, end

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
 import sympy as sp
 
@@ -27,25 +27,21 @@ def source_signals(
     Raises `StructureError` where it is not, which is everywhere but in runs.
     """
     if program.delayed and not found:
-        refuse_delays(program)
+        _refuse_delays(program)
     return [
         known_signal(at_parameters(expr, parameters), begin, max(end, begin + TUNING.shortest))
         for expr in program.sources
     ]
 
 
-def refuse_delays(program: Program) -> None:
-    """Refuse what has no past: what a delay gives is told by the run so far.
-
-    Raises `StructureError`, naming the delay.
-    """
-    if program.delayed:
-        name = program.delayed[0]
-        raise StructureError(
-            f"delay {name}: what it gives is told by the past of a run, and one instant has none; "
-            f"put bg.Function({name.name!r}, ...) in its place for what rests or is instantaneous, or a "
-            "bg.TransferFunction that stands for it"
-        )
+def _refuse_delays(program: Program) -> NoReturn:
+    """Refuse what has no past: what a delay gives is told by the run so far."""
+    name = program.delayed[0]
+    raise StructureError(
+        f"delay {name}: what it gives is told by the past of a run, and one instant has none; "
+        f"put bg.Function({name.name!r}, ...) in its place for what rests or is instantaneous, or a "
+        "bg.TransferFunction that stands for it"
+    )
 
 
 class Lag(NamedTuple):

@@ -26,8 +26,9 @@ fmu_error fmu_go_on_late(fmu_instance *f, int turned)
 
 /* Weights by which values at the places give the integral from the first place to each: of the
  * polynomials that are 1 at one place. */
-static void integrals(const double *places, double weights[FMU_POINTS][FMU_POINTS])
+static void integrals(double weights[FMU_POINTS][FMU_POINTS])
 {
+    const double *const places = bg_past_places();
     for (int k = 0; k < FMU_POINTS; k++) {
         double powers[FMU_POINTS + 1] = {1.0};
         for (int j = 0; j < FMU_POINTS; j++)
@@ -47,21 +48,18 @@ static void integrals(const double *places, double weights[FMU_POINTS][FMU_POINT
 }
 
 /* Between two points, as their states and rates tell: where the search begins. */
-static void begin_between(const fmu_read *a, const fmu_instance *b, const double *rate, double h,
-                          const double *places, double s[FMU_POINTS][BG_SIZE])
+static void begin_between(const fmu_instance *f, const double *rate, double h,
+                          double s[FMU_POINTS][BG_SIZE])
 {
-    for (int k = 0; k < FMU_POINTS; k++) {
-        const double x = 0.5 * (places[k] + 1.0), y = 1.0 - x;
-        for (int i = 0; i < BG_SIZE; i++)
-            s[k][i] = y * y * (1.0 + 2.0 * x) * a->s[i] + x * x * (3.0 - 2.0 * x) * b->at.s[i]
-                + h * x * y * (y * a->rate[i] - x * rate[i]);
-    }
+    const fmu_read *const a = &f->at.read;
+    for (int k = 0; k < FMU_POINTS; k++)
+        bg_between(0.5 * (bg_past_places()[k] + 1.0), h, a->s, f->at.s, a->rate, rate, s[k]);
 }
 
 /* States as the integrals of their rates, from the first point, and less by and by what they miss
  * of the last; how far they went, of the largest. */
 static double renew_between(const fmu_instance *b, double h,
-                            double weights[FMU_POINTS][FMU_POINTS], const double *places,
+                            double weights[FMU_POINTS][FMU_POINTS],
                             double rates[FMU_POINTS][BG_SIZE], double s[FMU_POINTS][BG_SIZE])
 {
     double most = 0.0;
@@ -75,7 +73,7 @@ static double renew_between(const fmu_instance *b, double h,
         }
         const double missed = found[FMU_POINTS - 1] - b->at.s[i];
         for (int k = 1; k < FMU_POINTS; k++) {
-            found[k] -= 0.5 * (places[k] + 1.0) * missed;
+            found[k] -= 0.5 * (bg_past_places()[k] + 1.0) * missed;
             most = fmax(most, fabs(found[k] - s[k][i]) / size);
             s[k][i] = found[k];
         }
@@ -84,14 +82,14 @@ static double renew_between(const fmu_instance *b, double h,
 }
 
 /* Rates at all points, and what is read there; what the importer gives is on a line. */
-static int look_between(fmu_instance *f, const double *places, double s[FMU_POINTS][BG_SIZE],
-                double rates[FMU_POINTS][BG_SIZE], double values[BG_LAGS][BG_PAST_VALUES])
+static int look_between(fmu_instance *f, double s[FMU_POINTS][BG_SIZE],
+                        double rates[FMU_POINTS][BG_SIZE], double values[BG_LAGS][BG_PAST_VALUES])
 {
     const double half = 0.5 * (f->at.time - f->at.read.time);
     double read[BG_LAGS];
     int status = BG_OK;
     for (int k = 0; k < FMU_POINTS && status == BG_OK; k++) {
-        const double inside = f->at.read.time + half * (places[k] + 1.0);
+        const double inside = f->at.read.time + half * (bg_past_places()[k] + 1.0);
         const double t = k + 1 < FMU_POINTS ? inside : f->at.time;
         status = bg_view_look(&f->located.view, t, s[k], f->at.mode);
         memcpy(rates[k], f->located.view.shot.rate, sizeof rates[k]);
@@ -106,26 +104,24 @@ static int look_between(fmu_instance *f, const double *places, double s[FMU_POIN
  * rates are stiff. */
 static int read_between(fmu_instance *f, double h)
 {
-    double places[FMU_POINTS], weights[FMU_POINTS][FMU_POINTS], last = INFINITY, went = INFINITY;
+    double weights[FMU_POINTS][FMU_POINTS], last = INFINITY, went = INFINITY;
     double s[FMU_POINTS][BG_SIZE], rates[FMU_POINTS][BG_SIZE], values[BG_LAGS][BG_PAST_VALUES];
-    for (int k = 0; k < FMU_POINTS; k++)
-        places[k] = -cos(k * acos(-1.0) / (FMU_POINTS - 1));
-    integrals(places, weights);
+    integrals(weights);
     double rate[BG_SIZE];
     memcpy(rate, f->located.view.shot.rate, sizeof rate);
-    begin_between(&f->at.read, f, rate, h, places, s);
-    int status = look_between(f, places, s, rates, values);
+    begin_between(f, rate, h, s);
+    int status = look_between(f, s, rates, values);
     for (int turn = 0; turn < BG_RENEWED && status == BG_OK && went > BG_DELAYED; turn++) {
         last = went;
-        went = renew_between(f, h, weights, places, rates, s);
+        went = renew_between(f, h, weights, rates, s);
         if (went >= last)
-            begin_between(&f->at.read, f, rate, h, places, s);
-        status = look_between(f, places, s, rates, values);
+            begin_between(f, rate, h, s);
+        status = look_between(f, s, rates, values);
         if (went >= last)
             break;
     }
     if (status == BG_OK)
-        status = bg_memory_take(&f->model.memory, f->at.time, FMU_POINTS, places, values,
+        status = bg_memory_take(&f->model.memory, f->at.time, FMU_POINTS, bg_past_places(), values,
                                 f->at.read.turned);
     f->at.read.turned = 0;
     return status;

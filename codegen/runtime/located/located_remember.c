@@ -3,12 +3,6 @@
 
 #include "located_internal.h"
 
-/* Cosines of k pi/7: the ends of a part are among them, so that parts meet. */
-static const double places[BG_PAST_VALUES] = {
-    -1.0, -0.90096886790241913, -0.62348980185873353, -0.22252093395631440,
-    0.22252093395631440, 0.62348980185873353, 0.90096886790241913, 1.0,
-};
-
 static int read_at(bg_located *c, double t, double *values)
 {
     double s[BG_SIZE];
@@ -23,6 +17,7 @@ static int read_at(bg_located *c, double t, double *values)
 static double missed(const bg_located *c, double (*values)[BG_PAST_VALUES], double place,
                      const double *read)
 {
+    const double *const places = bg_past_places();
     double most = 0.0;
     for (int i = 0; i < BG_DELAYS; i++) {
         double sum = 0.0, size = BG_TINY;
@@ -41,6 +36,7 @@ static double missed(const bg_located *c, double (*values)[BG_PAST_VALUES], doub
 /* A part from where it is known, halved until its polynomials tell what was read. */
 static int read_part(bg_located *c, double until)
 {
+    const double *const places = bg_past_places();
     bg_memory *const memory = &c->model->memory;
     const double begin = memory->is.until, most = fmax(BG_DELAYED, BG_REMEMBERED * c->asked->rtol);
     double values[BG_LAGS][BG_PAST_VALUES], read[BG_LAGS], off = INFINITY;

@@ -232,6 +232,11 @@ const double *bg_recalled(bg_model *m, double t, double h, const double *w);
 int bg_remember_step(bg_model *m, double t, double h, const double *begin, const double *end,
                      const double *w, const int *mode);
 
+/* A step's states a part of h from its begin, as its ends and the rates there, `first` and `last`,
+ * tell them (Hermite's polynomial). */
+void bg_between(double x, double h, const double *begin, const double *end, const double *first,
+                const double *last, double *s);
+
 /* model_step.c: inputs at a part of a step, on the parabola through their three values. */
 void bg_on_parabola(double part, const double *w, double *of);
 

@@ -10,6 +10,10 @@ enum {
     BG_LAGS = BG_DELAYS > 0 ? BG_DELAYS : 1
 };
 
+/* The places at which parts are read as a rule, BG_PAST_VALUES of them: their ends are among them,
+ * so that parts meet. */
+const double *bg_past_places(void);
+
 /* A part of a run: what each delay has read in it, by powers of the place, which goes from -1 on to
  * 1. */
 typedef struct {

@@ -85,13 +85,12 @@ const double *bg_recalled(bg_model *m, double t, double h, const double *w)
     return own;
 }
 
-/* A step's states where its ends and the rates there tell them (Hermite's polynomial). */
-static void in_step(double x, double h, double ends[2][BG_SIZE], double rates[2][BG_SIZE],
-                    double *s)
+void bg_between(double x, double h, const double *begin, const double *end, const double *first,
+                const double *last, double *s)
 {
     const double y = 1.0 - x, a = y * y * (1.0 + 2.0 * x), b = x * x * (3.0 - 2.0 * x);
     for (int i = 0; i < BG_SIZE; i++)
-        s[i] = a * ends[0][i] + b * ends[1][i] + h * x * y * (y * rates[0][i] - x * rates[1][i]);
+        s[i] = a * begin[i] + b * end[i] + h * x * y * (y * first[i] - x * last[i]);
 }
 
 /* Whether a step begins as the one before ended. */
@@ -109,18 +108,16 @@ int bg_remember_step(bg_model *m, double t, double h, const double *begin, const
 {
     static const double places[] = {-1.0, 1.0, -1.0 / 3.0, 1.0 / 3.0};
     enum { PLACES = sizeof places / sizeof *places };
-    double ends[2][BG_SIZE], rates[2][BG_SIZE], s[BG_SIZE], values[BG_LAGS][BG_PAST_VALUES];
+    double rates[2][BG_SIZE], s[BG_SIZE], values[BG_LAGS][BG_PAST_VALUES];
     double now[BG_ROOM(BG_EXTERNAL)] = {0}, late[BG_LAGS];
     const int turns = !goes_on(m, t, begin, w, mode);
     int status = BG_OK;
-    memcpy(ends[0], begin, sizeof ends[0]);
-    memcpy(ends[1], end, sizeof ends[1]);
     for (int k = 0; k < PLACES && status == BG_OK; k++) {
         const double x = 0.5 * (places[k] + 1.0);
         if (k < 2)
-            memcpy(s, ends[k], sizeof s);
+            memcpy(s, k ? end : begin, sizeof s);
         else
-            in_step(x, h, ends, rates, s);
+            bg_between(x, h, begin, end, rates[0], rates[1], s);
         bg_on_parabola(x, w, now);
         bg_model_recall(m, t + x * h, now, NULL);
         status = bg_evaluate(m, t + x * h, s, now, m->work.rates[0], mode, 0, &m->shot);

@@ -94,14 +94,12 @@ static int advance_whole(bg_model *m, double t, double h, double *s, const doubl
     return status;
 }
 
-/* The same of a model with delays: they read what it makes; it is not taken where they cannot. */
+/* The same of a model with delays, whose memory is ready: they read what it makes; it is not taken
+ * where they cannot. */
 static int advance_late(bg_model *m, double t, double h, double *s, const double *w)
 {
     double begun[BG_SIZE];
     int mode[BG_ROOM(K)];
-    const int ready = bg_memory_ready(m, t, h);
-    if (ready)
-        return ready;
     w = bg_recalled(m, t, h, w);
     memcpy(begun, s, sizeof begun);
     memcpy(mode, m->mode, sizeof mode);
@@ -130,11 +128,9 @@ static int advance_by_parts(bg_model *m, double t, double h, double *s, const do
     memcpy(begun, s, sizeof begun);
     memcpy(mode, m->mode, sizeof mode);
     for (int k = 0; k < BG_CUTS && a < end && bg_is_taken(status); k++) {
-        const int ready = BG_DELAYS ? bg_memory_ready(m, a, end - a) : BG_OK;
+        status = BG_DELAYS ? bg_memory_ready(m, a, end - a) : BG_OK;
         const double b = bg_cut_step(m, a, end);
         inputs_of_part((a - t) / h, (b - a) / h, w, part);
-        if (ready)
-            status = ready;
         if (a > t && bg_is_taken(status))
             status = bg_model_settle(m, a, b - a, s, part);
         told = status ? status : told;

@@ -32,7 +32,7 @@ enum bg_status {
     BG_INACCURATE,   /* a step's error is beyond 1 % of a state's range; it was taken */
     BG_UNEXCHANGED,  /* no impulse is found that keeps what nonlinear storages hold */
     BG_INSTANTS,     /* a step crosses more instants of tasks than it may */
-    BG_NOT_LATE,         /* a delay is no positive number, or gives none at first */
+    BG_NOT_LATE,     /* a delay is no positive number, or gives none at first */
     BG_FORGETS,      /* a delay reaches farther back than what is known of a run */
     /* of exact steps alone */
     BG_MISSING,      /* a mode is not in the table */
