@@ -36,38 +36,55 @@ class LocatedInputs:
     kept: Any
 
 
-class _Room:
-    """Where one thread does its runs; keeps all that the record points to."""
+class _Rooms:
+    """Where one thread does its runs, one in each lane; keeps all that the records point to."""
 
     def __init__(self, library: LocatedLibrary, kept: Plan, settings: Settings) -> None:
-        ffi, _ = library.opened
-        self.record = ffi.new("located_room *")
+        self._ffi, self._library = library.opened
+        self._kept = list[Any]()
+        self._records = self._ffi.new(f"located_room[{library.lanes}]")
+        for at in range(library.lanes):
+            self._fill(self._records[at], library, kept, settings)
+        size = self._library.lanes_size() if library.lanes > 1 else 0
+        self._lanes = aligned(size // 8 + 1) if size else None
+
+    def _fill(self, record: Any, library: LocatedLibrary, kept: Plan, settings: Settings) -> None:
         instance, run = map(aligned, library.sizes)
-        values, events = (
+        values, totals = (
             aligned(max(len(kept.rows), 1), kept.samples),
-            ffi.new("bg_event[]", CAPACITY) if kept.eventful else ffi.NULL,
+            aligned(len(kept.products) + 1),
         )
-        totals = aligned(len(kept.products) + 1)
-        self._kept = [instance, run, values, totals, events]
-        self.record.totals = ffi.cast("double *", totals.ctypes.data)
-        self.record.model = ffi.cast("bg_model *", instance.ctypes.data)
-        self.record.run = ffi.cast("bg_located *", run.ctypes.data)
-        self.record.values = ffi.cast("double *", values.ctypes.data)
-        self.record.events, self.record.capacity = events, room_for_events(kept.eventful)
-        self.record.method = METHODS.index(settings.method)
-        self.record.rtol, self.record.atol = settings.rtol, settings.atol
-        self.record.corners = kept.cornered
+        events = self._ffi.new("bg_event[]", CAPACITY) if kept.eventful else self._ffi.NULL
+        self._kept += [instance, run, values, totals, events]
+        for name, kind, array in (
+            ("totals", "double", totals), ("model", "bg_model", instance), ("run", "bg_located", run),
+            ("values", "double", values),
+        ):  # fmt: skip
+            setattr(record, name, self._ffi.cast(f"{kind} *", array.ctypes.data))
+        record.events, record.capacity = events, room_for_events(kept.eventful)
+        record.method = METHODS.index(settings.method)
+        record.rtol, record.atol = settings.rtol, settings.atol
+        record.corners = kept.cornered
+
+    def do(self, job: Any, runs: Any) -> None:
+        """Every run."""
+        if self._lanes is None:
+            self._library.located_batch(self._records, job, runs)
+            return
+        lanes = self._ffi.cast("bg_lanes *", self._lanes.ctypes.data)
+        self._library.lanes_batch(lanes, self._records, job, runs)
 
 
 class LocatedLoop:
-    """One sweep's runs; calls of `run` may come from several threads."""
+    """One sweep's runs, side by side where they can; calls of `run` may come from several threads."""
 
     def __init__(
         self, library: LocatedLibrary, time: Array, kept: Plan, settings: Settings
     ) -> None:
         self._plan, self._time = kept, time
-        self._ffi, self._opened = library.opened
-        self._rooms = Rooms(partial(_Room, library, kept, settings))
+        library = library.side_by_side
+        self._ffi, _ = library.opened
+        self._rooms = Rooms(partial(_Rooms, library, kept, settings))
 
     def shared(self, signals: Sequence[Signal]) -> Shared:
         """Inputs of all runs."""
@@ -113,8 +130,8 @@ class LocatedLoop:
         job, pointed = job_record(ffi, kept, self._time, 0.0)
         runs = ffi.new("located_runs *")
         found = outcome_of(ffi, runs, inputs.pointers, parameters, states, kept.width)
-        with self._rooms.one() as room:
-            self._opened.located_batch(room.record, job, runs)
+        with self._rooms.one() as rooms:
+            rooms.do(job, runs)
         del pointed
         return found
 

@@ -40,10 +40,10 @@ def places(program: Program) -> Mapping[sp.Symbol, str]:
     )
 
 
-def text_of(expr: sp.Expr, names: Mapping[str, str]) -> str:
+def text_of(expr: sp.Expr, names: Mapping[str, str], language: str = "checked_c") -> str:
     """An expression as C; `ExpressionError` for a function that C does not have."""
     try:
-        text = printed(expr, "checked_c", names)
+        text = printed(expr, language, names)
     except PrintMethodNotImplementedError:
         text = "Not supported"
     if "Not supported" in text:
@@ -51,19 +51,25 @@ def text_of(expr: sp.Expr, names: Mapping[str, str]) -> str:
     return text
 
 
-def body(code: Block, where: Mapping[sp.Symbol, str], result: str) -> list[str]:
-    """The lines of a block: its arguments by name, its temporaries, its results."""
+def body(
+    code: Block,
+    where: Mapping[sp.Symbol, str],
+    result: str,
+    language: str = "checked_c",
+    place: str = "",
+) -> list[str]:
+    """The lines of a block: its arguments by name, its temporaries, its results, each with a ``place``."""
     names = names_for([*code.arguments, *(name for name, _ in code.assignments)])
     lines = []
     for name in code.arguments:
         lines += statement(f"const double {names[name.name]} = {where[name]};")
     for name, value in code.assignments:
-        lines += statement(f"const double {names[name.name]} = {text_of(value, names)};")
+        lines += statement(f"const double {names[name.name]} = {text_of(value, names, language)};")
     at = 0
     while at < len(code.results):
         count = _bits(code.results[at:])
         lines += _edges(code.results[at], count, names, f"{result} + {at}") if count > 1 else statement(
-            f"{result}[{at}] = {text_of(code.results[at], names)};"
+            f"{result}[{at}]{place} = {text_of(code.results[at], names, language)};"
         )  # fmt: skip
         at += count
     return lines

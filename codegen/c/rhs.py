@@ -29,14 +29,16 @@ class Straight:
 
 def straight(program: Program) -> Straight | None:
     """Straight-line code for the rates, or None where something has to be solved for."""
+    return Builder(program).built() if is_straight(program) else None
+
+
+def is_straight(program: Program) -> bool:
+    """Whether nothing has to be solved for, and little to be kept of A^-1."""
     looped = program.joint or any(group.loop for group in program.groups)
     rated = any(program.layout[name].rows for name in "EHK")
     if looped or rated or program.varying:
-        return None
-    blocks = _blocks(program)
-    if sum(len(part) ** 2 for part in blocks) > MOST_INVERSES:
-        return None
-    return _Builder(program, blocks).built()
+        return False
+    return sum(len(part) ** 2 for part in _blocks(program)) <= MOST_INVERSES
 
 
 def straights(program: Program) -> tuple[Straight, ...]:
@@ -63,11 +65,11 @@ def _product(factor: sp.Expr, value: sp.Expr) -> sp.Expr:
     return factor * value
 
 
-class _Builder:
+class Builder:
     """Collects the assignments of one program's rates."""
 
-    def __init__(self, program: Program, blocks: list[list[int]]) -> None:
-        self._program, self._blocks = program, blocks
+    def __init__(self, program: Program) -> None:
+        self._program, self._blocks = program, _blocks(program)
         self._parameters = set(program.parameters)
         taken = {
             name.name
@@ -85,6 +87,17 @@ class _Builder:
         )
 
     def built(self) -> Straight:
+        """The rates, by states, then law states."""
+        code, inverses = needed(self._assignments, self._rates_of_all()), self._places()
+        names = (*self._constants.names.values(), *(self._inverses[place] for place in inverses))
+        return Straight(code, names, self._signs, tuple(self._constants.names), tuple(inverses))
+
+    def _places(self) -> list[tuple[int, int]]:
+        """The entries of A^-1 that are used."""
+        return sorted(self._inverses, key=lambda place: (place[1], place[0]))
+
+    def _rates_of_all(self) -> list[sp.Expr]:
+        """The rates, once all that moves them is assigned."""
         program = self._program
         for at, name in enumerate(program.inputs):
             if name in program.external:
@@ -95,12 +108,7 @@ class _Builder:
         self._friction()
         for group in program.groups[program.early :]:
             self._laws(group)
-        results = self._rates()
-        results += [self._row(row, "F", "D") for row in program.law_rates]
-        inverses = sorted(self._inverses, key=lambda place: (place[1], place[0]))
-        names = (*self._constants.names.values(), *(self._inverses[place] for place in inverses))
-        code = needed(self._assignments, results)
-        return Straight(code, names, self._signs, tuple(self._constants.names), tuple(inverses))
+        return [*self._rates(), *(self._row(row, "F", "D") for row in program.law_rates)]
 
     def _matrices(self) -> dict[str, dict[int, list[tuple[int, sp.Expr]]]]:
         """Per matrix and row its entries."""

@@ -3,9 +3,9 @@
 from functools import cache
 from importlib.resources import files
 
-FOLDERS = ("model", "ports", "run", "located", "exact", "paused", "batch", "fmu")
+FOLDERS = ("model", "ports", "run", "located", "exact", "paused", "batch", "lanes", "fmu")
 """Of `codegen/runtime`: evaluating a model; holding and choosing; the loop; steps with a tolerance; exact
-steps; runs that pause; many runs; units."""
+steps; runs that pause; many runs; several of these side by side; units."""
 
 SHARED = (
     "port_set.h", "port_log.h", "port_switch.h", "port_switch.c", "port_ways.h", "port_ways.c",

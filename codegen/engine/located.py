@@ -9,7 +9,8 @@ import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.c.export import CALLING, texts
-from codegen.c.runtime import runtime_file
+from codegen.c.lanes import LANES, Lanes, lanes, lanes_text
+from codegen.c.runtime import runtime_file, runtime_names
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
 from codegen.engine.fallback import Stopped
 from codegen.engine.happened import told_events
@@ -34,6 +35,16 @@ FILES = (
 
 METHODS = ("auto", "DOP853", "Radau")
 """In the order of ``located_request.h``."""
+
+VECTORS = ("-fno-math-errno", "-fno-trapping-math")
+"""Of a root and a choice compilers then make vectors; nothing here asks for errno or the flags of traps."""
+
+_BATCH = """
+typedef struct bg_lanes bg_lanes;
+void lanes_batch(bg_lanes *a, located_room *rooms, const batch_job *job, const located_runs *runs);
+unsigned long lanes_size(void);
+"""
+"""What is called of runs side by side."""
 
 FEW, MANY = 256, 1 << 20
 """Events there is room for at first, and at most."""
@@ -77,6 +88,17 @@ class LocatedLibrary:
         return loaded(compiled(self.sources, self._flags), _declared())
 
     @cached_property
+    def side_by_side(self) -> "LocatedLibrary":
+        """The library that does several runs at once, or this one where it does one after the other."""
+        code = lanes(self._model.program)
+        return self if code is None else LanesLibrary(self._model, code, self._flags)
+
+    @property
+    def lanes(self) -> int:
+        """So many runs go side by side."""
+        return 1
+
+    @cached_property
     def sizes(self) -> tuple[int, int]:
         """How many doubles an instance and a run take."""
         ffi, library = self.opened
@@ -88,6 +110,35 @@ class LocatedLibrary:
                 "the library of this model was compiled for other sizes; empty the cache"
             )
         return sizes[0] // 8 + 1, sizes[1] // 8 + 1
+
+
+class LanesLibrary(LocatedLibrary):
+    """The same with runs side by side, each in a lane of its own."""
+
+    def __init__(self, model: ClosedModel, code: Lanes, flags: Sequence[str]) -> None:
+        super().__init__(model, (*flags, *VECTORS))
+        self._code = code
+
+    @cached_property
+    def sources(self) -> Mapping[str, str]:
+        """The files of both."""
+        files = {name: runtime_file(name) for name in runtime_names("lanes")}
+        return {**super().sources, **lanes_text(self._model.program, self._code), **files}
+
+    @cached_property
+    def opened(self) -> tuple[Any, Any]:
+        """cffi's interface and the library."""
+        return loaded(compiled(self.sources, self._flags), _declared() + _BATCH)
+
+    @property
+    def side_by_side(self) -> LocatedLibrary:
+        """This one."""
+        return self
+
+    @property
+    def lanes(self) -> int:
+        """So many runs go side by side."""
+        return LANES
 
 
 class LocatedRuns:

@@ -135,6 +135,15 @@ class _CheckedC(_C):
         return f"bg_sign({self._print(expr.args[0])})"
 
 
+class _Lanes(_CheckedC):
+    """The same C of functions that have no branch, as far as there are some."""
+
+    def _called(self, expr: sp.Expr) -> str:
+        return f"bg_lane_{type(expr).__name__}({self._print(expr.args[0])})"
+
+    _print_atan = _print_sin = _print_cos = _print_exp = _print_log = _print_tanh = _called
+
+
 def _double(expr: sp.Expr) -> str:
     """A number as the nearest double, in digits that give it back."""
     value = float(expr)
@@ -211,14 +220,15 @@ class _Floats(_Python):
 
 
 PRINTERS: Mapping[str, type] = {
-    "c": _C, "checked_c": _CheckedC, "python": _Python, "floats": _Floats,
+    "c": _C, "checked_c": _CheckedC, "lanes": _Lanes, "python": _Python, "floats": _Floats,
 }  # fmt: skip
 
 
 def printed(expr: sp.Expr, language: str, names: Mapping[str, str]) -> str:
     """An expression as text, its symbols under the names given.
 
-    ``language``: "c", "python", or "checked_c", where ``bg_min``, ``bg_max`` and ``bg_sign`` are called; or
+    ``language``: "c", "python", or "checked_c", where ``bg_min``, ``bg_max`` and ``bg_sign`` are called;
+    "lanes", which calls functions of several runs at once; or
     "floats", Python that calls ``least`` and ``most``, in which nothing that is no number is lost.
 
     >>> x = sp.Symbol("double")

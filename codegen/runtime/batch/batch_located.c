@@ -54,39 +54,46 @@ static int smooth(void *to, void *run, double begin, double end)
     return BG_OK;
 }
 
-/* One run; a status. */
-static int run_located_once(located_room *room, const double *parameters, const double *states,
-               const bg_signals *inputs, double *results, double *moved)
+int located_begin(located_room *room, const batch_job *job, const located_runs *runs, int run,
+                  bg_request *asked)
 {
-    const batch_job *const job = room->job;
-    bg_request asked = {
-        .times = job->times, .states = states, .samples = job->samples, .method = room->method,
+    room->job = job;
+    *asked = (bg_request){
+        .times = job->times, .states = runs->states + (long)run * (N + OWN),
+        .samples = job->samples, .method = room->method,
         .rtol = room->rtol, .atol = room->atol, .to = room, .record = keep_signals,
         .events = room->events, .capacity = room->capacity, .smooth = job->products ? smooth : 0,
-        .first = job->first, .named = job->named, .moved = moved,
+        .first = job->first, .named = job->named, .moved = runs->moved + (long)run * (N + OWN),
         .corners = room->corners,
     };
     for (int k = 0; k < job->products; k++)
         room->totals[k] = 0.0;
-    int status = bg_model_init(room->model, parameters);
-    if (status == BG_OK && !BG_VARYING && batch_doubtful(room->model))
-        status = BG_SINGULAR;
-    if (status == BG_OK)
-        status = bg_model_run(room->run, room->model, inputs, &asked);
-    if (status != BG_OK)
-        return status;
-    return batch_reduce(job, room->values, job->samples, room->totals, asked.events, asked.count,
+    const int status = bg_model_init(room->model, runs->parameters + (long)run * BG_PARAMETERS);
+    return status == BG_OK && !BG_VARYING && batch_doubtful(room->model) ? BG_SINGULAR : status;
+}
+
+int located_reduce(const located_room *room, const located_runs *runs, int run,
+                   const bg_request *asked)
+{
+    const batch_job *const job = room->job;
+    double *const results = runs->results + (long)run * job->width;
+    return batch_reduce(job, room->values, job->samples, room->totals, asked->events, asked->count,
                         results)
                ? BG_OK
                : BG_NOT_FINITE;
 }
 
+int located_alone(located_room *room, const batch_job *job, const located_runs *runs, int run)
+{
+    bg_request asked;
+    int status = located_begin(room, job, runs, run, &asked);
+    if (status == BG_OK)
+        status = bg_model_run(room->run, room->model, runs->inputs[run], &asked);
+    return status == BG_OK ? located_reduce(room, runs, run, &asked) : status;
+}
+
 void located_batch(located_room *room, const batch_job *job, const located_runs *runs)
 {
-    room->job = job;
     for (int k = 0; k < runs->runs; k++)
-        runs->status[k] = run_located_once(room, runs->parameters + (long)k * BG_PARAMETERS,
-                              runs->states + (long)k * (N + OWN), runs->inputs[k],
-                              runs->results + (long)k * job->width,
-                              runs->moved + (long)k * (N + OWN));
+        runs->status[k] = located_alone(room, job, runs, k);
 }

@@ -27,6 +27,14 @@ typedef struct {
     int capacity, method, corners;
 } located_room;
 
+/* The parts of a run: what it is asked, and its model; its measures, once it is done. All of it. Each
+ * gives a status. */
+int located_begin(located_room *room, const batch_job *job, const located_runs *runs, int run,
+                  bg_request *asked);
+int located_reduce(const located_room *room, const located_runs *runs, int run,
+                   const bg_request *asked);
+int located_alone(located_room *room, const batch_job *job, const located_runs *runs, int run);
+
 /* Does every run; a status for each, nonzero where it has to be done another way. */
 void located_batch(located_room *room, const batch_job *job, const located_runs *runs);
 

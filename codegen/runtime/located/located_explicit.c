@@ -41,21 +41,30 @@ static void estimates(const bg_located *c, double *fifth, double *third)
     }
 }
 
-/* The error over what the tolerance allows: below 1 the step is good. Where the rates may have a
- * corner in it both estimates are added: runs/explicit.py says why. */
-static double explicit_error(bg_located *c, double h)
+/* Where the rates may have a corner in a step both estimates are added: runs/explicit.py says why. */
+static double error_over(bg_solver *s, double fifth, double third, double h)
 {
-    bg_solver *const s = &c->solver;
-    double fifth, third, error = 0.0;
-    estimates(c, &fifth, &third);
-    const double longer = s->begun ? fmax(h, s->h) : h, rise = BG_RISEN * pow(longer, 3.0);
+    const double longer = s->begun ? fmax(h, s->h) : h, rise = BG_RISEN * longer * longer * longer;
+    const double both = fifth + 0.01 * third;
+    double error = 0.0;
     if (s->begun && sqrt(third) > rise * s->before)
         s->doubts = BG_WARY;
-    const double both = fifth + 0.01 * third;
     if (both > 0.0)
         error = h * (s->doubts > 0 ? sqrt(both / BG_SIZE) : fifth / sqrt(both * BG_SIZE));
+    if (!(both >= 0.0) || error != error)
+        error = INFINITY;
     if (error < 1.0)
-        s->before = sqrt(third) / pow(h, 3.0);
+        s->before = sqrt(third) / (h * h * h);
+    return error;
+}
+
+double bg_explicit_judge(bg_solver *s, double fifth, double third, double h)
+{
+    const double error = error_over(s, fifth, third, h);
+    if (!(error < 1.0))
+        s->doubts = BG_WARY;
+    else if (s->doubts > 0)
+        s->doubts--;
     return error;
 }
 
@@ -64,34 +73,57 @@ static double explicit_error(bg_located *c, double h)
 static int attempt(bg_located *c, double h, double *error)
 {
     int status = BG_OK;
+    double fifth = INFINITY, third = INFINITY;
     for (int i = 1; i <= DOP_STAGES && status == BG_OK; i++)
         status = stage(c, i, h);
-    *error = status == BG_OK ? explicit_error(c, h) : INFINITY;
-    if (!(*error < 1.0))
-        c->solver.doubts = BG_WARY;
-    else if (c->solver.doubts > 0)
-        c->solver.doubts--;
+    if (status == BG_OK)
+        estimates(c, &fifth, &third);
+    *error = bg_explicit_judge(&c->solver, fifth, third, h);
     return status == BG_NOT_FINITE || status == BG_NO_SOLUTION ? BG_OK : status;
+}
+
+/* The root of order 8 that lengths of steps go by. */
+static double as_length(double error)
+{
+    return SAFETY / sqrt(sqrt(sqrt(error)));
+}
+
+double bg_explicit_least(const bg_solver *s)
+{
+    return 10.0 * (nextafter(fabs(s->t), INFINITY) - fabs(s->t));
+}
+
+double bg_explicit_shorter(double error)
+{
+    return isfinite(error) ? fmax(SHRINK, as_length(error)) : SHRINK;
+}
+
+void bg_explicit_take(bg_solver *s, double end, double h, double error, double grow)
+{
+    s->t = end;
+    s->h = h;
+    s->error = error;
+    s->begun = 1;
+    s->next = h * (error > 0.0 ? fmin(grow, as_length(error)) : grow);
 }
 
 int bg_explicit_step(bg_located *c, double stop)
 {
     bg_solver *const s = &c->solver;
-    const double least = 10.0 * (nextafter(fabs(s->t), INFINITY) - fabs(s->t));
-    double h = fmin(fmax(s->next, least), s->longest), error = INFINITY, grow = GROW;
+    const double least = bg_explicit_least(s);
+    double h = fmin(fmax(s->next, least), s->longest), error = INFINITY, grow = GROW, end;
     s->t_old = s->t;
     memcpy(s->y_old, s->y, sizeof s->y);
     memcpy(s->stage[0], s->f, sizeof s->f);
     for (;;) {
-        const double end = fmin(s->t_old + h, stop);
+        end = fmin(s->t_old + h, stop);
         h = end - s->t_old;
         const int status = attempt(c, h, &error);
         if (status != BG_OK)
             return status;
-        s->t = end;
         if (error < 1.0)
             break;
-        h *= isfinite(error) ? fmax(SHRINK, SAFETY * pow(error, -0.125)) : SHRINK;
+        h *= bg_explicit_shorter(error);
         grow = 1.0;
         if (h < least)
             return BG_STEPS;
@@ -99,10 +131,7 @@ int bg_explicit_step(bg_located *c, double stop)
     memcpy(s->y, s->tried, sizeof s->y);
     memcpy(s->f_old, s->f, sizeof s->f);
     memcpy(s->f, s->stage[DOP_STAGES], sizeof s->f);
-    s->h = h;
-    s->error = error;
-    s->begun = 1;
-    s->next = h * (error > 0.0 ? fmin(grow, SAFETY * pow(error, -0.125)) : grow);
+    bg_explicit_take(s, end, h, error, grow);
     return BG_OK;
 }
 

@@ -14,6 +14,12 @@
 /* located_run.c: rates of s at t in the present segment and mode. */
 int bg_located_rate(bg_located *c, double t, const double *s, double *rate);
 
+/* The parts of a run: sets it up; in turns, decides where it is and where the stretch from there ends
+ * at the latest, until it is at its end; what is decided there, and the last sample. */
+int bg_located_begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked);
+int bg_located_turn(bg_located *c, double *stop);
+int bg_located_end(bg_located *c);
+
 /* located_rates.c: how rates change with the states, by rows; the largest rate, of the inputs too;
  * that at the present instant, a jump beside it left aside. */
 int bg_located_jacobian(bg_located *c, double t, const double *s, double *jacobian);
@@ -51,6 +57,15 @@ enum { BG_AT_EVENT = 1, BG_AT_CORNER };
 int bg_corners_go(bg_located *c, double stop);
 int bg_located_stretch(bg_located *c, double stop, double first, int *ended);
 
+/* Its parts: to set off; the rest of it, step by step, or, if not the `whole`, as far as steps are
+ * implicit; of each step what the solver's latest one
+ * passes, events and samples, up to its end; c->s there; and how to go on from there. */
+int bg_located_set_off(bg_located *c, double stop, double first);
+int bg_located_rest(bg_located *c, int whole, int *ended);
+int bg_located_pass(bg_located *c, int *ended);
+void bg_located_reach(bg_located *c, double t, const double *s);
+int bg_located_go_on(bg_located *c);
+
 /* located_fall.c: so many triggers of something inside a step, each positive until its event; a
  * status. Whether none falls in a step, as its ends and its middle tell: it is behind then. The
  * first time in a step at which one falls, infinite where none does, and which do. */
@@ -82,7 +97,14 @@ int bg_solver_begin(bg_located *c, int method, double longest, double stop);
 int bg_solver_step(bg_located *c, double stop);
 int bg_solver_dense(bg_located *c, double t, double *s);
 
-/* located_explicit.c, located_implicit.c */
+/* located_explicit.c, located_implicit.c. Of explicit steps: the shortest there is; the error of one
+ * over what the tolerance allows, below 1 if it is good, from the sums of squares of its estimates
+ * of order 5 and 3; by what it is shortened if it is not; takes it, up to `end`, and says how long
+ * the next may be, longer by `grow` at the most. */
+double bg_explicit_least(const bg_solver *s);
+double bg_explicit_judge(bg_solver *s, double fifth, double third, double h);
+double bg_explicit_shorter(double error);
+void bg_explicit_take(bg_solver *s, double end, double h, double error, double grow);
 int bg_explicit_step(bg_located *c, double stop);
 int bg_explicit_dense(bg_located *c);
 void bg_explicit_at(const bg_solver *solver, double t, double *s);

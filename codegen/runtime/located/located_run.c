@@ -138,14 +138,11 @@ static int find_end(bg_located *c, double *until, int *ended)
     return status;
 }
 
-/* A step: its end, or the event in it; samples before that are recorded. */
-static int step(bg_located *c, double stop, int *ended)
+int bg_located_pass(bg_located *c, int *ended)
 {
     const bg_request *const asked = c->asked;
     double until = INFINITY, s[BG_SIZE];
-    int status = bg_solver_step(c, stop);
-    if (status == BG_OK)
-        status = find_end(c, &until, ended);
+    int status = find_end(c, &until, ended);
     if (status == BG_OK)
         status = sample(c, *ended ? until : c->solver.t);
     if (BG_DELAYS && status == BG_OK)
@@ -154,56 +151,85 @@ static int step(bg_located *c, double stop, int *ended)
         status = asked->smooth(asked->to, c, c->run.at.t, *ended ? until : c->solver.t);
     if (status == BG_OK && *ended)
         status = bg_solver_dense(c, until, s);
-    if (status != BG_OK)
-        return status;
-    c->run.at.t = *ended ? until : c->solver.t;
-    memcpy(c->s, *ended ? s : c->solver.y, sizeof c->s);
+    if (status == BG_OK)
+        bg_located_reach(c, *ended ? until : c->solver.t, *ended ? s : c->solver.y);
+    return status;
+}
+
+void bg_located_reach(bg_located *c, double t, const double *s)
+{
+    c->run.at.t = t;
+    memcpy(c->s, s, sizeof c->s);
     bg_have_seen(c->model, c->s);
-    return BG_OK;
 }
 
 /* The other method from the present instant on. */
-static int turn_over(bg_located *c, int *method, double *fastest, double stop)
+static int turn_over(bg_located *c)
 {
+    bg_stretch *const of = &c->stretch;
     const double length = c->solver.t - c->solver.t_old;
-    int status = bg_located_fastest(c, c->run.at.t, c->s, fastest);
-    *method = *method == BG_RADAU ? BG_DOP853 : BG_RADAU;
+    int status = bg_located_fastest(c, c->run.at.t, c->s, &of->fastest);
+    of->method = of->method == BG_RADAU ? BG_DOP853 : BG_RADAU;
     if (status == BG_OK)
-        status = bg_solver_begin(c, *method, longest_now(c, *method, *fastest), stop);
+        status = bg_solver_begin(c, of->method, longest_now(c, of->method, of->fastest), of->stop);
     c->solver.next = fmin(length, c->solver.longest);
     return status;
 }
 
-int bg_located_stretch(bg_located *c, double stop, double first, int *ended)
+int bg_located_set_off(bg_located *c, double stop, double first)
 {
-    double fastest;
-    int status = bg_located_fastest(c, c->run.at.t, c->s, &fastest);
-    int method = c->asked->method;
-    *ended = 0;
+    bg_stretch *const of = &c->stretch;
+    int status = bg_located_fastest(c, c->run.at.t, c->s, &of->fastest);
+    of->stop = stop;
+    of->steps = 0;
+    of->method = c->asked->method;
     c->turned = 1;
-    if (method == BG_AUTO)
-        method = fastest > c->stiff ? BG_RADAU : BG_DOP853;
+    if (of->method == BG_AUTO)
+        of->method = of->fastest > c->stiff ? BG_RADAU : BG_DOP853;
     if (status == BG_OK)
-        status = bg_solver_begin(c, method, longest_now(c, method, fastest), stop);
+        status = bg_solver_begin(c, of->method, longest_now(c, of->method, of->fastest), stop);
     if (first > 0.0)
         c->solver.next = fmin(first, c->solver.longest);
     if (status == BG_OK)
         status = bg_watch_begin(c);
     if (BG_CORNERS && status == BG_OK && c->model->now.sided > 0.0)
         status = bg_corners_watch(c, c->corners.fastest);
-    c->corners.fastest = fastest;
+    c->corners.fastest = of->fastest;
     bg_progress_begin(c);
     bg_turns_begin(c);
-    for (long count = 1; status == BG_OK && c->run.at.t < stop && !*ended; count++) {
-        status = step(c, stop, ended);
+    return status;
+}
+
+int bg_located_go_on(bg_located *c)
+{
+    bg_stretch *const of = &c->stretch;
+    int status = bg_progress_check(c);
+    if (status == BG_OK && !BG_AFFINE && ++of->steps % BG_REFRESH == 0)
+        status = bg_located_fastest(c, c->run.at.t, c->s, &of->fastest);
+    if (status == BG_OK && c->asked->method == BG_AUTO && c->run.at.t < of->stop
+        && bg_turns_over(c, of->fastest, of->stop))
+        status = turn_over(c);
+    c->solver.longest = longest_now(c, of->method, of->fastest);
+    return status;
+}
+
+int bg_located_stretch(bg_located *c, double stop, double first, int *ended)
+{
+    *ended = 0;
+    const int status = bg_located_set_off(c, stop, first);
+    return status == BG_OK ? bg_located_rest(c, 1, ended) : status;
+}
+
+int bg_located_rest(bg_located *c, int whole, int *ended)
+{
+    int status = BG_OK;
+    while (status == BG_OK && c->run.at.t < c->stretch.stop && !*ended
+           && (whole || c->stretch.method == BG_RADAU)) {
+        status = bg_solver_step(c, c->stretch.stop);
+        if (status == BG_OK)
+            status = bg_located_pass(c, ended);
         if (status == BG_OK && !*ended)
-            status = bg_progress_check(c);
-        if (status == BG_OK && !BG_AFFINE && count % BG_REFRESH == 0)
-            status = bg_located_fastest(c, c->run.at.t, c->s, &fastest);
-        if (status == BG_OK && !*ended && c->asked->method == BG_AUTO && c->run.at.t < stop
-            && bg_turns_over(c, fastest, stop))
-            status = turn_over(c, &method, &fastest, stop);
-        c->solver.longest = longest_now(c, method, fastest);
+            status = bg_located_go_on(c);
     }
     return status;
 }
@@ -297,14 +323,35 @@ static int set_up(bg_located *c, bg_model *m, const bg_signals *signals, bg_requ
     return status;
 }
 
+int bg_located_begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
+{
+    const int status = set_up(c, m, signals, asked);
+    bg_begin_turns(&c->run);
+    return status;
+}
+
+int bg_located_turn(bg_located *c, double *stop)
+{
+    const bg_engine engine = engine_of(c);
+    return come_to(c, bg_turn(&engine, &c->run, stop));
+}
+
+int bg_located_end(bg_located *c)
+{
+    int status = bg_located_finish(c);
+    if (status == BG_OK)
+        /* the last sample shows the instant after all events */
+        status = bg_located_hand_over(c, c->s);
+    return status;
+}
+
 int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
 {
     int status = set_up(c, m, signals, asked);
     if (status == BG_OK)
-        status = bg_located_go(c);
+        status = bg_located_arrive(c);
     if (status == BG_OK)
-        /* the last sample shows the instant after all events */
-        status = bg_located_hand_over(c, c->s);
+        status = bg_located_end(c);
     asked->count = c->run.log.count;
     asked->time = c->run.at.t;
     return status;

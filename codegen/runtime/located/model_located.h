@@ -64,6 +64,13 @@ typedef struct {
     long count, patience;
 } bg_turns;
 
+/* A stretch: where it ends at the latest, the largest rate at its latest look, its method. */
+typedef struct {
+    double stop, fastest;
+    long steps;
+    int method;
+} bg_stretch;
+
 /* A run: where it is, what it looks at, the next sample. From a rate `stiff` [1/s] on steps are
  * implicit, where the method is chosen; `ahead` tells the latest time to stop at after t, no later
  * than `stop`, to look what is to be decided; NULL: `stop`. */
@@ -79,6 +86,7 @@ typedef struct {
     int list[BG_LIST(BG_SIZE, BG_SIZE)];
     double own;                /* the largest rate of an affine model in the mode `rated`, if .. */
     int known, rated[BG_ROOM(BG_FRICTION)]; /* .. it is known */
+    bg_stretch stretch;
     int next, turned;          /* the next sample; whether rates may have turned since a step */
     bg_watch watch;
     bg_corner_watch corners;

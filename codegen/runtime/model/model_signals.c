@@ -2,7 +2,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "model_signals.h"
+#include "model_terms.h"
 #include "tuning.h"
 
 void bg_term_add(const bg_term *term, const double (*coefficients)[2], double t, double *value,
@@ -31,23 +31,13 @@ double bg_cancelled(double size, double slope, double time)
     return 8.0 * DBL_EPSILON * (size + slope * time / 8.0);
 }
 
-/* The terms that hold in a span, one after the other, NULL after the last. Those of waves are told
- * from where their part begins, in `own`. */
-typedef struct {
-    const bg_signals *signals;
-    const bg_span *span;
-    int wave, next, last;
-    double begin;
-    bg_term own;
-} term_walk;
-
-static term_walk walk_terms(const bg_signals *signals, const bg_span *span)
+bg_term_walk bg_walk_terms(const bg_signals *signals, const bg_span *span)
 {
     const int *const begins = signals->begins + span->segment;
-    return (term_walk){signals, span, -1, begins[0], begins[1], 0.0, {0, 0, 0, 0.0, {0.0, 0.0}}};
+    return (bg_term_walk){signals, span, -1, begins[0], begins[1], 0.0, {0, 0, 0, 0.0, {0.0, 0.0}}};
 }
 
-static const bg_term *next_term(term_walk *walk)
+const bg_term *bg_next_term(bg_term_walk *walk)
 {
     const bg_signals *const signals = walk->signals;
     while (walk->next == walk->last) {
@@ -69,8 +59,8 @@ static const bg_term *next_term(term_walk *walk)
 static double rounding(const bg_signals *signals, const bg_span *span, int input, double t)
 {
     double sum = 0.0;
-    term_walk walk = walk_terms(signals, span);
-    for (const bg_term *term = next_term(&walk); term; term = next_term(&walk)) {
+    bg_term_walk walk = bg_walk_terms(signals, span);
+    for (const bg_term *term = bg_next_term(&walk); term; term = bg_next_term(&walk)) {
         const double(*const c)[2] = signals->coefficients + term->first;
         const double tau = t - term->start;
         double size = 0.0, slope = 0.0;
@@ -102,14 +92,14 @@ void bg_signals_at(const bg_signals *signals, const bg_span *span, double t, dou
                    double *dw)
 {
     double largest[BG_ROOM(BG_EXTERNAL)] = {0};
-    term_walk walk = walk_terms(signals, span);
+    bg_term_walk walk = bg_walk_terms(signals, span);
     for (int i = 0; i < BG_EXTERNAL; i++)
         w[i] = dw[i] = 0.0;
     /* Pieces are not continued back before they begin: a level would fall below zero. */
     t = fmax(t, span->begin);
     for (; walk.next < walk.last; walk.next++) /* of the table, which most are */
         add_term(signals->terms + walk.next, signals->coefficients, t, w, dw, largest);
-    for (const bg_term *term = next_term(&walk); term; term = next_term(&walk))
+    for (const bg_term *term = bg_next_term(&walk); term; term = bg_next_term(&walk))
         add_term(term, signals->coefficients, t, w, dw, largest);
     for (int i = 0; i < BG_EXTERNAL; i++)
         if (w[i] != 0.0 && fabs(w[i]) <= BG_CANCELLED * largest[i] /* else none: saves the look */
@@ -120,9 +110,9 @@ void bg_signals_at(const bg_signals *signals, const bg_span *span, double t, dou
 double bg_signals_one(const bg_signals *signals, int at, double t)
 {
     const bg_span span = bg_signals_span(signals, t);
-    term_walk walk = walk_terms(signals, &span);
+    bg_term_walk walk = bg_walk_terms(signals, &span);
     double value = 0.0, slope = 0.0;
-    for (const bg_term *term = next_term(&walk); term; term = next_term(&walk))
+    for (const bg_term *term = bg_next_term(&walk); term; term = bg_next_term(&walk))
         if (term->input == at)
             bg_term_add(term, signals->coefficients, t, &value, &slope);
     return value;

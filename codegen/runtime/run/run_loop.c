@@ -219,28 +219,44 @@ static int decide_here(const bg_engine *e, bg_course *c)
     return status;
 }
 
+int bg_turn(const bg_engine *e, bg_course *c, double *stop)
+{
+    int undecided, status = BG_OK;
+    /* Breakpoints lie ahead one after the other: a turn that ends at one gets somewhere. */
+    c->turns += c->at.t < c->at.following;
+    if (c->turns >= 16.0 * c->log.capacity + 1000.0)
+        return BG_EVENTS;
+    status = e->pass(e->self, c->at.t, &c->span);
+    c->at.following = fmin(c->span.following, next_tick(e, c));
+    *stop = fmin(c->at.following, c->end);
+    if (status || c->at.t >= c->end)
+        return status;
+    if (!c->decided && c->paused)
+        status = come_to_end(e, c, &undecided);
+    if (!c->decided && status == BG_OK)
+        status = decide_here(e, c);
+    if (status == BG_OK)
+        c->decided = c->paused = 0;
+    return status;
+}
+
+void bg_begin_turns(bg_course *c)
+{
+    c->turns = 0.0;
+    c->at.following = -INFINITY;
+}
+
 int bg_arrive(const bg_engine *e, bg_course *c)
 {
-    const double most = 16.0 * c->log.capacity + 1000.0;
-    int status = BG_OK, undecided;
-    /* Breakpoints lie ahead one after the other: a turn that ends at one gets somewhere. */
-    for (double turns = 0.0; turns < most; turns += c->at.t < c->at.following) {
-        status = e->pass(e->self, c->at.t, &c->span);
-        c->at.following = fmin(c->span.following, next_tick(e, c));
+    double stop;
+    int status = BG_OK;
+    for (bg_begin_turns(c); status == BG_OK;) {
+        status = bg_turn(e, c, &stop);
         if (status || c->at.t >= c->end)
             return status;
-        if (!c->decided && c->paused)
-            status = come_to_end(e, c, &undecided);
-        if (!c->decided && status == BG_OK)
-            status = decide_here(e, c);
-        if (status)
-            return status;
-        c->decided = c->paused = 0;
-        status = e->advance(e->self, fmin(c->at.following, c->end));
-        if (status)
-            return status;
+        status = e->advance(e->self, stop);
     }
-    return BG_EVENTS;
+    return status;
 }
 
 int bg_finish(const bg_engine *e, bg_course *c)

@@ -1,0 +1,109 @@
+/* From a run to its lane and back. */
+#include <string.h>
+
+#include "lanes.h"
+
+/* How holding efforts follow from states, inputs and their rates: X x + U u + V u' = 0 solved. */
+static void load_held(bg_lanes *a, int lane, const bg_hold *held)
+{
+    for (int r = 0; r < held->count; r++)
+        for (int q = 0; q < held->count; q++) {
+            bg_lane *const to = a->own.held + held->ports[r] * LANE_WIDE;
+            const double part = -held->inverse[r * held->count + q];
+            for (int j = 0; j < N; j++)
+                to[j][lane] += part * held->X[q * N + j];
+            for (int j = 0; j < M; j++)
+                to[N + j][lane] += part * held->U[q * M + j];
+            for (int j = 0; j < BG_OUTSIDE; j++)
+                to[N + M + j][lane] += part * held->V[q * M + bg_outside_inputs[j]];
+        }
+}
+
+/* What keeps slips that stick from drifting. */
+static void load_drift(bg_lanes *a, int lane, const bg_hold *held)
+{
+    for (int k = 0; k < held->kept; k++) {
+        for (int j = 0; j < N; j++) {
+            a->slip_x[k * N + j][lane] = held->slip_x[k * N + j];
+            a->take[k * N + j][lane] = held->take_away[j * held->kept + k];
+        }
+        for (int j = 0; j < BG_OUTSIDE; j++)
+            a->fixed[k][j][lane] = held->fixed[k * M + bg_outside_inputs[j]];
+    }
+}
+
+/* The mode of a lane's run; 0 where ports that hold share a load, or inputs rule whether they do. */
+static int load_mode(bg_lanes *a, int lane)
+{
+    bg_located *const c = a->lane[lane].room->run;
+    bg_hold *held = NULL;
+    int sticking = 0;
+    for (int i = 0; i < K; i++) {
+        a->own.signs[i][lane] = c->run.mode[i];
+        sticking |= c->run.mode[i] == 0;
+    }
+    for (int i = 0; i < K * LANE_WIDE; i++)
+        a->own.held[i][lane] = 0.0;
+    for (int i = 0; i < K * N; i++)
+        a->slip_x[i][lane] = a->take[i][lane] = 0.0;
+    for (int i = 0; i < K * BG_OUTSIDE; i++)
+        a->fixed[i / LANE_OUTSIDE][i % LANE_OUTSIDE][lane] = 0.0;
+    if (!sticking)
+        return 1;
+    if (bg_hold_of(c->model, c->run.mode, &held) != BG_OK || held->share_count || held->ruled)
+        return 0;
+    load_held(a, lane, held);
+    load_drift(a, lane, held);
+    a->corrects |= held->kept > 0;
+    return 1;
+}
+
+int bg_lanes_load(bg_lanes *a, int lane)
+{
+    bg_lane_run *const one = a->lane + lane;
+    bg_located *const c = one->room->run;
+    if (c->stretch.method != BG_DOP853 || !load_mode(a, lane))
+        return 0;
+    for (int k = 0; k < BG_SIZE; k++) {
+        a->y[k][lane] = c->solver.y[k];
+        a->f[k][lane] = c->solver.f[k];
+    }
+    one->reach = -1.0;
+    one->tries = 0;
+    return bg_lanes_follow(a, lane, c->solver.t);
+}
+
+int bg_lanes_follow(bg_lanes *a, int lane, double end)
+{
+    bg_lane_run *const one = a->lane + lane;
+    bg_located *const c = one->room->run;
+    const double t = c->solver.t;
+    double series[BG_ROOM(BG_EXTERNAL)][LANE_SERIES];
+    if (fmax(fabs(t - a->origin[lane]), fabs(end - a->origin[lane])) <= one->reach)
+        return 1;
+    const double fastest = bg_signals_fastest(c->signals, &c->run.span);
+    one->reach = fastest > 0.0 ? LANE_REACH / fastest : INFINITY;
+    a->origin[lane] = fastest > 0.0 ? t + one->reach : t;
+    const int terms = bg_lanes_series(c->signals, &c->run.span, a->origin[lane], series);
+    a->terms = terms > a->terms ? terms : a->terms;
+    for (int i = 0; i < BG_EXTERNAL; i++)
+        for (int k = 0; k < LANE_SERIES; k++)
+            a->series[i][k][lane] = series[i][k];
+    return terms > 0;
+}
+
+void bg_lanes_unload(const bg_lanes *a, int lane)
+{
+    bg_solver *const s = &a->lane[lane].room->run->solver;
+    for (int k = 0; k < BG_SIZE; k++) {
+        s->y_old[k] = a->y_old[k][lane];
+        s->y[k] = a->y[k][lane];
+        s->f_old[k] = a->stage[0][k][lane];
+        s->f[k] = a->stage[LANE_LAST][k][lane];
+        for (int i = 0; i < BG_EXPLICIT_STAGES; i++)
+            s->stage[i][k] = a->stage[i][k][lane];
+        for (int i = 0; i < 7; i++)
+            s->interpolation[i][k] = a->interpolation[i][k][lane];
+    }
+    s->dense = 1;
+}
