@@ -12,7 +12,6 @@
 typedef double bg_lane[BG_LANES];
 
 enum {
-    LANE_OUTSIDE = BG_ROOM(BG_OUTSIDE),
     LANE_SERIES = 20, /* so many terms at the most, of inputs about an instant */
     LANE_LAST = 12, /* the stage at a step's end */
     LANE_WIDE = N + M + BG_OUTSIDE /* factors of what holds a port */
@@ -20,10 +19,13 @@ enum {
 
 /* What a lane's run is worked out with: what parameters determine; the way in which friction slips,
  * 0 where it holds, and the factors of what holds it, port by port: of states, inputs and the rates
- * of outside inputs. */
+ * of outside inputs; slips of rates at ports that hold, how outside inputs move these, and what
+ * takes them away. */
 typedef struct {
     bg_lane constants[BG_ROOM(BG_LANE_CONSTANTS)], signs[BG_ROOM(K)];
     bg_lane held[BG_ROOM(BG_LANE_HELD)];
+    bg_lane slip_x[BG_TABLE(BG_FRICTION, BG_STATES)], take[BG_TABLE(BG_FRICTION, BG_STATES)];
+    bg_lane fixed[BG_TABLE(BG_FRICTION, BG_OUTSIDE)];
 } bg_lanes_own;
 
 /* An instant of each lane: its time, external inputs and their rates. */
@@ -31,29 +33,36 @@ typedef struct {
     bg_lane t, w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
 } bg_lanes_at;
 
+/* Several points of one run, a lane each. */
+typedef struct {
+    bg_lanes_own own;
+    bg_lanes_at at;
+    bg_lane s[BG_SIZE], shot[BG_MAP_ROWS];
+} bg_lanes_points;
+
 /* Of a lane what is done by itself. `run`: which one, -1 for none; `tries`: how often the present step
  * was tried; `taken`: whether it was good; `reach` [s]: how far from its middle the series of inputs
  * is one. */
 typedef struct {
+    struct bg_lanes *all;
+    bg_together together;
     located_room *room;
     int run, tries, taken;
     double reach, grow;
     bg_request asked;
 } bg_lane_run;
 
-/* `corrects`: whether what holds in any lane has to be kept from drifting, by slips of the rates,
- * how other inputs move them, and what takes them away. `middle`, `end`: of a step, everything. */
-typedef struct {
+/* `terms`: so many of series; `next`: the next run; `middle`, `end`: of a step, everything. */
+typedef struct bg_lanes {
     bg_lanes_own own;
     bg_lanes_at at;
-    int corrects, next, terms; /* so many of series */
+    int terms, next;
     double rtol, atol;
-    bg_lane slip_x[BG_TABLE(BG_FRICTION, BG_STATES)], take[BG_TABLE(BG_FRICTION, BG_STATES)];
-    bg_lane fixed[BG_ROOM(BG_FRICTION)][LANE_OUTSIDE];
     bg_lane t_old, t, h, y_old[BG_SIZE], y[BG_SIZE], tried[BG_SIZE], f[BG_SIZE];
     bg_lane stage[BG_EXPLICIT_STAGES][BG_SIZE], interpolation[7][BG_SIZE];
     bg_lane origin, series[BG_ROOM(BG_EXTERNAL)][LANE_SERIES];
     bg_lane shot[BG_MAP_ROWS], middle[BG_MAP_ROWS], end[BG_MAP_ROWS], fifth, third;
+    bg_lanes_points points;
     bg_lane_run lane[BG_LANES];
 } bg_lanes;
 
@@ -71,6 +80,14 @@ void bg_lanes_dense(bg_lanes *a);
 void bg_lanes_between(bg_lanes *a, bg_lane *s);
 void bg_lanes_shoot(bg_lanes *a, const bg_lane *s, bg_lane *shot);
 
+/* What rounding in holding efforts adds to rates is taken away, as bg_correct does. The triggers of
+ * a lane's ports at an instant, positive while the mode holds. */
+void bg_lanes_correct(const bg_lanes_own *own, const bg_lanes_at *at, bg_lane *rate);
+void bg_lanes_triggers(const bg_lanes_own *own, int lane, const bg_lane *shot, double *values);
+
+/* lanes_points.c: what works several points of a lane's run out at once. */
+void bg_lanes_join(bg_lanes *a, int lane);
+
 /* lanes_series.c: the series of each input about t in the present pieces, which holds as far from
  * there as its fastest rate takes to change by LANE_REACH: how many terms all of them take, 0 where
  * that is more than there is room for. */
@@ -78,9 +95,10 @@ void bg_lanes_shoot(bg_lanes *a, const bg_lane *s, bg_lane *shot);
 int bg_lanes_series(const bg_signals *signals, const bg_span *span, double t,
                     double (*series)[LANE_SERIES]);
 
-/* lanes_load.c: puts a lane where its run is as a stretch begins; the series of inputs from there to
- * `end`, if the latest one does not reach. Both give 0 where the run has to go on by itself. Puts
+/* lanes_load.c: the present mode of a run to a lane; puts a lane where its run is as a stretch begins; the series of inputs from there to
+ * `end`, if the latest one does not reach. All give 0 where the run has to go on by itself. Puts
  * the lane's latest step into the run's solver, with all between its ends. */
+int bg_lanes_load_mode(bg_lanes_own *own, int lane, const bg_located *c);
 int bg_lanes_load(bg_lanes *a, int lane);
 int bg_lanes_follow(bg_lanes *a, int lane, double end);
 void bg_lanes_unload(const bg_lanes *a, int lane);

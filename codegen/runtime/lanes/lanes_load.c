@@ -4,11 +4,11 @@
 #include "lanes.h"
 
 /* How holding efforts follow from states, inputs and their rates: X x + U u + V u' = 0 solved. */
-static void load_held(bg_lanes *a, int lane, const bg_hold *held)
+static void load_held(bg_lanes_own *own, int lane, const bg_hold *held)
 {
     for (int r = 0; r < held->count; r++)
         for (int q = 0; q < held->count; q++) {
-            bg_lane *const to = a->own.held + held->ports[r] * LANE_WIDE;
+            bg_lane *const to = own->held + held->ports[r] * LANE_WIDE;
             const double part = -held->inverse[r * held->count + q];
             for (int j = 0; j < N; j++)
                 to[j][lane] += part * held->X[q * N + j];
@@ -20,41 +20,39 @@ static void load_held(bg_lanes *a, int lane, const bg_hold *held)
 }
 
 /* What keeps slips that stick from drifting. */
-static void load_drift(bg_lanes *a, int lane, const bg_hold *held)
+static void load_drift(bg_lanes_own *own, int lane, const bg_hold *held)
 {
     for (int k = 0; k < held->kept; k++) {
         for (int j = 0; j < N; j++) {
-            a->slip_x[k * N + j][lane] = held->slip_x[k * N + j];
-            a->take[k * N + j][lane] = held->take_away[j * held->kept + k];
+            own->slip_x[k * N + j][lane] = held->slip_x[k * N + j];
+            own->take[k * N + j][lane] = held->take_away[j * held->kept + k];
         }
         for (int j = 0; j < BG_OUTSIDE; j++)
-            a->fixed[k][j][lane] = held->fixed[k * M + bg_outside_inputs[j]];
+            own->fixed[k * BG_OUTSIDE + j][lane] = held->fixed[k * M + bg_outside_inputs[j]];
     }
 }
 
-/* The mode of a lane's run; 0 where ports that hold share a load, or inputs rule whether they do. */
-static int load_mode(bg_lanes *a, int lane)
+/* Ports that hold may share a load, or inputs may rule whether they do: these runs go alone. */
+int bg_lanes_load_mode(bg_lanes_own *own, int lane, const bg_located *c)
 {
-    bg_located *const c = a->lane[lane].room->run;
     bg_hold *held = NULL;
     int sticking = 0;
     for (int i = 0; i < K; i++) {
-        a->own.signs[i][lane] = c->run.mode[i];
+        own->signs[i][lane] = c->run.mode[i];
         sticking |= c->run.mode[i] == 0;
     }
     for (int i = 0; i < K * LANE_WIDE; i++)
-        a->own.held[i][lane] = 0.0;
+        own->held[i][lane] = 0.0;
     for (int i = 0; i < K * N; i++)
-        a->slip_x[i][lane] = a->take[i][lane] = 0.0;
+        own->slip_x[i][lane] = own->take[i][lane] = 0.0;
     for (int i = 0; i < K * BG_OUTSIDE; i++)
-        a->fixed[i / LANE_OUTSIDE][i % LANE_OUTSIDE][lane] = 0.0;
+        own->fixed[i][lane] = 0.0;
     if (!sticking)
         return 1;
     if (bg_hold_of(c->model, c->run.mode, &held) != BG_OK || held->share_count || held->ruled)
         return 0;
-    load_held(a, lane, held);
-    load_drift(a, lane, held);
-    a->corrects |= held->kept > 0;
+    load_held(own, lane, held);
+    load_drift(own, lane, held);
     return 1;
 }
 
@@ -62,7 +60,7 @@ int bg_lanes_load(bg_lanes *a, int lane)
 {
     bg_lane_run *const one = a->lane + lane;
     bg_located *const c = one->room->run;
-    if (c->stretch.method != BG_DOP853 || !load_mode(a, lane))
+    if (c->stretch.method != BG_DOP853 || !bg_lanes_load_mode(&a->own, lane, c))
         return 0;
     for (int k = 0; k < BG_SIZE; k++) {
         a->y[k][lane] = c->solver.y[k];

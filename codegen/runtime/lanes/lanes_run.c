@@ -37,6 +37,7 @@ static int lane_begin(const lanes_work *of, int lane)
     bg_lanes_prepare(one->room->model, constants);
     for (int k = 0; k < BG_LANE_CONSTANTS; k++)
         a->own.constants[k][lane] = constants[k];
+    bg_lanes_join(a, lane);
     return status;
 }
 
@@ -128,17 +129,6 @@ static int lane_judge(bg_lanes *a, int lane)
     return a->h[lane] < bg_explicit_least(s) ? BG_STEPS : BG_OK;
 }
 
-/* The triggers of a lane's ports, positive while its mode holds. */
-static void lane_triggers(const bg_lanes *a, int lane, const bg_lane *shot, double *values)
-{
-    for (int i = 0; i < K; i++) {
-        const double slip = shot[BG_AT_y + bg_friction_readings[i]][lane];
-        const double effort = shot[BG_AT_u + bg_friction_inputs[i]][lane];
-        const double way = a->own.signs[i][lane];
-        values[i] = way != 0.0 ? way * slip : shot[BG_AT_caps + i][lane] - fabs(effort);
-    }
-}
-
 /* Whether nothing can happen in a lane's step, so that all it passes is samples. */
 static int lane_is_plain(bg_lanes *a, int lane)
 {
@@ -146,8 +136,8 @@ static int lane_is_plain(bg_lanes *a, int lane)
     double middle[BG_ROOM(K)], end[BG_ROOM(K)];
     if (c->asked->smooth)
         return 0;
-    lane_triggers(a, lane, a->middle, middle);
-    lane_triggers(a, lane, a->end, end);
+    bg_lanes_triggers(&a->own, lane, a->middle, middle);
+    bg_lanes_triggers(&a->own, lane, a->end, end);
     return bg_all_pass(&c->watch.of, K, middle, end);
 }
 

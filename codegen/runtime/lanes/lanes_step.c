@@ -7,33 +7,34 @@
 /* External inputs and their rates at the lanes' times. */
 static void lane_inputs(bg_lanes *a)
 {
-    for (int i = 0; i < BG_EXTERNAL; i++)
-        for (int l = 0; l < BG_LANES; l++) {
-            const double x = a->at.t[l] - a->origin[l];
-            double p = 0.0, d = 0.0;
-            for (int k = a->terms - 1; k >= 0; k--) {
-                d = d * x + p;
-                p = p * x + a->series[i][k][l];
+    bg_lane x;
+    for (int l = 0; l < BG_LANES; l++)
+        x[l] = a->at.t[l] - a->origin[l];
+    for (int i = 0; i < BG_EXTERNAL; i++) {
+        bg_lane p = {0}, d = {0};
+        for (int k = a->terms - 1; k >= 0; k--)
+            for (int l = 0; l < BG_LANES; l++) {
+                d[l] = d[l] * x[l] + p[l];
+                p[l] = p[l] * x[l] + a->series[i][k][l];
             }
-            a->at.w[i][l] = p;
-            a->at.dw[i][l] = d;
-        }
+        memcpy(a->at.w[i], p, sizeof p);
+        memcpy(a->at.dw[i], d, sizeof d);
+    }
 }
 
-/* What rounding in holding efforts adds to rates is taken away, as bg_correct does. */
-static void lane_correct(const bg_lanes *a, bg_lane *rate)
+void bg_lanes_correct(const bg_lanes_own *own, const bg_lanes_at *at, bg_lane *rate)
 {
-    for (int k = 0; k < K && a->corrects; k++) {
+    for (int k = 0; k < K; k++) {
         bg_lane drift = {0};
         for (int j = 0; j < N; j++)
             for (int l = 0; l < BG_LANES; l++)
-                drift[l] += a->slip_x[k * N + j][l] * rate[j][l];
+                drift[l] += own->slip_x[k * N + j][l] * rate[j][l];
         for (int j = 0; j < BG_OUTSIDE; j++)
             for (int l = 0; l < BG_LANES; l++)
-                drift[l] += a->fixed[k][j][l] * a->at.dw[j][l];
+                drift[l] += own->fixed[k * BG_OUTSIDE + j][l] * at->dw[j][l];
         for (int i = 0; i < N; i++)
             for (int l = 0; l < BG_LANES; l++)
-                rate[i][l] += a->take[k * N + i][l] * drift[l];
+                rate[i][l] += own->take[k * N + i][l] * drift[l];
     }
 }
 
@@ -44,7 +45,7 @@ static void lane_point(bg_lanes *a, int i)
         bg_lane sum = {0};
         for (int j = 0; j < i; j++) {
             const double weight = DOP_A[i][j];
-            for (int l = 0; l < BG_LANES && weight != 0.0; l++)
+            for (int l = 0; l < BG_LANES; l++)
                 sum[l] += weight * a->stage[j][k][l];
         }
         for (int l = 0; l < BG_LANES; l++)
@@ -59,14 +60,14 @@ static void lane_stage(bg_lanes *a, int i)
 {
     lane_point(a, i);
     bg_lanes_rates(&a->own, &a->at, a->tried, a->stage[i]);
-    lane_correct(a, a->stage[i]);
+    bg_lanes_correct(&a->own, &a->at, a->stage[i]);
 }
 
 void bg_lanes_shoot(bg_lanes *a, const bg_lane *s, bg_lane *shot)
 {
     lane_inputs(a);
     bg_lanes_look(&a->own, &a->at, s, shot);
-    lane_correct(a, shot + BG_AT_rate);
+    bg_lanes_correct(&a->own, &a->at, shot + BG_AT_rate);
 }
 
 /* The sums of squares that estimate errors of order 5 and 3, in what the tolerance allows. */
@@ -117,7 +118,7 @@ void bg_lanes_dense(bg_lanes *a)
         for (int r = 0; r < 4; r++) {
             bg_lane sum = {0};
             for (int i = 0; i < DOP_ALL; i++)
-                for (int l = 0; l < BG_LANES && D[r][i] != 0.0; l++)
+                for (int l = 0; l < BG_LANES; l++)
                     sum[l] += D[r][i] * a->stage[i][k][l];
             for (int l = 0; l < BG_LANES; l++)
                 a->interpolation[3 + r][k][l] = a->h[l] * sum[l];

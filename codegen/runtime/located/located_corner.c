@@ -130,7 +130,7 @@ static int away_at(void *located, double t, double *values)
 
 int bg_corners_step(bg_located *c, double *time)
 {
-    const bg_triggers of = {c, away_at, BG_CORNERS};
+    const bg_triggers of = {c, away_at, BG_CORNERS, NULL};
     const double begin = c->solver.t_old, stop = c->solver.t;
     double middle[BG_WATCHED] = {0}, end[BG_WATCHED] = {0};
     int status = away_at(c, begin + 0.5 * (stop - begin), middle);

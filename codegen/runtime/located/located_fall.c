@@ -131,6 +131,18 @@ int bg_all_pass(bg_falling *f, int count, const double *middle, const double *en
     return 1;
 }
 
+/* The triggers at points after the first. */
+static int look_at_all(const bg_triggers *of, const double *times, double (*values)[BG_WATCHED])
+{
+    const bg_together *const with = of->together;
+    int status = BG_OK;
+    if (with && with->triggers(with->self, POINTS - 1, times, values))
+        return BG_OK;
+    for (int k = 0; k < POINTS - 1 && status == BG_OK; k++)
+        status = of->at(of->self, times[k], values[k]);
+    return status;
+}
+
 int bg_first_fall(bg_falling *f, const bg_triggers *of, double begin, double end, double *time,
                   int *which)
 {
@@ -138,13 +150,11 @@ int bg_first_fall(bg_falling *f, const bg_triggers *of, double begin, double end
     root_search asked = {f, of, 0, BG_OK, 0.0};
     *time = INFINITY;
     memcpy(values[0], f->before, sizeof values[0]);
-    times[0] = begin;
-    for (int k = 1; k < POINTS; k++) {
+    for (int k = 0; k < POINTS; k++)
         times[k] = k == POINTS - 1 ? end : begin + k * (end - begin) / (POINTS - 1);
-        const int status = of->at(of->self, times[k], values[k]);
-        if (status != BG_OK)
-            return status;
-    }
+    const int status = look_at_all(of, times + 1, values + 1);
+    if (status != BG_OK)
+        return status;
     memcpy(f->before, values[POINTS - 1], sizeof values[0]);
     for (int i = 0; i < of->count; i++) {
         asked.which = i;

@@ -72,6 +72,7 @@ int bg_located_go_on(bg_located *c);
 typedef struct {
     void *self;
     int (*at)(void *self, double t, double *values), count;
+    const bg_together *together; /* NULL, or what tells them at several times at once */
 } bg_triggers;
 int bg_all_pass(bg_falling *f, int count, const double *middle, const double *end);
 int bg_first_fall(bg_falling *f, const bg_triggers *of, double begin, double end, double *time,

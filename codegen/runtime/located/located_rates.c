@@ -6,25 +6,72 @@
 
 enum { SQUARINGS = 8, PRODUCTS = 1 << SQUARINGS };
 
-/* How rates change with the states, by rows, from differences that stay where laws have values, and
- * are large where rates are affine: then slopes do not round; downwards where `side` is -1. */
-static int slopes(bg_located *c, double t, const double *s, double side, double *jacobian)
+/* How far state j is moved for a difference: far where rates are affine, whose slopes do not round. */
+static double reach_of(const bg_located *c, double t, const double *s, const double *base, int j)
 {
     const double past = bg_longest_step(t - c->run.began);
+    const double reach = BG_SLOPE_FLOOR * fabs(base[j]) * past + BG_SLOPE_FLOOR;
+    return BG_AFFINE ? BG_FAR : BG_SLOPE * fabs(s[j]) + reach;
+}
+
+/* Rates with state j moved, less far where laws have no values there. */
+static int rate_beside(bg_located *c, double t, double *moved, int j, double step, double *rate)
+{
+    const double own = moved[j];
+    int status = BG_OK;
+    for (int tries = 0; tries < 12; tries++, step *= BG_SLOPE_SHORTER) {
+        moved[j] = own + step;
+        status = bg_located_rate(c, t, moved, rate);
+        if (status == BG_OK)
+            break;
+    }
+    return status;
+}
+
+/* A column of differences; whether it is one of numbers. */
+static int put_column(int j, double step, const double *base, const double *rate, double *jacobian)
+{
+    int finite = 1;
+    for (int i = 0; i < BG_SIZE; i++) {
+        jacobian[i * BG_SIZE + j] = (rate[i] - base[i]) / step;
+        finite &= isfinite(jacobian[i * BG_SIZE + j]) != 0;
+    }
+    return finite;
+}
+
+/* Several columns at once, from the first on, by what works several points out; whether it could. */
+static int columns_at_once(bg_located *c, double t, const double *s, double side, int first,
+                           const double *base, double *jacobian)
+{
+    const int count = BG_SIZE - first < BG_AT_ONCE ? BG_SIZE - first : BG_AT_ONCE;
+    double moved[BG_AT_ONCE][BG_SIZE], rate[BG_AT_ONCE][BG_SIZE];
+    int fine = 1;
+    for (int k = 0; k < count; k++) {
+        memcpy(moved[k], s, sizeof moved[k]);
+        moved[k][first + k] += side * reach_of(c, t, s, base, first + k);
+    }
+    if (!c->together->rates(c->together->self, t, count, moved, rate))
+        return 0;
+    for (int k = 0; k < count; k++) {
+        const int j = first + k;
+        fine &= put_column(j, moved[k][j] - s[j], base, rate[k], jacobian);
+    }
+    return fine;
+}
+
+/* How rates change with the states, by rows, from differences that stay where laws have values;
+ * downwards where `side` is -1. */
+static int slopes(bg_located *c, double t, const double *s, double side, double *jacobian)
+{
     double base[BG_SIZE], rate[BG_SIZE], moved[BG_SIZE];
-    int status = bg_located_rate(c, t, s, base);
+    int status = bg_located_rate(c, t, s, base), j = 0;
     memcpy(moved, s, sizeof moved);
-    for (int j = 0; j < BG_SIZE && status == BG_OK; j++) {
-        const double reach = BG_SLOPE_FLOOR * fabs(base[j]) * past + BG_SLOPE_FLOOR;
-        double step = side * (BG_AFFINE ? BG_FAR : BG_SLOPE * fabs(s[j]) + reach);
-        for (int tries = 0; tries < 12; tries++, step *= BG_SLOPE_SHORTER) {
-            moved[j] = s[j] + step;
-            status = bg_located_rate(c, t, moved, rate);
-            if (status == BG_OK)
-                break;
-        }
-        for (int i = 0; i < BG_SIZE; i++)
-            jacobian[i * BG_SIZE + j] = (rate[i] - base[i]) / (moved[j] - s[j]);
+    while (status == BG_OK && c->together && j < BG_SIZE
+           && columns_at_once(c, t, s, side, j, base, jacobian))
+        j += BG_AT_ONCE;
+    for (; j < BG_SIZE && status == BG_OK; j++) {
+        status = rate_beside(c, t, moved, j, side * reach_of(c, t, s, base, j), rate);
+        put_column(j, moved[j] - s[j], base, rate, jacobian);
         moved[j] = s[j];
     }
     return status;

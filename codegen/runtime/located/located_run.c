@@ -253,6 +253,7 @@ void bg_located_set_out(bg_located *c, bg_model *m, const bg_signals *signals, b
     c->next = 0;
     c->stiff = BG_STIFF_SPAN / (end - t);
     c->ahead = NULL;
+    c->together = NULL;
     c->known = 0;
     c->run.log.events = asked->events;
     c->run.log.capacity = asked->capacity;

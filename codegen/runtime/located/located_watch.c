@@ -68,7 +68,7 @@ int bg_watch_begin(bg_located *c)
 
 int bg_watch_step(bg_located *c, double *time, int *ports)
 {
-    const bg_triggers of = {c, triggers_at, K};
+    const bg_triggers of = {c, triggers_at, K, c->together};
     *time = INFINITY;
     if (K == 0)
         return BG_OK;

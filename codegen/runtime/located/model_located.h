@@ -71,11 +71,21 @@ typedef struct {
     int method;
 } bg_stretch;
 
+/* What works several points out at once, where there is such: the triggers of ports at times inside
+ * the latest step; rates at states, by rows, in the present mode. Whether it could. */
+enum { BG_AT_ONCE = 8 };
+typedef struct {
+    void *self;
+    int (*triggers)(void *self, int count, const double *times, double (*values)[BG_WATCHED]);
+    int (*rates)(void *self, double t, int count, double (*s)[BG_SIZE], double (*rate)[BG_SIZE]);
+} bg_together;
+
 /* A run: where it is, what it looks at, the next sample. From a rate `stiff` [1/s] on steps are
  * implicit, where the method is chosen; `ahead` tells the latest time to stop at after t, no later
  * than `stop`, to look what is to be decided; NULL: `stop`. */
 typedef struct {
     double stiff, (*ahead)(const void *self, double t, double stop);
+    const bg_together *together; /* NULL: one after the other */
     bg_model *model;
     const bg_signals *signals;
     bg_request *asked;
