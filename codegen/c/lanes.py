@@ -86,11 +86,14 @@ class _Builder(Builder):
         """What slips rubs, and what is held gives what holds it: of each port one of these is zero."""
         super()._friction()
         program, given = self._program, dict(self._given)
+        entries, outside = self._entries["D"], set(program.given)
+        rated = {j for port in program.friction for j, _ in entries.get(port.reading, []) if j in outside}
+        changes = [one if at in rated else sp.S.Zero for at, one in zip(program.given, self._changes, strict=True)]
         for port in program.friction:
             given[port.input] = self._renamed(program.inputs[port.input])
         for port, row in zip(program.friction, self._held, strict=True):
             names = [*program.states, *(given.get(j, sp.S.Zero) for j in range(len(program.inputs)))]
-            terms = zip(row, [*names, *self._changes], strict=True)
+            terms = zip(row, [*names, *changes], strict=True)
             effort = sp.Add(given[port.input], *(factor * one for factor, one in terms))
             self._assignments.append((program.inputs[port.input], effort))
 
@@ -103,9 +106,7 @@ class _Builder(Builder):
     def _instant(self, rates: list[sp.Expr]) -> list[sp.Expr]:
         """The parts of an instant, one after the other."""
         program, known = self._program, {name for name, _ in self._assignments}
-        changes = [sp.S.Zero] * len(program.inputs)
-        for at, change in zip(program.given, self._changes, strict=True):
-            changes[at] = change
+        changes = [sp.S.Zero] * len(program.inputs)  # which no signal shows
         values = expanded(program.friction_values)
         self._read(values[1::4])
         readings = [
@@ -134,7 +135,8 @@ def lanes_text(program: Program, code: Lanes) -> dict[str, str]:
         *_function("bg_lanes_rates", "The rates of s", code.rates, code, program),
         *_function("bg_lanes_look", "Everything at an instant", code.look, code, program),
     ]  # fmt: skip
-    sizes = {"CONSTANTS": len(code.constants), "HELD": len(code.held)}
+    rated = bool({*code.changes} & {*code.rates.arguments})
+    sizes = {"CONSTANTS": len(code.constants), "HELD": len(code.held), "RATED": int(rated)}
     head = ["/* Sizes of runs side by side; written by bondgraph-toolkit. */",
             "#ifndef BG_LANES_CONFIG_H", "#define BG_LANES_CONFIG_H", "",
             f"#define BG_LANES {LANES}",

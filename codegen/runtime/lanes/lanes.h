@@ -19,13 +19,11 @@ enum {
 
 /* What a lane's run is worked out with: what parameters determine; the way in which friction slips,
  * 0 where it holds, and the factors of what holds it, port by port: of states, inputs and the rates
- * of outside inputs; slips of rates at ports that hold, how outside inputs move these, and what
- * takes them away. */
+ * of outside inputs. Slips that stick are left to drift by rounding in a stretch, as no step sees
+ * that; its end takes them away. */
 typedef struct {
     bg_lane constants[BG_ROOM(BG_LANE_CONSTANTS)], signs[BG_ROOM(K)];
     bg_lane held[BG_ROOM(BG_LANE_HELD)];
-    bg_lane slip_x[BG_TABLE(BG_FRICTION, BG_STATES)], take[BG_TABLE(BG_FRICTION, BG_STATES)];
-    bg_lane fixed[BG_TABLE(BG_FRICTION, BG_OUTSIDE)];
 } bg_lanes_own;
 
 /* An instant of each lane: its time, external inputs and their rates. */
@@ -80,9 +78,7 @@ void bg_lanes_dense(bg_lanes *a);
 void bg_lanes_between(bg_lanes *a, bg_lane *s);
 void bg_lanes_shoot(bg_lanes *a, const bg_lane *s, bg_lane *shot);
 
-/* What rounding in holding efforts adds to rates is taken away, as bg_correct does. The triggers of
- * a lane's ports at an instant, positive while the mode holds. */
-void bg_lanes_correct(const bg_lanes_own *own, const bg_lanes_at *at, bg_lane *rate);
+/* The triggers of a lane's ports at an instant, positive while the mode holds. */
 void bg_lanes_triggers(const bg_lanes_own *own, int lane, const bg_lane *shot, double *values);
 
 /* lanes_points.c: what works several points of a lane's run out at once. */

@@ -19,19 +19,6 @@ static void load_held(bg_lanes_own *own, int lane, const bg_hold *held)
         }
 }
 
-/* What keeps slips that stick from drifting. */
-static void load_drift(bg_lanes_own *own, int lane, const bg_hold *held)
-{
-    for (int k = 0; k < held->kept; k++) {
-        for (int j = 0; j < N; j++) {
-            own->slip_x[k * N + j][lane] = held->slip_x[k * N + j];
-            own->take[k * N + j][lane] = held->take_away[j * held->kept + k];
-        }
-        for (int j = 0; j < BG_OUTSIDE; j++)
-            own->fixed[k * BG_OUTSIDE + j][lane] = held->fixed[k * M + bg_outside_inputs[j]];
-    }
-}
-
 /* Ports that hold may share a load, or inputs may rule whether they do: these runs go alone. */
 int bg_lanes_load_mode(bg_lanes_own *own, int lane, const bg_located *c)
 {
@@ -43,16 +30,11 @@ int bg_lanes_load_mode(bg_lanes_own *own, int lane, const bg_located *c)
     }
     for (int i = 0; i < K * LANE_WIDE; i++)
         own->held[i][lane] = 0.0;
-    for (int i = 0; i < K * N; i++)
-        own->slip_x[i][lane] = own->take[i][lane] = 0.0;
-    for (int i = 0; i < K * BG_OUTSIDE; i++)
-        own->fixed[i][lane] = 0.0;
     if (!sticking)
         return 1;
     if (bg_hold_of(c->model, c->run.mode, &held) != BG_OK || held->share_count || held->ruled)
         return 0;
     load_held(own, lane, held);
-    load_drift(own, lane, held);
     return 1;
 }
 
@@ -68,6 +50,7 @@ int bg_lanes_load(bg_lanes *a, int lane)
     }
     one->reach = -1.0;
     one->tries = 0;
+    c->turns.patience = BG_PATIENCE * BG_LANES; /* an explicit step costs so much less */
     return bg_lanes_follow(a, lane, c->solver.t);
 }
 

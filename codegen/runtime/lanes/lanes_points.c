@@ -35,26 +35,27 @@ static int make_points(bg_lanes *a, int lane)
     spread(own->constants, BG_LANE_CONSTANTS, 0);
     spread(own->signs, K, 0);
     spread(own->held, K * LANE_WIDE, 0);
-    spread(own->slip_x, K * N, 0);
-    spread(own->take, K * N, 0);
-    spread(own->fixed, K * BG_OUTSIDE, 0);
     return 1;
 }
 
-/* A point: its time and inputs there, and its state. */
-static void put_point(bg_lanes *a, int lane, int point, double t, const double *s)
+/* The time of a point and inputs there. */
+static void put_time(bg_lanes *a, int lane, int point, double t)
 {
-    bg_lanes_points *const p = &a->points;
-    bg_located *const c = a->lane[lane].room->run;
+    bg_lanes_at *const at = &a->points.at;
+    const bg_located *const c = a->lane[lane].room->run;
     double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
     bg_signals_at(c->signals, &c->run.span, t, w, dw);
-    p->at.t[point] = t;
+    at->t[point] = t;
     for (int i = 0; i < BG_EXTERNAL; i++) {
-        p->at.w[i][point] = w[i];
-        p->at.dw[i][point] = dw[i];
+        at->w[i][point] = w[i];
+        at->dw[i][point] = dw[i];
     }
+}
+
+static void put_state(bg_lanes *a, int point, const double *s)
+{
     for (int k = 0; k < BG_SIZE; k++)
-        p->s[k][point] = s[k];
+        a->points.s[k][point] = s[k];
 }
 
 static int triggers_of_points(void *self, int count, const double *times,
@@ -68,7 +69,8 @@ static int triggers_of_points(void *self, int count, const double *times,
     for (int k = 0; k < BG_LANES && fine; k++) {
         const double t = times[k < count ? k : 0];
         fine = bg_solver_dense(one->room->run, t, s) == BG_OK;
-        put_point(a, lane, k, t, s);
+        put_time(a, lane, k, t);
+        put_state(a, k, s);
     }
     if (!fine)
         return 0;
@@ -86,13 +88,17 @@ static int rates_of_points(void *self, double t, int count, double (*s)[BG_SIZE]
     const bg_lane_run *const one = self;
     bg_lanes *const a = one->all;
     bg_lane found[BG_SIZE];
-    int fine = count <= BG_LANES && make_points(a, (int)(one - a->lane));
-    for (int k = 0; k < BG_LANES && fine; k++)
-        put_point(a, (int)(one - a->lane), k, t, s[k < count ? k : 0]);
+    const int lane = (int)(one - a->lane);
+    int fine = count <= BG_LANES && make_points(a, lane);
     if (!fine)
         return 0;
+    put_time(a, lane, 0, t);
+    spread(&a->points.at.t, 1, 0);
+    spread(a->points.at.w, BG_EXTERNAL, 0);
+    spread(a->points.at.dw, BG_EXTERNAL, 0);
+    for (int k = 0; k < BG_LANES; k++)
+        put_state(a, k, s[k < count ? k : 0]);
     bg_lanes_rates(&a->points.own, &a->points.at, a->points.s, found);
-    bg_lanes_correct(&a->points.own, &a->points.at, found);
     for (int k = 0; k < count; k++) {
         for (int i = 0; i < BG_SIZE; i++)
             rate[k][i] = found[i][k];

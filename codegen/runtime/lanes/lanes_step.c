@@ -4,7 +4,7 @@
 #include "lanes.h"
 #include "located_explicit_table.h"
 
-/* External inputs and their rates at the lanes' times. */
+/* External inputs at the lanes' times, and their rates where what holds may ask for them. */
 static void lane_inputs(bg_lanes *a)
 {
     bg_lane x;
@@ -14,7 +14,7 @@ static void lane_inputs(bg_lanes *a)
         bg_lane p = {0}, d = {0};
         for (int k = a->terms - 1; k >= 0; k--)
             for (int l = 0; l < BG_LANES; l++) {
-                d[l] = d[l] * x[l] + p[l];
+                d[l] = BG_LANE_RATED ? d[l] * x[l] + p[l] : 0.0;
                 p[l] = p[l] * x[l] + a->series[i][k][l];
             }
         memcpy(a->at.w[i], p, sizeof p);
@@ -22,35 +22,38 @@ static void lane_inputs(bg_lanes *a)
     }
 }
 
-void bg_lanes_correct(const bg_lanes_own *own, const bg_lanes_at *at, bg_lane *rate)
+/* Adds so many stages, each times its weight, to `sum`; four at a time, which keeps processors busy. */
+static void add_stages(const bg_lanes *a, int count, const double *weights, bg_lane *sum)
 {
-    for (int k = 0; k < K; k++) {
-        bg_lane drift = {0};
-        for (int j = 0; j < N; j++)
+    enum { AT_ONCE = 4 };
+    const bg_lane *of[DOP_ALL + AT_ONCE];
+    double weight[DOP_ALL + AT_ONCE] = {0};
+    int used = 0;
+    for (int j = 0; j < count; j++)
+        if (weights[j] != 0.0) {
+            weight[used] = weights[j];
+            of[used++] = a->stage[j];
+        }
+    for (int j = used; j < used + AT_ONCE; j++)
+        of[j] = a->stage[0]; /* times zero */
+    for (int j = 0; j < used; j += AT_ONCE) {
+        const bg_lane *const s0 = of[j], *const s1 = of[j + 1], *const s2 = of[j + 2];
+        const bg_lane *const s3 = of[j + 3];
+        const double w0 = weight[j], w1 = weight[j + 1], w2 = weight[j + 2], w3 = weight[j + 3];
+        for (int k = 0; k < BG_SIZE; k++)
             for (int l = 0; l < BG_LANES; l++)
-                drift[l] += own->slip_x[k * N + j][l] * rate[j][l];
-        for (int j = 0; j < BG_OUTSIDE; j++)
-            for (int l = 0; l < BG_LANES; l++)
-                drift[l] += own->fixed[k * BG_OUTSIDE + j][l] * at->dw[j][l];
-        for (int i = 0; i < N; i++)
-            for (int l = 0; l < BG_LANES; l++)
-                rate[i][l] += own->take[k * N + i][l] * drift[l];
+                sum[k][l] += w0 * s0[k][l] + w1 * s1[k][l] + (w2 * s2[k][l] + w3 * s3[k][l]);
     }
 }
 
 /* Where stage i of a step is asked for, and when. */
 static void lane_point(bg_lanes *a, int i)
 {
-    for (int k = 0; k < BG_SIZE; k++) {
-        bg_lane sum = {0};
-        for (int j = 0; j < i; j++) {
-            const double weight = DOP_A[i][j];
-            for (int l = 0; l < BG_LANES; l++)
-                sum[l] += weight * a->stage[j][k][l];
-        }
+    bg_lane sum[BG_SIZE] = {{0}};
+    add_stages(a, i, DOP_A[i], sum);
+    for (int k = 0; k < BG_SIZE; k++)
         for (int l = 0; l < BG_LANES; l++)
-            a->tried[k][l] = a->y_old[k][l] + a->h[l] * sum[l];
-    }
+            a->tried[k][l] = a->y_old[k][l] + a->h[l] * sum[k][l];
     for (int l = 0; l < BG_LANES; l++)
         a->at.t[l] = a->t_old[l] + DOP_C[i] * a->h[l];
     lane_inputs(a);
@@ -60,35 +63,29 @@ static void lane_stage(bg_lanes *a, int i)
 {
     lane_point(a, i);
     bg_lanes_rates(&a->own, &a->at, a->tried, a->stage[i]);
-    bg_lanes_correct(&a->own, &a->at, a->stage[i]);
 }
 
 void bg_lanes_shoot(bg_lanes *a, const bg_lane *s, bg_lane *shot)
 {
     lane_inputs(a);
     bg_lanes_look(&a->own, &a->at, s, shot);
-    bg_lanes_correct(&a->own, &a->at, shot + BG_AT_rate);
 }
 
 /* The sums of squares that estimate errors of order 5 and 3, in what the tolerance allows. */
 static void lane_estimate(bg_lanes *a)
 {
+    bg_lane e5[BG_SIZE] = {{0}}, e3[BG_SIZE] = {{0}};
+    add_stages(a, DOP_STAGES + 1, E5, e5);
+    add_stages(a, DOP_STAGES + 1, E3, e3);
     memset(a->fifth, 0, sizeof a->fifth);
     memset(a->third, 0, sizeof a->third);
-    for (int k = 0; k < BG_SIZE; k++) {
-        bg_lane e5 = {0}, e3 = {0};
-        for (int i = 0; i <= DOP_STAGES; i++)
-            for (int l = 0; l < BG_LANES; l++) {
-                e5[l] += E5[i] * a->stage[i][k][l];
-                e3[l] += E3[i] * a->stage[i][k][l];
-            }
+    for (int k = 0; k < BG_SIZE; k++)
         for (int l = 0; l < BG_LANES; l++) {
             const double one = fabs(a->y_old[k][l]), other = fabs(a->tried[k][l]);
-            const double scale = a->atol + a->rtol * (one > other ? one : other);
-            a->fifth[l] += e5[l] / scale * (e5[l] / scale);
-            a->third[l] += e3[l] / scale * (e3[l] / scale);
+            const double allowed = 1.0 / (a->atol + a->rtol * (one > other ? one : other));
+            a->fifth[l] += e5[k][l] * allowed * (e5[k][l] * allowed);
+            a->third[l] += e3[k][l] * allowed * (e3[k][l] * allowed);
         }
-    }
 }
 
 void bg_lanes_attempt(bg_lanes *a)
@@ -107,7 +104,7 @@ void bg_lanes_dense(bg_lanes *a)
 {
     for (int i = DOP_STAGES + 1; i < DOP_ALL; i++)
         lane_stage(a, i);
-    for (int k = 0; k < BG_SIZE; k++) {
+    for (int k = 0; k < BG_SIZE; k++)
         for (int l = 0; l < BG_LANES; l++) {
             const double change = a->y[k][l] - a->y_old[k][l], h = a->h[l];
             const double first = a->stage[0][k][l], last = a->stage[DOP_STAGES][k][l];
@@ -115,14 +112,12 @@ void bg_lanes_dense(bg_lanes *a)
             a->interpolation[1][k][l] = h * first - change;
             a->interpolation[2][k][l] = 2 * change - h * (last + first);
         }
-        for (int r = 0; r < 4; r++) {
-            bg_lane sum = {0};
-            for (int i = 0; i < DOP_ALL; i++)
-                for (int l = 0; l < BG_LANES; l++)
-                    sum[l] += D[r][i] * a->stage[i][k][l];
+    for (int r = 0; r < 4; r++) {
+        bg_lane sum[BG_SIZE] = {{0}};
+        add_stages(a, DOP_ALL, D[r], sum);
+        for (int k = 0; k < BG_SIZE; k++)
             for (int l = 0; l < BG_LANES; l++)
-                a->interpolation[3 + r][k][l] = a->h[l] * sum[l];
-        }
+                a->interpolation[3 + r][k][l] = a->h[l] * sum[k][l];
     }
 }
 
