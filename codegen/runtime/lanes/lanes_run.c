@@ -160,6 +160,15 @@ static int lane_has_sample(const bg_lane_run *one, const int *plain, int lane)
     return plain[lane] && c->next < c->asked->samples && c->asked->times[c->next] < c->solver.t;
 }
 
+/* Whether all that is followed are states, which come first among everything at an instant. */
+static int lane_follows_states(const batch_job *job)
+{
+    int all = 1;
+    for (int s = 0; s < job->signals; s++)
+        all &= job->signal[s] >= BG_AT_x && job->signal[s] < ALL;
+    return all;
+}
+
 /* The samples in the steps of lanes in which nothing happens. */
 static void lanes_sample(bg_lanes *a, const batch_job *job, const int *plain)
 {
@@ -175,7 +184,10 @@ static void lanes_sample(bg_lanes *a, const batch_job *job, const int *plain)
         if (!any)
             return;
         bg_lanes_between(a, s);
-        bg_lanes_shoot(a, s, a->shot);
+        if (job->signals > 0 && !lane_follows_states(job))
+            bg_lanes_shoot(a, s, a->shot);
+        else
+            memcpy(a->shot, s, sizeof s);
         for (int l = 0; l < BG_LANES; l++)
             if (has[l])
                 lane_keep(a, job, l);
