@@ -1,7 +1,7 @@
 """Rates and instants of several runs at once, in straight-line code that compilers turn into vectors."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -10,8 +10,7 @@ from codegen.c.blocks import body, function, places
 from codegen.c.constants import expanded, needed
 from codegen.c.rhs import Builder, is_straight
 from codegen.c.text import comment, integers
-from codegen.program.layout import RATE, widths
-from codegen.program.records import Block, Program
+from codegen.program.records import Block, Corners, Program
 
 LANES = 8
 """So many runs go side by side: as many doubles as the widest vectors of today's processors hold."""
@@ -24,9 +23,10 @@ MOST_STATES, MOST_HELD = 40, 512
 class Lanes:
     """``rates``, and everything at an instant in the order of its parts, ``look``.
 
-    ``constants``: names of what parameters determine, ``hoisted``, and of the entries of A^-1 at ``inverses``;
-    ``signs``: of friction's directions; ``held``: of a held port's effort the factors of states, inputs and
-    rates of outside inputs, port by port; ``changes``: the rates of these inputs.
+    ``constants``: names of what parameters determine, ``hoisted``, and of the entries of A^-1 at
+    ``inverses``; ``signs``: of friction's directions; ``held``: of a held port's effort the factors of
+    states, inputs and rates of outside inputs, port by port; ``changes``: the rates of these inputs. Where
+    laws have corners it is the code on one side of each, and ``plain`` that of laws as they are.
     """
 
     rates: Block
@@ -37,15 +37,21 @@ class Lanes:
     signs: tuple[sp.Symbol, ...]
     held: tuple[sp.Symbol, ...]
     changes: tuple[sp.Symbol, ...]
+    plain: "Lanes | None" = None
+
+    @property
+    def parts(self) -> "tuple[Lanes, ...]":
+        """Itself and the code of laws as they are, if there is one."""
+        return (self,) if self.plain is None else (self, self.plain)
 
 
 def lanes(program: Program) -> Lanes | None:
     """Code for runs side by side, or None for a program whose runs go one after the other.
 
-    Those are of affine programs, which have exact steps, and of those in which more happens than that friction
-    sticks and slips, or something is solved for or looked up in a table.
+    Those are of affine programs, which have exact steps, and of those in which more happens than that
+    friction sticks and slips, or something is solved for or looked up in a table.
     """
-    plain = is_straight(program) and not program.affine and program.corners is None
+    plain = is_straight(program) and is_straight(program.on_sides) and not program.affine
     rubs = all(
         port.switch is None and not port.jumps and port.moving is None and port.plain is None
         for port in program.friction
@@ -56,7 +62,11 @@ def lanes(program: Program) -> Lanes | None:
     )  # fmt: skip
     wide = len(program.states) + len(program.inputs) + len(program.given)
     few = program.size <= MOST_STATES and len(program.friction) * wide <= MOST_HELD
-    return _Builder(program).lanes() if plain and rubs and not more and few else None
+    if not plain or not rubs or more or not few:
+        return None
+    if program.corners is None:
+        return _Builder(program).lanes()
+    return replace(_Builder(program.on_sides).lanes(), plain=_Builder(program).lanes())
 
 
 class _Builder(Builder):
@@ -86,21 +96,31 @@ class _Builder(Builder):
         """What slips rubs, and what is held gives what holds it: of each port one of these is zero."""
         super()._friction()
         program, given = self._program, dict(self._given)
-        entries, outside = self._entries["D"], set(program.given)
-        rated = {j for port in program.friction for j, _ in entries.get(port.reading, []) if j in outside}
-        changes = [one if at in rated else sp.S.Zero for at, one in zip(program.given, self._changes, strict=True)]
+        changes = self._changes_read()
         for port in program.friction:
             given[port.input] = self._renamed(program.inputs[port.input])
         for port, row in zip(program.friction, self._held, strict=True):
-            names = [*program.states, *(given.get(j, sp.S.Zero) for j in range(len(program.inputs)))]
+            names = [
+                *program.states,
+                *(given.get(j, sp.S.Zero) for j in range(len(program.inputs))),
+            ]
             terms = zip(row, [*names, *changes], strict=True)
             effort = sp.Add(given[port.input], *(factor * one for factor, one in terms))
             self._assignments.append((program.inputs[port.input], effort))
 
+    def _changes_read(self) -> list[sp.Expr]:
+        """The rates of outside inputs, of which those count that slips are read off themselves."""
+        program, entries = self._program, self._entries["D"]
+        read = {j for port in program.friction for j, _ in entries.get(port.reading, [])}
+        pairs = zip(program.given, self._changes, strict=True)
+        return [change if at in read else sp.S.Zero for at, change in pairs]
+
     def _renamed(self, name: sp.Symbol) -> sp.Symbol:
         """A name of its own for what is assigned so."""
         own = self._constants.new(f"rub_{name.name}")
-        self._assignments = [(own if one == name else one, value) for one, value in self._assignments]
+        self._assignments = [
+            (own if one == name else one, value) for one, value in self._assignments
+        ]
         return own
 
     def _instant(self, rates: list[sp.Expr]) -> list[sp.Expr]:
@@ -115,38 +135,60 @@ class _Builder(Builder):
         ]
         caps = [self._constants.hoisted(value) for value in values[1::4]]
         inputs = [self._given.get(at, sp.S.Zero) for at in range(len(program.inputs))]
-        return [*program.states, *program.law_states, *inputs, *changes, *readings, *rates, *caps]
+        shown = [*program.states, *program.law_states, *inputs, *changes, *readings, *rates, *caps]
+        return shown if program.corners is None else [*shown, *self._hung(program.corners)]
+
+    def _hung(self, corners: Corners) -> list[sp.Expr]:
+        """What corners hang on, then whether each counts."""
+        values = expanded(corners.values)
+        self._read(values)
+        return [self._constants.hoisted(value) for value in values]
 
 
 def lanes_text(program: Program, code: Lanes) -> dict[str, str]:
     """The files that are written for a model: name to text."""
-    used = {name for value in code.hoisted for name in value.free_symbols}
-    hoisted = Block(tuple(one for one in program.parameters if one in used), (), code.hoisted)
-    rows, columns = (tuple(place[at] for place in code.inverses) for at in (0, 1))
-    lines = [
-        "/* Rates and instants of several runs at once; written by bondgraph-toolkit. */",
-        '#include "lanes.h"', '#include "lanes_functions.h"',
-        *function("lanes_hoisted", "What parameters determine", hoisted, places(program)), "",
-        *integers("lanes_rows", rows, local=True), *integers("lanes_columns", columns, local=True), "",
-        "void bg_lanes_prepare(bg_model *m, double *constants)", "{",
-        "    lanes_hoisted(&m->now, constants);",
-        f"    bg_inverse_entries(m, {len(rows)}, lanes_rows, lanes_columns,",
-        f"                       constants + {len(code.hoisted)});", "}",
-        *_function("bg_lanes_rates", "The rates of s", code.rates, code, program),
-        *_function("bg_lanes_look", "Everything at an instant", code.look, code, program),
+    lines = ["/* Rates and instants of several runs at once; written by bondgraph-toolkit. */",
+             '#include "lanes.h"', '#include "lanes_functions.h"']  # fmt: skip
+    prepare, first = list[str](), 0
+    for name, one in zip(("", "_plain"), code.parts, strict=False):
+        lines += _constants(name, one, program)
+        count = first + len(one.hoisted)
+        prepare += [f"    lanes_hoisted{name}(&m->now, constants + {first});",
+                    f"    bg_inverse_entries(m, {len(one.inverses)}, lanes_rows{name}, lanes_columns{name},",
+                    f"                       constants + {count});"]  # fmt: skip
+        first += len(one.constants)
+    plain, begin = (code, 0) if code.plain is None else (code.plain, len(code.constants))
+    lines += [
+        "", "void bg_lanes_prepare(bg_model *m, double *constants)", "{", *prepare, "}",
+        *_function("bg_lanes_rates", "The rates of s", code.rates, _where(code, program)),
+        *_function("bg_lanes_look", "Everything at an instant", code.look, _where(code, program)),
+        *_function("bg_lanes_plain", "The rates of s by laws as they are", plain.rates,
+                   _where(plain, program, begin)),
     ]  # fmt: skip
     rated = bool({*code.changes} & {*code.rates.arguments})
-    sizes = {"CONSTANTS": len(code.constants), "HELD": len(code.held), "RATED": int(rated)}
-    head = ["/* Sizes of runs side by side; written by bondgraph-toolkit. */",
-            "#ifndef BG_LANES_CONFIG_H", "#define BG_LANES_CONFIG_H", "",
-            f"#define BG_LANES {LANES}",
-            *(f"#define BG_LANE_{key} {value}" for key, value in sizes.items()), "", "#endif", ""]  # fmt: skip
+    sizes = {"CONSTANTS": first, "HELD": len(code.held), "RATED": int(rated)}
+    head = [
+        "/* Sizes of runs side by side; written by bondgraph-toolkit. */",
+        "#ifndef BG_LANES_CONFIG_H", "#define BG_LANES_CONFIG_H", "", f"#define BG_LANES {LANES}",
+        *(f"#define BG_LANE_{key} {value}" for key, value in sizes.items()), "", "#endif", "",
+    ]  # fmt: skip
     return {"lanes_config.h": "\n".join(head), "lanes_model.c": "\n".join(lines) + "\n"}
 
 
-def _function(name: str, what: str, block: Block, code: Lanes, program: Program) -> list[str]:
+def _constants(name: str, code: Lanes, program: Program) -> list[str]:
+    """What parameters determine, and which entries of A^-1."""
+    used = {one for value in code.hoisted for one in value.free_symbols}
+    hoisted = Block(tuple(one for one in program.parameters if one in used), (), code.hoisted)
+    rows, columns = (tuple(place[at] for place in code.inverses) for at in (0, 1))
+    what = "What parameters determine"
+    return [*function(f"lanes_hoisted{name}", what, hoisted, places(program)), "",
+            *integers(f"lanes_rows{name}", rows, local=True),
+            *integers(f"lanes_columns{name}", columns, local=True)]  # fmt: skip
+
+
+def _function(name: str, what: str, block: Block, where: Mapping[sp.Symbol, str]) -> list[str]:
     """A block as a function of all lanes."""
-    lines = body(block, _where(code, program), "out", "lanes", "[l]")
+    lines = body(block, where, "out", "lanes", "[l]")
     return [
         "", *comment(f"{what}: {block.operations} operations a lane."),
         f"void {name}(const bg_lanes_own *restrict own, const bg_lanes_at *restrict at,",
@@ -156,8 +198,8 @@ def _function(name: str, what: str, block: Block, code: Lanes, program: Program)
     ]  # fmt: skip
 
 
-def _where(code: Lanes, program: Program) -> Mapping[sp.Symbol, str]:
-    """Where the values of a lane stand."""
+def _where(code: Lanes, program: Program, first: int = 0) -> Mapping[sp.Symbol, str]:
+    """Where the values of a lane stand; ``first``: the place of the code's constants."""
     found: dict[sp.Symbol, str] = {TIME: "at->t[l]"}
     for at, name in enumerate((*program.states, *program.law_states)):
         found.setdefault(name, f"s[{at}][l]")
@@ -165,12 +207,7 @@ def _where(code: Lanes, program: Program) -> Mapping[sp.Symbol, str]:
         found.setdefault(name, f"at->w[{at}][l]")
     for at, name in zip(program.given, code.changes, strict=True):
         found[name] = f"at->dw[{program.external.index(program.inputs[at])}][l]"
-    for part in ("constants", "signs", "held"):
-        names = getattr(code, part)
-        found |= {name: f"own->{part}[{at}][l]" for at, name in enumerate(names)}
+    for part, names, begin in (("constants", code.constants, first), ("signs", code.signs, 0),
+                               ("held", code.held, 0), ("sides", program.sides, 0)):  # fmt: skip
+        found |= {name: f"own->{part}[{begin + at}][l]" for at, name in enumerate(names)}
     return found
-
-
-def instant_width(program: Program) -> int:
-    """How many numbers `bg_lanes_look` gives a lane."""
-    return sum(widths(program)[: RATE + 2])

@@ -13,6 +13,7 @@ typedef double bg_lane[BG_LANES];
 
 enum {
     LANE_SERIES = 20, /* so many terms at the most, of inputs about an instant */
+    LANE_CORNERS = BG_MAP_ROWS, LANE_ROWS = LANE_CORNERS + 2 * BG_CORNERS, /* of an instant */
     LANE_LAST = 12, /* the stage at a step's end */
     LANE_WIDE = N + M + BG_OUTSIDE /* factors of what holds a port */
 };
@@ -23,7 +24,7 @@ enum {
  * that; its end takes them away. */
 typedef struct {
     bg_lane constants[BG_ROOM(BG_LANE_CONSTANTS)], signs[BG_ROOM(K)];
-    bg_lane held[BG_ROOM(BG_LANE_HELD)];
+    bg_lane held[BG_ROOM(BG_LANE_HELD)], sides[BG_ROOM(BG_CORNERS)];
 } bg_lanes_own;
 
 /* An instant of each lane: its time, external inputs and their rates. */
@@ -35,7 +36,7 @@ typedef struct {
 typedef struct {
     bg_lanes_own own;
     bg_lanes_at at;
-    bg_lane s[BG_SIZE], shot[BG_MAP_ROWS];
+    bg_lane s[BG_SIZE], rate[BG_SIZE], shot[LANE_ROWS];
 } bg_lanes_points;
 
 /* Of a lane what is done by itself. `run`: which one, -1 for none; `tries`: how often the present step
@@ -59,17 +60,21 @@ typedef struct bg_lanes {
     bg_lane t_old, t, h, y_old[BG_SIZE], y[BG_SIZE], tried[BG_SIZE], f[BG_SIZE];
     bg_lane stage[BG_EXPLICIT_STAGES][BG_SIZE], interpolation[7][BG_SIZE];
     bg_lane origin, series[BG_ROOM(BG_EXTERNAL)][LANE_SERIES];
-    bg_lane shot[BG_MAP_ROWS], middle[BG_MAP_ROWS], end[BG_MAP_ROWS], fifth, third;
+    bg_lane shot[LANE_ROWS], middle[LANE_ROWS], end[LANE_ROWS], fifth, third;
     bg_lanes_points points;
     bg_lane_run lane[BG_LANES];
 } bg_lanes;
 
-/* Generated. */
+/* Generated. Rates, and everything at an instant, with what corners hang on and whether each counts
+ * in the end: by laws on one side of each corner, which have no value beyond it; rates by laws as
+ * they are. */
 void bg_lanes_prepare(bg_model *m, double *constants);
 void bg_lanes_rates(const bg_lanes_own *restrict own, const bg_lanes_at *restrict at,
                     const bg_lane *restrict s, bg_lane *restrict out);
 void bg_lanes_look(const bg_lanes_own *restrict own, const bg_lanes_at *restrict at,
                    const bg_lane *restrict s, bg_lane *restrict out);
+void bg_lanes_plain(const bg_lanes_own *restrict own, const bg_lanes_at *restrict at,
+                    const bg_lane *restrict s, bg_lane *restrict out);
 
 /* lanes_step.c: all stages of a step of every lane, and what its error is estimated by; what is
  * needed between its ends; states there, at the lanes' times; everything at states. */
@@ -77,6 +82,9 @@ void bg_lanes_attempt(bg_lanes *a);
 void bg_lanes_dense(bg_lanes *a);
 void bg_lanes_between(bg_lanes *a, bg_lane *s);
 void bg_lanes_shoot(bg_lanes *a, const bg_lane *s, bg_lane *shot);
+
+/* Rates of lanes that have no numbers on this side of a corner become those of laws as they are. */
+void bg_lanes_mend(const bg_lanes_own *own, const bg_lanes_at *at, const bg_lane *s, bg_lane *rate);
 
 /* The triggers of a lane's ports at an instant, positive while the mode holds. */
 void bg_lanes_triggers(const bg_lanes_own *own, int lane, const bg_lane *shot, double *values);

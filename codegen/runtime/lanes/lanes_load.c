@@ -28,6 +28,8 @@ int bg_lanes_load_mode(bg_lanes_own *own, int lane, const bg_located *c)
         own->signs[i][lane] = c->run.mode[i];
         sticking |= c->run.mode[i] == 0;
     }
+    for (int i = 0; i < BG_CORNERS; i++)
+        own->sides[i][lane] = c->model->now.side[i];
     for (int i = 0; i < K * LANE_WIDE; i++)
         own->held[i][lane] = 0.0;
     if (!sticking)
@@ -44,6 +46,8 @@ int bg_lanes_load(bg_lanes *a, int lane)
     bg_located *const c = one->room->run;
     if (c->stretch.method != BG_DOP853 || !bg_lanes_load_mode(&a->own, lane, c))
         return 0;
+    if (BG_CORNERS && !(c->model->now.sided > 0.0))
+        return 0; /* over corners that it does not get past */
     for (int k = 0; k < BG_SIZE; k++) {
         a->y[k][lane] = c->solver.y[k];
         a->f[k][lane] = c->solver.f[k];

@@ -14,7 +14,7 @@ void bg_lanes_triggers(const bg_lanes_own *own, int lane, const bg_lane *shot, d
 }
 
 /* The same in every lane. */
-static void spread(bg_lane *of, int count, int from)
+static void lane_spread(bg_lane *of, int count, int from)
 {
     for (int i = 0; i < count; i++) {
         const double value = of[i][from];
@@ -32,9 +32,10 @@ static int make_points(bg_lanes *a, int lane)
         return 0;
     for (int i = 0; i < BG_LANE_CONSTANTS; i++)
         own->constants[i][0] = a->own.constants[i][lane];
-    spread(own->constants, BG_LANE_CONSTANTS, 0);
-    spread(own->signs, K, 0);
-    spread(own->held, K * LANE_WIDE, 0);
+    lane_spread(own->constants, BG_LANE_CONSTANTS, 0);
+    lane_spread(own->signs, K, 0);
+    lane_spread(own->held, K * LANE_WIDE, 0);
+    lane_spread(own->sides, BG_CORNERS, 0);
     return 1;
 }
 
@@ -66,6 +67,8 @@ static int triggers_of_points(void *self, int count, const double *times,
     const int lane = (int)(one - a->lane);
     double s[BG_SIZE];
     int fine = count <= BG_LANES && make_points(a, lane);
+    if (BG_CORNERS && !(one->room->run->model->now.sided > 0.0))
+        return 0; /* laws as they are, over a corner */
     for (int k = 0; k < BG_LANES && fine; k++) {
         const double t = times[k < count ? k : 0];
         fine = bg_solver_dense(one->room->run, t, s) == BG_OK;
@@ -87,18 +90,21 @@ static int rates_of_points(void *self, double t, int count, double (*s)[BG_SIZE]
 {
     const bg_lane_run *const one = self;
     bg_lanes *const a = one->all;
-    bg_lane found[BG_SIZE];
+    bg_lane *const found = a->points.rate;
     const int lane = (int)(one - a->lane);
     int fine = count <= BG_LANES && make_points(a, lane);
     if (!fine)
         return 0;
     put_time(a, lane, 0, t);
-    spread(&a->points.at.t, 1, 0);
-    spread(a->points.at.w, BG_EXTERNAL, 0);
-    spread(a->points.at.dw, BG_EXTERNAL, 0);
+    lane_spread(&a->points.at.t, 1, 0);
+    lane_spread(a->points.at.w, BG_EXTERNAL, 0);
+    lane_spread(a->points.at.dw, BG_EXTERNAL, 0);
     for (int k = 0; k < BG_LANES; k++)
         put_state(a, k, s[k < count ? k : 0]);
-    bg_lanes_rates(&a->points.own, &a->points.at, a->points.s, found);
+    if (BG_CORNERS && !(one->room->run->model->now.sided > 0.0))
+        bg_lanes_plain(&a->points.own, &a->points.at, a->points.s, found);
+    else
+        bg_lanes_rates(&a->points.own, &a->points.at, a->points.s, found);
     for (int k = 0; k < count; k++) {
         for (int i = 0; i < BG_SIZE; i++)
             rate[k][i] = found[i][k];

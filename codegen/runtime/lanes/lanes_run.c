@@ -41,18 +41,33 @@ static int lane_begin(const lanes_work *of, int lane)
     return status;
 }
 
-/* From where a run is on in its stretch, as far as that cannot go by steps in the lane. Whether it
- * goes on so. */
-static int lane_go(bg_lanes *a, int lane, int *status)
+/* The stretch to the next corner, where there is one; whether it has set off. */
+static int lane_follow(bg_located *c, int *ended, int *status)
+{
+    double first = 0.0;
+    int more = 0;
+    if (BG_CORNERS)
+        *status = bg_corners_follow(c, ended, &first, &more);
+    if (*status != BG_OK || !more)
+        return 0;
+    *status = bg_located_set_off(c, c->corners.stop, first);
+    return *status == BG_OK;
+}
+
+/* From where a run is in its stretch, `ended` or not, as far as it cannot go by steps in the lane.
+ * Whether it goes on so. */
+static int lane_go(bg_lanes *a, int lane, int ended, int *status)
 {
     bg_located *const c = a->lane[lane].room->run;
-    int ended = 0;
-    *status = bg_located_rest(c, 0, &ended);
-    if (*status != BG_OK || ended || c->run.at.t >= c->stretch.stop)
-        return 0;
-    if (bg_lanes_load(a, lane))
-        return 1;
-    *status = bg_located_rest(c, 1, &ended);
+    do {
+        if (!ended)
+            *status = bg_located_rest(c, 0, &ended);
+        if (*status == BG_OK && !ended && c->run.at.t < c->stretch.stop) {
+            if (bg_lanes_load(a, lane))
+                return 1;
+            *status = bg_located_rest(c, 1, &ended);
+        }
+    } while (*status == BG_OK && lane_follow(c, &ended, status));
     return 0;
 }
 
@@ -64,10 +79,12 @@ static int lane_turn(bg_lanes *a, int lane, int *status, int *done)
     double stop;
     *status = bg_located_turn(c, &stop);
     *done = *status == BG_OK && c->run.at.t >= c->run.end;
+    if (*status == BG_OK && !*done && BG_CORNERS)
+        *status = bg_corners_set_off(c, stop);
     if (*status != BG_OK || *done)
         return 0;
     *status = bg_located_set_off(c, stop, 0.0);
-    return *status == BG_OK && lane_go(a, lane, status);
+    return *status == BG_OK && lane_go(a, lane, 0, status);
 }
 
 /* Takes a lane on until it goes by steps, or no run is left. */
@@ -129,16 +146,35 @@ static int lane_judge(bg_lanes *a, int lane)
     return a->h[lane] < bg_explicit_least(s) ? BG_STEPS : BG_OK;
 }
 
+/* What corners hang on at an instant, as far from zero as on this side. */
+static void lane_corners(const bg_lanes *a, int lane, const bg_lane *shot, double *values)
+{
+    double hung[2 * BG_ROOM(BG_CORNERS)];
+    for (int k = 0; k < 2 * BG_CORNERS; k++)
+        hung[k] = shot[LANE_CORNERS + k][lane];
+    bg_corners_away(&a->lane[lane].room->model->now, hung);
+    memcpy(values, hung, sizeof(double) * BG_CORNERS);
+}
+
 /* Whether nothing can happen in a lane's step, so that all it passes is samples. */
 static int lane_is_plain(bg_lanes *a, int lane)
 {
     bg_located *const c = a->lane[lane].room->run;
     double middle[BG_ROOM(K)], end[BG_ROOM(K)];
+    double in[BG_ROOM(BG_CORNERS)], last[BG_ROOM(BG_CORNERS)];
     if (c->asked->smooth)
         return 0;
     bg_lanes_triggers(&a->own, lane, a->middle, middle);
     bg_lanes_triggers(&a->own, lane, a->end, end);
-    return bg_all_pass(&c->watch.of, K, middle, end);
+    lane_corners(a, lane, a->middle, in);
+    lane_corners(a, lane, a->end, last);
+    if (!bg_finite(K, middle) || !bg_finite(K, end)
+        || !bg_passes(&c->watch.of, K, middle, end)
+        || !bg_passes(&c->corners.of, BG_CORNERS, in, last))
+        return 0;
+    bg_note_pass(&c->watch.of, K, end);
+    bg_note_pass(&c->corners.of, BG_CORNERS, last);
+    return 1;
 }
 
 /* Keeps what is followed of the sample at the lane's time. */
@@ -211,9 +247,11 @@ static void lane_pass(const lanes_work *of, int lane, int plain)
     }
     if (status == BG_OK && !ended)
         status = bg_located_go_on(c);
-    if (status == BG_OK && !ended && c->run.at.t < c->stretch.stop)
-        if (c->stretch.method == BG_DOP853 || lane_go(a, lane, &status))
-            return;
+    if (!ended && status == BG_OK && c->stretch.method == BG_DOP853
+        && c->run.at.t < c->stretch.stop)
+        return;
+    if (status == BG_OK && lane_go(a, lane, ended, &status))
+        return;
     if (status != BG_OK)
         lane_leave(of, a->lane + lane, status);
     lane_take_on(of, lane, BG_OK);

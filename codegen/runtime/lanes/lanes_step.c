@@ -22,7 +22,7 @@ static void lane_inputs(bg_lanes *a)
     }
 }
 
-/* Adds so many stages, each times its weight, to `sum`; four at a time, which keeps processors busy. */
+/* Adds so many stages, each times its weight, to `sum`; four at a time keep a processor busy. */
 static void add_stages(const bg_lanes *a, int count, const double *weights, bg_lane *sum)
 {
     enum { AT_ONCE = 4 };
@@ -59,10 +59,29 @@ static void lane_point(bg_lanes *a, int i)
     lane_inputs(a);
 }
 
+void bg_lanes_mend(const bg_lanes_own *own, const bg_lanes_at *at, const bg_lane *s, bg_lane *rate)
+{
+    bg_lane sum = {0}, plain[BG_SIZE];
+    int fine = 1;
+    for (int k = 0; k < BG_SIZE; k++)
+        for (int l = 0; l < BG_LANES; l++)
+            sum[l] += 0.0 * rate[k][l];
+    for (int l = 0; l < BG_LANES; l++)
+        fine &= sum[l] == 0.0; /* else one is no number */
+    if (fine)
+        return;
+    bg_lanes_plain(own, at, s, plain);
+    for (int k = 0; k < BG_SIZE; k++)
+        for (int l = 0; l < BG_LANES; l++)
+            rate[k][l] = sum[l] == 0.0 ? rate[k][l] : plain[k][l];
+}
+
 static void lane_stage(bg_lanes *a, int i)
 {
     lane_point(a, i);
     bg_lanes_rates(&a->own, &a->at, a->tried, a->stage[i]);
+    if (BG_CORNERS)
+        bg_lanes_mend(&a->own, &a->at, a->tried, a->stage[i]);
 }
 
 void bg_lanes_shoot(bg_lanes *a, const bg_lane *s, bg_lane *shot)
@@ -96,6 +115,8 @@ void bg_lanes_attempt(bg_lanes *a)
     lane_point(a, DOP_STAGES);
     bg_lanes_shoot(a, a->tried, a->end);
     memcpy(a->stage[DOP_STAGES], a->end + BG_AT_rate, sizeof a->f);
+    if (BG_CORNERS)
+        bg_lanes_mend(&a->own, &a->at, a->tried, a->stage[DOP_STAGES]);
     memcpy(a->y, a->tried, sizeof a->y);
     lane_estimate(a);
 }

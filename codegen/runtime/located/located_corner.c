@@ -93,7 +93,7 @@ int bg_corners_begin(bg_located *c, double fastest)
 
 /* On this side what each hangs on is positive; what does not count is far from zero, and what has
  * no value: that is beyond another corner, which comes before. */
-static void away(const bg_values *now, double *values)
+void bg_corners_away(const bg_values *now, double *values)
 {
     for (int k = 0; k < BG_CORNERS; k++) {
         const int counts = values[BG_CORNERS + k] > 0.0 && !isnan(values[k]);
@@ -110,7 +110,7 @@ int bg_corners_watch(bg_located *c, double fastest)
         return status;
     f->blind = c->run.at.t + bg_moment(time_now(c, fastest));
     find_limits(c, values, f->limit);
-    away(&c->model->now, values);
+    bg_corners_away(&c->model->now, values);
     memcpy(f->before, values, sizeof(double) * BG_CORNERS);
     memset(f->armed, 0, sizeof f->armed);
     return BG_OK;
@@ -123,7 +123,7 @@ static int away_at(void *located, double t, double *values)
     int status = bg_solver_dense(c, t, s);
     if (status == BG_OK)
         status = hung_at(c, t, s, hung);
-    away(&c->model->now, hung);
+    bg_corners_away(&c->model->now, hung);
     memcpy(values, hung, sizeof(double) * BG_CORNERS);
     return status;
 }
@@ -136,8 +136,12 @@ int bg_corners_step(bg_located *c, double *time)
     int status = away_at(c, begin + 0.5 * (stop - begin), middle);
     if (status == BG_OK)
         status = away_at(c, stop, end);
-    if (status != BG_OK || bg_all_pass(&c->corners.of, BG_CORNERS, middle, end))
+    if (status != BG_OK)
         return status;
+    if (bg_passes(&c->corners.of, BG_CORNERS, middle, end)) {
+        bg_note_pass(&c->corners.of, BG_CORNERS, end);
+        return BG_OK;
+    }
     return bg_first_fall(&c->corners.of, &of, c->solver.t_old, c->solver.t, time,
                          c->corners.crossed);
 }
@@ -154,7 +158,7 @@ int bg_corners_cross(bg_located *c)
         if (status != BG_OK)
             return status;
         find_limits(c, values, limits);
-        away(&c->model->now, values);
+        bg_corners_away(&c->model->now, values);
         wrong = 0;
         for (int k = 0; k < BG_CORNERS; k++)
             if (!crossed[k] && values[k] < -limits[k]) {

@@ -116,19 +116,23 @@ static int first_fall(root_search *asked, const double *times, double values[POI
     return 0;
 }
 
-int bg_all_pass(bg_falling *f, int count, const double *middle, const double *end)
+int bg_passes(const bg_falling *f, int count, const double *middle, const double *end)
 {
+    int pass = 1;
     for (int i = 0; i < count; i++) {
         const double first = f->before[i];
         const double most = fmax(fabs(middle[i] - first), fabs(end[i] - middle[i]));
-        if (!isinf(end[i]) && !(fmin(fmin(first, middle[i]), end[i]) > BG_CLEAR * most))
-            return 0;
+        pass &= isinf(end[i]) || fmin(fmin(first, middle[i]), end[i]) > BG_CLEAR * most;
     }
+    return pass;
+}
+
+void bg_note_pass(bg_falling *f, int count, const double *end)
+{
     for (int i = 0; i < count; i++) {
         f->before[i] = end[i];
         f->armed[i] |= end[i] > f->limit[i];
     }
-    return 1;
 }
 
 /* The triggers at points after the first. */

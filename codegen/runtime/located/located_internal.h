@@ -41,11 +41,13 @@ int bg_watch_step(bg_located *c, double *time, int *ports);
 
 /* located_corner.c, where laws have any: which side of each laws are on from the present instant
  * on, at the largest rate `fastest`; how corners are watched from there; the first that are crossed
- * in the solver's latest step, as events are; on which side laws are after these. */
+ * in the solver's latest step, as events are; on which side laws are after these; how
+ * far what they hang on is from zero on this side. */
 int bg_corners_begin(bg_located *c, double fastest);
 int bg_corners_watch(bg_located *c, double fastest);
 int bg_corners_step(bg_located *c, double *time);
 int bg_corners_cross(bg_located *c);
+void bg_corners_away(const bg_values *now, double *values);
 
 /* located_remember.c: what delays read in the latest step, up to a time. */
 int bg_located_remember(bg_located *c, double until);
@@ -55,6 +57,12 @@ int bg_located_remember(bg_located *c, double until);
  * where there is none. Its first step is tried as long as `first`, if that is above zero. */
 enum { BG_AT_EVENT = 1, BG_AT_CORNER };
 int bg_corners_go(bg_located *c, double stop);
+
+/* Its parts: which sides it sets off on, to `stop`; after a stretch whether `more` follow, with a
+ * first step tried so long: it ended at a corner that is crossed. Once none does laws are as they
+ * are again. */
+int bg_corners_set_off(bg_located *c, double stop);
+int bg_corners_follow(bg_located *c, int *ended, double *first, int *more);
 int bg_located_stretch(bg_located *c, double stop, double first, int *ended);
 
 /* Its parts: to set off; the rest of it, step by step, or, if not the `whole`, as far as steps are
@@ -67,14 +75,16 @@ void bg_located_reach(bg_located *c, double t, const double *s);
 int bg_located_go_on(bg_located *c);
 
 /* located_fall.c: so many triggers of something inside a step, each positive until its event; a
- * status. Whether none falls in a step, as its ends and its middle tell: it is behind then. The
+ * status. Whether none falls in a step, as its ends and its middle tell, which is noted
+ * then. The
  * first time in a step at which one falls, infinite where none does, and which do. */
 typedef struct {
     void *self;
     int (*at)(void *self, double t, double *values), count;
     const bg_together *together; /* NULL, or what tells them at several times at once */
 } bg_triggers;
-int bg_all_pass(bg_falling *f, int count, const double *middle, const double *end);
+int bg_passes(const bg_falling *f, int count, const double *middle, const double *end);
+void bg_note_pass(bg_falling *f, int count, const double *end);
 int bg_first_fall(bg_falling *f, const bg_triggers *of, double begin, double end, double *time,
                   int *which);
 

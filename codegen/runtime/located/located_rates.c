@@ -29,7 +29,7 @@ static int rate_beside(bg_located *c, double t, double *moved, int j, double ste
 }
 
 /* A column of differences; whether it is one of numbers. */
-static int put_column(int j, double step, const double *base, const double *rate, double *jacobian)
+static int column_of(int j, double step, const double *base, const double *rate, double *jacobian)
 {
     int finite = 1;
     for (int i = 0; i < BG_SIZE; i++) {
@@ -54,7 +54,7 @@ static int columns_at_once(bg_located *c, double t, const double *s, double side
         return 0;
     for (int k = 0; k < count; k++) {
         const int j = first + k;
-        fine &= put_column(j, moved[k][j] - s[j], base, rate[k], jacobian);
+        fine &= column_of(j, moved[k][j] - s[j], base, rate[k], jacobian);
     }
     return fine;
 }
@@ -71,7 +71,7 @@ static int slopes(bg_located *c, double t, const double *s, double side, double 
         j += BG_AT_ONCE;
     for (; j < BG_SIZE && status == BG_OK; j++) {
         status = rate_beside(c, t, moved, j, side * reach_of(c, t, s, base, j), rate);
-        put_column(j, moved[j] - s[j], base, rate, jacobian);
+        column_of(j, moved[j] - s[j], base, rate, jacobian);
         moved[j] = s[j];
     }
     return status;

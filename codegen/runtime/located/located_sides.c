@@ -15,8 +15,9 @@ static int note_corners(bg_located *c)
 }
 
 /* Where corners are crossed so often that the run goes nowhere: over them for a while. */
-static int go_over(bg_located *c, double stop, double time, int *ended)
+static int go_over(bg_located *c, double time, int *ended)
 {
+    const double stop = c->corners.stop;
     c->corners.over = fmax(2 * c->corners.over, time);
     c->corners.rounds.next = c->corners.rounds.full = 0;
     c->model->now.sided = 0.0;
@@ -27,39 +28,44 @@ static int go_over(bg_located *c, double stop, double time, int *ended)
     return bg_corners_begin(c, c->corners.fastest);
 }
 
-/* On sides that are known, from corner to corner. */
-static int from_corner_to_corner(bg_located *c, double stop, int *ended)
+int bg_corners_set_off(bg_located *c, double stop)
 {
-    double first = 0.0;
-    for (;;) {
-        int status = bg_located_stretch(c, stop, first, ended);
-        if (status != BG_OK || *ended != BG_AT_CORNER)
-            return status;
+    const int status = bg_located_fastest(c, c->run.at.t, c->s, &c->corners.fastest);
+    c->corners.rounds.next = c->corners.rounds.full = 0;
+    c->corners.over = 0.0;
+    c->corners.stop = stop;
+    return status == BG_OK ? bg_corners_begin(c, c->corners.fastest) : status;
+}
+
+int bg_corners_follow(bg_located *c, int *ended, double *first, int *more)
+{
+    int status = BG_OK;
+    *more = 0;
+    if (*ended == BG_AT_CORNER) {
         *ended = 0;
-        first = c->solver.h;
+        *first = c->solver.h;
         status = note_corners(c);
         if (status == BG_OK)
             status = bg_corners_cross(c);
-        if (status != BG_OK)
-            return status;
         const double time = bg_time_constant(c->corners.fastest, c->run.at.t - c->run.began);
-        if (!bg_stalls(&c->corners.rounds, c->run.at.t, time))
-            continue;
-        status = go_over(c, stop, time, ended);
-        if (status != BG_OK || *ended || c->run.at.t >= stop)
-            return status;
+        if (status == BG_OK && bg_stalls(&c->corners.rounds, c->run.at.t, time))
+            status = go_over(c, time, ended);
+        *more = status == BG_OK && !*ended && c->run.at.t < c->corners.stop;
     }
+    if (!*more)
+        c->model->now.sided = 0.0;
+    return status;
 }
 
 int bg_corners_go(bg_located *c, double stop)
 {
-    int ended = 0, status = bg_located_fastest(c, c->run.at.t, c->s, &c->corners.fastest);
-    c->corners.rounds.next = c->corners.rounds.full = 0;
-    c->corners.over = 0.0;
-    if (status == BG_OK)
-        status = bg_corners_begin(c, c->corners.fastest);
-    if (status == BG_OK)
-        status = from_corner_to_corner(c, stop, &ended);
+    double first = 0.0;
+    int ended = 0, more = 1, status = bg_corners_set_off(c, stop);
+    while (status == BG_OK && more) {
+        status = bg_located_stretch(c, stop, first, &ended);
+        if (status == BG_OK)
+            status = bg_corners_follow(c, &ended, &first, &more);
+    }
     c->model->now.sided = 0.0;
     return status;
 }

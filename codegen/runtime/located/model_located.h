@@ -41,12 +41,13 @@ typedef struct {
 } bg_watch;
 
 /* Corners of laws: what they hang on, as far from zero as on this side; those crossed latest; when
- * they were, and how long they are gone over where that was too often; the largest rate. */
+ * they were, and how long they are gone over where that was too often; the largest rate; where
+ * the way from corner to corner ends at the latest. */
 typedef struct {
     bg_falling of;
     int crossed[BG_WATCHED];
     bg_rounds rounds;
-    double over, fastest;
+    double over, fastest, stop;
 } bg_corner_watch;
 
 /* The steps of a stretch: when the latest lot of them began, and whether the one before went
