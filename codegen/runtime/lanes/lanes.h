@@ -1,7 +1,7 @@
 /* Event-located runs side by side, each in a lane of its own with its own time and step: explicit
- * steps, samples and the first look for events are worked out for all lanes at once; whatever else a
- * run comes to is done for it by itself, as in located_run.c. What a lane is worked out to does not
- * hang on the others. */
+ * steps, samples and the first look for events are worked out for all lanes at once; whatever else
+ * a run comes to is done for it by itself, as in located_run.c. What a lane is worked out to does
+ * not hang on the others. */
 #ifndef BG_LANES_H
 #define BG_LANES_H
 
@@ -39,9 +39,9 @@ typedef struct {
     bg_lane s[BG_SIZE], rate[BG_SIZE], shot[LANE_ROWS];
 } bg_lanes_points;
 
-/* Of a lane what is done by itself. `run`: which one, -1 for none; `tries`: how often the present step
- * was tried; `taken`: whether it was good; `reach` [s]: how far from its middle the series of inputs
- * is one. */
+/* Of a lane what is done by itself. `run`: which one, -1 for none; `tries`: how often the present
+ * step was tried; `taken`: whether it was good; `reach` [s]: how far from its middle the series of
+ * inputs is one. */
 typedef struct {
     struct bg_lanes *all;
     bg_together together;
@@ -99,9 +99,10 @@ void bg_lanes_join(bg_lanes *a, int lane);
 int bg_lanes_series(const bg_signals *signals, const bg_span *span, double t,
                     double (*series)[LANE_SERIES]);
 
-/* lanes_load.c: the present mode of a run to a lane; puts a lane where its run is as a stretch begins; the series of inputs from there to
- * `end`, if the latest one does not reach. All give 0 where the run has to go on by itself. Puts
- * the lane's latest step into the run's solver, with all between its ends. */
+/* lanes_load.c: the present mode of a run to a lane; puts a lane where its run is as a stretch
+ * begins; the series of inputs from there to `end`, if the latest one does not reach. All give 0
+ * where the run has to go on by itself. Puts the lane's latest step into the run's solver, with all
+ * between its ends. */
 int bg_lanes_load_mode(bg_lanes_own *own, int lane, const bg_located *c);
 int bg_lanes_load(bg_lanes *a, int lane);
 int bg_lanes_follow(bg_lanes *a, int lane, double end);

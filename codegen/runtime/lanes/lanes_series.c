@@ -8,9 +8,11 @@ static void shift_term(const bg_term *term, const double (*coefficients)[2], dou
 {
     for (int k = term->count - 1; k >= 0; k--) {
         const double *const c = coefficients[term->first + k];
-        for (int j = term->count - 1 - k; j >= 0; j--)
+        for (int j = term->count - 1 - k; j >= 0; j--) {
+            const double *const before = j > 0 ? shifted[j - 1] : c;
             for (int part = 0; part < 2; part++)
-                shifted[j][part] = shifted[j][part] * tau + (j > 0 ? shifted[j - 1][part] : c[part]);
+                shifted[j][part] = shifted[j][part] * tau + before[part];
+        }
     }
 }
 

@@ -41,7 +41,7 @@ static void estimates(const bg_located *c, double *fifth, double *third)
     }
 }
 
-/* Where the rates may have a corner in a step both estimates are added: runs/explicit.py says why. */
+/* Where rates may have a corner in a step both estimates are added: runs/explicit.py says why. */
 static double error_over(bg_solver *s, double fifth, double third, double h)
 {
     const double longer = s->begun ? fmax(h, s->h) : h, rise = BG_RISEN * longer * longer * longer;

@@ -14,8 +14,8 @@
 /* located_run.c: rates of s at t in the present segment and mode. */
 int bg_located_rate(bg_located *c, double t, const double *s, double *rate);
 
-/* The parts of a run: sets it up; in turns, decides where it is and where the stretch from there ends
- * at the latest, until it is at its end; what is decided there, and the last sample. */
+/* The parts of a run: sets it up; in turns, decides where it is and where the stretch from there
+ * ends at the latest, until it is at its end; what is decided there, and the last sample. */
 int bg_located_begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked);
 int bg_located_turn(bg_located *c, double *stop);
 int bg_located_end(bg_located *c);
@@ -108,10 +108,10 @@ int bg_solver_begin(bg_located *c, int method, double longest, double stop);
 int bg_solver_step(bg_located *c, double stop);
 int bg_solver_dense(bg_located *c, double t, double *s);
 
-/* located_explicit.c, located_implicit.c. Of explicit steps: the shortest there is; the error of one
- * over what the tolerance allows, below 1 if it is good, from the sums of squares of its estimates
- * of order 5 and 3; by what it is shortened if it is not; takes it, up to `end`, and says how long
- * the next may be, longer by `grow` at the most. */
+/* located_explicit.c, located_implicit.c. Of explicit steps: the shortest there is; the error of
+ * one over what the tolerance allows, below 1 if it is good, from the sums of squares of its
+ * estimates of order 5 and 3; by what it is shortened if it is not; takes it, up to `end`, and says
+ * how long the next may be, longer by `grow` at the most. */
 double bg_explicit_least(const bg_solver *s);
 double bg_explicit_judge(bg_solver *s, double fifth, double third, double h);
 double bg_explicit_shorter(double error);

@@ -6,7 +6,8 @@
 
 enum { SQUARINGS = 8, PRODUCTS = 1 << SQUARINGS };
 
-/* How far state j is moved for a difference: far where rates are affine, whose slopes do not round. */
+/* How far state j is moved for a difference: far where rates are affine, as slopes do not round
+ * then. */
 static double reach_of(const bg_located *c, double t, const double *s, const double *base, int j)
 {
     const double past = bg_longest_step(t - c->run.began);
@@ -39,7 +40,7 @@ static int column_of(int j, double step, const double *base, const double *rate,
     return finite;
 }
 
-/* Several columns at once, from the first on, by what works several points out; whether it could. */
+/* Several columns at once, by what works several points out; whether it could. */
 static int columns_at_once(bg_located *c, double t, const double *s, double side, int first,
                            const double *base, double *jacobian)
 {
