@@ -16,9 +16,8 @@ from codegen.delays.found import found as found_delays
 from codegen.delays.readings import Reading, readings
 from codegen.delays.stepper import LateStepper
 from codegen.energy.ledger import Ledger
-from codegen.engine.backends import Request, in_c, in_numpy
 from codegen.engine.fallback import Stopped, tell
-from codegen.engine.located import LocatedRuns, Recorded
+from codegen.engine.located import LocatedRuns
 from codegen.engine.runs import CRuns
 from codegen.inputs.pieces import Piece, constant_piece
 from codegen.inputs.signal import Signal
@@ -53,6 +52,9 @@ from codegen.stepping.plan import Plan
 from codegen.stepping.state import Start
 from codegen.stepping.stepper import Origin, Stepper
 from codegen.stepping.ways import going_of
+from codegen.taking.asked import Request
+from codegen.taking.backends import in_c, in_numpy
+from codegen.taking.blocks import Whole
 from codegen.tuning import TUNING
 
 EQUILIBRIUM = "equilibrium"
@@ -180,19 +182,19 @@ class Simulator:
         with np.errstate(all="ignore"):
             states, begun = started(self.closed, begin, told, signals, on)
             asked = Request(times, states, begun, signals, settings, events, corners)
-            found = stopped = None
+            whole, stopped, backend = Whole(len(times)), None, "c"
             if self.located is not None:
-                found = in_c(self.closed, asked, self.engine, self.located)
-            if not isinstance(found, Recorded):
-                stopped = found
+                stopped = in_c(self.closed, asked, self.engine, self.located, whole)
+            if self.located is None or stopped is not None:
                 if stopped is not None and stopped.limit:
                     tell(stopped)
-                found = in_numpy(self.closed, asked)
-            columns, observer = named_columns(self.closed, times, found.shots)
+                in_numpy(self.closed, asked, whole)
+                backend = "numpy"
+            columns, observer = named_columns(self.closed, times, whole.shots)
             if stopped is not None and not stopped.limit:
                 tell(stopped)
         program = self.closed.program
-        shown, inner = listed_columns(with_switches(columns, program, found.modes), program)
+        shown, inner = listed_columns(with_switches(columns, program, whole.modes), program)
         laws, numbers, start = self.laws, self.closed.parameters, read_only(begun.s)
         run = Run(laws, numbers, times, start, tuple(given), settings, begun.mode)
         result = Result(
@@ -200,12 +202,12 @@ class Simulator:
             self.states,
             self.inputs,
             self.outputs,
-            found.events,
+            tuple(whole.events),
             shown,
             observer,
             self.ledger(run),
             told_units(self.closed.equations),
-            found.backend,
+            backend,
             begun.completed,
             inner,
         )

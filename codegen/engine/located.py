@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from codegen.c.lanes import LANES, Lanes, lanes, lanes_text
 from codegen.c.runtime import runtime_file, runtime_names
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
 from codegen.engine.fallback import Stopped
+from codegen.engine.handing import Handing
 from codegen.engine.happened import told_events
 from codegen.engine.runs import NO_END, not_affine
 from codegen.engine.sizes import aligned, declarations
@@ -50,14 +51,26 @@ FEW, MANY = 256, 1 << 20
 """Events there is room for at first, and at most."""
 
 
+UNBOUNDED = "a number of the run is not finite"
+"""Why a run that is over is none."""
+
+
 @dataclass(frozen=True)
 class Recorded:
-    """What a run has left: its events, everything at its samples, and what ran it."""
+    """What a run has left: its events, everything at its samples, the modes there, and what ran it."""
 
     events: tuple[Event, ...]
     shots: Snapshots
+    modes: tuple[Mode, ...]
     backend: str
-    modes: tuple[Mode, ...] = ()
+
+
+class Asking(NamedTuple):
+    """A request and its inputs as C's records; ``kept``: what these point to."""
+
+    record: Any
+    inputs: Any
+    kept: tuple[Any, ...]
 
 
 class LocatedLibrary:
@@ -163,8 +176,30 @@ class LocatedRuns:
         """
         if not has_table(signals):
             return Stopped(NO_TABLE, limit=True)
+        table, ffi = np.empty((len(times), self.width)), self.library.opened[0]
+        asking, rows = (
+            self.asking(times, states, signals, settings, first, corners),
+            self.rows(table),
+        )
+        status, room = int(Status.EVENTS), FEW
+        while status == Status.EVENTS and room <= MANY:
+            events = ffi.new("bg_event[]", room) if keeping else ffi.NULL
+            status = self.call(asking, rows, events, room if keeping else NO_END)
+            room *= 16 if keeping else MANY
+        if status != 0:
+            return self.stopped(asking, status)
+        if not np.isfinite(table[:, : self.finite]).all():
+            return Stopped(UNBOUNDED)
+        program, count = self.model.program, asking.record.count if keeping else 0
+        told = told_events(ffi, events, count, program.happening, program.taken)
+        return Recorded(tuple(told), *self.told(table), "c")
+
+    def asking(
+        self, times: Array, states: Array, signals: Sequence[Signal], settings: Settings,
+        first: Mode, corners: bool,
+    ) -> "Asking":  # fmt: skip
+        """What C is asked, of signals that have a table."""
         ffi, _ = self.library.opened
-        rows = np.empty((len(times), self.width))
         begin = np.array([*first, *[1] * max(len(self.model.switching), 1)], dtype=np.intc)
         start = np.append(states, 0.0)
         asked = ffi.new("bg_request *")
@@ -173,41 +208,51 @@ class LocatedRuns:
         asked.rtol, asked.atol, asked.corners = settings.rtol, settings.atol, corners
         asked.first = _pointer(ffi, begin, "int *")
         table = signal_table(signals, float(times[0]), float(times[-1]))
-        events = self._called(asked, rows, table, keeping)
-        if isinstance(events, Stopped):
-            return events
-        program = self.model.program
-        if not np.isfinite(rows[:, : len(program.states) + len(program.law_states)]).all():
-            return Stopped("a number of the run is not finite")
-        *parts, modes = np.split(rows, np.cumsum(recorded(program)), axis=1)
-        told = tuple(tuple(mode) for mode in modes.astype(int).tolist())
-        return Recorded(events, Snapshots(*parts), "c", told)
-
-    def _called(
-        self, asked: Any, rows: Array, table: SignalTable, keeping: bool
-    ) -> tuple[Event, ...] | Stopped:
-        """Call C, with more room for events if it asks for it; its events if the run is whole."""
-        ffi, library = self.library.opened
         inputs, kept = packed_signals(ffi, table)
+        return Asking(asked, inputs, (times, start, begin, kept))
+
+    def rows(self, table: Array) -> Any:
+        """C's record of where rows go."""
+        ffi, _ = self.library.opened
+        made = ffi.new("bg_rows *")
+        made.table, made.room = _pointer(ffi, table), len(table)
+        return made
+
+    def call(self, asking: "Asking", rows: Any, events: Any, capacity: int) -> int:
+        """Call C once; the status."""
+        ffi, library = self.library.opened
         instance, run = self._rooms
-        status, room = int(Status.EVENTS), FEW
-        while status == Status.EVENTS and room <= MANY:
-            events = ffi.new("bg_event[]", room) if keeping else ffi.NULL
-            asked.events, asked.capacity = events, room if keeping else NO_END
-            status = library.bg_rows_run(
-                ffi.cast("bg_located *", run.ctypes.data),
-                ffi.cast("bg_model *", instance.ctypes.data),
-                _pointer(ffi, self.parameters), inputs, asked, _pointer(ffi, rows),
-            )  # fmt: skip
-            room *= 16 if keeping else MANY
-        del kept
-        if status != 0:
-            reason = ffi.string(library.bg_model_message(status)).decode()
-            return Stopped(reason, float(asked.time), status == Status.EVENTS)
-        if not keeping:
-            return ()
+        asking.record.events, asking.record.capacity = events, capacity
+        status: int = library.bg_rows_run(
+            ffi.cast("bg_located *", run.ctypes.data), ffi.cast("bg_model *", instance.ctypes.data),
+            _pointer(ffi, self.parameters), asking.inputs, asking.record, rows,
+        )  # fmt: skip
+        return status
+
+    def stopped(self, asking: "Asking", status: int) -> Stopped:
+        """Why a run could not go on."""
+        ffi, library = self.library.opened
+        reason = ffi.string(library.bg_model_message(status)).decode()
+        return Stopped(reason, float(asking.record.time), status == Status.EVENTS)
+
+    def told(self, table: Array) -> tuple[Snapshots, tuple[Mode, ...]]:
+        """Rows as everything at the samples, and the modes there."""
         program = self.model.program
-        return tuple(told_events(ffi, events, asked.count, program.happening, program.taken))
+        *parts, modes = np.split(table, np.cumsum(recorded(program)), axis=1)
+        met, which = np.unique(modes, axis=0, return_inverse=True)
+        known = [tuple(mode) for mode in met.astype(int).tolist()]
+        return Snapshots(*parts), tuple([known[at] for at in which.ravel().tolist()])
+
+    @cached_property
+    def handing(self) -> Handing:
+        """What C calls to hand over."""
+        return Handing(self.library.opened[0])
+
+    @property
+    def finite(self) -> int:
+        """So many numbers of a row, the states, are finite in a run that is whole."""
+        program = self.model.program
+        return len(program.states) + len(program.law_states)
 
     @cached_property
     def _rooms(self) -> tuple[Array, Array]:

@@ -1,6 +1,6 @@
 """Runs of affine models by the C engine; what it cannot do is left to event-located runs."""
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -9,6 +9,7 @@ import numpy as np
 from bondgraph.errors import SimulationError
 from codegen.engine.build import FLAGS, check_tools
 from codegen.engine.fallback import Stopped
+from codegen.engine.handing import Handing
 from codegen.engine.happened import told_events
 from codegen.engine.inputs import Segments, inputs_over
 from codegen.engine.modes import Tables
@@ -95,6 +96,7 @@ class Prepared:
     modes: Array
     first: Array
     grid: float
+    handing: Handing
     capacity: int = CAPACITY
     #: Whether events are kept.
     keeping: bool = True
@@ -111,15 +113,18 @@ class Prepared:
         self.task.modes = ffi.cast("int *", self.modes.ctypes.data)
         self.task.samples, self.task.grid = len(self.times), self.grid
         self.task.first = ffi.cast("int *", self.first.ctypes.data)
-        self._room()
+        self.make_room()
 
-    def call(self) -> Status:
-        """Run, as often as it takes to supply modes and room for events."""
+    def call(self, begin: Callable[[], None] | None = None) -> Status:
+        """Run, as often as it takes to supply modes and room for events; ``begin``: called each time."""
         library, arguments = self.engine.library, self.arguments
         while True:
+            if begin is not None:
+                begin()
             status = Status(library.ex_run(*arguments))
-            if (failed := self.tables.failed or self.inputs.failed) is not None:
-                self.tables.failed = None
+            failed = self.tables.failed or self.inputs.failed or self.handing.failed
+            if failed is not None:
+                self.tables.failed = self.handing.failed = None
                 raise failed
             if status == Status.MISSING and self.tables.room:
                 self.tables.supply(self.tables.mode_at(self.task.where))
@@ -127,7 +132,7 @@ class Prepared:
                 self.tables.sharpen()
             elif status == Status.EVENTS:
                 self.capacity *= 8
-                self._room()
+                self.make_room()
             else:
                 return status
 
@@ -150,7 +155,8 @@ class Prepared:
             return []
         return told_events(self.engine.ffi, self.events, self.task.count, names, taken)
 
-    def _room(self) -> None:
+    def make_room(self) -> None:
+        """Make room for events, as many as there is capacity."""
         if not self.keeping:
             self.task.events, self.task.capacity = self.engine.ffi.NULL, NO_END
             return
@@ -170,7 +176,7 @@ class CRuns:
     def __init__(self, model: ClosedModel, flags: Sequence[str] = FLAGS) -> None:
         check_tools()
         self.model, self._flags = model, tuple(flags)
-        self._ready: dict[int, tuple[Tables, tuple[Array, Any]]] = {}
+        self._ready: dict[int, tuple[Tables, tuple[Array, Any], Handing]] = {}
         self._capacity = CAPACITY
 
     def run(
@@ -184,18 +190,22 @@ class CRuns:
         """
         prepared = self.prepare(times, start, signals, first, keeping, patient)
         status = prepared.call()
-        # A run like this one need not begin again for want of room.
-        self._capacity = min(prepared.capacity, MOST_AT_FIRST)
+        self.expect(prepared.capacity)
         track = prepared.track(self.model) if status == Status.OK else None
         return Outcome(status, prepared.task.time, track)
 
+    def expect(self, events: int) -> None:
+        """Have room for so many: a run like the latest need not begin again for want of it."""
+        self._capacity = min(events, MOST_AT_FIRST)
+
     def prepare(
         self, times: Array, start: Array, signals: Sequence[Signal], first: Mode = (),
-        keeping: bool = True, patient: bool = True,
+        keeping: bool = True, patient: bool = True, room: int | None = None,
     ) -> Prepared:  # fmt: skip
-        """Everything that a run needs."""
+        """Everything that a run needs; ``room``: for so many samples at a time, where they are taken."""
         made = inputs_over(signals, float(times[0]), float(times[-1]))
-        tables, context = self._tables(made)
+        tables, context, handing = self._tables(made)
+        held = len(times) if room is None or handing.call is None else min(len(times), room)
         tables.record.most = 0 if patient else tables.places.few
         return Prepared(
             tables.engine,
@@ -204,18 +214,20 @@ class CRuns:
             Packed(tables.engine, made, float(times[0])),
             np.ascontiguousarray(times, dtype=np.float64),
             np.ascontiguousarray(start, dtype=np.float64),
-            aligned(len(times), tables.engine.sizes.numbers["ROW"]),
-            np.empty(len(times), dtype=np.intc),
+            aligned(held, tables.engine.sizes.numbers["ROW"]),
+            np.empty(held, dtype=np.intc),
             np.array([*first, *[1] * max(len(self.model.switching), 1)], dtype=np.intc),
             grid_of(times),
+            handing,
             self._capacity,
             keeping,
         )
 
-    def _tables(self, made: Segments | Windows) -> tuple[Tables, tuple[Array, Any]]:
+    def _tables(self, made: Segments | Windows) -> tuple[Tables, tuple[Array, Any], Handing]:
         compiled = self.built(made.slots)
         if compiled.sizes.G not in self._ready:
-            self._ready[compiled.sizes.G] = Tables(compiled, self.model), compiled.context()
+            tables, context = Tables(compiled, self.model), compiled.context()
+            self._ready[compiled.sizes.G] = tables, context, Handing(compiled.ffi)
         return self._ready[compiled.sizes.G]
 
     def built(self, slots: int) -> Engine:

@@ -45,3 +45,4 @@ class Status(IntEnum):
     ENDLESS = 36
     CROWDED = 37
     REFUSED = 38
+    UNTAKEN = 39

@@ -147,10 +147,7 @@ class ExactLeg:
             return
         if self._system.limited:
             self._check_levels(rows, times, track)
-        a, b = track.recorded, track.recorded + len(rows)
-        track.vectors[a:b] = rows[:, : self._n]
-        track.modes += [self._mode] * len(rows)
-        track.recorded = b
+        track.take(rows[:, : self._n], self._mode)
 
     def _steps(
         self, t: float, z: Array, h: float, count: int, track: Track, last: int

@@ -45,9 +45,7 @@ class FreeLeg:
         shrink = math.ldexp(1.0, min(0, TUNING.large - math.frexp(float(np.abs(self._z).max()))[1]))
         rows = self._at(pair(self._z[None] * shrink), points)[:, : self._n] / shrink
         track.see(rows)
-        track.vectors[first:last] = rows[:-1]
-        track.modes += [()] * (last - first)
-        track.recorded = last
+        track.take(rows[:-1], ())
         return stop, rows[-1], frozenset()
 
     def _at(self, z: Pair, points: Array) -> Array:

@@ -33,7 +33,7 @@ from codegen.runs.free import FreeLeg
 from codegen.runs.legs import Leg, leg_of
 from codegen.runs.methods import EXACT
 from codegen.runs.stretches import Stretches
-from codegen.runs.track import LATEST, Accumulating, Event, Settings, Track
+from codegen.runs.track import BLOCK, LATEST, Accumulating, Event, Settings, Taker, Track
 from codegen.standalone.switchings import way_of
 from codegen.tuning import TUNING
 
@@ -57,15 +57,17 @@ def run_hybrid(
     first: Mode | None = None,
     keeping: bool = True,
     corners: bool = False,
+    taker: Taker | None = None,
 ) -> Stretch:
     """Integrate over ``times`` [s], recording the vector at each of them.
 
     At a breakpoint or an event a sample shows the instant just after. ``tally``: what is integrated on
     the way. ``first``: how switches are before the run begins, friction as it likes; all let go unless told.
     ``keeping``: whether events are kept; without them nothing grows with the length of a run but its samples.
-    ``corners``: whether those of laws are among them.
+    ``corners``: whether those of laws are among them. ``taker``: takes samples and events as the run goes
+    on, so that it keeps none.
     """
-    course = Course(model, times, start, signals, settings, first)
+    course = Course(model, times, start, signals, settings, first, taker)
     course.track.tally, course.track.keeping, course.track.cornered = tally, keeping, corners
     if tally is not None:
         tally.within(course.track)
@@ -74,6 +76,7 @@ def run_hybrid(
     course.track.record(course.s, course.mode)
     if tally is not None:
         tally.record()
+    course.track.hand_over()
     return Stretch(course.track, course.s, course.mode)
 
 
@@ -85,12 +88,13 @@ class Course:
 
     def __init__(
         self, model: ClosedModel, times: Array, start: Array, signals: Sequence[Signal],
-        settings: Settings, first: Mode | None,
+        settings: Settings, first: Mode | None, taker: Taker | None = None,
     ) -> None:  # fmt: skip
         begin = float(times[0])
         self.t, self.s, self.end = begin, start, float(times[-1])
         self.mode: Mode = tuple(1 for _ in model.friction_inputs) if first is None else first
-        self.track = Track(np.zeros((len(times), model.size)), [], np.abs(start))
+        room = len(times) if taker is None else min(len(times), BLOCK + 1)
+        self.track = Track(np.zeros((room, model.size)), [], np.abs(start), taker=taker)
         self._model, self._times, self._inputs = model.within(self.track), times, Inputs(signals)
         self._settings, self._origin = settings, begin
         self._clock, self._stretches = Clock(self._model), Stretches(self._model)

@@ -48,6 +48,10 @@ LATEST = 4
 """So many events are told where a run makes no progress."""
 
 
+BLOCK = 4096
+"""Samples, or events, that are handed over at a time."""
+
+
 class Accumulating(Protocol):
     """What is integrated with a run, such as work; see `codegen.energy.tally.Tally`."""
 
@@ -89,12 +93,29 @@ class Accumulating(Protocol):
         """Forget samples beyond so many."""
 
 
+class Taker(Protocol):
+    """Who takes what a run records, while it goes on: samples in blocks of `BLOCK`, events as they come.
+
+    Blocks end at the same samples whoever takes them, so that the numbers in them are the same, too.
+    """
+
+    def begin(self) -> None:
+        """A run begins, perhaps once more: what was taken before is none of it."""
+
+    def take(self, vectors: Array, modes: Sequence[Mode], largest: Array) -> None:
+        """The next samples: vectors in rows, modes, magnitudes that components have reached so far."""
+
+    def happened(self, events: Sequence[Event]) -> None:
+        """The next events."""
+
+
 @dataclass
 class Track:
     """What a run has recorded: the integrated vector and the mode at each sample, and the events.
 
     ``largest``: the magnitudes that the vector's components have reached, between samples, too.
-    ``tally``: what is integrated on the way, if anything is.
+    ``tally``: what is integrated on the way, if anything is. ``taker``: takes samples and events where
+    ``vectors`` has room for no more, all but the latest sample, which may be unrecorded.
     """
 
     vectors: Array
@@ -107,12 +128,18 @@ class Track:
     keeping: bool = True
     #: Whether corners of laws are events.
     cornered: bool = False
+    taker: Taker | None = None
+    #: So many samples, and so many of the events that are here, have been taken.
+    taken: int = 0
+    told: int = 0
 
     def note(self, events: Sequence[Event]) -> None:
         """What has happened."""
         self.events += events
         if not self.keeping:
             del self.events[:-LATEST]
+        elif self.taker is not None and len(self.events) - self.told >= BLOCK:
+            self._tell(self.taker)
 
     def cross(self, t: float, nodes: Sequence[Hashable]) -> None:
         """Laws of these nodes have come over corners."""
@@ -128,15 +155,46 @@ class Track:
 
     def record(self, vector: Array, mode: Mode) -> None:
         """The next sample."""
-        self.vectors[self.recorded] = vector
+        self.vectors[self._room()] = vector
         self.modes.append(mode)
         self.recorded += 1
 
     def take(self, vectors: Array, mode: Mode) -> None:
         """The next samples, in rows, all in one mode."""
-        self.vectors[self.recorded : self.recorded + len(vectors)] = vectors
-        self.modes += [mode] * len(vectors)
-        self.recorded += len(vectors)
+        while len(vectors):
+            first = self._room()
+            now, vectors = np.split(vectors, [len(self.vectors) - first])
+            self.vectors[first : first + len(now)] = now
+            self.modes += [mode] * len(now)
+            self.recorded += len(now)
+
+    def hand_over(self) -> None:
+        """Let all that is left be taken, as a run ends."""
+        if self.taker is not None:
+            self._give(self.taker, self.recorded - self.taken)
+            if self.keeping:
+                self._tell(self.taker)
+
+    def _room(self) -> int:
+        """Where the next sample goes; all but the latest are handed over where there is room for none."""
+        first = self.recorded - self.taken
+        if self.taker is None or first < len(self.vectors):
+            return first
+        self._give(self.taker, first - 1)
+        self.vectors[0] = self.vectors[first - 1]
+        return 1
+
+    def _give(self, taker: Taker, count: int) -> None:
+        """Hand the first samples that are here over."""
+        taker.take(self.vectors[:count], self.modes[:count], self.largest)
+        self.taken += count
+        del self.modes[:count]
+
+    def _tell(self, taker: Taker) -> None:
+        """Hand the events over; the latest stay to be told of."""
+        taker.happened(self.events[self.told :])
+        del self.events[:-LATEST]
+        self.told = len(self.events)
 
     def unrecord(self) -> None:
         """Forget the last sample."""

@@ -43,11 +43,14 @@ int ex_check_levels(ex_context *c, double t, double *row)
 static int record(void *self, ex_context *c, ex_place *p)
 {
     (void)self;
-    double *row = c->task->rows[p->at];
+    const int status = ex_make_room(c, p->at);
+    if (status)
+        return status;
+    double *row = ex_row_of(c, p->at);
     memcpy(row, p->z, sizeof p->z);
     ex_see_places(c, row);
     ex_fill(&c->stretch, row);
-    c->task->modes[p->at] = c->stretch.entry->place;
+    *ex_mode_of(c, p->at) = c->stretch.entry->place;
     p->base = p->at++;
     return ex_check_levels(c, p->t, row);
 }
@@ -85,7 +88,7 @@ static void keep_samples(const ex_context *c, const ex_place *p, long long done,
 {
     const long long parts = c->stretch.entry->parts;
     for (long long k = parts - done % parts; k <= count; k += parts)
-        memcpy(c->task->rows[p->base + (done + k) / parts], c->scratch[k], sizeof c->scratch[k]);
+        memcpy(ex_row_of(c, p->base + (int)((done + k) / parts)), c->scratch[k], sizeof c->scratch[k]);
 }
 
 /* A step that leaps could not be sure of; its end is written to `next`. */
@@ -109,11 +112,11 @@ static int steps(ex_context *c, ex_place *p, int count, long long *done)
     const long long parts = c->stretch.entry->parts, total = count * parts;
     *done = 0;
     if (parts > 1)
-        memcpy(c->scratch[0], c->task->rows[p->base], sizeof c->scratch[0]);
+        memcpy(c->scratch[0], ex_row_of(c, p->base), sizeof c->scratch[0]);
     while (*done < total) {
         const long long left = total - *done;
         const int ahead = parts > 1 && left > EX_BLOCK ? EX_BLOCK : (int)left;
-        double(*rows)[EX_ROW] = parts > 1 ? c->scratch : c->task->rows + p->base + *done;
+        double(*rows)[EX_ROW] = parts > 1 ? c->scratch : c->task->rows + (p->base - c->taken + *done);
         int sure = ex_leap(&c->stretch, ahead, rows);
         if (parts > 1)
             keep_samples(c, p, *done, sure);
@@ -124,7 +127,7 @@ static int steps(ex_context *c, ex_place *p, int count, long long *done)
             if (status || !bg_is_empty(&p->ports))
                 return status;
             if (parts > 1 && ++*done % parts == 0)
-                memcpy(c->task->rows[p->base + *done / parts], rows[sure], sizeof rows[sure]);
+                memcpy(ex_row_of(c, p->base + (int)(*done / parts)), rows[sure], sizeof rows[sure]);
             else
                 *done += parts == 1;
         }
@@ -138,16 +141,20 @@ static int steps(ex_context *c, ex_place *p, int count, long long *done)
 static int leap_on(void *self, ex_context *c, ex_place *p, int count, double h)
 {
     (void)self;
-    if (!c->stretch.leaping || c->stretch.entry->h != h) {
-        ex_leaps(c, &c->stretch, h, c->task->rows[p->base]);
-        ex_fill(&c->stretch, c->task->rows[p->base]);
-    }
     long long done;
-    const int status = steps(c, p, count, &done), made = (int)(done / c->stretch.entry->parts);
-    const int until = p->at + made;
+    int status = ex_make_room(c, p->at);
+    if (status)
+        return status;
+    if (!c->stretch.leaping || c->stretch.entry->h != h) {
+        ex_leaps(c, &c->stretch, h, ex_row_of(c, p->base));
+        ex_fill(&c->stretch, ex_row_of(c, p->base));
+    }
+    const int room = ex_room(c, p->at);
+    status = steps(c, p, count < room ? count : room, &done);
+    const int until = p->at + (int)(done / c->stretch.entry->parts);
     for (; p->at < until && p->at < p->last; p->at++) {
-        c->task->modes[p->at] = c->stretch.entry->place;
-        ex_see_places(c, c->task->rows[p->at]);
+        *ex_mode_of(c, p->at) = c->stretch.entry->place;
+        ex_see_places(c, ex_row_of(c, p->at));
     }
     if (status || !bg_is_empty(&p->ports))
         return status;
@@ -232,7 +239,7 @@ int ex_advance_by(ex_context *c, double stop, const ex_recorder *to)
            && (p.t < stop || p.at < p.last)) {
         double h = 0.0;
         const int count = p.base >= 0 ? alike(c, &p, &h) : 0;
-        if (count >= EX_STRIDE && armed(c, to->row ? to->row : c->task->rows[p.base])
+        if (count >= EX_STRIDE && armed(c, to->row ? to->row : ex_row_of(c, p.base))
             && repays(c))
             status = to->leap(to->self, c, &p, count, h);
         else
@@ -245,6 +252,9 @@ int ex_advance_by(ex_context *c, double stop, const ex_recorder *to)
 int ex_advance(ex_context *c, double stop)
 {
     const ex_recorder rows = {NULL, NULL, record, leap_on};
+    const int status = ex_make_room_for_events(c);
+    if (status)
+        return status;
     if (EX_K == 0 && c->stretch.entry->norm * (stop - c->run.at.t) > BG_ROUNDED)
         return ex_free(c, stop);
     return ex_advance_by(c, stop, &rows);

@@ -104,6 +104,7 @@ struct ex_context {
     ex_advancing *advance;
     void *caller;                       /* for `advance` */
     int clock, next;                    /* the next sample */
+    int taken;                          /* samples that are in the rows of the task no more */
     ex_key where;                       /* the latest mode .. */
     int place;                          /* .. its place in the model's, -1 if none has been found, .. */
     int signs[EX_PORTS];                /* .. and what it was asked for as */

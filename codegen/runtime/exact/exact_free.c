@@ -28,6 +28,7 @@ int ex_free(ex_context *c, double stop)
     ex_ladder *const l = &c->ladder;
     ex_pair z[EX_F];
     ex_place p;
+    int status = BG_OK;
     ex_set_out(c, &p, stop);
     ex_build(l, c->stretch.entry);
     const double shrink = set_out(c, &p, z), grid = c->task->grid;
@@ -43,9 +44,12 @@ int ex_free(ex_context *c, double stop)
         p.t = to;
         if (!sample)
             break;
-        memcpy(c->task->rows[p.at], p.z, sizeof p.z);
-        c->task->modes[p.at] = c->stretch.entry->place;
+        status = ex_make_room(c, p.at);
+        if (status)
+            break;
+        memcpy(ex_row_of(c, p.at), p.z, sizeof p.z);
+        *ex_mode_of(c, p.at) = c->stretch.entry->place;
     }
     ex_arrive(c, &p);
-    return BG_OK;
+    return status;
 }

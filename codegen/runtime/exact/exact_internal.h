@@ -186,6 +186,23 @@ void ex_set_out(ex_context *c, ex_place *p, double stop);
 void ex_arrive(ex_context *c, ex_place *p);
 int ex_check_levels(ex_context *c, double t, double *row);
 
+/* exact_rows.c: room for a sample, where there is none by letting those before the latest be taken; for
+ * events, likewise. A status. How many samples from one on there is room for. */
+int ex_make_room(ex_context *c, int sample);
+int ex_make_room_for_events(ex_context *c);
+int ex_room(const ex_context *c, int sample);
+
+/* The row of a sample, and its mode. */
+static inline double *ex_row_of(const ex_context *c, int sample)
+{
+    return c->task->rows[sample - c->taken];
+}
+
+static inline int *ex_mode_of(const ex_context *c, int sample)
+{
+    return c->task->modes + (sample - c->taken);
+}
+
 /* exact_run.c: points to what a run is asked; makes ready for one, whatever was before; what its loop
  * looks at and advances; a run but for its last sample, a status. */
 void ex_point(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task);

@@ -190,6 +190,7 @@ void ex_point(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
     c->model = model;
     c->inputs = inputs;
     c->task = task;
+    c->taken = 0;
     c->shown = NULL;
     c->advance = ex_advance;
     c->run.log.events = task->events;
@@ -214,6 +215,7 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
     c->advance = how;
     c->caller = caller;
     bg_set_out(&c->run, task->times[0], task->times[task->samples - 1], c->s, task->first);
+    c->run.log.emptied = task->full != NULL;
     int status = bg_run(&engine, &c->run);
     task->count = c->run.log.count;
     if (status != BG_NEGATIVE)
@@ -228,12 +230,15 @@ int ex_run_by(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
 
 int ex_run(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_task *task)
 {
-    const int status = ex_run_by(c, model, inputs, task, ex_advance, 0);
+    const int end = task->samples - 1;
     const ex_mode *last;
+    int status = ex_run_by(c, model, inputs, task, ex_advance, 0);
+    if (status == BG_OK)
+        status = ex_make_room(c, end);
     if (status == BG_OK) {
-        memcpy(task->rows[task->samples - 1], c->s, sizeof c->s);
+        memcpy(ex_row_of(c, end), c->s, sizeof c->s);
         ex_find(c, c->run.mode, &last);
-        task->modes[task->samples - 1] = c->place;
+        *ex_mode_of(c, end) = c->place;
     }
     return status;
 }

@@ -13,7 +13,27 @@ void bg_row_put(double *row, const double *w, const int *mode, const bg_snapshot
 
 static void put_row(void *to, int sample, const double *w, const int *mode, const bg_snapshot *shot)
 {
-    bg_row_put((double *)to + (size_t)sample * BG_ROW_WIDTH, w, mode, shot);
+    bg_rows *const rows = to;
+    if (rows->full && sample - rows->taken >= rows->room) {
+        rows->failed = rows->failed || rows->full(rows->self, rows->room, 0);
+        rows->taken += rows->room;
+    }
+    bg_row_put(rows->table + (size_t)(sample - rows->taken) * BG_ROW_WIDTH, w, mode, shot);
+}
+
+/* After a step: whether all that had to be was taken; events are, too. */
+static int take_events(void *to, void *run, double begin, double end)
+{
+    bg_rows *const rows = to;
+    bg_log *const log = &((bg_located *)run)->run.log;
+    (void)begin;
+    (void)end;
+    log->emptied = 1;
+    if (log->events && log->count >= log->capacity / 2) {
+        rows->failed = rows->failed || rows->full(rows->self, 0, log->count);
+        log->count = 0;
+    }
+    return rows->failed ? BG_UNTAKEN : BG_OK;
 }
 
 void bg_rows_sizes(unsigned long *sizes)
@@ -24,10 +44,14 @@ void bg_rows_sizes(unsigned long *sizes)
 }
 
 int bg_rows_run(bg_located *c, bg_model *m, const double *parameters, const bg_signals *signals,
-                bg_request *asked, double *table)
+                bg_request *asked, bg_rows *rows)
 {
-    const int status = bg_model_init(m, parameters);
-    asked->to = table;
+    int status = bg_model_init(m, parameters);
+    asked->to = rows;
     asked->record = put_row;
-    return status == BG_OK ? bg_model_run(c, m, signals, asked) : status;
+    asked->smooth = rows->full ? take_events : 0;
+    rows->taken = rows->failed = 0;
+    if (status == BG_OK)
+        status = bg_model_run(c, m, signals, asked);
+    return status == BG_OK && rows->failed ? BG_UNTAKEN : status;
 }

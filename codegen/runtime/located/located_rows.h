@@ -14,9 +14,18 @@ void bg_row_put(double *row, const double *w, const int *mode, const bg_snapshot
 /* The sizes of an instance, a run and a row, in bytes. */
 void bg_rows_sizes(unsigned long *sizes);
 
-/* Makes an instance and runs it; `asked` says all but where samples go: to the rows of a table. A
- * status. */
+/* Where rows go, of which there is room for all, or for `room`: then `full` takes the first of them, or
+ * the first events, and what follows comes to where these were. Not 0: it cannot; `failed` then, and
+ * `taken` are of whoever runs. */
+typedef struct {
+    double *table;
+    int room, taken, failed;
+    int (*full)(void *self, int samples, int events);
+    void *self;
+} bg_rows;
+
+/* Makes an instance and runs it; `asked` says all but where samples go. A status. */
 int bg_rows_run(bg_located *c, bg_model *m, const double *parameters, const bg_signals *signals,
-                bg_request *asked, double *table);
+                bg_request *asked, bg_rows *rows);
 
 #endif

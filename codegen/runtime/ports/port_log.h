@@ -8,10 +8,11 @@
 /* The first `count` of at most `capacity` events, which are but counted where `events` is NULL. At
  * the present instant: the mode before what is not told of yet, the impulse that each port gives in
  * that, which stops throw back, and whether any has at this instant; `begins`: whether a run begins
- * with that, which is no event but of state machines. */
+ * with that, which is no event but of state machines; `emptied`: whether events are taken on the
+ * way, so that there may be any number of them. */
 typedef struct {
     bg_event *events;
-    int capacity, count, thrown, begins;
+    int capacity, count, thrown, begins, emptied;
     int before[BG_MOST_PORTS];
     double given[BG_MOST_PORTS];
     bg_set back;

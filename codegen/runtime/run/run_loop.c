@@ -1,6 +1,7 @@
 /* The event-driven loop, over what an engine can look at and advance. */
 #include "run_loop.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -195,7 +196,7 @@ void bg_set_out(bg_course *c, double t, double end, double *s, const int *first)
     c->done = -INFINITY;
     c->end = end;
     c->span = (bg_span){0, -INFINITY, INFINITY};
-    c->log.count = c->rounds.next = c->rounds.full = 0;
+    c->log.count = c->log.emptied = c->rounds.next = c->rounds.full = 0;
     for (int i = 0; i < BG_MOST_PORTS; i++)
         c->mode[i] = first ? first[i] : 1;
     for (int i = 0; i < BG_MOST_PORTS; i++) {
@@ -219,12 +220,18 @@ static int decide_here(const bg_engine *e, bg_course *c)
     return status;
 }
 
+/* How often a run may go on: events are followed as long as there may be more. */
+static double most_turns(const bg_log *log)
+{
+    return 16.0 * (log->emptied ? INT_MAX : log->capacity) + 1000.0;
+}
+
 int bg_turn(const bg_engine *e, bg_course *c, double *stop)
 {
     int undecided, status = BG_OK;
     /* Breakpoints lie ahead one after the other: a turn that ends at one gets somewhere. */
     c->turns += c->at.t < c->at.following;
-    if (c->turns >= 16.0 * c->log.capacity + 1000.0)
+    if (c->turns >= most_turns(&c->log))
         return BG_EVENTS;
     status = e->pass(e->self, c->at.t, &c->span);
     c->at.following = fmin(c->span.following, next_tick(e, c));

@@ -42,7 +42,9 @@ enum bg_status {
     BG_BLUNT,        /* the rates of a mode are wanted: with 32 digits, or at all */
     BG_ENDLESS,      /* so many steps have no end */
     BG_CROWDED,      /* a run comes to more modes than it may */
-    BG_REFUSED       /* of many runs: the model refuses these numbers */
+    BG_REFUSED,      /* of many runs: the model refuses these numbers */
+    /* of runs that are taken on the way */
+    BG_UNTAKEN       /* who takes what has been recorded cannot */
 };
 
 /* Whether a step was taken: some statuses only tell of it. */

@@ -1,0 +1,1 @@
+"""What a run records, taken while it goes on, by each backend."""
