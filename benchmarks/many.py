@@ -11,6 +11,7 @@ import math
 import resource
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -22,9 +23,9 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
 import bondgraph as bg  # noqa: E402
-from codegen import Result, Simulator, Square, simulator  # noqa: E402
+from codegen import Result, Simulator, Square, Streamed, simulator  # noqa: E402
 
-Run = Callable[[int], Result]
+Run = Callable[[int], Result | Streamed]
 """A run of so many samples or events."""
 
 
@@ -66,7 +67,10 @@ def uneven(backend: str) -> Run:
 def driven(backend: str) -> Run:
     """Dry friction on a mass that a square wave drives to and fro: two crossings a period."""
     ready = mass(
-        bg.R("r", law=bg.DryFriction("h")), wire="j > r", parameters={"m": 1, "h": 1}, backend=backend
+        bg.R("r", law=bg.DryFriction("h")),
+        wire="j > r",
+        parameters={"m": 1, "h": 1},
+        backend=backend,
     )
     wave = Square(1, -2, 2)
     return lambda count: ready.run([0, count / 2], {"v": 0.0}, {"F": wave})
@@ -75,7 +79,10 @@ def driven(backend: str) -> Run:
 def silent(backend: str) -> Run:
     """The same without events kept."""
     ready = mass(
-        bg.R("r", law=bg.DryFriction("h")), wire="j > r", parameters={"m": 1, "h": 1}, backend=backend
+        bg.R("r", law=bg.DryFriction("h")),
+        wire="j > r",
+        parameters={"m": 1, "h": 1},
+        backend=backend,
     )
     wave = Square(1, -2, 2)
     return lambda count: ready.run([0, count / 2], {"v": 0.0}, {"F": wave}, events=False)
@@ -118,6 +125,48 @@ def controlled(backend: str) -> Run:
     return lambda count: ready.run([0, count / 100])
 
 
+def chain(backend: str) -> Simulator:
+    """Five masses in a row on springs: ten signals are asked for."""
+    nodes: list[object] = [bg.Se("force", "F")]
+    bonds = ["force > j0"]
+    for k in range(5):
+        nodes += [bg.One(f"j{k}"), bg.I(f"m{k}", "m", flow=f"v{k}"), bg.R(f"b{k}", "b")]
+        nodes += [bg.C(f"k{k}", "1/k", effort=f"F{k}")]
+        bonds += [f"j{k} > m{k}", f"j{k} > b{k}", f"z{k} > k{k}" if k else "j0 > k0"]
+        if k:
+            nodes.append(bg.Zero(f"z{k}"))
+            bonds.append(f"j{k - 1} > z{k} > j{k}")
+    return simulator(
+        bg.derive(bg.graph(nodes, *bonds)), {"m": 1, "b": 0.1, "k": 40}, backend=backend
+    )
+
+
+TEN = tuple(f"{kind}{k}" for kind in "vF" for k in range(5))
+
+
+def kept(backend: str) -> Run:
+    """A run of ten states, in memory."""
+    ready, wave = chain(backend), Square(1, -2, 2)
+    return lambda count: ready.run(np.linspace(0, 10, count), inputs={"F": wave})
+
+
+def streamed(ending: str) -> Callable[[str], Run]:
+    """The same, its ten states written to a file."""
+
+    def made(backend: str) -> Run:
+        ready, wave = chain(backend), Square(1, -2, 2)
+
+        def run(count: int) -> Streamed:
+            with tempfile.TemporaryDirectory() as folder:
+                path = Path(folder) / f"run{ending}"
+                times = np.linspace(0, 10, count)
+                return ready.stream(path, times, inputs={"F": wave}, signals=TEN)
+
+        return run
+
+    return made
+
+
 SAMPLES = (125_000, 250_000, 500_000, 1_000_000)
 EVENTS = {"c": (10_000, 100_000, 1_000_000), "numpy": (1_000, 10_000, 100_000)}
 CASES = {
@@ -127,6 +176,9 @@ CASES = {
     "silent": Case(silent, "events", EVENTS),
     "switched": Case(switched, "events", EVENTS),
     "curved": Case(curved, "events", {"c": EVENTS["c"], "numpy": (300, 1_000, 3_000)}),
+    "kept": Case(kept, "samples", {"numpy": SAMPLES, "c": SAMPLES}),
+    "csv": Case(streamed(".csv"), "samples", {"numpy": SAMPLES, "c": SAMPLES}),
+    "parquet": Case(streamed(".parquet"), "samples", {"numpy": SAMPLES, "c": SAMPLES}),
     "controlled": Case(controlled, "instants", EVENTS),
 }
 
@@ -140,7 +192,8 @@ def one(case: str, backend: str, count: int) -> None:
     done = run(count)
     seconds = time.process_time() - begin
     more = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
-    told = (seconds, more / 1024, len(done.events), done.backend)
+    events = done.events if isinstance(done, Streamed) else len(done.events)
+    told = (seconds, more / 1024, events, done.backend)
     print(json.dumps(dict(zip(("seconds", "megabytes", "events", "backend"), told, strict=True))))
 
 
@@ -161,13 +214,16 @@ def table(name: str, case: Case, backend: str) -> None:
         grown = ["", ""]
         if last is not None:
             both = last[0], count
-            grown = [exponent(last[1][part], found[part], both) for part in ("seconds", "megabytes")]
+            grown = [
+                exponent(last[1][part], found[part], both) for part in ("seconds", "megabytes")
+            ]
         asked = f"{count:,} {case.what}"
         print(
             f"{f'{name}, {backend}':<20}{asked:>20}{found['events']:>10}{seconds:>10.3f}{grown[0]:>7}"
-            f"{memory:>10.1f}{grown[1]:>8}{'' if found['backend'] == backend else '  in ' + found['backend']}",
+            f"{memory:>10.1f}{grown[1]:>8}",
             flush=True,
         )
+        assert found["backend"] == backend, found
         last = count, found
 
 

@@ -45,6 +45,45 @@ def replacing(path: Name) -> Iterator[BinaryIO]:
             beside.unlink(missing_ok=True)
 
 
+def partial_of(path: Name) -> Path:
+    """Where a file grows before it is whole: ``run.csv`` as ``run.partial.csv``.
+
+    >>> partial_of("out/run.csv").as_posix()
+    'out/run.partial.csv'
+    """
+    target = Path(path)
+    return target.with_name(f"{target.stem}.partial{target.suffix}")
+
+
+@contextmanager
+def growing(path: Name) -> Iterator[BinaryIO]:
+    """As `replacing`, for a file that is long in the making: it grows as `partial_of` calls it.
+
+    That is what is left where the making ends halfway, unless nothing was written; the file that was there
+    stays. An earlier one of that name is overwritten. Raises `WriteError` where there is no file on a disk,
+    too.
+    """
+    with telling(path):
+        target = Path(os.path.realpath(path))
+        if _passes_on(path) or target.is_dir():
+            raise WriteError(f"{os.fspath(path)} cannot grow: it is no file on a disk")
+        beside = partial_of(target)
+        try:
+            with beside.open("wb") as file:
+                yield file
+                file.flush()
+                os.fsync(file.fileno())
+            if target.exists():
+                shutil.copymode(target, beside)
+            os.replace(beside, target)
+        except BaseException as error:
+            if beside.exists() and beside.stat().st_size:
+                error.add_note(f"what was written before that is in {beside}")
+            else:
+                beside.unlink(missing_ok=True)
+            raise
+
+
 def write_bytes(path: Name, raw: bytes) -> None:
     """Write a file, see `replacing`."""
     with replacing(path) as file:

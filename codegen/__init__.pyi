@@ -41,6 +41,7 @@ from codegen.sparse.model import SparseModel, sparse_model
 from codegen.sparse.run import run_sparse
 from codegen.stepping.state import StepperState
 from codegen.stepping.stepper import Stepper
+from codegen.streaming.streamed import Streamed
 from codegen.sweeps.design import Grid, Samples, Table
 from codegen.sweeps.result import Failure, Sweep, SweepInterrupted
 from codegen.sweeps.sweep import sweep
@@ -76,6 +77,7 @@ __all__ = [
     "Step",
     "Stepper",
     "StepperState",
+    "Streamed",
     "Sweep",
     "SweepInterrupted",
     "Swept",

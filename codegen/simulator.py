@@ -3,6 +3,8 @@
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -32,7 +34,7 @@ from codegen.program.units import told_units
 from codegen.record.beyond import refuse_all_beyond
 from codegen.record.columns import listed_columns, named_columns, with_switches
 from codegen.record.replay import Run
-from codegen.record.resting import tell_resting
+from codegen.record.resting import tell_resting, tell_rests
 from codegen.record.result import Result
 from codegen.record.whence import whence
 from codegen.runs.arguments import (
@@ -52,9 +54,12 @@ from codegen.stepping.plan import Plan
 from codegen.stepping.state import Start
 from codegen.stepping.stepper import Origin, Stepper
 from codegen.stepping.ways import going_of
+from codegen.streaming.files import checked_ending
+from codegen.streaming.stream import streamed, wanted_signals
+from codegen.streaming.streamed import Streamed
 from codegen.taking.asked import Request
-from codegen.taking.backends import in_c, in_numpy
-from codegen.taking.blocks import Whole
+from codegen.taking.backends import run_into
+from codegen.taking.blocks import Sink, Whole
 from codegen.tuning import TUNING
 
 EQUILIBRIUM = "equilibrium"
@@ -166,37 +171,19 @@ class Simulator:
 
         Of a limit of C's own it is called before numpy starts, else once numpy has not refused it, too.
         """
-        times = checked_times(time)
-        wanted_inputs = {} if inputs is None else inputs
-        if self.located is None:
-            wanted_inputs = followed(wanted_inputs, times)
-        given = signals_for(wanted_inputs, self.inputs, self.whence)
-        settings = settings_of(method, rtol, atol)
-        if self.closed.program.delayed:
-            given = self._with_late(given, times, initial, settings, initially_on)
-        signals = [*given, *self.sources(float(times[0]), float(times[-1]), found=True)]
-        refuse_impulses(self.closed, signals, times)
-        on = checked_modes(self.switches, initially_on)
-        begin = float(times[0])
-        told = self._told(initial, signals, begin)
+        asked, given = self._asked(
+            time, initial, inputs, settings_of(method, rtol, atol), initially_on, events, corners
+        )
+        times, whole = asked.times, Whole(len(asked.times))
         with np.errstate(all="ignore"):
-            states, begun = started(self.closed, begin, told, signals, on)
-            asked = Request(times, states, begun, signals, settings, events, corners)
-            whole, stopped, backend = Whole(len(times)), None, "c"
-            if self.located is not None:
-                stopped = in_c(self.closed, asked, self.engine, self.located, whole)
-            if self.located is None or stopped is not None:
-                if stopped is not None and stopped.limit:
-                    tell(stopped)
-                in_numpy(self.closed, asked, whole)
-                backend = "numpy"
+            backend, stopped = run_into(self.closed, asked, self.engine, self.located, whole, tell)
             columns, observer = named_columns(self.closed, times, whole.shots)
-            if stopped is not None and not stopped.limit:
-                tell(stopped)
+        if stopped is not None and not stopped.limit:
+            tell(stopped)
         program = self.closed.program
         shown, inner = listed_columns(with_switches(columns, program, whole.modes), program)
-        laws, numbers, start = self.laws, self.closed.parameters, read_only(begun.s)
-        run = Run(laws, numbers, times, start, tuple(given), settings, begun.mode)
+        laws, numbers, start = self.laws, self.closed.parameters, read_only(asked.begun.s)
+        run = Run(laws, numbers, times, start, tuple(given), asked.settings, asked.begun.mode)
         result = Result(
             times,
             self.states,
@@ -208,11 +195,94 @@ class Simulator:
             self.ledger(run),
             told_units(self.closed.equations),
             backend,
-            begun.completed,
+            asked.begun.completed,
             inner,
         )
         refuse_all_beyond(self.closed, result)
         return result
+
+    def stream(
+        self,
+        path: str | PathLike[str],
+        time: ArrayLike,
+        initial: Mapping[str, float] | str | None = None,
+        inputs: Mapping[str, object] | None = None,
+        *,
+        signals: Iterable[str] | None = None,
+        method: str = "auto",
+        rtol: float = TUNING.rtol,
+        atol: float = TUNING.atol,
+        initially_on: Iterable[Hashable] = (),
+        events: bool = True,
+        corners: bool = False,
+    ) -> Streamed:
+        """Run as `run` does, but write samples to a file as the run goes on; they are nowhere else.
+
+        So memory is what the times and the inputs take, however many samples and events there are; with
+        delays also what these reach back to. ``path``: a file that ends in .csv or .parquet (the extra
+        ``tables``), with a column for the time, "t", and one for each of ``signals``: any that a `Result`
+        has by name, all its columns if none are told. The numbers are those of `run`, bit for bit. Events go
+        to a file beside it, ``run.events.csv`` beside ``run.csv``, as time, port, kind and impulse; without
+        ``events`` to none, and one of an earlier run is removed. All else as for `run`.
+
+        While the run goes on, and if it ends halfway, the files have names that tell it, ``run.partial.csv``;
+        what was there before takes their place only by whole ones.
+
+        Raises what `run` raises, `SignalError` for a signal or kind of file that there is not,
+        `MissingExtraError` without pyarrow, `WriteError` where a file cannot be written.
+
+        >>> import bondgraph as bg, tempfile
+        >>> from codegen import simulator
+        >>> mass = bg.graph([bg.Se("force", "F"), bg.One("mass"), bg.I("m", "m", flow="v")],
+        ...                 "force > mass > m")
+        >>> model = simulator(bg.derive(mass), {"m": 2})
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     done = model.stream(f"{folder}/run.csv", [0, 1, 2], inputs={"F": 4}, signals=["v"])
+        ...     done.read()
+        {'t': array([0., 1., 2.]), 'v': array([0., 2., 4.])}
+        >>> done.samples, done.events, done.final["v"]
+        (3, 0, 4.0)
+        """
+        target = Path(path)
+        checked_ending(target)
+        names = wanted_signals(self.closed, signals)
+        settings = settings_of(method, rtol, atol)
+        asked, _ = self._asked(time, initial, inputs, settings, initially_on, events, corners)
+
+        def run(sink: Sink) -> str:
+            with np.errstate(all="ignore"):
+                found = run_into(self.closed, asked, self.engine, self.located, sink, tell)
+            backend, stopped = found
+            if stopped is not None and not stopped.limit:
+                tell(stopped)
+            return backend
+
+        done, written = streamed(self.closed, asked, target, names, run)
+        tell_completed(done.completed)
+        tell_rests(written.resting)
+        return done
+
+    def _asked(
+        self, time: ArrayLike, initial: Mapping[str, float] | str | None,
+        inputs: Mapping[str, object] | None, settings: Settings, initially_on: Iterable[Hashable],
+        events: bool, corners: bool,
+    ) -> tuple[Request, Sequence[Signal]]:  # fmt: skip
+        """A run that is ready to begin, and what it was given as ``inputs``."""
+        times = checked_times(time)
+        wanted_inputs = {} if inputs is None else inputs
+        if self.located is None:
+            wanted_inputs = followed(wanted_inputs, times)
+        given = signals_for(wanted_inputs, self.inputs, self.whence)
+        if self.closed.program.delayed:
+            given = self._with_late(given, times, initial, settings, initially_on)
+        signals = [*given, *self.sources(float(times[0]), float(times[-1]), found=True)]
+        refuse_impulses(self.closed, signals, times)
+        on = checked_modes(self.switches, initially_on)
+        begin = float(times[0])
+        told = self._told(initial, signals, begin)
+        with np.errstate(all="ignore"):
+            states, begun = started(self.closed, begin, told, signals, on)
+        return Request(times, states, begun, signals, settings, events, corners), given
 
     def stepper(
         self,

@@ -19,9 +19,9 @@ ORDER = {
     "blocks causality reduce equations derive sampling analyse show rates explaining checking layout drawing "
     "files",
     "codegen": "tuning standalone fixed stops numbers data inputs called targets supplied program model "
-    "ports straight modes corners instants energy runs pictures record plots analysis c engine taking stepping "
-    "delays simulator simulate trim packing family batch abreast sweeps python switched sparse fmu "
-    "cosimulation exports",
+    "ports straight modes corners instants energy runs pictures record plots analysis c engine taking "
+    "streaming stepping delays simulator simulate trim packing family batch abreast sweeps python switched "
+    "sparse fmu cosimulation exports",
     "differentials": "aligned laws parts pieces passive active topologies parameters model identification "
     "speeds prepared control scenarios exporting figures loop_figures report commands",
 }

@@ -5,6 +5,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from bondgraph.errors import ModelWarning
+from codegen.model.outside import outside
 
 
 class BackendWarning(ModelWarning):
@@ -24,9 +25,9 @@ class Stopped:
 
 
 def tell(stopped: Stopped) -> None:
-    """Warn whoever called what calls the caller of this."""
+    """Warn, at the user's line."""
     text = f"numpy runs what backend 'c' was asked to: {stopped}"
-    warnings.warn(text, BackendWarning, stacklevel=4)
+    warnings.warn(text, BackendWarning, stacklevel=outside())
 
 
 def tell_all(reasons: Counter[str], runs: int) -> None:

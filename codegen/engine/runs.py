@@ -34,6 +34,9 @@ CAPACITY = 256
 MOST_AT_FIRST = 1 << 20
 """The same at the most, where a run before had more."""
 
+WINDOW = 1 << 16
+"""So many samples are looked at together."""
+
 NO_END = 2**31 - 1
 """Events that happen without being kept."""
 
@@ -268,6 +271,10 @@ def not_affine(program: Program) -> str | None:
 def grid_of(times: Array) -> float:
     """The distance of samples that are alike but for rounding; 0 where they are not."""
     step = float(times[-1] - times[0]) / (len(times) - 1)
-    even = times[0] + step * np.arange(len(times))
-    rounding = 8 * np.spacing(np.abs(times).max())
-    return step if np.abs(times - even).max() <= min(rounding, TUNING.alike * step) else 0.0
+    rounding = 8 * np.spacing(max(abs(times[0]), abs(times[-1])))
+    most = min(rounding, TUNING.alike * step)
+    for first in range(0, len(times), WINDOW):
+        now = times[first : first + WINDOW]
+        if np.abs(now - (times[0] + step * np.arange(first, first + len(now)))).max() > most:
+            return 0.0
+    return step

@@ -10,7 +10,7 @@ from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array, read_only
 from codegen.program.layout import EXTERNAL, INPUTS, LAW_STATES, NAMES, READINGS, STATES
-from codegen.program.records import Program
+from codegen.program.records import FrictionPort, Program
 from codegen.record.observer import Observer
 from codegen.record.snapshots import Snapshots
 
@@ -63,6 +63,22 @@ def named_columns(
     return known, Observer(times, model, known, x, dx, u, du)
 
 
+def table_names(program: Program) -> tuple[str, ...]:
+    """The columns that a table of a run holds, switches included, in order."""
+    switches = (str(port.name) for _, port in _switches(program))
+    names = dict.fromkeys((*column_places(program), *switches))
+    return tuple(name for name in names if name not in program.inner)
+
+
+def _switches(program: Program) -> list[tuple[int, FrictionPort]]:
+    """The ports that have a column, 1 while they are on, with their places."""
+    return [
+        (at, port)
+        for at, port in enumerate(program.friction)
+        if port.switch is not None and not port.slides and port.transition is None
+    ]
+
+
 def known_names(program: Program) -> tuple[str, ...]:
     """All that a run can be asked for by name: its columns, switches, and every signal of the graph."""
     equations = program.equations
@@ -108,8 +124,8 @@ def with_switches(
 ) -> Mapping[str, Array]:
     """The columns, and one for each switch: 1 while it is on, 0 while it is off."""
     found = dict(columns)
-    for at, port in enumerate(program.friction):
-        if port.switch is not None and not port.slides and port.transition is None:
-            told = {sign: float(port.switch.is_on(sign)) for sign in (-1, 0, 1)}
-            found[str(port.name)] = read_only(np.array([told[mode[at]] for mode in modes]))
+    for at, port in _switches(program):
+        assert port.switch is not None
+        told = {sign: float(port.switch.is_on(sign)) for sign in (-1, 0, 1)}
+        found[str(port.name)] = read_only(np.array([told[mode[at]] for mode in modes]))
     return MappingProxyType(found)

@@ -1,17 +1,56 @@
 """A run's commands that came to rest at zero while their switches were on."""
 
 import warnings
+from collections.abc import Iterable
+
+import numpy as np
 
 from bondgraph.errors import ModelWarning
-from codegen.model.resting import first_rest
+from codegen.model.resting import Rest, first_rest
 from codegen.modes.closed import ClosedModel
-from codegen.record.result import Result
+from codegen.numbers.arrays import Array
+from codegen.record.beyond import Sampled
 
 
-def tell_resting(model: ClosedModel, done: Result) -> None:
+class Resting:
+    """What is found of that in a run that is seen in parts, one after the other."""
+
+    def __init__(self, model: ClosedModel) -> None:
+        self._model = model
+        self._latest: dict[int, tuple[Array, ...]] = {}
+        self._found: dict[int, Rest] = {}
+
+    def see(self, part: Sampled) -> None:
+        """Look at the next samples."""
+        for at, one in enumerate(self._model.commands):
+            values = one.at(part.time, *(part[name] for name in one.signals))
+            # Two samples one after the other tell, so the latest of the part before is of this one, too.
+            rows = part[str(one.name)], np.asarray(values) + 0 * part.time, part.time
+            before = self._latest.get(at)
+            whole = rows if before is None else tuple(map(np.append, before, rows))
+            rest = first_rest(one, *whole)
+            if rest is not None:
+                self._found.setdefault(at, rest)
+            self._latest[at] = tuple(row[-1:] for row in whole)
+
+    @property
+    def rests(self) -> Iterable[Rest]:
+        """The first of each command that there was."""
+        return [self._found[at] for at in sorted(self._found)]
+
+
+def tell_resting(model: ClosedModel, done: Sampled) -> None:
     """Warn whoever called what calls this of switches that are on at two samples with a command of zero."""
-    for one in model.commands:
-        values = one.at(done.time, *(done[name] for name in one.signals))
-        rest = first_rest(one, done[str(one.name)], values, done.time)
-        if rest is not None:
-            warnings.warn(str(rest), ModelWarning, stacklevel=3)
+    found = Resting(model)
+    found.see(done)
+    _warn(found)
+
+
+def tell_rests(found: Resting) -> None:
+    """The same of a run that was seen in parts."""
+    _warn(found)
+
+
+def _warn(found: Resting) -> None:
+    for rest in found.rests:
+        warnings.warn(str(rest), ModelWarning, stacklevel=4)

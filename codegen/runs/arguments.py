@@ -31,7 +31,7 @@ def checked_times(time: ArrayLike) -> Array:
         raise SignalError(f"time must be a list of two or more points, not of shape {times.shape}")
     if not np.isfinite(times).all():
         raise SignalError("time: a point is not finite")
-    if not (np.diff(times) > 0).all():
+    if not (times[1:] > times[:-1]).all():
         at = int(np.argmin(np.diff(times)))
         raise SignalError(f"time must increase; {times[at]:g} is followed by {times[at + 1]:g}")
     return read_only(times)

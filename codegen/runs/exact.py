@@ -25,6 +25,9 @@ MOST_LENGTHS = 8
 BLOCK = 256
 """So many steps are taken before events are looked for."""
 
+WINDOW = 1 << 16
+"""So many samples are looked at together."""
+
 FEW, FEW_BLOCK = 0.5, 8
 """So many steps for each component are few: they are taken one by one, so many at once."""
 
@@ -71,22 +74,30 @@ class ExactLeg:
 
     def run(self, stop: float, times: Array, track: Track) -> Ended:
         """Step to ``stop`` or the first event, recording the samples before it."""
-        first, t, z = track.recorded, self._t, self._z
+        first = track.recorded
         last = first + int(times[first:].searchsorted(stop))
         if first == last:
             return self._run_alone(stop, track)
-        ends = np.empty(last - first + 2)
-        ends[0], ends[1:-1], ends[-1] = t, times[first:last], stop
-        points = ends[1:]
+        for begin in range(first, last, WINDOW):
+            end = min(begin + WINDOW, last)
+            points = times[begin:end] if end < last else np.append(times[begin:last], stop)
+            ended = self._run_to(points, end, track)
+            if ended is not None:
+                return ended
+        return stop, self._z[: self._n], NONE
+
+    def _run_to(self, points: Array, last: int, track: Track) -> Ended | None:
+        """Step over these points, those before sample ``last`` samples; what ended them."""
+        t, z, samples = self._t, self._z, last - track.recorded
         # An event may lie a rounding behind a sample that shows the instant after it.
-        lengths = np.maximum(points - ends[:-1], 0.0)
+        lengths = np.maximum(np.diff(points, prepend=t), 0.0)
         if _kinds(lengths) > MOST_LENGTHS:
-            return self._run_ragged(stop, np.maximum(points[:-1], t), track)
+            return self._run_ragged(float(points[-1]), np.maximum(points[:samples], t), track)
         at = 0
         while at < len(points):
             if lengths[at] <= 2 * math.ulp(points[at]):
                 # No more than the rounding of time.
-                if at < len(points) - 1:
+                if at < samples:
                     self._record(track, z[None], points[at : at + 1])
                 at, t = at + 1, float(points[at])
                 continue
@@ -96,7 +107,8 @@ class ExactLeg:
             if ended is not None:
                 return ended
             at, t = at + count, float(points[at + count - 1])
-        return stop, z[: self._n], NONE
+        self._t, self._z = t, z
+        return None
 
     def _run_alone(self, stop: float, track: Track) -> Ended:
         """The same where there are no samples."""
@@ -106,28 +118,28 @@ class ExactLeg:
         ended, z = self._steps(self._t, self._z, h, 1, track, track.recorded)
         return ended or (stop, z[: self._n], NONE)
 
-    def _run_ragged(self, stop: float, times: Array, track: Track) -> Ended:
+    def _run_ragged(self, stop: float, times: Array, track: Track) -> Ended | None:
         """The same where samples lie anywhere: steps of one length, and samples by the series inside them."""
         t, system = self._t, self._system
         count = max(1, int(np.ceil(system.norm * (stop - t))))
         step = (stop - t) / count
         inside = series(system.M, np.eye(len(self._z)), step)
-        steps, until = Steps(system.M, stride(system.M, system.triggers, step), self._z), t
+        steps, done = Steps(system.M, stride(system.M, system.triggers, step), self._z), 0
         for begin in range(0, count, BLOCK):
             states = steps.take(min(BLOCK, count - begin))
             start = t + begin * step
             found = self._falls.first(steps.powers(states[:-1]), start, step)
             track.see(states[:, : self._n])
             until = start + step * (len(states) - 1 if found is None else found[0] + found[1])
-            now = times[(times >= start) & (times < until)]
+            now = times[done : max(done, int(times.searchsorted(until)))]
             self._record(track, _between(states, inside, (now - start) / step), now)
+            done += len(now)
             if found is not None:
                 whole, tau, ports = found
                 return until, steps.inside(whole, tau)[: self._n], ports
-        self._record(
-            track, states[-1:].repeat(np.count_nonzero(times >= until), axis=0), np.zeros(0)
-        )
-        return stop, states[-1, : self._n], NONE
+        self._record(track, states[-1:].repeat(len(times) - done, axis=0), np.zeros(0))
+        self._t, self._z = stop, states[-1]
+        return None
 
     def _check_levels(self, rows: Array, times: Array, track: Track) -> None:
         """Where a friction level is below zero, let the model refuse it with its time."""

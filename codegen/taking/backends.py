@@ -1,5 +1,7 @@
 """One run by each backend: C by exact steps or with events located, and numpy."""
 
+from collections.abc import Callable
+
 from codegen.engine.fallback import Stopped
 from codegen.engine.located import METHODS as LOCATED_METHODS
 from codegen.engine.located import LocatedRuns
@@ -13,6 +15,27 @@ from codegen.taking.asked import Request
 from codegen.taking.blocks import Blocks, Sink
 from codegen.taking.exact import run_exact
 from codegen.taking.located import run_located
+
+
+def run_into(
+    model: ClosedModel, asked: Request, engine: CRuns | None, located: LocatedRuns | None, sink: Sink,
+    tell: Callable[[Stopped], None],
+) -> tuple[str, Stopped | None]:  # fmt: skip
+    """A run into a sink: what ran it, and why C did not, if that was asked to.
+
+    ``tell`` is called of a limit of C's own before numpy begins. Raises `SimulationError` where the run
+    cannot go on.
+    """
+    if located is None:
+        in_numpy(model, asked, sink)
+        return "numpy", None
+    stopped = in_c(model, asked, engine, located, sink)
+    if stopped is None:
+        return "c", None
+    if stopped.limit:
+        tell(stopped)
+    in_numpy(model, asked, sink)
+    return "numpy", stopped
 
 
 def in_numpy(model: ClosedModel, asked: Request, sink: Sink) -> None:
