@@ -1,7 +1,7 @@
 """What C calls to hand over what a run has recorded, while it goes on."""
 
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from typing import Any
 
 Take = Callable[[int, int], bool]
@@ -16,16 +16,28 @@ class Handing:
 
     def __init__(self, ffi: Any) -> None:
         self.call: Any = None
-        self.take: Take | None = None
+        self._take: Take | None = None
         #: What was raised as something was taken.
         self.failed: BaseException | None = None
         with suppress(MemoryError):
             self.call = ffi.callback("int(void *, int, int)", self._asked)
 
+    @contextmanager
+    def to(self, take: Take) -> Iterator[None]:
+        """What is handed over inside goes there; what was raised as it was taken is raised at the end."""
+        self._take, self.failed = take, None
+        try:
+            yield
+        finally:
+            self._take = None
+        if self.failed is not None:
+            failed, self.failed = self.failed, None
+            raise failed
+
     def _asked(self, _: Any, samples: int, events: int) -> int:
         """0 if these have been taken."""
         try:
-            return 0 if self.take is not None and self.take(samples, events) else 1
+            return 0 if self._take is not None and self._take(samples, events) else 1
         except BaseException as error:  # noqa: BLE001 - C comes between here and who is to be told
             self.failed = error
         return 1

@@ -239,9 +239,10 @@ class LocatedRuns:
         """Rows as everything at the samples, and the modes there."""
         program = self.model.program
         *parts, modes = np.split(table, np.cumsum(recorded(program)), axis=1)
-        met, which = np.unique(modes, axis=0, return_inverse=True)
-        known = [tuple(mode) for mode in met.astype(int).tolist()]
-        return Snapshots(*parts), tuple([known[at] for at in which.ravel().tolist()])
+        # There are few, and many samples of each.
+        known = dict[Mode, Mode]()
+        every = map(tuple, modes.astype(int).tolist())
+        return Snapshots(*parts), tuple([known.setdefault(mode, mode) for mode in every])
 
     @cached_property
     def handing(self) -> Handing:

@@ -58,6 +58,7 @@ MEANINGS = {
     Status.ENDLESS: "it would take too many steps to look for events in",
     Status.MISSING: "it comes to more friction modes than there is room for",
     Status.CROWDED: "it comes to so many friction modes that steps are quicker than their tables",
+    Status.UNTAKEN: "what it has recorded cannot be taken",
 }
 """What a run of the engine says beside `Status.BLUNT`, which asks for more."""
 

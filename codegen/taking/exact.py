@@ -24,7 +24,8 @@ def run_exact(
     """A run as of `CRuns.run`, but all that is recorded goes to ``taker``; the outcome has no track."""
     prepared = engine.prepare(times, start, signals, first, keeping, patient, BLOCK + 1)
     taking = _Taking(prepared, engine.model, taker)
-    status = prepared.call(taking.begin)
+    with prepared.handing.to(taking.take):
+        status = prepared.call(taking.begin)
     engine.expect(min(prepared.capacity, MOST_EVENTS))
     if status == Status.OK and not taking.end():
         status = Status.UNTAKEN
@@ -39,7 +40,6 @@ class _Taking:
     def __init__(self, prepared: Prepared, model: ClosedModel, taker: Taker) -> None:
         self._prepared, self._model, self._taker = prepared, model, taker
         handing, task = prepared.handing, prepared.task
-        handing.take = self.take
         if handing.call is not None:
             task.room, task.full = len(prepared.rows), handing.call
 

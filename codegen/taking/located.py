@@ -6,16 +6,13 @@ import numpy as np
 
 from codegen.engine.fallback import Stopped
 from codegen.engine.happened import told_events
-from codegen.engine.located import FEW, UNBOUNDED, LocatedRuns
+from codegen.engine.located import FEW, MANY, UNBOUNDED, LocatedRuns
 from codegen.engine.runs import NO_END
 from codegen.engine.status import Status
 from codegen.inputs.tables import NO_TABLE, has_table
 from codegen.runs.track import BLOCK
 from codegen.taking.asked import Request
 from codegen.taking.blocks import Sink
-
-MANY = 1 << 20
-"""Events of one instant, and a little more, that there is room for at most."""
 
 
 def run_located(runs: LocatedRuns, sink: Sink, asked: Request) -> Stopped | None:
@@ -24,6 +21,7 @@ def run_located(runs: LocatedRuns, sink: Sink, asked: Request) -> Stopped | None
         return Stopped(NO_TABLE, limit=True)
     taking = _Taking(runs, sink, asked)
     status, room = int(Status.EVENTS), FEW
+    # Room that is full is emptied on the way; more is asked for by an instant that fills it alone.
     while status == Status.EVENTS and room <= MANY:
         status = taking.call(room)
         room *= 16
@@ -54,7 +52,6 @@ class _Taking:
         self._rows = runs.rows(self._table)
         if handing.call is not None:
             self._rows.full = handing.call
-        handing.take = self.take
 
     def call(self, room: int) -> int:
         """Run, with room for so many events; the status."""
@@ -63,11 +60,10 @@ class _Taking:
         self._events: Any = ffi.new("bg_event[]", room) if keeping else ffi.NULL
         self._left = len(self._asked.times)
         self._sink.begin()
-        status = self._runs.call(self.asking, self._rows, self._events, room if keeping else NO_END)
-        if handing.failed is not None:
-            failed, handing.failed = handing.failed, None
-            raise failed
-        return status
+        with handing.to(self.take):
+            return self._runs.call(
+                self.asking, self._rows, self._events, room if keeping else NO_END
+            )
 
     def end(self) -> bool:
         """Take what is left; whether it could be taken."""

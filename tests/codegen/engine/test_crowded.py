@@ -9,8 +9,9 @@ from oracles.many import chain
 import bondgraph as bg
 from codegen import Simulator, simulator
 from codegen.engine.places import FEWEST, Places
-from codegen.engine.runs import CRuns, Outcome
+from codegen.engine.runs import Outcome
 from codegen.engine.status import Status
+from codegen.taking import backends
 
 CASE = chain(12)
 
@@ -19,19 +20,19 @@ CASE = chain(12)
 def statuses(monkeypatch: pytest.MonkeyPatch) -> list[Status]:
     """How exact runs ended, where a run may come to sixteen modes."""
     told: list[Status] = []
-    start, run = Places.__init__, CRuns.run
+    start, run = Places.__init__, backends.run_exact
 
     def few(self: Places, *arguments: Any) -> None:
         start(self, *arguments)
         self.few = FEWEST
 
-    def telling(self: CRuns, *arguments: Any, **options: Any) -> Outcome:
-        found = run(self, *arguments, **options)
+    def telling(*arguments: Any) -> Outcome:
+        found = run(*arguments)
         told.append(found.status)
         return found
 
     monkeypatch.setattr(Places, "__init__", few)
-    monkeypatch.setattr(CRuns, "run", telling)
+    monkeypatch.setattr(backends, "run_exact", telling)
     return told
 
 

@@ -33,8 +33,9 @@ static int located(const bg_signals *signals, double end, int samples, int metho
     };
     for (int k = 0; k < samples; k++)
         times[k] = samples > 1 ? end * k / (samples - 1) : 0.0;
+    bg_rows into = {.table = rows, .room = samples};
     bg_model_parameters(p);
-    const int status = bg_rows_run(run, model, p, signals, &asked, rows);
+    const int status = bg_rows_run(run, model, p, signals, &asked, &into);
     int bad = shown(names[method], status, (long)samples * BG_ROW_WIDTH, rows);
     for (int k = 0; k < asked.count; k++)
         printf("%.17g %d %d\n", events[k].time, events[k].port, events[k].kind);
