@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Hashable, Iterable, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -72,12 +73,29 @@ def _prepared(subject: Subject, asked: Asked, free: Collection[str]) -> Prepared
 
 def run(subject: Subject, asked: Asked, backend: str, method: str) -> Result:
     """The run itself."""
-    ready = prepare(subject, asked)
-    simulator = codegen.simulator(ready.equations, ready.parameters, ready.laws, backend)
-    _check_given(subject, asked, simulator)
+    ready, simulator = _simulator(subject, asked, backend)
     return simulator.run(
         ready.times, ready.initial, ready.inputs, method, initially_on=ready.initially_on
     )
+
+
+def stream(
+    subject: Subject, asked: Asked, backend: str, method: str, target: Path, signals: Sequence[str]
+) -> codegen.Streamed:
+    """The run itself, written to a file as it goes on: these signals, or every column if there are none."""
+    ready, simulator = _simulator(subject, asked, backend)
+    return simulator.stream(
+        target, ready.times, ready.initial, ready.inputs, signals=signals or None, method=method,
+        initially_on=ready.initially_on,
+    )  # fmt: skip
+
+
+def _simulator(subject: Subject, asked: Asked, backend: str) -> tuple[Prepared, codegen.Simulator]:
+    """What a run needs, and what runs it."""
+    ready = prepare(subject, asked)
+    simulator = codegen.simulator(ready.equations, ready.parameters, ready.laws, backend)
+    _check_given(subject, asked, simulator)
+    return ready, simulator
 
 
 def _equations(subject: Subject, asked: Asked) -> bg.StateEquations:
