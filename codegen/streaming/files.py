@@ -152,7 +152,6 @@ class _Parquet(_Table):
         import pyarrow.parquet
 
         self.clear()
-        self._waiting, self._rows = [], 0
         # Numbers that hardly recur would fill a dictionary for nothing.
         texts = [one.name for one in self._schema if one.type == pyarrow.string()]
         self._writer = pyarrow.parquet.ParquetWriter(
@@ -174,6 +173,14 @@ class _Parquet(_Table):
         """See `Growing`."""
         self._write()
         self._writer.close()
+
+    def clear(self) -> None:
+        """See `Growing`."""
+        # A writer that is left to itself writes its end when it goes, wherever the file then is.
+        if self._writer is not None:
+            self._writer.close()
+        self._waiting, self._rows = [], 0
+        super().clear()
 
     def _write(self) -> None:
         import pyarrow

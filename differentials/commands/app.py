@@ -54,18 +54,23 @@ class App(click.Group):
             _complain(where, error.format_message())
             status = FAILED
         except bg.WriteError as error:
-            _complain(where, str(error))
+            _complain(where, _with_notes(str(error), error))
             status = FAILED
         except bg.BondGraphError as error:
-            _complain(where, str(error))
+            _complain(where, _with_notes(str(error), error))
             status = REFUSED
         except OSError as error:
             _complain(where, str(error))
             status = FAILED
-        except click.Abort:
-            _complain(where, "interrupted")
+        except click.Abort as error:
+            _complain(where, _with_notes("interrupted", error.__cause__ or error.__context__))
             status = FAILED
         sys.exit(status if isinstance(status, int) else 0)
+
+
+def _with_notes(text: str, error: BaseException | None) -> str:
+    """What is said of an error, and what it was given on its way: what is left of files."""
+    return "; ".join([text, *getattr(error, "__notes__", ())])
 
 
 @contextmanager
