@@ -74,6 +74,7 @@ bench-speed: $(READY)
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/cycle.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/stepping.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/controlled.py
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/many.py
 	$(BIN)/python benchmarks/starting.py
 	$(BIN)/python benchmarks/rhs.py
 

@@ -65,8 +65,10 @@ def growing(path: Name) -> Iterator[BinaryIO]:
     """
     with telling(path):
         target = Path(os.path.realpath(path))
-        if _passes_on(path) or target.is_dir():
-            raise WriteError(f"{os.fspath(path)} cannot grow: it is no file on a disk")
+        if target.is_dir():
+            raise IsADirectoryError(21, "it is a folder")
+        if _passes_on(path):
+            raise OSError(22, "it is no file on a disk, which could grow beside its place")
         beside = partial_of(target)
         try:
             with beside.open("wb") as file:

@@ -70,7 +70,11 @@ class App(click.Group):
 
 def _with_notes(text: str, error: BaseException | None) -> str:
     """What is said of an error, and what it was given on its way: what is left of files."""
-    return "; ".join([text, *getattr(error, "__notes__", ())])
+    notes = list[str]()
+    while error is not None:
+        notes += getattr(error, "__notes__", ())
+        error = error.__cause__
+    return "; ".join([text, *notes])
 
 
 @contextmanager

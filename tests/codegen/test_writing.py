@@ -13,7 +13,15 @@ from oracles.sweeping import TIMES, spring_mass
 
 import bondgraph as bg
 import codegen
-from bondgraph.writing import made_folder, replacing, write_all, write_bytes, write_text
+from bondgraph.writing import (
+    growing,
+    made_folder,
+    partial_of,
+    replacing,
+    write_all,
+    write_bytes,
+    write_text,
+)
 from differentials.figures import save_picture
 
 pytestmark = pytest.mark.usefixtures("compiled_quickly")
@@ -109,6 +117,60 @@ def test_what_fails_while_it_is_written_leaves_what_was_there(tmp_path: Path) ->
         interrupted()
     assert path.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_what_grows_is_partial_until_it_is_whole(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    path.write_bytes(b"old")
+    path.chmod(0o640)
+    with growing(path) as file:
+        file.write(b"new")
+        file.flush()
+        assert path.read_bytes() == b"old"
+        assert partial_of(path).read_bytes() == b"new"
+    assert path.read_bytes() == b"new"
+    assert stat.S_IMODE(path.stat().st_mode) == 0o640
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, OSError(28, "No space left on device")])
+def test_what_ends_halfway_stays_partial_and_is_told(
+    error: type[BaseException] | BaseException, tmp_path: Path
+) -> None:
+    path = tmp_path / "run.csv"
+    path.write_bytes(b"old")
+
+    def ending(text: bytes) -> None:
+        with growing(path) as file:
+            file.write(text)
+            raise error
+
+    with pytest.raises((KeyboardInterrupt, bg.WriteError)) as told:
+        ending(b"half")
+    assert path.read_bytes() == b"old"
+    assert partial_of(path).read_bytes() == b"half"
+    first = told.value if isinstance(told.value, KeyboardInterrupt) else told.value.__cause__
+    assert first is not None
+    assert first.__notes__ == [f"what was written before that is in {partial_of(path)}"]
+    with pytest.raises((KeyboardInterrupt, bg.WriteError)):
+        ending(b"")
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_only_a_file_grows(tmp_path: Path) -> None:
+    def grow(path: Path) -> None:
+        with growing(path):
+            pass
+
+    with pytest.raises(bg.WriteError, match="null cannot be written: it is no file on a disk"):
+        grow(Path(os.devnull))
+    with pytest.raises(bg.WriteError, match="cannot be written: it is a folder"):
+        grow(tmp_path)
+    link = tmp_path / "link.csv"
+    link.symlink_to(tmp_path / "run.csv")
+    grow(link)
+    assert link.is_symlink()
+    assert (tmp_path / "run.csv").exists()
 
 
 def test_of_several_files_none_is_replaced_before_all_are_written(tmp_path: Path) -> None:

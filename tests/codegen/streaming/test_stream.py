@@ -247,7 +247,7 @@ def test_what_cannot_be_written_is_refused_before_the_run(
     with pytest.raises(bg.WriteError, match=r"run\.csv cannot be written: No such file"):
         ready.stream(tmp_path / "none" / "run.csv", *run)
     (tmp_path / "folder.csv").mkdir()
-    with pytest.raises(bg.WriteError, match=r"folder\.csv cannot grow"):
+    with pytest.raises(bg.WriteError, match=r"folder\.csv cannot be written: it is a folder"):
         ready.stream(tmp_path / "folder.csv", *run)
     monkeypatch.setattr(files, "find_spec", lambda _: None)
     with pytest.raises(bg.MissingExtraError, match=r"pyarrow.*bondgraph-toolkit\[tables\]"):

@@ -159,3 +159,55 @@ def test_without_matplotlib_the_table_is_written_all_the_same(
     assert done.exit_code == 0
     assert "bondgraph-toolkit[pictures]" in done.stderr
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["passive_engine_step.csv"]
+
+
+def test_a_streamed_run_has_the_bytes_of_one_that_is_written(call: Call, tmp_path: Path) -> None:
+    run = ["simulate", "alsd", "--sample", "1e-4"]
+    assert call(*run, "-o", "run.csv").exit_code == 0
+    done = call(*run, "-o", "made/streamed.csv", "--stream")
+    assert done.exit_code == 0
+    assert (tmp_path / "made" / "streamed.csv").read_bytes() == (tmp_path / "run.csv").read_bytes()
+    assert "10001 samples, 2 events" in done.stdout
+    events = (tmp_path / "made" / "streamed.events.csv").read_text().splitlines()
+    assert [line.split(",")[1:3] for line in events[1:]] == [
+        ["clutch", "stick"],
+        ["clutch", "slip"],
+    ]
+
+
+def test_a_streamed_run_as_data(data: Data, tmp_path: Path) -> None:
+    found = data("simulate", "alsd", "-o", "run.csv", "--stream", "--signal", "tau_f")
+    assert (found["samples"], found["events"]) == (1001, 2)
+    assert found["files"] == ["run.csv", "run.events.csv"]
+    assert (tmp_path / "run.csv").read_text().startswith("t,tau_f\n")
+    assert "omega_1" in found["final"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--signal", "tau_f"], "--signal goes with --stream"),
+        (["--stream"], r"--stream needs -o FILE, which ends in .csv or .parquet"),
+        (["--stream", "-o", "run.mat"], "--stream needs -o FILE"),
+        (["--stream", "-o", "run.csv", "--signal", "tau_g"], "did you mean 'tau_"),
+    ],
+)
+def test_what_does_not_stream_is_refused(
+    arguments: list[str], told: str, call: Call, tmp_path: Path
+) -> None:
+    done = call("simulate", "alsd", *arguments)
+    assert done.exit_code == 2
+    assert told in done.stderr
+    assert [one.name for one in tmp_path.iterdir()] == ["examples"]
+
+
+def test_a_streamed_run_that_ends_halfway_tells_what_is_left(call: Call, tmp_path: Path) -> None:
+    level = ["--law", "clutch=friction(tau_h*(1-2*t))", "--sample", "5e-5"]
+    done = call("simulate", "alsd", *level, "-o", "run.csv", "--stream")
+    assert done.exit_code == 2
+    assert "what was written before that is in" in done.stderr
+    assert "run.partial.csv" in done.stderr
+    assert not (tmp_path / "run.csv").exists()
+    rows = table(tmp_path / "run.partial.csv")
+    assert len(rows) >= 4096
+    assert rows["t"][-1] < 0.5
