@@ -18,7 +18,11 @@ sys.path[:0] = [str(HERE.parent)]
 import bondgraph as bg  # noqa: E402
 from codegen import Simulator, Stepper, ZeroOrderHold, simulator  # noqa: E402
 from codegen.engine.located import LocatedRuns  # noqa: E402
+from codegen.runs.completion import Beginning  # noqa: E402
 from codegen.runs.track import Settings  # noqa: E402
+from codegen.taking.asked import Request  # noqa: E402
+from codegen.taking.blocks import Whole  # noqa: E402
+from codegen.taking.located import run_located  # noqa: E402
 
 STEPS, STEP, TURNS = 3000, 1e-3, 9
 
@@ -49,7 +53,9 @@ def whole(ready: Simulator) -> Callable[[], object]:
     if ready.engine is not None:
         return ready.engine.prepare(times, start, [HELD], keeping=False).call
     runs = LocatedRuns(ready.closed, None if ready.located is None else ready.located.library)
-    return lambda: runs.run(times, start, [HELD], Settings(), keeping=False)
+    begun = Beginning(start, (), {}, start)
+    asked = Request(times, start, begun, [HELD], Settings(), events=False)
+    return lambda: run_located(runs, Whole(len(times)), asked)
 
 
 def stepped(one: Stepper, told: bool = True, read: bool = False) -> None:

@@ -1,7 +1,6 @@
 """Event-located runs by the generated C of a model: adaptive steps, for models of every kind."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -14,18 +13,17 @@ from codegen.c.runtime import runtime_file, runtime_names
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
 from codegen.engine.fallback import Stopped
 from codegen.engine.handing import Handing
-from codegen.engine.happened import told_events
-from codegen.engine.runs import NO_END, not_affine
+from codegen.engine.runs import not_affine
 from codegen.engine.sizes import aligned, declarations
 from codegen.engine.status import Status
 from codegen.inputs.signal import Signal
-from codegen.inputs.tables import NO_TABLE, SignalTable, has_table, signal_table
+from codegen.inputs.tables import SignalTable, signal_table
 from codegen.model.snapshot import Mode
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
 from codegen.program.layout import recorded
 from codegen.record.snapshots import Snapshots
-from codegen.runs.track import Event, Settings
+from codegen.runs.track import Settings
 
 FILES = (
     *CALLING, "batch_measure.h", "batch_measure.c",
@@ -53,16 +51,6 @@ FEW, MANY = 256, 1 << 20
 
 UNBOUNDED = "a number of the run is not finite"
 """Why a run that is over is none."""
-
-
-@dataclass(frozen=True)
-class Recorded:
-    """What a run has left: its events, everything at its samples, the modes there, and what ran it."""
-
-    events: tuple[Event, ...]
-    shots: Snapshots
-    modes: tuple[Mode, ...]
-    backend: str
 
 
 class Asking(NamedTuple):
@@ -165,34 +153,6 @@ class LocatedRuns:
         self.parameters = np.array(
             [float(model.parameters[symbol.name]) for symbol in model.program.parameters] or [0.0]
         )
-
-    def run(
-        self, times: Array, states: Array, signals: Sequence[Signal], settings: Settings,
-        first: Mode = (), keeping: bool = True, corners: bool = False,
-    ) -> Recorded | Stopped:  # fmt: skip
-        """Run and record, or why it could not go on; ``first``: the mode before, all let go unless told.
-
-        ``keeping``: whether events are kept; ``corners``: whether those of laws are among them.
-        """
-        if not has_table(signals):
-            return Stopped(NO_TABLE, limit=True)
-        table, ffi = np.empty((len(times), self.width)), self.library.opened[0]
-        asking, rows = (
-            self.asking(times, states, signals, settings, first, corners),
-            self.rows(table),
-        )
-        status, room = int(Status.EVENTS), FEW
-        while status == Status.EVENTS and room <= MANY:
-            events = ffi.new("bg_event[]", room) if keeping else ffi.NULL
-            status = self.call(asking, rows, events, room if keeping else NO_END)
-            room *= 16 if keeping else MANY
-        if status != 0:
-            return self.stopped(asking, status)
-        if not np.isfinite(table[:, : self.finite]).all():
-            return Stopped(UNBOUNDED)
-        program, count = self.model.program, asking.record.count if keeping else 0
-        told = told_events(ffi, events, count, program.happening, program.taken)
-        return Recorded(tuple(told), *self.told(table), "c")
 
     def asking(
         self, times: Array, states: Array, signals: Sequence[Signal], settings: Settings,

@@ -70,15 +70,14 @@ LIMITS = frozenset({
 
 @dataclass(frozen=True)
 class Outcome:
-    """What the engine said of a run; ``track`` is None unless it is whole."""
+    """What the engine said of a run, and when [s] that ended."""
 
     status: Status
     time: float
-    track: Track | None
 
     @property
     def stopped(self) -> Stopped:
-        """Why there is no track."""
+        """Why it could not go on."""
         return Stopped(MEANINGS[self.status], self.time, self.status in LIMITS)
 
 
@@ -182,21 +181,6 @@ class CRuns:
         self.model, self._flags = model, tuple(flags)
         self._ready: dict[int, tuple[Tables, tuple[Array, Any], Handing]] = {}
         self._capacity = CAPACITY
-
-    def run(
-        self, times: Array, start: Array, signals: Sequence[Signal], first: Mode = (),
-        keeping: bool = True, patient: bool = True,
-    ) -> Outcome:  # fmt: skip
-        """Run and record; the status tells why there is no track, if there is none.
-
-        ``first``: the mode before the run, all let go unless told. ``keeping``: whether events are kept.
-        ``patient``: whether to go on although tables of modes take longer than other ways.
-        """
-        prepared = self.prepare(times, start, signals, first, keeping, patient)
-        status = prepared.call()
-        self.expect(prepared.capacity)
-        track = prepared.track(self.model) if status == Status.OK else None
-        return Outcome(status, prepared.task.time, track)
 
     def expect(self, events: int) -> None:
         """Have room for so many: a run like the latest need not begin again for want of it."""

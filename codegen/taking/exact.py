@@ -21,7 +21,11 @@ def run_exact(
     engine: CRuns, taker: Taker, times: Array, start: Array, signals: Sequence[Signal], first: Mode,
     keeping: bool, patient: bool,
 ) -> Outcome:  # fmt: skip
-    """A run as of `CRuns.run`, but all that is recorded goes to ``taker``; the outcome has no track."""
+    """A run by the engine, all that it records to ``taker``; how it ended.
+
+    ``first``: the mode before the run, all let go unless told. ``keeping``: whether events are kept.
+    ``patient``: whether to go on although tables of modes take longer than other ways.
+    """
     prepared = engine.prepare(times, start, signals, first, keeping, patient, BLOCK + 1)
     taking = _Taking(prepared, engine.model, taker)
     with prepared.handing.to(taking.take):
@@ -31,7 +35,7 @@ def run_exact(
         status = Status.UNTAKEN
     # Nothing else is not taken without an error.
     status = Status.NOT_FINITE if status == Status.UNTAKEN else status
-    return Outcome(status, prepared.task.time, None)
+    return Outcome(status, prepared.task.time)
 
 
 class _Taking:

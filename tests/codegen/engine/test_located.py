@@ -6,6 +6,7 @@ from pathlib import Path
 import networkx as nx
 import numpy as np
 import pytest
+from oracles.alone import located
 from oracles.c_model import WARNED, check_told, compiled, written
 from oracles.chains import random_chain
 from oracles.exported import small_cases
@@ -27,10 +28,11 @@ from codegen import (
     simulator,
     to_c,
 )
-from codegen.engine.located import LocatedLibrary, LocatedRuns, Recorded
+from codegen.engine.located import LocatedLibrary, LocatedRuns
 from codegen.inputs.tables import signal_table
 from codegen.runs.arguments import initial_values, signals_for
 from codegen.runs.track import Settings
+from codegen.taking.blocks import Whole
 from differentials.laws import magic_formula_tire, stribeck_clutch
 from differentials.scenarios import prepared
 
@@ -41,19 +43,18 @@ CASES = [
 ]  # fmt: skip
 
 
-def _located(ready: Simulator, times, initial=None, inputs=None, method="DOP853") -> Recorded:
+def _located(ready: Simulator, times, initial=None, inputs=None, method="DOP853") -> Whole:
     """A run by generated C and nothing else."""
     signals = signals_for(inputs or {}, ready.inputs)
     states = initial_values(initial or {}, ready.states)
     runs = ready.located or LocatedRuns(ready.closed)
-    found = runs.run(
-        np.asarray(times, dtype=float), states, signals, Settings(method, 1e-10, 1e-11)
-    )
-    assert found is not None
+    told = Settings(method, 1e-10, 1e-11)
+    found = located(runs, np.asarray(times, dtype=float), states, signals, told)
+    assert isinstance(found, Whole)
     return found
 
 
-def _agree(found: Recorded, run: Result, near: float, late: float = 1e-6) -> None:
+def _agree(found: Whole, run: Result, near: float, late: float = 1e-6) -> None:
     assert [(e.port, e.kind) for e in found.events] == [(e.port, e.kind) for e in run.events]
     assert [e.time for e in found.events] == pytest.approx([e.time for e in run.events], abs=late)
     for column, name in zip(found.shots.x.T, run.states, strict=False):
@@ -125,10 +126,11 @@ def test_two_methods_agree_on_models_of_every_kind(name: str) -> None:
     signals, states = signals_for(inputs, ready.inputs), initial_values(initial, ready.states)
     times = np.linspace(0, 2, 101)
     one, two = (
-        runs.run(times, states, signals, Settings(m, 1e-10, 1e-11)) for m in ("DOP853", "Radau")
+        located(runs, times, states, signals, Settings(m, 1e-10, 1e-11))
+        for m in ("DOP853", "Radau")
     )
-    assert one is not None
-    assert two is not None
+    assert isinstance(one, Whole)
+    assert isinstance(two, Whole)
     assert [(e.port, e.kind) for e in one.events] == [(e.port, e.kind) for e in two.events]
     late = [a.time - b.time for a, b in zip(one.events, two.events, strict=True)]
     assert np.abs(late).max(initial=0.0) < 1e-8
@@ -302,7 +304,7 @@ def test_located_runs_compile_without_warnings(
     states = np.zeros(len(ready.states))
     signals = signals_for(dict.fromkeys(ready.inputs, 1.0), ready.inputs)
     settings = Settings("auto", 1e-10, 1e-11)
-    assert runs.run(np.array([0.0, 0.1]), states, signals, settings) is not None
+    assert isinstance(located(runs, np.array([0.0, 0.1]), states, signals, settings), Whole)
 
 
 @pytest.mark.usefixtures("closely")

@@ -111,7 +111,7 @@ def test_what_a_run_that_begins_again_had_handed_over_is_none_of_it(
         taker.take(np.full((2, 2), 9.0), [(), ()], np.ones(2))
         taker.happened([Event(0.0, "m", "on")])
         outcome = exact(engine, taker, times, *others)
-        return type(outcome)(backends.Status.STIFF, 0.1, None)
+        return type(outcome)(backends.Status.STIFF, 0.1)
 
     monkeypatch.setattr(backends, "run_exact", giving_up)
     found = ready.run([0.0, 0.1, 0.2], {"v": 1.0})
