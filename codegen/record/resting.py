@@ -6,6 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from bondgraph.errors import ModelWarning
+from codegen.model.outside import outside
 from codegen.model.resting import Rest, first_rest
 from codegen.modes.closed import ClosedModel
 from codegen.numbers.arrays import Array
@@ -40,17 +41,13 @@ class Resting:
 
 
 def tell_resting(model: ClosedModel, done: Sampled) -> None:
-    """Warn whoever called what calls this of switches that are on at two samples with a command of zero."""
+    """Warn, at the user's line, of switches that are on at two samples with a command of zero."""
     found = Resting(model)
     found.see(done)
-    _warn(found)
+    tell_rests(found)
 
 
 def tell_rests(found: Resting) -> None:
     """The same of a run that was seen in parts."""
-    _warn(found)
-
-
-def _warn(found: Resting) -> None:
     for rest in found.rests:
-        warnings.warn(str(rest), ModelWarning, stacklevel=4)
+        warnings.warn(str(rest), ModelWarning, stacklevel=outside())

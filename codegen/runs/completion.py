@@ -10,6 +10,7 @@ import numpy as np
 from bondgraph.errors import ModelWarning
 from codegen.inputs.pieces import Piece
 from codegen.inputs.signal import Signal
+from codegen.model.outside import outside
 from codegen.model.snapshot import Mode
 from codegen.modes.bounce import check_gaps
 from codegen.modes.closed import ClosedModel
@@ -87,26 +88,26 @@ def started(
 
 
 def tell_completed(completed: Mapping[str, float]) -> None:
-    """Warn whoever called what calls this of states that were completed."""
+    """Warn, at the user's line, of states that were completed."""
     if completed:
         told = ", ".join(f"{name} = {value:.9g}" for name, value in completed.items())
         warnings.warn(
             f"states that initial does not name follow what switches hold at the start: {told}; name them "
             "in initial to say what is meant",
             ModelWarning,
-            stacklevel=3,
+            stacklevel=outside(),
         )
 
 
 def tell_all_completed(completed: Mapping[int, Mapping[str, float]], runs: int) -> None:
-    """Warn whoever called what calls this, once, of a sweep's runs whose starts were completed."""
+    """Warn, at the user's line and once, of a sweep's runs whose starts were completed."""
     if completed:
         names = ", ".join(sorted({name for one in completed.values() for name in one}))
         warnings.warn(
             f"in {len(completed)} of {runs} runs states that initial does not name follow what switches hold "
             f"at the start: {names}; completed has their values, name them in initial to say what is meant",
             ModelWarning,
-            stacklevel=3,
+            stacklevel=outside(),
         )
 
 

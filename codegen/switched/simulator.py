@@ -2,6 +2,7 @@
 
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
+from os import PathLike
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -18,6 +19,7 @@ from codegen.runs.dependent import dependent_variables, over_states
 from codegen.simulate import simulator
 from codegen.simulator import Simulator
 from codegen.stepping.stepper import Stepper
+from codegen.streaming.streamed import Streamed
 from codegen.tuning import TUNING
 
 
@@ -67,6 +69,26 @@ class SwitchedSimulator:
         tell_completed(done.completed)
         tell_resting(self.simulator.closed, done)
         return done
+
+    def stream(
+        self,
+        path: str | PathLike[str],
+        time: ArrayLike,
+        initial: Mapping[str, float] | None = None,
+        inputs: Mapping[str, object] | None = None,
+        *,
+        signals: Iterable[str] | None = None,
+        initially_on: Iterable[Hashable] = (),
+        method: str = "auto",
+        rtol: float = TUNING.rtol,
+        atol: float = TUNING.atol,
+        events: bool = True,
+    ) -> Streamed:
+        """Run into a file, sample by sample; see `Simulator.stream`."""
+        return self.simulator.stream(
+            path, time, self._told(initial), inputs, signals=signals, method=method, rtol=rtol,
+            atol=atol, initially_on=initially_on, events=events,
+        )  # fmt: skip
 
     def stepper(
         self,

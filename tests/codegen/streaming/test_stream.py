@@ -10,7 +10,17 @@ import numpy as np
 import pytest
 
 import bondgraph as bg
-from codegen import BackendWarning, Result, Sampled, Simulator, Sine, Square, simulator
+from codegen import (
+    BackendWarning,
+    Result,
+    Sampled,
+    Simulator,
+    Sine,
+    Square,
+    ZeroOrderHold,
+    simulator,
+    switched_simulator,
+)
 from codegen.data.columns import read_columns
 from codegen.runs.track import BLOCK
 from codegen.streaming import files
@@ -266,3 +276,32 @@ def test_memory_does_not_grow_with_samples(backend: str, tmp_path: Path) -> None
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     assert (peaks[2] - peaks[1]) / (16 * BLOCK) < 20
+
+
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_a_model_with_a_delay_is_streamed(backend: str, tmp_path: Path) -> None:
+    graph = bg.graph([bg.State("x", "-past", start=1), bg.Delay("past", "x", time="T", start=1)])
+    ready = simulator(bg.derive(graph), {"T": 0.5}, backend=backend)
+    times = np.linspace(0.0, 2.0, MANY)
+    run = ready.run(times)
+    same(ready.stream(tmp_path / "run.csv", times), run, run.columns)
+
+
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_a_switch_that_rests_across_a_border_is_told(backend: str, tmp_path: Path) -> None:
+    """The last sample of a block and the first of the next are the two that tell."""
+    graph = bg.graph(
+        [bg.Se("force", "F"), bg.One("j"), MASS, bg.Zero("z"), bg.Sw("q", on="u"), bg.R("b", 2)],
+        "force > j > m, j > z, z > q, z > b",
+    )
+    ready = switched_simulator(graph, {}, backend=backend)
+    border = float(BLOCK - 1)
+    command = ZeroOrderHold([0.0, border - 0.5, border + 1.5], [1.0, 0.0, -1.0])
+    times, given = np.arange(2.0 * BLOCK), {"F": 1.0, "u": command}
+    with pytest.warns(bg.ModelWarning, match="'q' stays on while its command u rests") as told:
+        run = ready.run(times, {}, given)
+    with pytest.warns(bg.ModelWarning) as again:
+        done = ready.stream(tmp_path / "run.csv", times, {}, given)
+    assert [str(one.message) for one in again] == [str(one.message) for one in told]
+    assert [one.filename for one in again] == [__file__]
+    same(done, run, run.columns)

@@ -8,6 +8,8 @@ import pytest
 
 import bondgraph as bg
 from codegen import Simulator, Square, simulator
+from codegen.engine import runs
+from codegen.runs import exact
 from codegen.runs.track import BLOCK, Event, Track
 from codegen.taking import backends
 from codegen.taking.blocks import Blocks
@@ -71,6 +73,34 @@ def test_samples_on_both_sides_of_a_border_follow_theory(
     assert np.abs(run["F"] - force).max() < 2e-9 * 40
 
 
+@pytest.mark.parametrize("even", [True, False])
+def test_samples_of_many_windows_follow_theory(even: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Exact steps look at so many samples at a time; here at few, so that events lie on both sides."""
+    monkeypatch.setattr(exact, "WINDOW", 100)
+    times = np.linspace(0.0, 3.0, 1001)
+    if not even:
+        times[1:-1] += np.random.default_rng(3).uniform(-0.4, 0.4, 999) * 0.003
+    run = rubbing("numpy").run(times, {"v": 0.0}, {"F": Square(1, -2, 2)}, "exact")
+    turns = np.array([0.0, *crossings(6)])
+    events = [event.time for event in run.events if event.kind == "cross"]
+    assert np.abs(np.array(events) - turns[1 : len(events) + 1]).max() < 1e-9
+    # Between crossings 1 m/s^2, and 3 after the force has turned.
+    last = np.searchsorted(turns, run.time, side="right") - 1
+    since, sign = run.time - turns[last], np.where(last % 2 == 0, 1.0, -1.0)
+    turned = np.maximum(run.time - (last + 1) / 2, 0.0)
+    assert np.abs(run["v"] - sign * (since - 4 * turned)).max() < 1e-9
+
+
+def test_a_grid_is_found_a_window_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runs, "WINDOW", 16)
+    times = 5.0 + 0.001 * np.arange(1000)
+    assert runs.grid_of(times) == pytest.approx(0.001, rel=1e-12)
+    for place in (1, 17, 640, 998):
+        moved = times.copy()
+        moved[place] += 1e-6
+        assert runs.grid_of(moved) == 0.0
+
+
 @pytest.mark.parametrize(
     ("backend", "method", "count"),
     [("numpy", "exact", 300), ("c", "exact", 3 * BLOCK), ("c", "DOP853", 3 * BLOCK)],
@@ -104,13 +134,13 @@ def test_what_a_run_that_begins_again_had_handed_over_is_none_of_it(
     """C gives up after three samples, of which two were taken."""
     ready = oscillator("c")
     expected = ready.run([0.0, 0.1, 0.2], {"v": 1.0}, method="DOP853")
-    exact = backends.run_exact
+    alone = backends.run_exact
 
     def giving_up(engine, taker: Blocks, times, *others):
         taker.begin()
         taker.take(np.full((2, 2), 9.0), [(), ()], np.ones(2))
         taker.happened([Event(0.0, "m", "on")])
-        outcome = exact(engine, taker, times, *others)
+        outcome = alone(engine, taker, times, *others)
         return type(outcome)(backends.Status.STIFF, 0.1)
 
     monkeypatch.setattr(backends, "run_exact", giving_up)
