@@ -8,6 +8,20 @@ Take = Callable[[int, int], bool]
 """Takes the first so many samples, and events, that there are; whether it could."""
 
 
+def asked_by_c(
+    ffi: Any, kind: str, function: Callable[..., int], keep: Callable[[BaseException], None]
+) -> Any:
+    """A function of a kind that C calls; what is raised in it goes to ``keep``, and C is told 1.
+
+    So does Ctrl-C, which Python may raise before the function's first line.
+    """
+
+    def kept(_: Any, error: BaseException, __: Any) -> None:
+        keep(error)
+
+    return ffi.callback(kind, function, error=1, onerror=kept)
+
+
 class Handing:
     """A function for C, which passes on to whoever takes at the time.
 
@@ -20,7 +34,7 @@ class Handing:
         #: What was raised as something was taken.
         self.failed: BaseException | None = None
         with suppress(MemoryError):
-            self.call = ffi.callback("int(void *, int, int)", self._asked)
+            self.call = asked_by_c(ffi, "int(void *, int, int)", self._asked, self._keep)
 
     @contextmanager
     def to(self, take: Take) -> Iterator[None]:
@@ -36,8 +50,7 @@ class Handing:
 
     def _asked(self, _: Any, samples: int, events: int) -> int:
         """0 if these have been taken."""
-        try:
-            return 0 if self._take is not None and self._take(samples, events) else 1
-        except BaseException as error:  # noqa: BLE001 - C comes between here and who is to be told
-            self.failed = error
-        return 1
+        return 0 if self._take is not None and self._take(samples, events) else 1
+
+    def _keep(self, error: BaseException) -> None:
+        self.failed = error

@@ -7,6 +7,7 @@ import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.engine.filling import Filling
+from codegen.engine.handing import asked_by_c
 from codegen.engine.kin import Kin
 from codegen.engine.motions import Motion, Motions
 from codegen.engine.places import FEWEST, Places
@@ -32,7 +33,9 @@ class Tables:
         self._kin = Kin(self.places, model)
         self.failed: BaseException | None = None
         with suppress(MemoryError):  # on machines that let no code be made, runs begin again
-            self._answer = engine.ffi.callback("int(void *, const int *)", self._asked)
+            self._answer = asked_by_c(
+                engine.ffi, "int(void *, const int *)", self._asked, self._keep
+            )
             self.record.supply = self._answer
         self._magnitudes(*moved[:2])
         self.record.switched = model.program.switched
@@ -70,13 +73,13 @@ class Tables:
 
     def _asked(self, _: Any, mode: Any) -> int:
         """Work out the mode that a run has come to; 1 where that is not done."""
-        try:
-            if self.places.most >= FEWEST:
-                self.supply(tuple(mode[i] for i in range(self.engine.sizes.K)))
-                return 0
-        except BaseException as error:  # noqa: BLE001 - C comes between here and who is to be told
-            self.failed = error
-        return 1
+        if self.places.most < FEWEST:
+            return 1
+        self.supply(tuple(mode[i] for i in range(self.engine.sizes.K)))
+        return 0
+
+    def _keep(self, error: BaseException) -> None:
+        self.failed = error
 
     def mode_at(self, key: Any) -> Mode:
         """The mode of a number with two bits for each port, the first port the lowest."""

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from codegen.engine.chains import Rows, slots_of
+from codegen.engine.handing import asked_by_c
 from codegen.engine.inputs import Segments
 from codegen.engine.sizes import Engine
 from codegen.engine.windows import Windows
@@ -32,7 +33,7 @@ class Packed:
         self.whole = self.record.until == math.inf
         if not self.whole:
             with suppress(MemoryError):  # on machines that let no code be made, all at once
-                self._answer = engine.ffi.callback("int(void *, double)", self._more)
+                self._answer = asked_by_c(engine.ffi, "int(void *, double)", self._more, self._keep)
                 self.record.more = self._answer
                 return
             self._write(made.rows(begin, engine.sizes.G, ALL))
@@ -41,13 +42,12 @@ class Packed:
     failed: BaseException | None
 
     def _more(self, _: Any, t: float) -> int:
-        """Write the segments from t on; 1 where that is not done."""
-        try:
-            self._write(self._made.rows(t, self._engine.sizes.G))
-        except BaseException as error:  # noqa: BLE001 - C comes between here and who is to be told
-            self.failed = error
-            return 1
+        """Write the segments from t on."""
+        self._write(self._made.rows(t, self._engine.sizes.G))
         return 0
+
+    def _keep(self, error: BaseException) -> None:
+        self.failed = error
 
     def _write(self, rows: Rows) -> None:
         ffi, sizes, self._kept = self._engine.ffi, self._engine.sizes, list[Any]()

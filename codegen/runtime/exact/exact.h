@@ -131,7 +131,8 @@ typedef struct {
     ex_key where;                     /* the mode that an error is about */
     double time;                      /* where the run ended */
     /* Where there is room for so many samples alone, two or more, `full` takes the first of rows and
-     * modes, or the events; what is left comes to begin with the next. Not 0: it cannot. */
+     * modes, or the events; what is left comes to begin with the next. None of either now and then, so
+     * that it can tell to stop. Not 0: it cannot. */
     int room;
     int (*full)(void *self, int samples, int events);
     void *self;

@@ -105,6 +105,7 @@ struct ex_context {
     void *caller;                       /* for `advance` */
     int clock, next;                    /* the next sample */
     int taken;                          /* samples that are in the rows of the task no more */
+    int unasked;                        /* stretches since it was asked whether to go on */
     ex_key where;                       /* the latest mode .. */
     int place;                          /* .. its place in the model's, -1 if none has been found, .. */
     int signs[EX_PORTS];                /* .. and what it was asked for as */

@@ -4,6 +4,9 @@
 #include <limits.h>
 #include <string.h>
 
+/* So many stretches are taken before it is asked whether to go on. */
+enum { EX_UNASKED = 4096 };
+
 int ex_room(const ex_context *c, int sample)
 {
     return c->task->full ? c->task->room - (sample - c->taken) : INT_MAX;
@@ -27,11 +30,15 @@ int ex_make_room_for_events(ex_context *c)
 {
     const ex_task *const task = c->task;
     bg_log *const log = &c->run.log;
-    if (!task->full || !log->events || log->count < log->capacity / 2)
+    if (!task->full)
         return BG_OK;
-    if (task->full(task->self, 0, log->count))
+    c->unasked++;
+    if ((!log->events || log->count < log->capacity / 2) && c->unasked < EX_UNASKED)
+        return BG_OK;
+    c->unasked = 0;
+    if (task->full(task->self, 0, log->events ? log->count : 0))
         return BG_UNTAKEN;
-    log->count = 0;
+    log->count = 0; /* those that are not kept would be counted beyond all numbers */
     log->events = task->events;
     log->capacity = task->capacity;
     return BG_OK;

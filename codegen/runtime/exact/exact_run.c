@@ -190,7 +190,7 @@ void ex_point(ex_context *c, const ex_model *model, const ex_inputs *inputs, ex_
     c->model = model;
     c->inputs = inputs;
     c->task = task;
-    c->taken = 0;
+    c->taken = c->unasked = 0;
     c->shown = NULL;
     c->advance = ex_advance;
     c->run.log.events = task->events;

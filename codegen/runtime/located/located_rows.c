@@ -1,5 +1,8 @@
 #include "located_rows.h"
 
+/* So many steps are taken before it is asked whether to go on. */
+enum { BG_STEPS_UNASKED = 4096 };
+
 void bg_row_put(double *row, const double *w, const int *mode, const bg_snapshot *shot)
 {
 #define SHOWN(part, count) row = bg_put(row, count, shot->part);
@@ -33,6 +36,12 @@ static int take_events(void *to, void *run, double begin, double end)
         rows->failed = rows->failed || rows->full(rows->self, 0, log->count);
         log->count = 0;
     }
+    if (++rows->steps >= BG_STEPS_UNASKED) {
+        rows->failed = rows->failed || rows->full(rows->self, 0, 0);
+        rows->steps = 0;
+        if (!log->events)
+            log->count = 0; /* they would be counted beyond all numbers */
+    }
     return rows->failed ? BG_UNTAKEN : BG_OK;
 }
 
@@ -50,7 +59,7 @@ int bg_rows_run(bg_located *c, bg_model *m, const double *parameters, const bg_s
     asked->to = rows;
     asked->record = put_row;
     asked->smooth = rows->full ? take_events : 0;
-    rows->taken = rows->failed = 0;
+    rows->taken = rows->failed = rows->steps = 0;
     if (status == BG_OK)
         status = bg_model_run(c, m, signals, asked);
     return status == BG_OK && rows->failed ? BG_UNTAKEN : status;

@@ -15,11 +15,11 @@ void bg_row_put(double *row, const double *w, const int *mode, const bg_snapshot
 void bg_rows_sizes(unsigned long *sizes);
 
 /* Where rows go, of which there is room for all, or for `room`: then `full` takes the first of them, or
- * the first events, and what follows comes to where these were. Not 0: it cannot; `failed` then, and
- * `taken` are of whoever runs. */
+ * the first events, and what follows comes to where these were; none of either now and then, so that
+ * it can tell to stop. Not 0: it cannot. `taken`, `failed` and `steps` are of whoever runs. */
 typedef struct {
     double *table;
-    int room, taken, failed;
+    int room, taken, failed, steps;
     int (*full)(void *self, int samples, int events);
     void *self;
 } bg_rows;

@@ -1,5 +1,6 @@
 """Runs of more samples and events than are handed over at a time, beside what theory says of all of them."""
 
+import signal
 import tracemalloc
 from itertools import accumulate, islice
 
@@ -148,6 +149,31 @@ def test_what_a_run_that_begins_again_had_handed_over_is_none_of_it(
     assert found.backend == "c"
     assert found.events == ()
     assert (found["v"] == expected["v"]).all()
+
+
+class Rung(BaseException):
+    """An alarm, as Ctrl-C is one."""
+
+
+@pytest.mark.parametrize("method", ["exact", "DOP853"])
+@pytest.mark.parametrize("events", [True, False])
+def test_a_run_in_c_can_be_interrupted(method: str, events: bool) -> None:
+    """It would last for hours; afterwards the simulator runs as before."""
+
+    def ring(*_: object) -> None:
+        raise Rung
+
+    ready, wave = rubbing("c"), {"F": Square(1, -2, 2)}
+    expected = ready.run([0.0, 5.0], {"v": 0.0}, wave, method)
+    before = signal.signal(signal.SIGALRM, ring)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        with pytest.raises(Rung):
+            ready.run([0.0, 1e10], {"v": 0.0}, wave, method, events=events)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert ready.run([0.0, 5.0], {"v": 0.0}, wave, method).events == expected.events
 
 
 class Kept:
