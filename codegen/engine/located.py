@@ -178,11 +178,10 @@ class LocatedRuns:
         made.table, made.room = _pointer(ffi, table), len(table)
         return made
 
-    def call(self, asking: "Asking", rows: Any, events: Any, capacity: int) -> int:
+    def call(self, asking: "Asking", rows: Any) -> int:
         """Call C once; the status."""
         ffi, library = self.library.opened
         instance, run = self._rooms
-        asking.record.events, asking.record.capacity = events, capacity
         status: int = library.bg_rows_run(
             ffi.cast("bg_located *", run.ctypes.data), ffi.cast("bg_model *", instance.ctypes.data),
             _pointer(ffi, self.parameters), asking.inputs, asking.record, rows,

@@ -13,6 +13,7 @@ from codegen.inputs.tables import NO_TABLE, has_table
 from codegen.runs.track import BLOCK
 from codegen.taking.asked import Request
 from codegen.taking.blocks import Sink
+from codegen.taking.exact import MOST_EVENTS
 
 
 def run_located(runs: LocatedRuns, sink: Sink, asked: Request) -> Stopped | None:
@@ -55,15 +56,18 @@ class _Taking:
 
     def call(self, room: int) -> int:
         """Run, with room for so many events; the status."""
-        ffi, _ = self._runs.library.opened
-        keeping, handing = self._asked.events, self._runs.handing
-        self._events: Any = ffi.new("bg_event[]", room) if keeping else ffi.NULL
+        self._make_room(room)
         self._left = len(self._asked.times)
         self._sink.begin()
-        with handing.to(self.take):
-            return self._runs.call(
-                self.asking, self._rows, self._events, room if keeping else NO_END
-            )
+        with self._runs.handing.to(self.take):
+            return self._runs.call(self.asking, self._rows)
+
+    def _make_room(self, room: int) -> None:
+        """Make room for so many events."""
+        ffi, keeping = self._runs.library.opened[0], self._asked.events
+        self._room, record = room, self.asking.record
+        self._events: Any = ffi.new("bg_event[]", room) if keeping else ffi.NULL
+        record.events, record.capacity = self._events, room if keeping else NO_END
 
     def end(self) -> bool:
         """Take what is left; whether it could be taken."""
@@ -75,6 +79,8 @@ class _Taking:
         if events:
             ffi, names = self._runs.library.opened[0], (program.happening, program.taken)
             self._sink.happened(told_events(ffi, self._events, events, *names))
+            if self._room < MOST_EVENTS:
+                self._make_room(min(8 * self._room, MOST_EVENTS))
         rows = self._table[:samples].copy()
         if not np.isfinite(rows[:, : self._runs.finite]).all():
             return False

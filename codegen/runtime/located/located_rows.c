@@ -33,8 +33,11 @@ static int take_events(void *to, void *run, double begin, double end)
     (void)end;
     log->emptied = 1;
     if (log->events && log->count >= log->capacity / 2) {
+        const bg_request *const asked = ((bg_located *)run)->asked;
         rows->failed = rows->failed || rows->full(rows->self, 0, log->count);
         log->count = 0;
+        log->events = asked->events;
+        log->capacity = asked->capacity;
     }
     if (++rows->steps >= BG_STEPS_UNASKED) {
         rows->failed = rows->failed || rows->full(rows->self, 0, 0);
