@@ -68,6 +68,7 @@ bench: $(READY)
 bench-speed: $(READY)
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/speed.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/sweeps.py
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/magic.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/beside.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/switchings.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/nonlinear.py

@@ -130,8 +130,8 @@ static void remainders(const magic_system *s, const magic_weights *w, int count,
         }
 }
 
-static inline void sub_step(const magic_weights *w, const double (*rest)[2], const magic_vector *at,
-                            magic_vector *to)
+static inline void weighed(const magic_weights *w, const double (*rest)[2], const magic_vector *at,
+                           magic_vector *to)
 {
     magic_vector one = w->constant, two = times(w->E, at);
     for (int j = 0; j < HISTORY; j++) {
@@ -141,8 +141,8 @@ static inline void sub_step(const magic_weights *w, const double (*rest)[2], con
     *to = one + two;
 }
 
-/* Samples as long as nothing is to be decided; 0 where the next one is, 1 at a demand's step or the end,
- * 2 where slopes have changed. */
+/* Samples as long as nothing is to be decided; 0 where something may happen before the next one, 1
+ * at a demand's step or the end, 2 where slopes have changed. */
 static int advance(magic_run *run, const magic_weights *w)
 {
     const double stop = magic_stop(run);
@@ -155,7 +155,7 @@ static int advance(magic_run *run, const magic_weights *w)
         const double h = SUB * run->h;
         magic_vector z = run->z;
         for (int n = SUB - 1; n >= 0; n--) {
-            sub_step(w, (const double(*)[2])rest + n + 1, &z, &z);
+            weighed(w, (const double(*)[2])rest + n + 1, &z, &z);
             wheel[n][0] = z[T1];
             wheel[n][1] = z[T2];
             remainders(&run->s, w, 1, (const double(*)[2])wheel + n, rest + n);

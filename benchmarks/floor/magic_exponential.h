@@ -1,16 +1,17 @@
-/* Exponential Adams-Bashforth steps of order 8: what is linear is exact, the rest of the tires' torques
- * goes on as the polynomial of degree 7 through its latest eight values. S. P. Norsett, 1969; M. Hochbruck,
- * A. Ostermann, Exponential integrators, Acta Numerica 19, 2010, section 2.6. */
+/* Exponential Adams-Bashforth steps of order 8: what is linear is exact, the rest of the tires'
+ * torques goes on as the polynomial of degree 7 through its latest eight values. M. Hochbruck,
+ * A. Ostermann, Exponential integrators, Acta Numerica 19, 2010, pages 209-286. */
 #ifndef MAGIC_EXPONENTIAL_H
 #define MAGIC_EXPONENTIAL_H
 
 #include "magic_steps.h"
 
-/* So much may a sub-step times a tire's slope change before exponentials are made anew. */
-#define MAGIC_CHANGE 0.01
+/* So much may a sub-step times a tire's slope change before exponentials are made anew: with more,
+ * runs on the stiffest shafts whose clutch keeps slipping err by more than 1e-6 of range. */
+#define MAGIC_CHANGE 0.007
 
-/* A sub-step: z' = E z + constant + sum of weight[j][w] times what was left of tire w j sub-steps ago,
- * for tires of these slopes, in this mode, under these demands; all by columns. */
+/* A sub-step: E z + constant + the sum of weight[j][w] times what was left of tire w's torque j
+ * sub-steps ago, for tires of these slopes, in this mode, under these demands; all by columns. */
 typedef struct {
     magic_vector E[N], constant, weight[HISTORY][2];
     double slope[2], demand[2];

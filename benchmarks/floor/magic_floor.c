@@ -17,7 +17,8 @@ static double estimate(const magic_step *p, double tolerance)
     return fifth > 0 ? p->h * fifth / sqrt(N * (fifth + 0.01 * third)) : 0;
 }
 
-/* Samples and guards in a step that ends at `to`: whether the mode ended in it, and the run is there. */
+/* Samples and guards in a step that ends at `to`: whether the mode ended in it; the run is then
+ * there. */
 static int look(magic_run *run, magic_step *p, double to)
 {
     const double x = run->x, length = to - x;

@@ -1,5 +1,5 @@
-/* Eight runs at once, a lane each, at samples of their own: exponential steps, the look for events and
- * for changed slopes are worked out for all of them together, the rest for a run by itself. */
+/* Eight runs at once, a lane each, at samples of their own: exponential steps, the look for events
+ * and for changed slopes are worked out for all of them together, the rest for a run by itself. */
 #include <string.h>
 
 #include "magic_exponential.h"
@@ -9,8 +9,9 @@ enum { LANES = 8, SHAFT = 6, WINDOW = HISTORY + SUB };
 typedef double lane[LANES] __attribute__((aligned(64)));
 typedef long lane_mask[LANES] __attribute__((aligned(64)));
 
-/* Rows of the first six states; torques of clutch and engine have only their own. `wheel` and `rest`
- * with the newest first, at SUB when a sample is done. `x`: samples' instants. */
+/* `E`, `weight`: rows of the first six states; torques of clutch and engine hang on themselves.
+ * `wheel`, `rest`: with the newest first, as it is when a sample is done; from SUB on as it was
+ * before. `guard`, `rate`: as magic_guard's, at that sample and at the next; `x`: its instant. */
 typedef struct {
     magic_vector E[SHAFT][N], weight[SHAFT][HISTORY][2], constant[N], decay;
     magic_vector z[N], before[N], wheel[WINDOW][2], rest[WINDOW][2], slope[2];

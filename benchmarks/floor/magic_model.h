@@ -132,8 +132,8 @@ static inline void magic_guard(const magic_system *s, int mode, const double *de
 
 /* Whether a guard stays positive, by its values and its rates times the step at both ends. It lies
  * above the least Bernstein coefficient of the cubic through them, but for h^4/384 of its fourth
- * derivative: of a guard that swings by at most 1.96 rad in a step that is less than a fiftieth of
- * the rates where it has a dip. */
+ * derivative. In a dip of a swing that goes through less than 1.96 rad in the step that is less
+ * than a fiftieth of the rates. */
 static inline int magic_sure(double g0, double r0, double g1, double r1)
 {
     const double inner = fmin(g0 + r0 / 3, g1 - r1 / 3);

@@ -70,7 +70,8 @@ int magic_settle(magic_run *run, double least)
     magic_renew(run);
     if (run->known == 0 && floor(run->x) == run->x)
         push(run, &run->z);
-    while (run->x < run->end && (run->known < HISTORY || fmod(run->x, SUB) != 0 || run->x < least)) {
+    while (run->x < run->end
+           && (run->known < HISTORY || fmod(run->x, SUB) != 0 || run->x < least)) {
         short_step(run, least);
         if (run->result->events > MANY)
             return -1;
