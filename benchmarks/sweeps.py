@@ -4,8 +4,8 @@
 rounds in which all take turns, their ratios to the floor's, and what two threads gain. Every run has its
 own stiffness and clutch torque, and gives the peak torque of a halfshaft and the instant of lock. The
 torque is a parameter of the model, or the size of an input, or part of an input that a function makes.
-Beside that, the same sweep of a model that is not affine: events located, steps controlled; `magic.py` has its
-floors.
+Beside that, the same sweep of a model that is not affine: events located, steps controlled;
+`magic.py` beside this file has its floors.
 """
 
 import statistics
