@@ -18,7 +18,7 @@ help:
 	@echo "make bench  how time and memory to derive grow with the size of a graph"
 	@echo "make bench-speed  how fast and how exact runs are: generated C, numpy, scipy and SUNDIALS beside C by hand"
 	@echo "make bench-agreement  how far simulators, exported Python and C, FMUs, and tools of others agree"
-	@echo "make bench-peers  the same graphs with other packages, each in an environment of its own"
+	@echo "make bench-peers  the same with other packages and modelling tools, each in an environment of its own"
 	@echo "make clean  remove the environment and what was generated"
 
 $(READY): pyproject.toml constraints.txt
@@ -84,7 +84,8 @@ bench-agreement: $(READY)
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/confirm.py
 
 bench-peers: $(READY)
-	$(BIN)/python benchmarks/peers.py
+	$(BIN)/python benchmarks/peers.py 10
+	$(BIN)/python benchmarks/modelling.py
 
 clean:
 	rm -rf $(VENV) .peers out site build *.egg-info .mypy_cache .pytest_cache .ruff_cache

@@ -19,37 +19,16 @@ from typing import Any
 import derivation
 import numpy as np
 import scipy.linalg
+from tools.environments import ENVIRONMENTS, installed
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 HERE = Path(__file__).resolve().parent
-ENVIRONMENTS = HERE.parent / ".peers"
 NAMES = {"bondgraph": "bondgraph", "bondgraphtools": "BondGraphTools", "pybondgraph": "pyBondGraph"}
 SIZES = (4, 8, 20, 50, 100, 200, 400)
 BUILDERS = (derivation.chain, derivation.tree, derivation.mesh, derivation.gears)
 MOST_FOR_GEARS = 100
 POINTS = (0.31 + 0.77j, -0.4 + 1.3j, 1.1 + 0.2j)
-
-
-def installed(peer: str) -> str:
-    """Make a peer's environment if there is none; what went wrong in words, or nothing."""
-    folder, wanted = ENVIRONMENTS / peer, HERE / "peers" / f"{peer}.txt"
-    ready = folder / "ready"
-    if ready.exists() and ready.read_text() == wanted.read_text():
-        return ""
-    ready.unlink(missing_ok=True)
-    # All versions are pinned, so nothing else is asked of them.
-    pip = ["-m", "pip", "install", "--quiet", "--no-deps", "--ignore-requires-python", "-r"]
-    for command in (
-        [sys.executable, "-m", "venv", "--clear", str(folder)],
-        [str(folder / "bin" / "python"), *pip, str(wanted)],
-    ):
-        done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode:
-            lines = [line for line in done.stderr.splitlines() if line.startswith("ERROR")]
-            return f"not installed: {(lines or done.stderr.splitlines() or ['no message'])[0]}"
-    ready.write_text(wanted.read_text())
-    return ""
 
 
 def described(build: Callable[[int], Any], size: int) -> dict[str, Any]:
@@ -160,7 +139,9 @@ def main() -> None:
     """All kinds of graphs, all peers that can be had."""
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 60.0
     ENVIRONMENTS.mkdir(exist_ok=True)
-    peers = {peer: installed(peer) for peer in sys.argv[2:] or NAMES}
+    peers = {
+        peer: installed(peer, HERE / "peers" / f"{peer}.txt") for peer in sys.argv[2:] or NAMES
+    }
     for build in BUILDERS:
         table(build, peers, seconds)
 
