@@ -41,13 +41,13 @@ typedef struct {
 
 /* Of a lane what is done by itself. `run`: which one, -1 for none; `tries`: how often the present
  * step was tried; `taken`: whether it was good; `reach` [s]: how far from its middle the series of
- * inputs is one. */
+ * inputs is one; `turns`: so many have come to no breakpoint. */
 typedef struct {
     struct bg_lanes *all;
     bg_together together;
     located_room *room;
     int run, tries, taken;
-    double reach, grow;
+    double reach, grow, turns;
     bg_request asked;
 } bg_lane_run;
 

@@ -30,6 +30,7 @@ static int lane_begin(const lanes_work *of, int lane)
     if (a->next == of->runs->runs)
         return BG_OK;
     one->run = a->next++;
+    one->turns = 0.0;
     int status = located_begin(one->room, of->job, of->runs, one->run, &one->asked);
     if (status == BG_OK)
         status = bg_located_begin(one->room->run, one->room->model, of->runs->inputs[one->run],
@@ -75,9 +76,13 @@ static int lane_go(bg_lanes *a, int lane, int ended, int *status)
  * lane. */
 static int lane_turn(bg_lanes *a, int lane, int *status, int *done)
 {
-    bg_located *const c = a->lane[lane].room->run;
+    bg_lane_run *const one = a->lane + lane;
+    bg_located *const c = one->room->run;
     double stop;
-    *status = bg_located_turn(c, &stop);
+    /* Breakpoints lie ahead one after the other: a turn that ends at one gets somewhere. */
+    one->turns += c->run.at.t < c->run.at.following;
+    const double most = 16.0 * c->run.log.capacity + 1000.0;
+    *status = one->turns < most ? bg_located_turn(c, &stop) : BG_EVENTS;
     *done = *status == BG_OK && c->run.at.t >= c->run.end;
     if (*status == BG_OK && !*done && BG_CORNERS)
         *status = bg_corners_set_off(c, stop);

@@ -14,6 +14,9 @@
 /* located_run.c: rates of s at t in the present segment and mode. */
 int bg_located_rate(bg_located *c, double t, const double *s, double *rate);
 
+/* A status of whoever goes from a turn to the next by itself. */
+enum { BG_AWAY = -1 };
+
 /* The parts of a run: sets it up; in turns, decides where it is and where the stretch from there
  * ends at the latest, until it is at its end; what is decided there, and the last sample. */
 int bg_located_begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked);

@@ -241,6 +241,9 @@ static int go_on(void *run, double stop)
     int ended;
     if (c->ahead)
         stop = c->ahead(c->view.self, c->run.at.t, stop);
+    c->stretch.stop = stop;
+    if (c->leaves)
+        return BG_AWAY;
     return BG_CORNERS ? bg_corners_go(c, stop) : bg_located_stretch(c, stop, 0.0, &ended);
 }
 
@@ -254,6 +257,7 @@ void bg_located_set_out(bg_located *c, bg_model *m, const bg_signals *signals, b
     c->stiff = BG_STIFF_SPAN / (end - t);
     c->ahead = NULL;
     c->together = NULL;
+    c->leaves = 0;
     c->known = 0;
     c->run.log.events = asked->events;
     c->run.log.capacity = asked->capacity;
@@ -326,15 +330,17 @@ static int set_up(bg_located *c, bg_model *m, const bg_signals *signals, bg_requ
 
 int bg_located_begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
 {
-    const int status = set_up(c, m, signals, asked);
-    bg_begin_turns(&c->run);
-    return status;
+    return set_up(c, m, signals, asked);
 }
 
 int bg_located_turn(bg_located *c, double *stop)
 {
     const bg_engine engine = engine_of(c);
-    return come_to(c, bg_turn(&engine, &c->run, stop));
+    c->leaves = 1;
+    const int status = bg_arrive(&engine, &c->run);
+    c->leaves = 0;
+    *stop = c->stretch.stop;
+    return status == BG_AWAY ? BG_OK : come_to(c, status);
 }
 
 int bg_located_end(bg_located *c)

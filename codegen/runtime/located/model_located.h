@@ -98,6 +98,7 @@ typedef struct {
     double own;                /* the largest rate of an affine model in the mode `rated`, if .. */
     int known, rated[BG_ROOM(BG_FRICTION)]; /* .. it is known */
     bg_stretch stretch;
+    int leaves;                /* whether it is left where a stretch begins */
     int next, turned;          /* the next sample; whether rates may have turned since a step */
     bg_watch watch;
     bg_corner_watch corners;

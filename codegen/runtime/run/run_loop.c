@@ -226,44 +226,27 @@ static double most_turns(const bg_log *log)
     return 16.0 * (log->emptied ? INT_MAX : log->capacity) + 1000.0;
 }
 
-int bg_turn(const bg_engine *e, bg_course *c, double *stop)
-{
-    int undecided, status = BG_OK;
-    /* Breakpoints lie ahead one after the other: a turn that ends at one gets somewhere. */
-    c->turns += c->at.t < c->at.following;
-    if (c->turns >= most_turns(&c->log))
-        return BG_EVENTS;
-    status = e->pass(e->self, c->at.t, &c->span);
-    c->at.following = fmin(c->span.following, next_tick(e, c));
-    *stop = fmin(c->at.following, c->end);
-    if (status || c->at.t >= c->end)
-        return status;
-    if (!c->decided && c->paused)
-        status = come_to_end(e, c, &undecided);
-    if (!c->decided && status == BG_OK)
-        status = decide_here(e, c);
-    if (status == BG_OK)
-        c->decided = c->paused = 0;
-    return status;
-}
-
-void bg_begin_turns(bg_course *c)
-{
-    c->turns = 0.0;
-    c->at.following = -INFINITY;
-}
-
 int bg_arrive(const bg_engine *e, bg_course *c)
 {
-    double stop;
-    int status = BG_OK;
-    for (bg_begin_turns(c); status == BG_OK;) {
-        status = bg_turn(e, c, &stop);
+    int status = BG_OK, undecided;
+    /* Breakpoints lie ahead one after the other: a turn that ends at one gets somewhere. */
+    for (double turns = 0.0; turns < most_turns(&c->log); turns += c->at.t < c->at.following) {
+        status = e->pass(e->self, c->at.t, &c->span);
+        c->at.following = fmin(c->span.following, next_tick(e, c));
         if (status || c->at.t >= c->end)
             return status;
-        status = e->advance(e->self, stop);
+        if (!c->decided && c->paused)
+            status = come_to_end(e, c, &undecided);
+        if (!c->decided && status == BG_OK)
+            status = decide_here(e, c);
+        if (status)
+            return status;
+        c->decided = c->paused = 0;
+        status = e->advance(e->self, fmin(c->at.following, c->end));
+        if (status)
+            return status;
     }
-    return status;
+    return BG_EVENTS;
 }
 
 int bg_finish(const bg_engine *e, bg_course *c)

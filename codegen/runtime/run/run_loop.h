@@ -11,14 +11,13 @@
  * `goes_on`: whether it goes on with one before, so that its begin may have events; `started`,
  * `decided`: whether its first instant has been decided, and the present one; `paused`: whether it
  * came to the present one as to its end; `excused`: whether the mode there is none that could go
- * on. `done` [s]: up to when tasks have set what they set; `due`: those whose instant it is.
- * `turns`: so many have come to no breakpoint. */
+ * on. `done` [s]: up to when tasks have set what they set; `due`: those whose instant it is. */
 typedef struct {
     bg_instant at;
     double began, end;
     bg_span span;
     int goes_on, started, decided, paused, excused;
-    double done, turns;
+    double done;
     int due[BG_MOST_CLOCKS];
     int mode[BG_MOST_PORTS];
     bg_log log;
@@ -42,11 +41,6 @@ typedef struct {
     int (*rest)(void *self);
     int (*advance)(void *self, double stop);
 } bg_engine;
-
-/* Arrives in turns: each decides the mode where the run is, tells where the stretch from there ends
- * at the latest, and leaves it to the caller to go there, or to an event; none once at its end. */
-void bg_begin_turns(bg_course *c);
-int bg_turn(const bg_engine *engine, bg_course *c, double *stop);
 
 /* Sets out at t, with BG_MOST_PORTS modes as they are before, all let go unless told; and runs to
  * the end: arrives there, and decides what is just after it. */
