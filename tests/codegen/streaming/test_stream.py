@@ -22,9 +22,11 @@ from codegen import (
     switched_simulator,
 )
 from codegen.data.columns import read_columns
+from codegen.engine import runs
 from codegen.runs.track import BLOCK
 from codegen.streaming import files
 from codegen.streaming.writing import Writing
+from codegen.taking import located
 
 MANY = 2 * BLOCK + 77
 WAVE = Square(1, -2, 2)
@@ -305,3 +307,28 @@ def test_a_switch_that_rests_across_a_border_is_told(backend: str, tmp_path: Pat
     assert [str(one.message) for one in again] == [str(one.message) for one in told]
     assert [one.filename for one in again] == [__file__]
     same(done, run, run.columns)
+
+
+@pytest.mark.parametrize("method", ["exact", "DOP853"])
+def test_a_run_that_begins_again_for_room_is_written_once(
+    method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Three switches turn at once where there is room for two events: C begins again with more."""
+    monkeypatch.setattr(runs, "CAPACITY", 2)
+    monkeypatch.setattr(located, "FEW", 2)
+    switches = [bg.Sw(f"q{k}", on="sin(9*t + 1)") for k in range(3)]
+    zeros = [bg.Zero(f"z{k}") for k in range(3)]
+    loads = [bg.R(f"c{k}", k + 1) for k in range(3)]
+    paths = [f"j > z{k} > q{k}, z{k} > c{k}" for k in range(3)]
+    graph = bg.graph([bg.One("j"), MASS, *switches, *zeros, *loads], "j > m, " + ", ".join(paths))
+    ready, times = simulator(bg.derive(graph), {}, backend="c"), np.linspace(0.0, 3.0, MANY)
+    done = ready.stream(tmp_path / "run.csv", times, {"v": 1.0}, method=method)
+    run = ready.run(times, {"v": 1.0}, method=method)
+    assert (done.backend, done.samples) == ("c", MANY)
+    same(done, run, run.columns)
+    # The sine is zero at (k pi - 1)/9.
+    turns = (np.arange(1, 10) * np.pi - 1) / 9
+    turns = turns[turns < 3]
+    events = told_events(tmp_path / "run.events.csv")
+    assert [port for _, port, _, _ in events] == ["q0", "q1", "q2"] * len(turns)
+    assert np.abs([t for t, *_ in events] - np.repeat(turns, 3)).max() < 1e-9
