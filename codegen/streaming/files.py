@@ -138,12 +138,12 @@ class _EventCsv(_Csv):
 
 
 class _Parquet(_Table):
-    """A parquet file, whose rows are written in groups."""
+    """A parquet file, whose rows are written in groups; by its name, so that Ctrl-C does not come between."""
 
     def __init__(self, file: BinaryIO, schema: Any) -> None:
         super().__init__(file)
         self._schema = schema
-        self._writer: Any = None
+        self._opened: tuple[Any, Any] | None = None
         self._waiting: list[Any] = []
         self._rows = 0
 
@@ -152,11 +152,11 @@ class _Parquet(_Table):
         import pyarrow.parquet
 
         self.clear()
+        into = pyarrow.OSFile(self._file.name, "wb")
         # Numbers that hardly recur would fill a dictionary for nothing.
         texts = [one.name for one in self._schema if one.type == pyarrow.string()]
-        self._writer = pyarrow.parquet.ParquetWriter(
-            self._file, self._schema, use_dictionary=texts or False
-        )
+        writer = pyarrow.parquet.ParquetWriter(into, self._schema, use_dictionary=texts or False)
+        self._opened = writer, into
 
     def add(self, columns: Sequence[Any]) -> None:
         """See `Growing`."""
@@ -172,20 +172,27 @@ class _Parquet(_Table):
     def end(self) -> None:
         """See `Growing`."""
         self._write()
-        self._writer.close()
+        self._close()
 
     def clear(self) -> None:
         """See `Growing`."""
-        # A writer that is left to itself writes its end when it goes, wherever the file then is.
-        if self._writer is not None:
-            self._writer.close()
         self._waiting, self._rows = [], 0
+        self._close()
         super().clear()
 
     def _write(self) -> None:
         import pyarrow
 
-        if self._rows:
+        if self._rows and self._opened is not None:
             table = pyarrow.Table.from_batches(self._waiting, schema=self._schema)
-            self._writer.write_table(table.combine_chunks(), row_group_size=self._rows)
-        self._waiting, self._rows = [], 0
+            count, self._waiting, self._rows = self._rows, [], 0
+            self._opened[0].write_table(table.combine_chunks(), row_group_size=count)
+
+    def _close(self) -> None:
+        """Write the file's end, without which nobody reads it."""
+        if self._opened is not None:
+            (writer, into), self._opened = self._opened, None
+            try:
+                writer.close()
+            finally:
+                into.close()

@@ -66,8 +66,10 @@ def streamed(
         writing = Writing(model, asked.times, names, numbers, events)
         try:
             backend = run(writing)
-        finally:
-            writing.end()
+        except BaseException as error:
+            _leave(writing, error)
+            raise
+        writing.end()
     if not asked.events:
         with telling(beside):
             beside.unlink(missing_ok=True)
@@ -77,3 +79,11 @@ def streamed(
         MappingProxyType(dict(writing.final)), MappingProxyType(told), backend, asked.begun.completed,
     )  # fmt: skip
     return found, writing
+
+
+def _leave(writing: Writing, error: BaseException) -> None:
+    """Let what was written before an error be read; what fails then is told beside that."""
+    try:
+        writing.end()
+    except (OSError, ValueError) as other:
+        error.add_note(f"the last of it could not be written: {other}")

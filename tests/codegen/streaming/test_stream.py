@@ -1,6 +1,7 @@
 """Runs that are streamed: the numbers of `run`, bit for bit, in files that are whole or say so."""
 
 import csv
+import signal
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
@@ -224,6 +225,39 @@ def test_ctrl_c_leaves_what_is_partial(
     assert done.samples == MANY
     assert sorted(one.name for one in tmp_path.iterdir()) == ["run.csv", "run.events.csv"]
     assert told_events(tmp_path / "run.events.csv") == []
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="no alarms")
+@pytest.mark.parametrize("ending", [".csv", ".parquet"])
+@pytest.mark.parametrize("backend", ["numpy", "c"])
+def test_what_is_interrupted_anywhere_can_be_read(
+    backend: str, ending: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An alarm, as Ctrl-C is one, rings a moment after the twentieth block."""
+    if ending == ".parquet":
+        pytest.importorskip("pyarrow")
+    ready, take, calls = MODELS["linear"](backend), Writing.take, []
+
+    def ring(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    def armed(self: Writing, *arguments: Any) -> None:
+        take(self, *arguments)
+        calls.append(1)
+        if len(calls) == 20:
+            signal.setitimer(signal.ITIMER_REAL, 0.02)
+
+    monkeypatch.setattr(Writing, "take", armed)
+    times, before = np.linspace(0.0, 1.0, 2_000_000), signal.signal(signal.SIGALRM, ring)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            ready.stream(tmp_path / f"run{ending}", times, {"v": 1.0}, {"F": 0})
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    found = read_columns(tmp_path / f"run.partial{ending}", ["t"]).arrays[0]
+    assert len(found) >= 15 * BLOCK
+    assert (found == times[: len(found)]).all()
 
 
 def test_of_a_run_that_ends_before_its_first_sample_nothing_is_left(tmp_path: Path) -> None:
