@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.alone import located
 from references.build import bond_graph
 
 import bondgraph as bg
@@ -66,7 +67,7 @@ def test_c_comes_back_and_the_run_is_refused_the_same_way(method: str) -> None:
     signals = signals_for({"F": 0.2}, run.inputs)
     times = np.array([0.0, 1.0, 2.0])
     settings = settings_of(method, 1e-10, 1e-11)
-    stopped = run.located.run(times, np.array([start]), signals, settings)
+    stopped = located(run.located, times, np.array([start]), signals, settings)
     assert "the integrator no longer advances" in stopped.reason
     assert stopped.time == pytest.approx(time, abs=1e-6)
     with pytest.raises(bg.SimulationError, match=_near(time)):
