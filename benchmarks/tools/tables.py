@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-WIDTHS = (22, 11, 8, 11, 8, 11, 8)
+WIDTHS = (18, 11, 8, 10, 8, 10, 8, 11, 8)
 """Of the name and of the cells after it."""
 
 
@@ -11,7 +11,7 @@ def line(cells: Sequence[str], said: str) -> str:
     """Cells to the right of a name, and what is said after them.
 
     >>> line(["ours", "1.2", ""], "right")
-    'ours                          1.2          right'
+    'ours                      1.2          right'
     """
     name, *others = cells
     right = "".join(f"{cell:>{width}}" for cell, width in zip(others, WIDTHS[1:], strict=False))

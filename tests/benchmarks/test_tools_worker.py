@@ -57,6 +57,15 @@ def test_a_worker_tells_what_fails_and_what_cannot_be(said):
     assert said("ladder", 1) == {"cannot": "no circuits"}
 
 
+def test_a_worker_that_takes_too_long_of_a_processor_is_told_apart(monkeypatch, tmp_path):
+    scripts = tmp_path / "scripts"
+    scripts.mkdir()
+    (scripts / "spin.py").write_text(SCRIPT.replace("return 2 * ready", "\n    while True: pass"))
+    (tmp_path / "worker.py").write_text((TOOLS / "worker.py").read_text())
+    monkeypatch.setattr(asking, "HERE", tmp_path)
+    assert asking.asked(sys.executable, "spin", "chain", {"start": 1}, 1.0) == {"over": 1.0}
+
+
 def test_nothing_is_read_of_what_says_nothing():
     assert asking.latest("Warning: RESULT is near\n") == {}
 
