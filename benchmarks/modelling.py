@@ -20,7 +20,7 @@ sys.path[:0] = [str(ROOT / "tests")]
 
 from references.fig11 import fig11  # noqa: E402
 from tools import chains, drivelines, environments, ladders, verdicts  # noqa: E402
-from tools.known import Found, Tool, asked, tools  # noqa: E402
+from tools.known import OURS, Found, Tool, asked, tools  # noqa: E402
 from tools.tables import line, number, ratio, trouble  # noqa: E402
 
 CHAINS = (10, 50, 100, 200)
@@ -124,7 +124,8 @@ def show_sweeps(every: tuple[Tool, ...], seconds: float) -> None:
             count = RUNS if tool.title in TOGETHER else FEW
             one = asked(tool, "sweep", drivelines.sweep_spec(linear, count), seconds)
             if one.get("cannot") != "circuits only":
-                base = base or {**one, "rate": count / one["again"]}
+                if tool == OURS[0] and "again" in one:
+                    base = {**one, "rate": count / one["again"]}
                 cells = [tool.title, *sweep_cells(one, count, base)]
                 print(line(cells, sweep_said(one, linear, count)), flush=True)
 
@@ -135,7 +136,7 @@ def sweep_cells(one: Found, count: int, base: Found) -> list[str]:
         return ["-", "", "-", ""]
     rate, ready = count / one["again"], max(one["compiled"], 0.0)
     return [
-        number(ready), ratio(ready, base["compiled"]), number(rate), ratio(rate, base["rate"]),
+        number(ready), ratio(ready, base.get("compiled")), number(rate), ratio(rate, base.get("rate")),
     ]  # fmt: skip
 
 

@@ -5,8 +5,7 @@ from typing import Any
 import sympy as sp
 from bondgraph.core import Bond, BondGraph
 
-from bondgraph import junctions
-from bondgraph.nodes import elements
+from bondgraph import elements, junctions
 
 ONE_PORTS = {
     "Se": elements.Source_effort, "R": elements.Element_R, "I": elements.Element_I,
