@@ -39,7 +39,8 @@ class Past:
         ``turns``: whether it may not go on smoothly from the part before; ``size``: the largest so far.
         """
         half = 0.5 * (end - begin)
-        powers = from_nodes() @ values / half ** np.arange(NODES)
+        powers = from_nodes() @ (values - values[0]) / half ** np.arange(NODES)
+        powers[0] += values[0]  # what stays the same does so exactly
         part = Piece(begin + half + self.late, ((0.0, tuple(powers.tolist())),), 0.5 / half)
         broken = turns and breaks_off(self.parts[-1], part, self.points[-1], self.late, size)
         smoothly = self.smooth if broken else self.smooth | {self.points[-1]}

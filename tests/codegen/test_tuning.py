@@ -13,8 +13,8 @@ from codegen.tuning import TUNING, tuning_text
 
 FILES = ("main.c", *(name for folder in FOLDERS for name in runtime_names(folder)))
 
-TABLES = {"located_explicit_table.h", "batch_gauss.h"}
-"""Coefficients of methods."""
+TABLES = {"located_explicit_table.h", "batch_gauss.h", "lanes_functions.h"}
+"""Coefficients of methods and of functions."""
 
 NUMBER = re.compile(r"(?<![\w.%])(?:\d+\.\d*(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+)")
 

@@ -31,6 +31,7 @@ from codegen import (
 )  # fmt: skip
 from codegen.batch.exact import ExactLoop
 from codegen.batch.located import LocatedLoop
+from codegen.c.lanes import lanes
 from codegen.inputs.pieces import Piece
 from codegen.sweeps.job import Job
 from codegen.sweeps.measuring import batch_of
@@ -92,7 +93,7 @@ def test_models_of_every_kind(name: str) -> None:
     for port in program.friction:
         measures[f"stick {port.name}"] = first_event(port.name, "stick")
         measures[f"slips {port.name}"] = event_count(port.name, "slip")
-    settings = {"method": "DOP853", "rtol": 1e-8, "atol": 1e-10}
+    settings: dict[str, Any] = {"method": "DOP853", "rtol": 1e-8, "atol": 1e-10}
     first = next(iter(family.parameters))
     names = (first, *family.states[:1])
     rows = [[family.parameters[first], 0.4][: len(names)], [1.1, -0.7][: len(names)]]
@@ -101,7 +102,8 @@ def test_models_of_every_kind(name: str) -> None:
         # No state; or the rate of an input is shown, or drives what changes: its steps matter then.
         assert not program.states or program.layout["K"].rows or program.layout["E"].rows
     else:
-        _same(job, rows)
+        # Side by side functions differ in their last place, and with them the steps over a corner.
+        _same(job, rows, settings["rtol"] if lanes(program) else 1e-12)
 
 
 CASE = prepared(
