@@ -8,7 +8,7 @@ import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.c.export import CALLING, texts
-from codegen.c.lanes import LANES, Lanes, lanes, lanes_text
+from codegen.c.lanes import Lanes, lanes, lanes_text
 from codegen.c.runtime import runtime_file, runtime_names
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
 from codegen.engine.fallback import Stopped
@@ -42,6 +42,7 @@ _BATCH = """
 typedef struct bg_lanes bg_lanes;
 void lanes_batch(bg_lanes *a, located_room *rooms, const batch_job *job, const located_runs *runs);
 unsigned long lanes_size(void);
+int lanes_rooms(void);
 """
 """What is called of runs side by side."""
 
@@ -96,7 +97,7 @@ class LocatedLibrary:
 
     @property
     def lanes(self) -> int:
-        """So many runs go side by side."""
+        """So many runs are under way at a time."""
         return 1
 
     @cached_property
@@ -136,10 +137,11 @@ class LanesLibrary(LocatedLibrary):
         """This one."""
         return self
 
-    @property
+    @cached_property
     def lanes(self) -> int:
-        """So many runs go side by side."""
-        return LANES
+        """So many runs are under way at a time."""
+        count: int = self.opened[1].lanes_rooms()
+        return count
 
 
 class LocatedRuns:

@@ -1,7 +1,7 @@
-/* From a run to its lane and back. */
+/* From a run to a lane, and what a lane shows of it. */
 #include <string.h>
 
-#include "lanes.h"
+#include "lanes_steps.h"
 
 /* How holding efforts follow from states, inputs and their rates: X x + U u + V u' = 0 solved. */
 static void load_held(bg_lanes_own *own, int lane, const bg_hold *held)
@@ -20,6 +20,11 @@ static void load_held(bg_lanes_own *own, int lane, const bg_hold *held)
 }
 
 /* Ports that hold may share a load, or inputs may rule whether they do: these runs go alone. */
+static int can_hold(const bg_hold *held)
+{
+    return !held->share_count && !held->ruled;
+}
+
 int bg_lanes_load_mode(bg_lanes_own *own, int lane, const bg_located *c)
 {
     bg_hold *held = NULL;
@@ -34,61 +39,85 @@ int bg_lanes_load_mode(bg_lanes_own *own, int lane, const bg_located *c)
         own->held[i][lane] = 0.0;
     if (!sticking)
         return 1;
-    if (bg_hold_of(c->model, c->run.mode, &held) != BG_OK || held->share_count || held->ruled)
+    if (bg_hold_of(c->model, c->run.mode, &held) != BG_OK || !can_hold(held))
         return 0;
     load_held(own, lane, held);
     return 1;
 }
 
-int bg_lanes_load(bg_lanes *a, int lane)
+int bg_lanes_may(bg_lane_run *one)
 {
-    bg_lane_run *const one = a->lane + lane;
-    bg_located *const c = one->room->run;
-    if (c->stretch.method != BG_DOP853 || !bg_lanes_load_mode(&a->own, lane, c))
-        return 0;
-    if (BG_CORNERS && !(c->model->now.sided > 0.0))
+    const bg_located *const c = one->room->run;
+    bg_hold *held = NULL;
+    int sticking = 0;
+    if (c->stretch.method != BG_DOP853 || (BG_CORNERS && !(c->model->now.sided > 0.0)))
         return 0; /* over corners that it does not get past */
-    for (int k = 0; k < BG_SIZE; k++) {
-        a->y[k][lane] = c->solver.y[k];
-        a->f[k][lane] = c->solver.f[k];
-    }
+    for (int i = 0; i < K; i++)
+        sticking |= c->run.mode[i] == 0;
+    return !sticking || (bg_hold_of(c->model, c->run.mode, &held) == BG_OK && can_hold(held));
+}
+
+void bg_lanes_load(bg_lanes_group *group, int lane, bg_lane_run *one)
+{
+    group->run[lane] = one;
+    one->seated = 1;
     one->reach = -1.0;
-    one->tries = 0;
-    c->turns.patience = BG_PATIENCE * BG_LANES; /* an explicit step costs so much less */
-    return bg_lanes_follow(a, lane, c->solver.t);
+    for (int i = 0; i < BG_LANE_CONSTANTS; i++)
+        group->own.constants[i][lane] = one->constants[i];
+    (void)bg_lanes_load_mode(&group->own, lane, one->room->run);
 }
 
-int bg_lanes_follow(bg_lanes *a, int lane, double end)
+void bg_lanes_triggers(const bg_lanes_own *own, int lane, const bg_lane *shot, double *values)
 {
-    bg_lane_run *const one = a->lane + lane;
-    bg_located *const c = one->room->run;
-    const double t = c->solver.t;
-    double series[BG_ROOM(BG_EXTERNAL)][LANE_SERIES];
-    if (fmax(fabs(t - a->origin[lane]), fabs(end - a->origin[lane])) <= one->reach)
-        return 1;
-    const double fastest = bg_signals_fastest(c->signals, &c->run.span);
-    one->reach = fastest > 0.0 ? LANE_REACH / fastest : INFINITY;
-    a->origin[lane] = fastest > 0.0 ? t + one->reach : t;
-    const int terms = bg_lanes_series(c->signals, &c->run.span, a->origin[lane], series);
-    a->terms = terms > a->terms ? terms : a->terms;
-    for (int i = 0; i < BG_EXTERNAL; i++)
-        for (int k = 0; k < LANE_SERIES; k++)
-            a->series[i][k][lane] = series[i][k];
-    return terms > 0;
-}
-
-void bg_lanes_unload(const bg_lanes *a, int lane)
-{
-    bg_solver *const s = &a->lane[lane].room->run->solver;
-    for (int k = 0; k < BG_SIZE; k++) {
-        s->y_old[k] = a->y_old[k][lane];
-        s->y[k] = a->y[k][lane];
-        s->f_old[k] = a->stage[0][k][lane];
-        s->f[k] = a->stage[LANE_LAST][k][lane];
-        for (int i = 0; i < BG_EXPLICIT_STAGES; i++)
-            s->stage[i][k] = a->stage[i][k][lane];
-        for (int i = 0; i < 7; i++)
-            s->interpolation[i][k] = a->interpolation[i][k][lane];
+    for (int i = 0; i < K; i++) {
+        const double slip = shot[BG_AT_y + bg_friction_readings[i]][lane];
+        const double effort = shot[BG_AT_u + bg_friction_inputs[i]][lane];
+        const double way = own->signs[i][lane];
+        values[i] = way != 0.0 ? way * slip : shot[BG_AT_caps + i][lane] - fabs(effort);
     }
-    s->dense = 1;
+}
+
+/* What corners hang on, as far from zero as on this side. */
+static void corners_of(const bg_lane_run *one, bg_lane_sight at, double *values)
+{
+    double hung[2 * BG_ROOM(BG_CORNERS)];
+    for (int k = 0; k < 2 * BG_CORNERS; k++)
+        hung[k] = at.shot[LANE_CORNERS + k][at.lane];
+    bg_corners_away(&one->room->model->now, hung);
+    memcpy(values, hung, sizeof(double) * BG_CORNERS);
+}
+
+int bg_lanes_pass(const bg_lane_run *one, const bg_lanes_own *own, bg_lane_sight middle,
+                  bg_lane_sight end)
+{
+    bg_located *const c = one->room->run;
+    double in[BG_ROOM(K)], last[BG_ROOM(K)];
+    double on[BG_ROOM(BG_CORNERS)], after[BG_ROOM(BG_CORNERS)];
+    bg_lanes_triggers(own, middle.lane, middle.shot, in);
+    bg_lanes_triggers(own, end.lane, end.shot, last);
+    corners_of(one, middle, on);
+    corners_of(one, end, after);
+    if (!bg_finite(K, in) || !bg_finite(K, last) || !bg_passes(&c->watch.of, K, in, last)
+        || !bg_passes(&c->corners.of, BG_CORNERS, on, after))
+        return 0;
+    bg_note_pass(&c->watch.of, K, last);
+    bg_note_pass(&c->corners.of, BG_CORNERS, after);
+    return 1;
+}
+
+void bg_lanes_keep(bg_lane_run *one, int lane, const bg_lane *w, const bg_lane *shot)
+{
+    located_room *const room = one->room;
+    const batch_job *const job = one->all->job;
+    const int sample = room->run->next++;
+    for (int s = 0; s < job->signals; s++) {
+        const int place = job->signal[s];
+        room->values[s * job->samples + sample] = place < 0 ? w[-1 - place][lane] : shot[place][lane];
+    }
+}
+
+bg_lane_steps bg_lanes_kind(const bg_lane_run *one)
+{
+    const int whole = !one->asked.smooth && one->all->exponential.gap > 0.0;
+    return BG_SIZE <= LANE_FEW && whole && !one->waits ? LANE_EXPONENTIAL : LANE_EXPLICIT;
 }

@@ -1,4 +1,6 @@
 /* External inputs as power series, which all lanes work out in one way whatever they are. */
+#include <string.h>
+
 #include "lanes.h"
 #include "model_terms.h"
 
@@ -53,4 +55,40 @@ int bg_lanes_series(const bg_signals *signals, const bg_span *span, double t,
         add_series(term, signals->coefficients, t, series[term->input]);
     }
     return most;
+}
+
+int bg_lanes_follow(bg_lanes_group *group, int lane, double end)
+{
+    bg_lane_run *const one = group->run[lane];
+    bg_located *const c = one->room->run;
+    const double t = c->solver.t, origin = group->origin[lane];
+    double series[BG_ROOM(BG_EXTERNAL)][LANE_SERIES];
+    if (fmax(fabs(t - origin), fabs(end - origin)) <= one->reach)
+        return 1;
+    const double fastest = bg_signals_fastest(c->signals, &c->run.span);
+    one->reach = fastest > 0.0 ? LANE_REACH / fastest : INFINITY;
+    group->origin[lane] = fastest > 0.0 ? t + one->reach : t;
+    const int terms = bg_lanes_series(c->signals, &c->run.span, group->origin[lane], series);
+    group->terms = terms > group->terms ? terms : group->terms;
+    for (int i = 0; i < BG_EXTERNAL; i++)
+        for (int k = 0; k < LANE_SERIES; k++)
+            group->series[i][k][lane] = series[i][k];
+    return terms > 0;
+}
+
+void bg_lanes_inputs(bg_lanes_group *group)
+{
+    bg_lane x;
+    for (int l = 0; l < BG_LANES; l++)
+        x[l] = group->at.t[l] - group->origin[l];
+    for (int i = 0; i < BG_EXTERNAL; i++) {
+        bg_lane p = {0}, d = {0};
+        for (int k = group->terms - 1; k >= 0; k--)
+            for (int l = 0; l < BG_LANES; l++) {
+                d[l] = BG_LANE_RATED ? d[l] * x[l] + p[l] : 0.0;
+                p[l] = p[l] * x[l] + group->series[i][k][l];
+            }
+        memcpy(group->at.w[i], p, sizeof p);
+        memcpy(group->at.dw[i], d, sizeof d);
+    }
 }

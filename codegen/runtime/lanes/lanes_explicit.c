@@ -1,29 +1,11 @@
 /* Explicit steps of all lanes: as located_explicit.c, each number in so many lanes. */
 #include <string.h>
 
-#include "lanes.h"
+#include "lanes_steps.h"
 #include "located_explicit_table.h"
 
-/* External inputs at the lanes' times, and their rates where what holds may ask for them. */
-static void lane_inputs(bg_lanes *a)
-{
-    bg_lane x;
-    for (int l = 0; l < BG_LANES; l++)
-        x[l] = a->at.t[l] - a->origin[l];
-    for (int i = 0; i < BG_EXTERNAL; i++) {
-        bg_lane p = {0}, d = {0};
-        for (int k = a->terms - 1; k >= 0; k--)
-            for (int l = 0; l < BG_LANES; l++) {
-                d[l] = BG_LANE_RATED ? d[l] * x[l] + p[l] : 0.0;
-                p[l] = p[l] * x[l] + a->series[i][k][l];
-            }
-        memcpy(a->at.w[i], p, sizeof p);
-        memcpy(a->at.dw[i], d, sizeof d);
-    }
-}
-
 /* Adds so many stages, each times its weight, to `sum`; four at a time keep a processor busy. */
-static void add_stages(const bg_lanes *a, int count, const double *weights, bg_lane *sum)
+static void add_stages(const bg_lanes_explicit *a, int count, const double *weights, bg_lane *sum)
 {
     enum { AT_ONCE = 4 };
     const bg_lane *of[DOP_ALL + AT_ONCE];
@@ -47,7 +29,7 @@ static void add_stages(const bg_lanes *a, int count, const double *weights, bg_l
 }
 
 /* Where stage i of a step is asked for, and when. */
-static void lane_point(bg_lanes *a, int i)
+static void lane_point(bg_lanes_explicit *a, int i)
 {
     bg_lane sum[BG_SIZE] = {{0}};
     add_stages(a, i, DOP_A[i], sum);
@@ -55,11 +37,12 @@ static void lane_point(bg_lanes *a, int i)
         for (int l = 0; l < BG_LANES; l++)
             a->tried[k][l] = a->y_old[k][l] + a->h[l] * sum[k][l];
     for (int l = 0; l < BG_LANES; l++)
-        a->at.t[l] = a->t_old[l] + DOP_C[i] * a->h[l];
-    lane_inputs(a);
+        a->of.at.t[l] = a->t_old[l] + DOP_C[i] * a->h[l];
+    bg_lanes_inputs(&a->of);
 }
 
-void bg_lanes_mend(const bg_lanes_own *own, const bg_lanes_at *at, const bg_lane *s, bg_lane *rate)
+/* Rates of lanes that have no numbers on this side of a corner become those of laws as they are. */
+static void lane_mend(const bg_lanes_own *own, const bg_lanes_at *at, const bg_lane *s, bg_lane *rate)
 {
     bg_lane sum = {0}, plain[BG_SIZE];
     int fine = 1;
@@ -76,22 +59,16 @@ void bg_lanes_mend(const bg_lanes_own *own, const bg_lanes_at *at, const bg_lane
             rate[k][l] = sum[l] == 0.0 ? rate[k][l] : plain[k][l];
 }
 
-static void lane_stage(bg_lanes *a, int i)
+static void lane_stage(bg_lanes_explicit *a, int i)
 {
     lane_point(a, i);
-    bg_lanes_rates(&a->own, &a->at, a->tried, a->stage[i]);
+    bg_lanes_rates(&a->of.own, &a->of.at, a->tried, a->stage[i]);
     if (BG_CORNERS)
-        bg_lanes_mend(&a->own, &a->at, a->tried, a->stage[i]);
-}
-
-void bg_lanes_shoot(bg_lanes *a, const bg_lane *s, bg_lane *shot)
-{
-    lane_inputs(a);
-    bg_lanes_look(&a->own, &a->at, s, shot);
+        lane_mend(&a->of.own, &a->of.at, a->tried, a->stage[i]);
 }
 
 /* The sums of squares that estimate errors of order 5 and 3, in what the tolerance allows. */
-static void lane_estimate(bg_lanes *a)
+static void lane_estimate(bg_lanes_explicit *a)
 {
     bg_lane e5[BG_SIZE] = {{0}}, e3[BG_SIZE] = {{0}};
     add_stages(a, DOP_STAGES + 1, E5, e5);
@@ -107,21 +84,21 @@ static void lane_estimate(bg_lanes *a)
         }
 }
 
-void bg_lanes_attempt(bg_lanes *a)
+void bg_lanes_attempt(bg_lanes_explicit *a)
 {
     memcpy(a->stage[0], a->f, sizeof a->f);
     for (int i = 1; i < DOP_STAGES; i++)
         lane_stage(a, i);
     lane_point(a, DOP_STAGES);
-    bg_lanes_shoot(a, a->tried, a->end);
+    bg_lanes_look(&a->of.own, &a->of.at, a->tried, a->end);
     memcpy(a->stage[DOP_STAGES], a->end + BG_AT_rate, sizeof a->f);
     if (BG_CORNERS)
-        bg_lanes_mend(&a->own, &a->at, a->tried, a->stage[DOP_STAGES]);
+        lane_mend(&a->of.own, &a->of.at, a->tried, a->stage[DOP_STAGES]);
     memcpy(a->y, a->tried, sizeof a->y);
     lane_estimate(a);
 }
 
-void bg_lanes_dense(bg_lanes *a)
+void bg_lanes_dense(bg_lanes_explicit *a)
 {
     for (int i = DOP_STAGES + 1; i < DOP_ALL; i++)
         lane_stage(a, i);
@@ -142,11 +119,11 @@ void bg_lanes_dense(bg_lanes *a)
     }
 }
 
-void bg_lanes_between(bg_lanes *a, bg_lane *s)
+void bg_lanes_between(bg_lanes_explicit *a, bg_lane *s)
 {
     bg_lane x;
     for (int l = 0; l < BG_LANES; l++)
-        x[l] = (a->at.t[l] - a->t_old[l]) / a->h[l];
+        x[l] = (a->of.at.t[l] - a->t_old[l]) / a->h[l];
     for (int k = 0; k < BG_SIZE; k++) {
         bg_lane sum = {0};
         for (int i = 6; i >= 0; i--)
