@@ -43,8 +43,13 @@ typedef struct bg_lanes bg_lanes;
 void lanes_batch(bg_lanes *a, located_room *rooms, const batch_job *job, const located_runs *runs);
 unsigned long lanes_size(void);
 int lanes_rooms(void);
+int lanes_rows_run(bg_lanes *a, located_room *room, const double *parameters,
+                   const bg_signals *signals, bg_request *asked, bg_rows *rows);
 """
 """What is called of runs side by side."""
+
+FEW_STATES = 16
+"""As many as go by exponential steps, as ``lanes.h`` has it."""
 
 FEW, MANY = 256, 1 << 20
 """Events there is room for at first, and at most."""
@@ -94,6 +99,12 @@ class LocatedLibrary:
         """The library that does several runs at once, or this one where it does one after the other."""
         code = lanes(self._model.program)
         return self if code is None else LanesLibrary(self._model, code, self._flags)
+
+    @property
+    def alone(self) -> "LocatedLibrary":
+        """The library for a run by itself: by steps of lanes too, where these are exponential."""
+        few = self._model.program.size <= FEW_STATES
+        return self.side_by_side if few else self
 
     @property
     def lanes(self) -> int:
@@ -151,7 +162,7 @@ class LocatedRuns:
     """
 
     def __init__(self, model: ClosedModel, library: LocatedLibrary | None = None) -> None:
-        self.model, self.library = model, library or LocatedLibrary(model)
+        self.model, self.library = model, (library or LocatedLibrary(model)).alone
         self.parameters = np.array(
             [float(model.parameters[symbol.name]) for symbol in model.program.parameters] or [0.0]
         )
@@ -182,12 +193,14 @@ class LocatedRuns:
 
     def call(self, asking: "Asking", rows: Any) -> int:
         """Call C once; the status."""
-        ffi, library = self.library.opened
-        instance, run = self._rooms
-        status: int = library.bg_rows_run(
-            ffi.cast("bg_located *", run.ctypes.data), ffi.cast("bg_model *", instance.ctypes.data),
-            _pointer(ffi, self.parameters), asking.inputs, asking.record, rows,
-        )  # fmt: skip
+        _, library = self.library.opened
+        room, lanes = self._rooms[:2]
+        given = (_pointer(self.library.opened[0], self.parameters), asking.inputs, asking.record, rows)
+        status: int = (
+            library.bg_rows_run(room.run, room.model, *given)
+            if lanes is None
+            else library.lanes_rows_run(lanes, room, *given)
+        )
         return status
 
     def stopped(self, asking: "Asking", status: int) -> Stopped:
@@ -217,10 +230,17 @@ class LocatedRuns:
         return len(program.states) + len(program.law_states)
 
     @cached_property
-    def _rooms(self) -> tuple[Array, Array]:
-        """Room for an instance and for a run."""
-        instance, run = self.library.sizes
-        return aligned(instance), aligned(run)
+    def _rooms(self) -> tuple[Any, Any, Any]:
+        """Where a run is done, what lanes work on, or None, and what these point to."""
+        ffi, library = self.library.opened
+        instance, run = map(aligned, self.library.sizes)
+        room = ffi.new("located_room *")
+        room.model = ffi.cast("bg_model *", instance.ctypes.data)
+        room.run = ffi.cast("bg_located *", run.ctypes.data)
+        if self.library.lanes == 1:
+            return room, None, (instance, run)
+        lanes = aligned(library.lanes_size() // 8 + 1)
+        return room, ffi.cast("bg_lanes *", lanes.ctypes.data), (instance, run, lanes)
 
     @property
     def width(self) -> int:

@@ -8,15 +8,17 @@
 #include "batch_located.h"
 #include "lanes_config.h"
 #include "located_internal.h"
+#include "located_rows.h"
 
 typedef double bg_lane[BG_LANES];
 
 enum {
     LANE_SERIES = 20, /* so many terms at the most, of inputs about an instant */
     LANE_CORNERS = BG_MAP_ROWS, LANE_ROWS = LANE_CORNERS + 2 * BG_CORNERS, /* of an instant */
+    LANE_WATCHED = BG_ROOM(K + BG_CORNERS), /* ports, then corners of laws */
     LANE_WIDE = N + M + BG_OUTSIDE, /* factors of what holds a port */
     LANE_FEW = 16, /* so many states at the most go by exponential steps: their matrices are near */
-    LANE_PATIENCE = 8, LANE_NEVER = 1 << 30, /* explicit steps before others are tried again */
+    LANE_FEW_STEPS = 3, LANE_PATIENCE = 8, LANE_NEVER = 1 << 30, /* explicit steps before others are tried again */
     LANE_RUNS = 2 * BG_LANES /* under way at a time, so that few lanes of either kind stand empty */
 };
 
@@ -47,8 +49,9 @@ typedef enum { LANE_NONE, LANE_EXPLICIT, LANE_EXPONENTIAL } bg_lane_steps;
 /* Of a run what is done by itself. `run`: which one; `tries`: how often the present explicit step
  * was tried; `taken`: whether it was good; `reach` [s]: how far from its middle the series of
  * inputs is one; `turns`: so many have come to no breakpoint. So many explicit steps are taken
- * before exponential ones: `waits`, after the next time these are too coarse `patience`; `parts`:
- * so many of them, at the least, go on a sample. */
+ * before exponential ones: `waits`, and up to the time `after`, where something may happen; after the next time these are too coarse `patience`; `parts`:
+ * so many of them, at the least, go on a sample. `was`: what is watched at the latest two
+ * instants of these. */
 typedef struct {
     struct bg_lanes *all;
     bg_together together;
@@ -56,8 +59,9 @@ typedef struct {
     bg_lane_steps by;
     int seated, run, tries, taken;
     long waits, patience, parts;
-    double reach, grow, turns, constants[BG_ROOM(BG_LANE_CONSTANTS)];
-    bg_request asked;
+    double reach, grow, turns, after, constants[BG_ROOM(BG_LANE_CONSTANTS)];
+    bg_request own;
+    double was[2][LANE_WATCHED];
 } bg_lane_run;
 
 /* Runs that go by steps of one kind: in each lane one, or none. Their inputs are series about
@@ -105,31 +109,28 @@ void bg_lanes_load(bg_lanes_group *group, int lane, bg_lane_run *one);
 int bg_lanes_load_mode(bg_lanes_own *own, int lane, const bg_located *c);
 void bg_lanes_triggers(const bg_lanes_own *own, int lane, const bg_lane *shot, double *values);
 
-/* Everything at an instant of a lane. Whether nothing can happen from the latest one that was noted
- * to an end, with one in the middle; the end is noted then. Keeps what is followed of a sample at an instant of a lane. What steps a run takes
- * next. */
-typedef struct {
-    int lane;
-    const bg_lane *shot;
-} bg_lane_sight;
-int bg_lanes_pass(const bg_lane_run *one, const bg_lanes_own *own, bg_lane_sight middle,
-                  bg_lane_sight end);
-void bg_lanes_keep(bg_lane_run *one, int lane, const bg_lane *w, const bg_lane *shot);
+/* Keeps what is followed of a sample at an instant of a lane; a status. What steps a run takes next. */
+int bg_lanes_keep(bg_lane_run *one, int lane, const bg_lane *s, const bg_lane *w, const bg_lane *shot);
 bg_lane_steps bg_lanes_kind(const bg_lane_run *one);
 
 /* Exponential steps were too coarse for a run. */
 void bg_lanes_too_coarse(bg_lane_run *one);
 
-/* lanes_turn.c: begins a run, and takes it on until it goes by steps of lanes or is over; from
- * where it is in its stretch, `ended` or not, at which it may have come to a status; does it by
- * itself from its start, as it could not go on so. */
+/* lanes_turn.c: begins a run, of many or by itself, and takes it on until it goes by steps of lanes or is over; from
+ * where it is in its stretch, `ended` or not, at which it may have come to a status; is done with it:
+ * where it could not go on so it is done another way, from its start. */
 void bg_lanes_begin(bg_lane_run *one, int run);
+void bg_lanes_begin_alone(bg_lane_run *one, const bg_signals *signals, bg_request *asked);
 void bg_lanes_take_on(bg_lane_run *one, int ended, int status);
 void bg_lanes_leave(bg_lane_run *one, int status);
 
 /* Does every run, in LANE_RUNS rooms; a status for each. */
 typedef struct bg_lanes bg_lanes;
 void lanes_batch(bg_lanes *a, located_room *rooms, const batch_job *job, const located_runs *runs);
+
+/* A run by itself, whose samples become the rows of a table, in a room; as bg_rows_run. */
+int lanes_rows_run(bg_lanes *a, located_room *room, const double *parameters,
+                   const bg_signals *signals, bg_request *asked, bg_rows *rows);
 unsigned long lanes_size(void);
 int lanes_rooms(void);
 

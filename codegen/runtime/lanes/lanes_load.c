@@ -77,47 +77,28 @@ void bg_lanes_triggers(const bg_lanes_own *own, int lane, const bg_lane *shot, d
     }
 }
 
-/* What corners hang on, as far from zero as on this side. */
-static void corners_of(const bg_lane_run *one, bg_lane_sight at, double *values)
-{
-    double hung[2 * BG_ROOM(BG_CORNERS)];
-    for (int k = 0; k < 2 * BG_CORNERS; k++)
-        hung[k] = at.shot[LANE_CORNERS + k][at.lane];
-    bg_corners_away(&one->room->model->now, hung);
-    memcpy(values, hung, sizeof(double) * BG_CORNERS);
-}
-
-int bg_lanes_pass(const bg_lane_run *one, const bg_lanes_own *own, bg_lane_sight middle,
-                  bg_lane_sight end)
-{
-    bg_located *const c = one->room->run;
-    double in[BG_ROOM(K)], last[BG_ROOM(K)];
-    double on[BG_ROOM(BG_CORNERS)], after[BG_ROOM(BG_CORNERS)];
-    bg_lanes_triggers(own, middle.lane, middle.shot, in);
-    bg_lanes_triggers(own, end.lane, end.shot, last);
-    corners_of(one, middle, on);
-    corners_of(one, end, after);
-    if (!bg_finite(K, in) || !bg_finite(K, last) || !bg_passes(&c->watch.of, K, in, last)
-        || !bg_passes(&c->corners.of, BG_CORNERS, on, after))
-        return 0;
-    bg_note_pass(&c->watch.of, K, last);
-    bg_note_pass(&c->corners.of, BG_CORNERS, after);
-    return 1;
-}
-
-void bg_lanes_keep(bg_lane_run *one, int lane, const bg_lane *w, const bg_lane *shot)
+int bg_lanes_keep(bg_lane_run *one, int lane, const bg_lane *s, const bg_lane *w, const bg_lane *shot)
 {
     located_room *const room = one->room;
     const batch_job *const job = one->all->job;
-    const int sample = room->run->next++;
-    for (int s = 0; s < job->signals; s++) {
-        const int place = job->signal[s];
-        room->values[s * job->samples + sample] = place < 0 ? w[-1 - place][lane] : shot[place][lane];
+    double state[BG_SIZE];
+    if (!job) {
+        for (int k = 0; k < BG_SIZE; k++)
+            state[k] = s[k][lane];
+        return bg_located_hand_over(room->run, state);
     }
+    const int sample = room->run->next++;
+    for (int k = 0; k < job->signals; k++) {
+        const int place = job->signal[k];
+        room->values[k * job->samples + sample] = place < 0 ? w[-1 - place][lane] : shot[place][lane];
+    }
+    return BG_OK;
 }
 
 bg_lane_steps bg_lanes_kind(const bg_lane_run *one)
 {
-    const int whole = !one->asked.smooth && one->all->exponential.gap > 0.0;
-    return BG_SIZE <= LANE_FEW && whole && !one->waits ? LANE_EXPONENTIAL : LANE_EXPLICIT;
+    const bg_request *const asked = one->room->run->asked;
+    const int whole =
+        asked->method == BG_AUTO && !asked->smooth && one->all->exponential.gap > 0.0;
+    return (int)BG_SIZE <= LANE_FEW && whole && !one->waits && one->room->run->run.at.t >= one->after ? LANE_EXPONENTIAL : LANE_EXPLICIT;
 }

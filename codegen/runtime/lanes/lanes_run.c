@@ -5,16 +5,16 @@
 #include "lanes_steps.h"
 
 /* What lies between samples, where they lie evenly, else 0. */
-static double even_gap(const batch_job *job)
+static double lanes_even_gap(int samples, const double *times)
 {
-    const double gap = (job->times[job->samples - 1] - job->times[0]) / (job->samples - 1);
-    for (int i = 1; i < job->samples; i++)
-        if (!(fabs(job->times[i] - job->times[0] - i * gap) <= 1e-9 * gap))
+    const double gap = (times[samples - 1] - times[0]) / (samples - 1);
+    for (int i = 1; i < samples; i++)
+        if (!(fabs(times[i] - times[0] - i * gap) <= BG_EVEN * gap))
             return 0.0;
     return gap;
 }
 
-static int free_lane(const bg_lanes_group *group)
+static int lanes_free_lane(const bg_lanes_group *group)
 {
     for (int l = 0; l < BG_LANES; l++)
         if (!group->run[l])
@@ -23,45 +23,45 @@ static int free_lane(const bg_lanes_group *group)
 }
 
 /* Inputs of a lane's run have no series there: it goes on by itself. */
-static void unseat(bg_lanes_group *group, int lane)
+static void lanes_unseat(bg_lanes_group *group, int lane)
 {
     bg_lanes_leave(group->run[lane], BG_STEPS);
     group->run[lane] = NULL;
 }
 
 /* A run to a lane of the steps it waits for; to explicit ones where others are not for it. */
-static void seat(bg_lanes *a, bg_lane_run *one)
+static void lanes_seat(bg_lanes *a, bg_lane_run *one)
 {
     int lane;
-    if (one->by == LANE_EXPONENTIAL && (lane = free_lane(&a->exponential.of)) >= 0) {
+    if (one->by == LANE_EXPONENTIAL && (lane = lanes_free_lane(&a->exponential.of)) >= 0) {
         if (!bg_lanes_start(a, one))
             one->by = LANE_EXPLICIT;
         else if (!bg_lanes_glide_in(a, lane, one))
-            unseat(&a->exponential.of, lane);
+            lanes_unseat(&a->exponential.of, lane);
     }
-    if (one->by == LANE_EXPLICIT && (lane = free_lane(&a->explicit_steps.of)) >= 0
+    if (one->by == LANE_EXPLICIT && (lane = lanes_free_lane(&a->explicit_steps.of)) >= 0
         && !bg_lanes_walk_in(a, lane, one))
-        unseat(&a->explicit_steps.of, lane);
+        lanes_unseat(&a->explicit_steps.of, lane);
 }
 
 /* Every run that waits to a lane; where one is over the next. How many are under way. */
-static int fill(bg_lanes *a)
+static int lanes_fill(bg_lanes *a)
 {
     int under_way = 0;
     for (int k = 0; k < LANE_RUNS; k++) {
         bg_lane_run *const one = a->run + k;
-        while (one->by == LANE_NONE && a->next < a->runs->runs) {
+        while (one->by == LANE_NONE && a->next < a->count) {
             one->seated = 0;
             bg_lanes_begin(one, a->next++);
         }
         if (one->by != LANE_NONE && !one->seated)
-            seat(a, one);
+            lanes_seat(a, one);
         under_way += one->by != LANE_NONE;
     }
     return under_way;
 }
 
-static int seated(const bg_lanes_group *group)
+static int lanes_seated(const bg_lanes_group *group)
 {
     int count = 0;
     for (int l = 0; l < BG_LANES; l++)
@@ -69,24 +69,60 @@ static int seated(const bg_lanes_group *group)
     return count;
 }
 
-void lanes_batch(bg_lanes *a, located_room *rooms, const batch_job *job, const located_runs *runs)
+static void lanes_ready(bg_lanes *a, located_room *rooms, int samples, const double *times,
+                        double rtol, double atol)
 {
     memset(a, 0, sizeof *a);
-    a->job = job;
-    a->runs = runs;
-    a->explicit_steps.rtol = a->exponential.rtol = rooms->rtol;
-    a->explicit_steps.atol = a->exponential.atol = rooms->atol;
-    a->exponential.gap = even_gap(job);
+    a->samples = samples;
+    a->times = times;
+    a->explicit_steps.rtol = a->exponential.rtol = rtol;
+    a->explicit_steps.atol = a->exponential.atol = atol;
+    a->exponential.gap = lanes_even_gap(samples, times);
     bg_lanes_ahead(a->exponential.ahead);
     for (int k = 0; k < LANE_RUNS; k++) {
         a->run[k].all = a;
         a->run[k].room = rooms + k;
     }
-    while (fill(a) > 0)
-        if (seated(&a->exponential.of) >= seated(&a->explicit_steps.of))
+}
+
+static void lanes_go(bg_lanes *a)
+{
+    while (lanes_fill(a) > 0)
+        if (lanes_seated(&a->exponential.of) >= lanes_seated(&a->explicit_steps.of))
             bg_lanes_glide(a);
         else
             bg_lanes_walk(a);
+}
+
+void lanes_batch(bg_lanes *a, located_room *rooms, const batch_job *job, const located_runs *runs)
+{
+    lanes_ready(a, rooms, job->samples, job->times, rooms->rtol, rooms->atol);
+    a->job = job;
+    a->runs = runs;
+    a->count = runs->runs;
+    lanes_go(a);
+}
+
+int lanes_rows_run(bg_lanes *a, located_room *room, const double *parameters,
+                   const bg_signals *signals, bg_request *asked, bg_rows *rows)
+{
+    bg_lane_run *const one = a->run;
+    bg_located *const c = room->run;
+    int status = bg_model_init(room->model, parameters);
+    if (asked->method != BG_AUTO)
+        return bg_rows_run(c, room->model, parameters, signals, asked, rows);
+    lanes_ready(a, room, asked->samples, asked->times, asked->rtol, asked->atol);
+    bg_rows_ask(asked, rows);
+    if (status == BG_OK) {
+        bg_lanes_begin_alone(one, signals, asked);
+        lanes_go(a);
+        status = a->status;
+        asked->count = c->run.log.count;
+        asked->time = c->run.at.t;
+    }
+    if (status != BG_OK && status != BG_EVENTS && status != BG_UNTAKEN && !rows->handed)
+        return bg_rows_run(c, room->model, parameters, signals, asked, rows);
+    return status == BG_OK && rows->failed ? BG_UNTAKEN : status;
 }
 
 unsigned long lanes_size(void)

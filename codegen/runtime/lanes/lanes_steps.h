@@ -43,11 +43,13 @@ typedef struct {
     bg_lane_weights weights;
 } bg_lane_start;
 
-/* `next`: the next run to begin. */
+/* `job`, `runs`: of many; NULL for a run by itself, which comes to `status`. `next`: the next run to
+ * begin of so many. */
 struct bg_lanes {
     const batch_job *job;
     const located_runs *runs;
-    int next;
+    const double *times;
+    int samples, next, count, status;
     bg_lanes_points points;
     bg_lanes_explicit explicit_steps;
     bg_lanes_exponential exponential;
@@ -69,12 +71,27 @@ void bg_lanes_walk(bg_lanes *a);
 /* lanes_exponential.c: two steps of every lane, from the window's newest instants. */
 void bg_lanes_pair(bg_lanes_exponential *a);
 
+/* lanes_clear.c: what is watched at an instant of a lane, positive while all stays as it is; notes it
+ * as the latest there is. Whether nothing can happen between so many instants, at places x; between
+ * three of four whose states and rates are known, from the first or the second on, by a closer look
+ * at `ends`, these, and six more. */
+enum { LANE_AROUND = 4 };
+typedef struct {
+    double t[LANE_AROUND], y[LANE_AROUND][BG_SIZE], rate[LANE_AROUND][BG_SIZE];
+} bg_lanes_known;
+void bg_lanes_watched(const bg_lane_run *one, const bg_lanes_own *own, int lane,
+                      const bg_lane *shot, double *values);
+void bg_lanes_note(const bg_lane_run *one, const double *values);
+int bg_lanes_is_clear(int count, const double *x, const double (*v)[LANE_WATCHED]);
+int bg_lanes_is_clear_closely(bg_lane_run *one, const bg_lanes_known *known, int first,
+                              const double (*ends)[LANE_WATCHED]);
+
 /* lanes_start.c: to exponential steps from where a run is, whether it could. */
 int bg_lanes_start(bg_lanes *a, bg_lane_run *one);
 
 /* lanes_glide.c: the same of exponential steps; the time of a place. */
 int bg_lanes_glide_in(bg_lanes *a, int lane, bg_lane_run *one);
 void bg_lanes_glide(bg_lanes *a);
-double bg_lanes_time(const batch_job *job, long place, long parts);
+double bg_lanes_time(const bg_lanes *a, long place, long parts);
 
 #endif

@@ -25,7 +25,7 @@ static bg_lane_run *walk_out(bg_lanes_explicit *e, int lane)
 }
 
 /* Where a lane's step is tried: its length; whether the series of inputs go so far. */
-static int try_step(bg_lanes_explicit *a, int lane)
+static int walk_try_step(bg_lanes_explicit *a, int lane)
 {
     bg_lane_run *const one = a->of.run[lane];
     bg_solver *const s = &one->room->run->solver;
@@ -45,7 +45,7 @@ static int try_step(bg_lanes_explicit *a, int lane)
 }
 
 /* Whether the step was good; if not, the next try is shorter. A status. */
-static int judge(bg_lanes_explicit *a, int lane)
+static int walk_judge(bg_lanes_explicit *a, int lane)
 {
     bg_lane_run *const one = a->of.run[lane];
     bg_solver *const s = &one->room->run->solver;
@@ -64,23 +64,31 @@ static int judge(bg_lanes_explicit *a, int lane)
 }
 
 /* Whether nothing can happen in a lane's step, so that all it passes is samples. */
-static int is_plain(bg_lanes_explicit *a, int lane)
+static int walk_is_plain(bg_lanes_explicit *a, int lane)
 {
     const bg_lane_run *const one = a->of.run[lane];
-    const bg_lane_sight middle = {lane, (const bg_lane *)a->middle};
-    const bg_lane_sight end = {lane, (const bg_lane *)a->end};
-    return !one->asked.smooth && bg_lanes_pass(one, &a->of.own, middle, end);
+    bg_located *const c = one->room->run;
+    double in[LANE_WATCHED], last[LANE_WATCHED];
+    if (c->asked->smooth)
+        return 0;
+    bg_lanes_watched(one, &a->of.own, lane, (const bg_lane *)a->middle, in);
+    bg_lanes_watched(one, &a->of.own, lane, (const bg_lane *)a->end, last);
+    if (!bg_finite(K, in) || !bg_finite(K, last) || !bg_passes(&c->watch.of, K, in, last)
+        || !bg_passes(&c->corners.of, BG_CORNERS, in + K, last + K))
+        return 0;
+    bg_lanes_note(one, last);
+    return 1;
 }
 
 /* The next sample of a lane's step, if there is one in it. */
-static int has_sample(const bg_lane_run *one)
+static int walk_has_sample(const bg_lane_run *one)
 {
     const bg_located *const c = one->room->run;
     return c->next < c->asked->samples && c->asked->times[c->next] < c->solver.t;
 }
 
 /* Whether all that is followed are states, which come first among everything at an instant. */
-static int follows_states(const batch_job *job)
+static int walk_follows_states(const batch_job *job)
 {
     int all = 1;
     for (int s = 0; s < job->signals; s++)
@@ -89,22 +97,22 @@ static int follows_states(const batch_job *job)
 }
 
 /* The samples in the steps of lanes in which nothing happens. */
-static void sample(bg_lanes_explicit *a, const batch_job *job, const int *plain)
+static void walk_sample(bg_lanes_explicit *a, const batch_job *job, const int *plain, int *status)
 {
     bg_lane s[BG_SIZE];
     for (;;) {
         int any = 0, has[BG_LANES];
         for (int l = 0; l < BG_LANES; l++) {
             const bg_lane_run *const one = a->of.run[l];
-            has[l] = plain[l] && has_sample(one);
+            has[l] = plain[l] && status[l] == BG_OK && walk_has_sample(one);
             a->of.at.t[l] =
-                has[l] ? one->asked.times[one->room->run->next] : a->t_old[l];
+                has[l] ? one->room->run->asked->times[one->room->run->next] : a->t_old[l];
             any |= has[l];
         }
         if (!any)
             return;
         bg_lanes_between(a, s);
-        if (job->signals > 0 && !follows_states(job)) {
+        if (job && !walk_follows_states(job)) {
             bg_lanes_inputs(&a->of);
             bg_lanes_look(&a->of.own, &a->of.at, s, a->shot);
         } else {
@@ -112,12 +120,13 @@ static void sample(bg_lanes_explicit *a, const batch_job *job, const int *plain)
         }
         for (int l = 0; l < BG_LANES; l++)
             if (has[l])
-                bg_lanes_keep(a->of.run[l], l, (const bg_lane *)a->of.at.w, (const bg_lane *)a->shot);
+                status[l] = bg_lanes_keep(a->of.run[l], l, (const bg_lane *)s,
+                                          (const bg_lane *)a->of.at.w, (const bg_lane *)a->shot);
     }
 }
 
 /* Puts a lane's latest step into its run's solver, with all between its ends. */
-static void unload(const bg_lanes_explicit *a, int lane)
+static void walk_unload(const bg_lanes_explicit *a, int lane)
 {
     bg_solver *const s = &a->of.run[lane]->room->run->solver;
     for (int k = 0; k < BG_SIZE; k++) {
@@ -134,7 +143,7 @@ static void unload(const bg_lanes_explicit *a, int lane)
 }
 
 /* Whether a run whose step has passed stays in its lane. */
-static int stays(bg_lanes_explicit *e, int lane)
+static int walk_stays(bg_lanes_explicit *e, int lane)
 {
     bg_lane_run *const one = e->of.run[lane];
     bg_solver *const s = &one->room->run->solver;
@@ -150,45 +159,48 @@ static int stays(bg_lanes_explicit *e, int lane)
     return 0;
 }
 
-/* After a step: where its run is, and how it goes on; in the lane if it may. */
-static void pass(bg_lanes_explicit *e, int lane, int plain)
+/* After a step, of whose samples there is a status: where its run is, and how it goes on; in the lane
+ * if it may. */
+static void walk_pass(bg_lanes_explicit *e, int lane, int plain, int status)
 {
     bg_located *const c = e->of.run[lane]->room->run;
     double s[BG_SIZE];
-    int status = BG_OK, ended = 0;
+    int ended = 0;
     if (plain) {
         for (int k = 0; k < BG_SIZE; k++)
             s[k] = e->y[k][lane];
         bg_located_reach(c, c->solver.t, s);
+        if (status == BG_OK && c->asked->passed)
+            status = c->asked->passed(c->asked->to, c);
     } else {
-        unload(e, lane);
+        walk_unload(e, lane);
         status = bg_located_pass(c, &ended);
     }
     if (status == BG_OK && !ended)
         status = bg_located_go_on(c);
     if (!ended && status == BG_OK && c->stretch.method == BG_DOP853
         && c->run.at.t < c->stretch.stop) {
-        (void)stays(e, lane);
+        (void)walk_stays(e, lane);
         return;
     }
     bg_lanes_take_on(walk_out(e, lane), ended, status);
 }
 
 /* Each lane's next try of a step; whose inputs have no series goes on by itself. */
-static void try_all(bg_lanes_explicit *e)
+static void walk_try_all(bg_lanes_explicit *e)
 {
     for (int l = 0; l < BG_LANES; l++)
-        if (e->of.run[l] && !try_step(e, l))
+        if (e->of.run[l] && !walk_try_step(e, l))
             bg_lanes_leave(walk_out(e, l), BG_STEPS);
 }
 
 /* Which lanes have taken their step: whether any. */
-static int judge_all(bg_lanes_explicit *e, int *taken)
+static int walk_judge_all(bg_lanes_explicit *e, int *taken)
 {
     int any = 0;
     for (int l = 0; l < BG_LANES; l++) {
         taken[l] = 0;
-        if (e->of.run[l] && judge(e, l) != BG_OK)
+        if (e->of.run[l] && walk_judge(e, l) != BG_OK)
             bg_lanes_leave(walk_out(e, l), BG_STEPS);
         else if (e->of.run[l])
             taken[l] = e->of.run[l]->taken;
@@ -200,10 +212,10 @@ static int judge_all(bg_lanes_explicit *e, int *taken)
 void bg_lanes_walk(bg_lanes *a)
 {
     bg_lanes_explicit *const e = &a->explicit_steps;
-    int plain[BG_LANES] = {0}, taken[BG_LANES];
-    try_all(e);
+    int plain[BG_LANES] = {0}, taken[BG_LANES], status[BG_LANES] = {0};
+    walk_try_all(e);
     bg_lanes_attempt(e);
-    if (!judge_all(e, taken))
+    if (!walk_judge_all(e, taken))
         return;
     bg_lanes_dense(e);
     for (int l = 0; l < BG_LANES; l++)
@@ -212,9 +224,9 @@ void bg_lanes_walk(bg_lanes *a)
     bg_lanes_inputs(&e->of);
     bg_lanes_look(&e->of.own, &e->of.at, e->tried, e->middle);
     for (int l = 0; l < BG_LANES; l++)
-        plain[l] = taken[l] && is_plain(e, l);
-    sample(e, a->job, plain);
+        plain[l] = taken[l] && walk_is_plain(e, l);
+    walk_sample(e, a->job, plain, status);
     for (int l = 0; l < BG_LANES; l++)
         if (taken[l])
-            pass(e, l, plain[l]);
+            walk_pass(e, l, plain[l], status[l]);
 }

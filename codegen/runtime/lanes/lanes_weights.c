@@ -5,10 +5,8 @@
 #include "lanes_weights.h"
 
 /* From a norm of 2.5 on a series of so many terms is not exact to rounding. */
-enum { TERMS = 20, SWEEPS = 4 };
+enum { WEIGH_TERMS = 20, WEIGH_SWEEPS = 4 };
 static const double LARGEST = 2.5;
-
-typedef double square[BG_SIZE][BG_SIZE];
 
 void bg_derivatives(double at, int count, const double *nodes, double (*factor)[LANE_NODES])
 {
@@ -31,95 +29,99 @@ void bg_derivatives(double at, int count, const double *nodes, double (*factor)[
     }
 }
 
-/* The largest sum of a row's sizes, with states scaled so that rows and columns are alike. */
-static double balanced_norm(const square M)
+/* The largest sum of a column's sizes, with states scaled so that rows and columns are alike. */
+static double weigh_norm(const bg_lane_columns M)
 {
-    square size;
-    double norm = 0.0;
+    double size[BG_SIZE][BG_SIZE], norm = 0.0;
     for (int i = 0; i < BG_SIZE; i++)
         for (int j = 0; j < BG_SIZE; j++)
             size[i][j] = fabs(M[i][j]);
-    for (int k = 0; k < SWEEPS * BG_SIZE; k++) {
+    for (int k = 0; k < WEIGH_SWEEPS * BG_SIZE; k++) {
         const int i = k % BG_SIZE;
-        double row = 0.0, column = 0.0;
+        double one = 0.0, other = 0.0;
         for (int j = 0; j < BG_SIZE; j++) {
-            row += j == i ? 0.0 : size[i][j];
-            column += j == i ? 0.0 : size[j][i];
+            one += j == i ? 0.0 : size[i][j];
+            other += j == i ? 0.0 : size[j][i];
         }
-        const double scale = row > 0.0 && column > 0.0 ? sqrt(row / column) : 1.0;
+        const double scale = one > 0.0 && other > 0.0 ? sqrt(one / other) : 1.0;
         for (int j = 0; j < BG_SIZE; j++) {
             size[i][j] /= j == i ? 1.0 : scale;
             size[j][i] *= j == i ? 1.0 : scale;
         }
     }
     for (int i = 0; i < BG_SIZE; i++) {
-        double row = 0.0;
+        double sum = 0.0;
         for (int j = 0; j < BG_SIZE; j++)
-            row += size[i][j];
-        norm = row <= norm ? norm : row;
+            sum += size[i][j];
+        norm = sum <= norm ? norm : sum;
     }
     return norm;
 }
 
-/* to = M of + part I */
-static void times_plus(const square M, const square of, double part, square to)
+/* to = M of + part I; functions of one matrix do not mind the order of factors. */
+static void weigh_times_plus(const bg_lane_columns M, const bg_lane_columns of, double part,
+                             bg_lane_columns to)
 {
-    for (int i = 0; i < BG_SIZE; i++) {
-        double row[BG_SIZE] = {0};
-        row[i] = part;
-        for (int l = 0; l < BG_SIZE; l++)
-            for (int j = 0; j < BG_SIZE; j++)
-                row[j] += M[i][l] * of[l][j];
-        memcpy(to[i], row, sizeof row);
+    for (int j = 0; j < BG_SIZE; j++) {
+        double column[LANE_ROW] = {0};
+        column[j] = part;
+        bg_lanes_add_product(M, of[j], column);
+        memcpy(to[j], column, sizeof column);
     }
 }
 
-/* The sums of M^l / (l + q)! for q = 0, 1, .. LANE_NODES: the last as a series, of which each other
- * is M times the next plus I / q!. */
-static void functions_of(const square M, square *phi)
+/* The last function as a series, each other as M times the next plus I / q!. */
+int bg_lanes_functions(const double *slope, double h, bg_lane_functions *found)
 {
-    double inverse[TERMS + LANE_NODES + 1] = {1.0};
-    for (int l = 1; l <= TERMS + LANE_NODES; l++)
+    double inverse[WEIGH_TERMS + LANE_NODES + 1] = {1.0};
+    bg_lane_columns M = {{0}};
+    found->h = h;
+    for (int k = 0; k < BG_SIZE * BG_SIZE; k++)
+        M[k % BG_SIZE][k / BG_SIZE] = h * slope[k];
+    if (!(weigh_norm(M) <= LARGEST))
+        return 0;
+    for (int l = 1; l <= WEIGH_TERMS + LANE_NODES; l++)
         inverse[l] = inverse[l - 1] / l;
-    memset(phi[LANE_NODES], 0, sizeof *phi);
-    for (int l = TERMS; l >= 0; l--) {
-        square next;
-        times_plus(M, phi[LANE_NODES], inverse[l + LANE_NODES], next);
-        memcpy(phi[LANE_NODES], next, sizeof next);
+    memset(found->of[LANE_NODES], 0, sizeof M);
+    for (int l = WEIGH_TERMS; l >= 0; l--) {
+        bg_lane_columns next;
+        weigh_times_plus(M, found->of[LANE_NODES], inverse[l + LANE_NODES], next);
+        memcpy(found->of[LANE_NODES], next, sizeof next);
     }
     for (int q = LANE_NODES - 1; q >= 0; q--)
-        times_plus(M, phi[q + 1], inverse[q], phi[q]);
+        weigh_times_plus(M, found->of[q + 1], inverse[q], found->of[q]);
+    return 1;
+}
+
+static void weigh_pack(const bg_lane_columns of, double *found)
+{
+    for (int k = 0; k < BG_SIZE * BG_SIZE; k++)
+        found[k] = of[k % BG_SIZE][k / BG_SIZE];
 }
 
 /* h times the sum of so many functions, from the first on, each times its factor. */
-static void add_up(square *phi, int count, const double (*factor)[LANE_NODES], int node, double h,
-                   double *sum)
+static void weigh_add_up(const bg_lane_functions *functions, int count,
+                         const double (*factor)[LANE_NODES], int node, double *found)
 {
-    for (int k = 0; k < BG_SIZE * BG_SIZE; k++)
-        sum[k] = 0.0;
+    bg_lane_columns sum = {{0}};
     for (int p = 0; p < count; p++)
-        for (int k = 0; k < BG_SIZE * BG_SIZE; k++)
-            sum[k] += h * factor[p][node] * phi[p + 1][k / BG_SIZE][k % BG_SIZE];
+        for (int i = 0; i < BG_SIZE; i++)
+            for (int j = 0; j < LANE_ROW; j++)
+                sum[i][j] += functions->h * factor[p][node] * functions->of[p + 1][i][j];
+    weigh_pack(sum, found);
 }
 
-int bg_lanes_weigh(const double *slope, double h, bg_lane_weights *found)
+void bg_lanes_weigh(const bg_lane_functions *functions, bg_lane_weights *found)
 {
     double nodes[LANE_NODES], factor[LANE_NODES][LANE_NODES];
-    square M, phi[LANE_NODES + 1];
-    for (int k = 0; k < BG_SIZE * BG_SIZE; k++)
-        M[k / BG_SIZE][k % BG_SIZE] = h * slope[k];
-    if (!(balanced_norm(M) <= LARGEST))
-        return 0;
-    functions_of(M, phi);
-    memcpy(found->E, phi[0], sizeof found->E);
+    weigh_pack(functions->of[0], found->E);
     for (int j = 0; j < LANE_NODES; j++)
         nodes[j] = 1.0 - j;
     bg_derivatives(0.0, LANE_NODES, nodes, factor);
-    add_up(phi, LANE_NODES, (const double(*)[LANE_NODES])factor, 0, h, found->correction);
+    weigh_add_up(functions, LANE_NODES, (const double(*)[LANE_NODES])factor, 0, found->correction);
     bg_derivatives(0.0, LANE_PAST, nodes + 1, factor);
     for (int j = 0; j < LANE_PAST; j++)
-        add_up(phi, LANE_PAST, (const double(*)[LANE_NODES])factor, j, h, found->weight[j]);
-    return 1;
+        weigh_add_up(functions, LANE_PAST, (const double(*)[LANE_NODES])factor, j, found->weight[j]);
 }
 
 void bg_lanes_ahead(double *of)

@@ -153,7 +153,7 @@ int bg_located_pass(bg_located *c, int *ended)
         status = bg_solver_dense(c, until, s);
     if (status == BG_OK)
         bg_located_reach(c, *ended ? until : c->solver.t, *ended ? s : c->solver.y);
-    return status;
+    return status == BG_OK && asked->passed ? asked->passed(asked->to, c) : status;
 }
 
 void bg_located_reach(bg_located *c, double t, const double *s)

@@ -1,0 +1,100 @@
+/* Runs side by side: as one is over the next begins; the steps that more of them wait for go first. */
+#include <math.h>
+#include <string.h>
+
+#include "lanes_steps.h"
+
+/* What lies between samples, where they lie evenly, else 0. */
+static double lanes_even_gap(const batch_job *job)
+{
+    const double gap = (job->times[job->samples - 1] - job->times[0]) / (job->samples - 1);
+    for (int i = 1; i < job->samples; i++)
+        if (!(fabs(job->times[i] - job->times[0] - i * gap) <= 1e-9 * gap))
+            return 0.0;
+    return gap;
+}
+
+static int lanes_free_lane(const bg_lanes_group *group)
+{
+    for (int l = 0; l < BG_LANES; l++)
+        if (!group->run[l])
+            return l;
+    return -1;
+}
+
+/* Inputs of a lane's run have no series there: it goes on by itself. */
+static void lanes_unseat(bg_lanes_group *group, int lane)
+{
+    bg_lanes_leave(group->run[lane], BG_STEPS);
+    group->run[lane] = NULL;
+}
+
+/* A run to a lane of the steps it waits for; to explicit ones where others are not for it. */
+static void lanes_seat(bg_lanes *a, bg_lane_run *one)
+{
+    int lane;
+    if (one->by == LANE_EXPONENTIAL && (lane = lanes_free_lane(&a->exponential.of)) >= 0) {
+        if (!bg_lanes_start(a, one))
+            one->by = LANE_EXPLICIT;
+        else if (!bg_lanes_glide_in(a, lane, one))
+            lanes_unseat(&a->exponential.of, lane);
+    }
+    if (one->by == LANE_EXPLICIT && (lane = lanes_free_lane(&a->explicit_steps.of)) >= 0
+        && !bg_lanes_walk_in(a, lane, one))
+        lanes_unseat(&a->explicit_steps.of, lane);
+}
+
+/* Every run that waits to a lane; where one is over the next. How many are under way. */
+static int lanes_fill(bg_lanes *a)
+{
+    int under_way = 0;
+    for (int k = 0; k < LANE_RUNS; k++) {
+        bg_lane_run *const one = a->run + k;
+        while (one->by == LANE_NONE && a->next < a->runs->runs) {
+            one->seated = 0;
+            bg_lanes_begin(one, a->next++);
+        }
+        if (one->by != LANE_NONE && !one->seated)
+            lanes_seat(a, one);
+        under_way += one->by != LANE_NONE;
+    }
+    return under_way;
+}
+
+static int lanes_seated(const bg_lanes_group *group)
+{
+    int count = 0;
+    for (int l = 0; l < BG_LANES; l++)
+        count += group->run[l] != NULL;
+    return count;
+}
+
+void lanes_batch(bg_lanes *a, located_room *rooms, const batch_job *job, const located_runs *runs)
+{
+    memset(a, 0, sizeof *a);
+    a->job = job;
+    a->runs = runs;
+    a->explicit_steps.rtol = a->exponential.rtol = rooms->rtol;
+    a->explicit_steps.atol = a->exponential.atol = rooms->atol;
+    a->exponential.gap = lanes_even_gap(job);
+    bg_lanes_ahead(a->exponential.ahead);
+    for (int k = 0; k < LANE_RUNS; k++) {
+        a->run[k].all = a;
+        a->run[k].room = rooms + k;
+    }
+    while (lanes_fill(a) > 0)
+        if (lanes_seated(&a->exponential.of) >= lanes_seated(&a->explicit_steps.of))
+            bg_lanes_glide(a);
+        else
+            bg_lanes_walk(a);
+}
+
+unsigned long lanes_size(void)
+{
+    return sizeof(bg_lanes);
+}
+
+int lanes_rooms(void)
+{
+    return LANE_RUNS;
+}
