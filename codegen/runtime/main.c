@@ -239,7 +239,7 @@ static int run_located(bg_model *m, const command *asked, const bg_signals *sign
     double *const times = calloc((size_t)count, sizeof *times);
     bg_request request = {times, asked->states, count, BG_AUTO, BG_RTOL, BG_ATOL,
                           times, print_sample, events, EVENTS, 0, 0.0, NULL,
-                          m->mode, asked->named, gained, 0};
+                          m->mode, asked->named, gained, 0, 0};
     if (!times)
         return 1;
     for (int k = 0; k < count; k++)

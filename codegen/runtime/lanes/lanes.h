@@ -18,7 +18,8 @@ enum {
     LANE_WATCHED = BG_ROOM(K + BG_CORNERS), /* ports, then corners of laws */
     LANE_WIDE = N + M + BG_OUTSIDE, /* factors of what holds a port */
     LANE_FEW = 16, /* so many states at the most go by exponential steps: their matrices are near */
-    LANE_FEW_STEPS = 3, LANE_PATIENCE = 8, LANE_NEVER = 1 << 30, /* explicit steps before others are tried again */
+    /* explicit steps before others are tried again */
+    LANE_FEW_STEPS = 3, LANE_PATIENCE = 8, LANE_NEVER = 1 << 30,
     LANE_RUNS = 2 * BG_LANES /* under way at a time, so that few lanes of either kind stand empty */
 };
 
@@ -48,17 +49,17 @@ typedef enum { LANE_NONE, LANE_EXPLICIT, LANE_EXPONENTIAL } bg_lane_steps;
 
 /* Of a run what is done by itself. `run`: which one; `tries`: how often the present explicit step
  * was tried; `taken`: whether it was good; `reach` [s]: how far from its middle the series of
- * inputs is one; `turns`: so many have come to no breakpoint. So many explicit steps are taken
- * before exponential ones: `waits`, and up to the time `after`, where something may happen; after the next time these are too coarse `patience`; `parts`:
- * so many of them, at the least, go on a sample. `was`: what is watched at the latest two
- * instants of these. */
+ * inputs is one; `turns`: so many have come to no breakpoint. Before exponential steps it takes so
+ * many explicit ones: `waits`, and those up to the time `after`, where something may happen; the
+ * next time that they are too coarse `patience`. They are so many times `finer` than rates ask.
+ * `was`: what is watched at the latest two instants of these. */
 typedef struct {
     struct bg_lanes *all;
     bg_together together;
     located_room *room;
     bg_lane_steps by;
     int seated, run, tries, taken;
-    long waits, patience, parts;
+    long waits, patience, finer;
     double reach, grow, turns, after, constants[BG_ROOM(BG_LANE_CONSTANTS)];
     bg_request own;
     double was[2][LANE_WATCHED];
@@ -101,24 +102,26 @@ int bg_lanes_series(const bg_signals *signals, const bg_span *span, double t,
 int bg_lanes_follow(bg_lanes_group *group, int lane, double end);
 void bg_lanes_inputs(bg_lanes_group *group);
 
-/* lanes_load.c: whether a run may go by steps of lanes from where it is; its numbers and its mode to
- * a lane; the mode alone. The triggers of its ports at an instant of a lane, each positive while all
- * stays as it is. */
+/* lanes_load.c: whether a run may go by steps of lanes from where it is; its numbers and its mode
+ * to a lane; the mode alone. The triggers of its ports at an instant of a lane, each positive while
+ * all stays as it is. */
 int bg_lanes_may(bg_lane_run *one);
 void bg_lanes_load(bg_lanes_group *group, int lane, bg_lane_run *one);
 int bg_lanes_load_mode(bg_lanes_own *own, int lane, const bg_located *c);
 void bg_lanes_triggers(const bg_lanes_own *own, int lane, const bg_lane *shot, double *values);
 
-/* Keeps what is followed of a sample at an instant of a lane; a status. What steps a run takes next. */
-int bg_lanes_keep(bg_lane_run *one, int lane, const bg_lane *s, const bg_lane *w, const bg_lane *shot);
+/* Keeps what is followed of a sample at an instant of a lane; a status. What steps a run takes
+ * next. */
+int bg_lanes_keep(bg_lane_run *one, int lane, const bg_lane *s, const bg_lane *w,
+                  const bg_lane *shot);
 bg_lane_steps bg_lanes_kind(const bg_lane_run *one);
 
 /* Exponential steps were too coarse for a run. */
 void bg_lanes_too_coarse(bg_lane_run *one);
 
-/* lanes_turn.c: begins a run, of many or by itself, and takes it on until it goes by steps of lanes or is over; from
- * where it is in its stretch, `ended` or not, at which it may have come to a status; is done with it:
- * where it could not go on so it is done another way, from its start. */
+/* lanes_turn.c: begins a run, of many or by itself, and takes it on until it goes by steps of lanes
+ * or is over; from where it is in its stretch, `ended` or not, at which it may have come to a
+ * status; is done with it: where it could not go on so it is done another way, from its start. */
 void bg_lanes_begin(bg_lane_run *one, int run);
 void bg_lanes_begin_alone(bg_lane_run *one, const bg_signals *signals, bg_request *asked);
 void bg_lanes_take_on(bg_lane_run *one, int ended, int status);

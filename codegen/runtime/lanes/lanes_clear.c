@@ -4,7 +4,7 @@
 
 #include "lanes_steps.h"
 
-enum { QUARTERS = 4, CLOSELY = 2 * QUARTERS + 1, AROUND = LANE_AROUND };
+enum { QUARTERS = 4, CLOSELY = 2 * QUARTERS + 1 };
 
 /* What bends by less than so many times its least value between two instants stays above zero: a
  * parabola falls below both by an eighth of its second difference, a wave of five instants to a
@@ -61,15 +61,15 @@ int bg_lanes_is_clear(int count, const double *x, const double (*v)[LANE_WATCHED
     return clear_between(count, x, v, CLEAR_BENDS);
 }
 
-/* The state at t by the polynomial that has the values and the slopes of four instants (Hermite). */
+/* The state at t by the polynomial with the values and slopes of four instants (Hermite). */
 static void clear_state(const bg_lanes_known *known, double t, double *s)
 {
     for (int k = 0; k < BG_SIZE; k++)
         s[k] = 0.0;
-    for (int j = 0; j < AROUND; j++) {
+    for (int j = 0; j < LANE_AROUND; j++) {
         const double off = t - known->t[j];
         double share = 1.0, slope = 0.0;
-        for (int i = 0; i < AROUND; i++)
+        for (int i = 0; i < LANE_AROUND; i++)
             if (i != j) {
                 share *= (t - known->t[i]) / (known->t[j] - known->t[i]);
                 slope += 1.0 / (known->t[j] - known->t[i]);
@@ -81,26 +81,34 @@ static void clear_state(const bg_lanes_known *known, double t, double *s)
     }
 }
 
+/* The ends and the quarters of two parts; how many of these are inside. */
+static int clear_places(const double *ends, double *t, double *inner)
+{
+    int count = 0;
+    for (int part = 0; part < 2; part++)
+        for (int k = 0; k < QUARTERS; k++) {
+            const double at = ends[part] + (ends[part + 1] - ends[part]) * k / QUARTERS;
+            t[QUARTERS * part + k] = at;
+            if (k > 0)
+                inner[count++] = at;
+        }
+    t[CLOSELY - 1] = ends[2];
+    return count;
+}
+
 int bg_lanes_is_clear_closely(bg_lane_run *one, const bg_lanes_known *known, int first,
                               const double (*ends)[LANE_WATCHED])
 {
     const bg_lanes_points *const points = &one->all->points;
-    double v[CLOSELY][LANE_WATCHED], t[CLOSELY], inner[CLOSELY - 3], s[CLOSELY - 3][BG_SIZE];
-    int count = 0;
-    for (int k = 0; k < CLOSELY; k++) {
-        const double *const from = known->t + first + (k < CLOSELY - 1 ? k / QUARTERS : 1);
-        t[k] = from[0] + (from[1] - from[0]) * (k - QUARTERS * (from - known->t - first)) / QUARTERS;
-        if (k % QUARTERS) {
-            inner[count] = t[k];
-            clear_state(known, t[k], s[count++]);
-        }
-    }
+    double v[CLOSELY][LANE_WATCHED], t[CLOSELY], inner[CLOSELY], s[CLOSELY][BG_SIZE];
+    const int count = clear_places(known->t + first, t, inner);
+    for (int k = 0; k < count; k++)
+        clear_state(known, inner[k], s[k]);
     if (!bg_lanes_set(one, count, inner) || !bg_lanes_see(one, count, (const double(*)[BG_SIZE])s))
         return 0;
-    count = 0;
-    for (int k = 0; k < CLOSELY; k++)
+    for (int k = 0, seen = 0; k < CLOSELY; k++)
         if (k % QUARTERS)
-            bg_lanes_watched(one, &points->own, count++, (const bg_lane *)points->shot, v[k]);
+            bg_lanes_watched(one, &points->own, seen++, (const bg_lane *)points->shot, v[k]);
         else
             memcpy(v[k], ends[k / QUARTERS], sizeof v[k]);
     return clear_between(CLOSELY, t, (const double(*)[LANE_WATCHED])v, CLEAR_CLOSE_BENDS);

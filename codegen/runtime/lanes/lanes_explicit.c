@@ -42,7 +42,8 @@ static void lane_point(bg_lanes_explicit *a, int i)
 }
 
 /* Rates of lanes that have no numbers on this side of a corner become those of laws as they are. */
-static void lane_mend(const bg_lanes_own *own, const bg_lanes_at *at, const bg_lane *s, bg_lane *rate)
+static void lane_mend(const bg_lanes_own *own, const bg_lanes_at *at, const bg_lane *s,
+                      bg_lane *rate)
 {
     bg_lane sum = {0}, plain[BG_SIZE];
     int fine = 1;

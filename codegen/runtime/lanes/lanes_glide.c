@@ -12,8 +12,8 @@ void bg_lanes_too_coarse(bg_lane_run *one)
     one->waits = one->patience;
     if (one->patience < 1L << 20)
         one->patience *= 2;
-    if (one->parts < 8)
-        one->parts *= 2;
+    if (one->finer < 8)
+        one->finer *= 2;
 }
 
 /* The weights of a lane's slope. */

@@ -77,7 +77,8 @@ void bg_lanes_triggers(const bg_lanes_own *own, int lane, const bg_lane *shot, d
     }
 }
 
-int bg_lanes_keep(bg_lane_run *one, int lane, const bg_lane *s, const bg_lane *w, const bg_lane *shot)
+int bg_lanes_keep(bg_lane_run *one, int lane, const bg_lane *s, const bg_lane *w,
+                  const bg_lane *shot)
 {
     located_room *const room = one->room;
     const batch_job *const job = one->all->job;
@@ -90,15 +91,17 @@ int bg_lanes_keep(bg_lane_run *one, int lane, const bg_lane *s, const bg_lane *w
     const int sample = room->run->next++;
     for (int k = 0; k < job->signals; k++) {
         const int place = job->signal[k];
-        room->values[k * job->samples + sample] = place < 0 ? w[-1 - place][lane] : shot[place][lane];
+        const double value = place < 0 ? w[-1 - place][lane] : shot[place][lane];
+        room->values[k * job->samples + sample] = value;
     }
     return BG_OK;
 }
 
 bg_lane_steps bg_lanes_kind(const bg_lane_run *one)
 {
-    const bg_request *const asked = one->room->run->asked;
-    const int whole =
-        asked->method == BG_AUTO && !asked->smooth && one->all->exponential.gap > 0.0;
-    return (int)BG_SIZE <= LANE_FEW && whole && !one->waits && one->room->run->run.at.t >= one->after ? LANE_EXPONENTIAL : LANE_EXPLICIT;
+    const bg_located *const c = one->room->run;
+    const int even = one->all->exponential.gap > 0.0;
+    const int asked = c->asked->method == BG_AUTO && !c->asked->smooth && even;
+    const int waits = one->waits || c->run.at.t < one->after;
+    return asked && !waits && (int)BG_SIZE <= LANE_FEW ? LANE_EXPONENTIAL : LANE_EXPLICIT;
 }

@@ -1,4 +1,4 @@
-/* Runs side by side: as one is over the next begins; the steps that more of them wait for go first. */
+/* Runs side by side: as one is over the next begins; steps that more of them take go first. */
 #include <math.h>
 #include <string.h>
 

@@ -37,7 +37,7 @@ static int start_plan(const bg_lanes *a, lane_beginning *b, bg_lane_start *start
     one->waits = LANE_NEVER;
     if (!(wide >= SHORTEST) || !(wide <= MOST_PARTS * LONGEST))
         return 0;
-    start->parts = (long)fmax((double)one->parts, ceil(wide / LONGEST));
+    start->parts = one->finer * (long)ceil(wide / LONGEST);
     b->h = gap / (double)start->parts;
     const long first = (long)ceil((t - a->times[0]) / b->h + BESIDE);
     start->place = first + LANE_PAST - 1;
@@ -194,11 +194,12 @@ static int start_is_clear(lane_beginning *b, bg_lanes_points *points, const doub
     for (int i = 0; i + 2 < LANE_NODES; i += 2) {
         const int from = i > 0 ? i - 1 : 0;
         bg_lanes_known known;
-        if (bg_lanes_is_clear(i + 3 - from, b->x + from, (const double(*)[LANE_WATCHED])(v + from)))
+        if (bg_lanes_is_clear(i + 3 - from, b->x + from, (const double(*)[LANE_WATCHED])v + from))
             continue;
         start_around(b, i, slope, &known);
         closely = 1;
-        if (!bg_lanes_is_clear_closely(b->one, &known, i - from, (const double(*)[LANE_WATCHED])(v + i))) {
+        if (!bg_lanes_is_clear_closely(b->one, &known, i - from,
+                                       (const double(*)[LANE_WATCHED])v + i)) {
             b->one->after = b->times[i + 2];
             return 0;
         }

@@ -35,7 +35,7 @@ typedef struct {
     long place[BG_LANES], parts[BG_LANES], since[BG_LANES];
 } bg_lanes_exponential;
 
-/* A run's way into exponential steps: these instants, newest first, with everything at the newest. */
+/* A run's way into exponential steps: instants, newest first, with everything at the newest. */
 typedef struct {
     long place, parts;
     double y[LANE_PAST][BG_SIZE], rest[LANE_PAST][BG_SIZE], shot[LANE_ROWS];
@@ -43,8 +43,8 @@ typedef struct {
     bg_lane_weights weights;
 } bg_lane_start;
 
-/* `job`, `runs`: of many; NULL for a run by itself, which comes to `status`. `next`: the next run to
- * begin of so many. */
+/* `job`, `runs`: of many; NULL for a run by itself, which comes to `status`. `next`: the next run
+ * to begin of so many. */
 struct bg_lanes {
     const batch_job *job;
     const located_runs *runs;
@@ -71,10 +71,10 @@ void bg_lanes_walk(bg_lanes *a);
 /* lanes_exponential.c: two steps of every lane, from the window's newest instants. */
 void bg_lanes_pair(bg_lanes_exponential *a);
 
-/* lanes_clear.c: what is watched at an instant of a lane, positive while all stays as it is; notes it
- * as the latest there is. Whether nothing can happen between so many instants, at places x; between
- * three of four whose states and rates are known, from the first or the second on, by a closer look
- * at `ends`, these, and six more. */
+/* lanes_clear.c: what is watched at an instant of a lane, positive while all stays as it is; notes
+ * it as the latest there is. Whether nothing can happen between so many instants, at places x;
+ * between three of four whose states and rates are known, from the first or the second on, by a
+ * closer look at `ends`, these, and six more. */
 enum { LANE_AROUND = 4 };
 typedef struct {
     double t[LANE_AROUND], y[LANE_AROUND][BG_SIZE], rate[LANE_AROUND][BG_SIZE];

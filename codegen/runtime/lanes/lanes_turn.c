@@ -105,7 +105,7 @@ void bg_lanes_take_on(bg_lane_run *one, int ended, int status)
 void bg_lanes_begin_alone(bg_lane_run *one, const bg_signals *signals, bg_request *asked)
 {
     one->turns = 0.0;
-    one->parts = 1;
+    one->finer = 1;
     const int status = bg_located_begin(one->room->run, one->room->model, signals, asked);
     bg_lanes_prepare(one->room->model, one->constants);
     bg_lanes_join(one);

@@ -97,7 +97,8 @@ static int walk_follows_states(const batch_job *job)
 }
 
 /* The samples in the steps of lanes in which nothing happens. */
-static void walk_sample(bg_lanes_explicit *a, const batch_job *job, const int *plain, int *status)
+static void walk_sample(bg_lanes_explicit *a, const batch_job *job, const int *plain,
+                        int *status)
 {
     bg_lane s[BG_SIZE];
     for (;;) {
@@ -159,8 +160,8 @@ static int walk_stays(bg_lanes_explicit *e, int lane)
     return 0;
 }
 
-/* After a step, of whose samples there is a status: where its run is, and how it goes on; in the lane
- * if it may. */
+/* After a step, of whose samples there is a status: where its run is, and how it goes on; in the
+ * lane if it may. */
 static void walk_pass(bg_lanes_explicit *e, int lane, int plain, int status)
 {
     bg_located *const c = e->of.run[lane]->room->run;

@@ -20,8 +20,10 @@ void bg_derivatives(double at, int count, const double *nodes, double (*factor)[
         for (int j = 0; j < i; j++) {
             const double apart = nodes[i] - nodes[j];
             all *= apart;
-            for (int p = i; p >= 0 && j == i - 1; p--)
-                factor[p][i] = before / all * ((p ? p * factor[p - 1][j] : 0.0) - last * factor[p][j]);
+            for (int p = i; p >= 0 && j == i - 1; p--) {
+                const double lower = p ? p * factor[p - 1][j] : 0.0;
+                factor[p][i] = before / all * (lower - last * factor[p][j]);
+            }
             for (int p = i; p >= 0; p--)
                 factor[p][j] = (to * factor[p][j] - (p ? p * factor[p - 1][j] : 0.0)) / apart;
         }
@@ -121,7 +123,8 @@ void bg_lanes_weigh(const bg_lane_functions *functions, bg_lane_weights *found)
     weigh_add_up(functions, LANE_NODES, (const double(*)[LANE_NODES])factor, 0, found->correction);
     bg_derivatives(0.0, LANE_PAST, nodes + 1, factor);
     for (int j = 0; j < LANE_PAST; j++)
-        weigh_add_up(functions, LANE_PAST, (const double(*)[LANE_NODES])factor, j, found->weight[j]);
+        weigh_add_up(functions, LANE_PAST, (const double(*)[LANE_NODES])factor, j,
+                     found->weight[j]);
 }
 
 void bg_lanes_ahead(double *of)

@@ -16,8 +16,8 @@ typedef struct {
     bg_lane_columns of[LANE_NODES + 1];
 } bg_lane_functions;
 
-/* What a step's end is: E y + sum of weight[j] r[j], newest first; plus `correction` times what r is
- * there more than the polynomial's. */
+/* What a step's end is: E y + sum of weight[j] r[j], newest first; plus `correction` times what r
+ * is there more than the polynomial's. */
 typedef struct {
     double E[BG_SIZE * BG_SIZE], weight[LANE_PAST][BG_SIZE * BG_SIZE];
     double correction[BG_SIZE * BG_SIZE];
@@ -33,7 +33,8 @@ int bg_lanes_functions(const double *slope, double h, bg_lane_functions *found);
 void bg_lanes_weigh(const bg_lane_functions *functions, bg_lane_weights *found);
 
 /* sum += matrix times of */
-static inline void bg_lanes_add_product(const bg_lane_columns columns, const double *of, double *sum)
+static inline void bg_lanes_add_product(const bg_lane_columns columns, const double *of,
+                                        double *sum)
 {
     double total[LANE_ROW];
     for (int k = 0; k < LANE_ROW; k++)
