@@ -136,7 +136,9 @@ class Tuning:
     dip_looks: int = _told(60, "so often, at most")
     dip_inside: float = _told(0.1, "of the distance of two points, next to which none is looked at")
     clear: float = _told(3.0, "changes over half a step above which nothing falls to zero in it")
-    settled: float = _told(1e-3, "of the tolerance, to which a multistep method's beginning is found")
+    settled: float = _told(
+        1e-3, "of the tolerance, to which a multistep method's beginning is found"
+    )
     even: float = _told(1e-9, "of what lies between samples, to which they lie evenly")
     first_small: float = _told(1e-5, "states or rates so small in tolerances tell no first step")
     first_step: float = _told(1e-6, "s, the first step then")

@@ -195,7 +195,12 @@ class LocatedRuns:
         """Call C once; the status."""
         _, library = self.library.opened
         room, lanes = self._rooms[:2]
-        given = (_pointer(self.library.opened[0], self.parameters), asking.inputs, asking.record, rows)
+        given = (
+            _pointer(self.library.opened[0], self.parameters),
+            asking.inputs,
+            asking.record,
+            rows,
+        )
         status: int = (
             library.bg_rows_run(room.run, room.model, *given)
             if lanes is None
