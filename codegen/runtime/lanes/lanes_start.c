@@ -7,7 +7,7 @@
 
 enum { START_TERMS = 24, START_TURNS = 12, MOST_PARTS = 64 };
 static const double LONGEST = 1.2,    /* step times the fastest rate */
-                    SHORTEST = 0.05,  /* below that explicit steps go over many samples */
+                    SHORTEST = 0.4,  /* below that explicit steps go over many samples */
                     BESIDE = 0.1;     /* of a step: no two instants are nearer than that */
 
 /* `times`: where the run is, and the instants after it; `x`: in steps of length h from there on;
