@@ -4,16 +4,18 @@
 
 #include "lanes_steps.h"
 
-enum { AT_LEAST = 4 /* pairs between slopes that are renewed while steps are good */ };
+enum {
+    AT_LEAST = 4, /* pairs between slopes that are renewed while steps are good */
+    A_WHILE = 64, /* pairs after which steps that are finer than need be begin anew */
+    FINEST = 8
+};
 static const double LARGE = 0.1; /* an error from which on the slope is renewed */
 
 void bg_lanes_too_coarse(bg_lane_run *one)
 {
     one->waits = one->patience;
-    if (one->patience < 1L << 20)
+    if (one->patience < LANE_NEVER / 2)
         one->patience *= 2;
-    if (one->finer < 8)
-        one->finer *= 2;
 }
 
 /* The weights of a lane's slope. */
@@ -73,6 +75,7 @@ int bg_lanes_glide_in(bg_lanes *a, int lane, bg_lane_run *one)
         g->w[LANE_PAIR][i][lane] = a->points.at.w[i][LANE_PAST];
     g->place[lane] = start->place;
     g->parts[lane] = start->parts;
+    g->pairs[lane] = 0;
     c->run.at.t = c->solver.t = bg_lanes_time(a, start->place, start->parts);
     return bg_lanes_follow(&g->of, lane, c->solver.t);
 }
@@ -175,6 +178,25 @@ static int glide_is_clear(bg_lanes *a, int lane)
     return 1;
 }
 
+/* Whether a lane's steps have been short for a while, and may be twice as long now. */
+static int glide_is_too_fine(bg_lanes *a, int lane)
+{
+    bg_lanes_exponential *const g = &a->exponential;
+    bg_lane_run *const one = g->of.run[lane];
+    bg_located *const c = one->room->run;
+    double y[BG_SIZE], fastest;
+    if (g->parts[lane] < 2 || ++g->pairs[lane] < A_WHILE)
+        return 0;
+    g->pairs[lane] = 0;
+    for (int k = 0; k < BG_SIZE; k++)
+        y[k] = g->y[0][k][lane];
+    if (bg_located_fastest(c, c->run.at.t, y, &fastest) != BG_OK)
+        return 0;
+    c->stretch.fastest = fastest;
+    one->finer -= one->finer / 2;
+    return 2 * bg_lanes_parts(a, one) <= g->parts[lane];
+}
+
 /* What a lane's pair was. */
 static void glide_judge(bg_lanes *a, int lane)
 {
@@ -184,8 +206,10 @@ static void glide_judge(bg_lanes *a, int lane)
     if (!(error < 1.0)) {
         const int fresh = !g->since[lane];
         glide_go_back(g, lane);
-        if (fresh || !glide_renew(a, lane))
+        if (fresh || !glide_renew(a, lane)) {
+            one->finer *= one->finer < FINEST ? 2 : 1;
             bg_lanes_too_coarse(glide_out(g, lane));
+        }
         return;
     }
     if (!glide_is_clear(a, lane)) {
@@ -208,6 +232,8 @@ static void glide_judge(bg_lanes *a, int lane)
     else if (!(bg_lanes_time(a, g->place[lane] + LANE_PAIR, g->parts[lane])
                <= one->room->run->stretch.stop))
         glide_wait(g, lane, LANE_NEVER);
+    else if (glide_is_too_fine(a, lane))
+        glide_out(g, lane)->by = LANE_EXPONENTIAL;
 }
 
 /* When the steps of lanes end; whose inputs have no series goes on by itself. */

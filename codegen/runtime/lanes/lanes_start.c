@@ -27,6 +27,12 @@ double bg_lanes_time(const bg_lanes *a, long place, long parts)
     return a->times[sample] + (a->times[sample + 1] - a->times[sample]) * part / parts;
 }
 
+long bg_lanes_parts(const bg_lanes *a, const bg_lane_run *one)
+{
+    const double wide = a->exponential.gap * one->room->run->stretch.fastest;
+    return one->finer * (long)fmax(ceil(wide / LONGEST), 1.0);
+}
+
 /* Steps of a part of what lies between samples; the first instants from where the run is. Whether
  * there are any. */
 static int start_plan(const bg_lanes *a, lane_beginning *b, bg_lane_start *start)
@@ -37,7 +43,7 @@ static int start_plan(const bg_lanes *a, lane_beginning *b, bg_lane_start *start
     one->waits = LANE_NEVER;
     if (!(wide >= SHORTEST) || !(wide <= MOST_PARTS * LONGEST))
         return 0;
-    start->parts = one->finer * (long)ceil(wide / LONGEST);
+    start->parts = bg_lanes_parts(a, one);
     b->h = gap / (double)start->parts;
     const long first = (long)ceil((t - a->times[0]) / b->h + BESIDE);
     start->place = first + LANE_PAST - 1;

@@ -21,7 +21,8 @@ typedef struct {
  * before the latest two. `shot`, `w`: everything and the inputs before these, between them and
  * after. `error`: the sum of squares, in what the tolerance allows, of each; `time`: when they end;
  * `ahead`: see bg_lanes_ahead. `place`: how many steps
- * after the first sample; `since`: so many pairs with the present slope. */
+ * after the first sample; `since`: so many pairs with the present slope; `pairs`:
+ * since it was looked whether steps may be longer. */
 enum { LANE_PAIR = 2, LANE_WINDOW = LANE_PAST + LANE_PAIR };
 typedef struct {
     bg_lanes_group of;
@@ -32,7 +33,7 @@ typedef struct {
     bg_lane shot[LANE_PAIR + 1][LANE_ROWS], w[LANE_PAIR + 1][BG_ROOM(BG_EXTERNAL)];
     bg_lane error[LANE_PAIR], time[LANE_PAIR];
     double ahead[LANE_PAST];
-    long place[BG_LANES], parts[BG_LANES], since[BG_LANES];
+    long place[BG_LANES], parts[BG_LANES], since[BG_LANES], pairs[BG_LANES];
 } bg_lanes_exponential;
 
 /* A run's way into exponential steps: instants, newest first, with everything at the newest. */
@@ -86,8 +87,10 @@ int bg_lanes_is_clear(int count, const double *x, const double (*v)[LANE_WATCHED
 int bg_lanes_is_clear_closely(bg_lane_run *one, const bg_lanes_known *known, int first,
                               const double (*ends)[LANE_WATCHED]);
 
-/* lanes_start.c: to exponential steps from where a run is, whether it could. */
+/* lanes_start.c: to exponential steps from where a run is, whether it could; so many of them, at
+ * least, go on what lies between samples. */
 int bg_lanes_start(bg_lanes *a, bg_lane_run *one);
+long bg_lanes_parts(const bg_lanes *a, const bg_lane_run *one);
 
 /* lanes_glide.c: the same of exponential steps; the time of a place. */
 int bg_lanes_glide_in(bg_lanes *a, int lane, bg_lane_run *one);

@@ -21,6 +21,7 @@ void bg_lanes_leave(bg_lane_run *one, int status)
 static void turn_set_off(bg_lane_run *one)
 {
     one->waits = 0;
+    one->finer = 1;
     one->after = -INFINITY;
     one->patience = LANE_PATIENCE;
 }
@@ -105,7 +106,6 @@ void bg_lanes_take_on(bg_lane_run *one, int ended, int status)
 void bg_lanes_begin_alone(bg_lane_run *one, const bg_signals *signals, bg_request *asked)
 {
     one->turns = 0.0;
-    one->finer = 1;
     const int status = bg_located_begin(one->room->run, one->room->model, signals, asked);
     bg_lanes_prepare(one->room->model, one->constants);
     bg_lanes_join(one);
