@@ -39,7 +39,7 @@ static void lanes_seat(bg_lanes *a, bg_lane_run *one)
         else if (!bg_lanes_glide_in(a, lane, one))
             lanes_unseat(&a->exponential.of, lane);
     }
-    if (one->by == LANE_EXPLICIT && (lane = lanes_free_lane(&a->explicit_steps.of)) >= 0
+    if (a->job && one->by == LANE_EXPLICIT && (lane = lanes_free_lane(&a->explicit_steps.of)) >= 0
         && !bg_lanes_walk_in(a, lane, one))
         lanes_unseat(&a->explicit_steps.of, lane);
 }
@@ -94,6 +94,38 @@ static void lanes_go(bg_lanes *a)
             bg_lanes_walk(a);
 }
 
+/* Explicit steps of a run by itself, as lanes are no help to it there. */
+static void lanes_walk_alone(bg_lane_run *one)
+{
+    bg_located *const c = one->room->run;
+    int status = BG_OK, ended = 0;
+    while (status == BG_OK && !ended && one->by == LANE_EXPLICIT && c->run.at.t < c->stretch.stop
+           && c->stretch.method == BG_DOP853) {
+        status = bg_solver_step(c, c->stretch.stop);
+        if (status == BG_OK)
+            status = bg_located_pass(c, &ended);
+        if (status == BG_OK && !ended)
+            status = bg_located_go_on(c);
+        one->waits -= one->waits > 0;
+        one->by = bg_lanes_kind(one);
+    }
+    const int on = one->by == LANE_EXPONENTIAL && c->stretch.method == BG_DOP853;
+    if (status != BG_OK || ended || !on || c->run.at.t >= c->stretch.stop)
+        bg_lanes_take_on(one, ended, status);
+}
+
+static void lanes_go_alone(bg_lanes *a, bg_lane_run *one)
+{
+    while (one->by != LANE_NONE) {
+        if (one->by == LANE_EXPLICIT)
+            lanes_walk_alone(one);
+        else if (one->seated)
+            bg_lanes_glide(a);
+        else
+            lanes_seat(a, one);
+    }
+}
+
 void lanes_batch(bg_lanes *a, located_room *rooms, const batch_job *job, const located_runs *runs)
 {
     lanes_ready(a, rooms, job->samples, job->times, rooms->rtol, rooms->atol);
@@ -115,7 +147,7 @@ int lanes_rows_run(bg_lanes *a, located_room *room, const double *parameters,
     bg_rows_ask(asked, rows);
     if (status == BG_OK) {
         bg_lanes_begin_alone(one, signals, asked);
-        lanes_go(a);
+        lanes_go_alone(a, one);
         status = a->status;
         asked->count = c->run.log.count;
         asked->time = c->run.at.t;

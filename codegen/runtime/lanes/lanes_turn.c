@@ -53,7 +53,8 @@ static int turn_go(bg_lane_run *one, int ended, int *status)
             if (bg_lanes_may(one)) {
                 one->by = bg_lanes_kind(one);
                 one->tries = 0;
-                c->turns.patience = BG_PATIENCE * BG_LANES; /* a step costs so much less */
+                if (one->all->job)
+                    c->turns.patience = BG_PATIENCE * BG_LANES; /* a step costs so much less */
                 return 1;
             }
             *status = bg_located_rest(c, 1, &ended);
