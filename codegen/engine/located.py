@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -218,10 +219,7 @@ class LocatedRuns:
         """Rows as everything at the samples, and the modes there."""
         program = self.model.program
         *parts, modes = np.split(table, np.cumsum(recorded(program)), axis=1)
-        # There are few, and many samples of each.
-        known = dict[Mode, Mode]()
-        every = map(tuple, modes.astype(int).tolist())
-        return Snapshots(*parts), tuple([known.setdefault(mode, mode) for mode in every])
+        return Snapshots(*parts), _modes(modes.astype(int))
 
     @cached_property
     def handing(self) -> Handing:
@@ -252,6 +250,15 @@ class LocatedRuns:
         """How many numbers are kept of a sample: its parts, and the modes of the ports."""
         program = self.model.program
         return sum(recorded(program)) + len(program.friction)
+
+
+def _modes(rows: Array) -> tuple[Mode, ...]:
+    """The mode of each sample; there are few, and many samples of each in a row."""
+    turns = np.flatnonzero((rows[1:] != rows[:-1]).any(axis=1)) + 1
+    found = list[Mode]()
+    for begin, end in pairwise([0, *turns.tolist(), len(rows)]):
+        found += [tuple(rows[begin].tolist())] * (end - begin) if end > begin else []
+    return tuple(found)
 
 
 def packed_signals(ffi: Any, table: SignalTable) -> tuple[Any, tuple[Any, ...]]:

@@ -9,7 +9,7 @@ static double lanes_even_gap(int samples, const double *times)
 {
     const double gap = (times[samples - 1] - times[0]) / (samples - 1);
     for (int i = 1; i < samples; i++)
-        if (!(fabs(times[i] - times[0] - i * gap) <= BG_EVEN * gap))
+        if (!(fabs(times[i] - times[0] - i * gap) <= BG_APART * gap))
             return 0.0;
     return gap;
 }
@@ -152,7 +152,7 @@ int lanes_rows_run(bg_lanes *a, located_room *room, const double *parameters,
         asked->count = c->run.log.count;
         asked->time = c->run.at.t;
     }
-    if (status != BG_OK && status != BG_EVENTS && status != BG_UNTAKEN && !rows->handed)
+    if (status != BG_OK && status != BG_APARTTS && status != BG_UNTAKEN && !rows->handed)
         return bg_rows_run(c, room->model, parameters, signals, asked, rows);
     return status == BG_OK && rows->failed ? BG_UNTAKEN : status;
 }
