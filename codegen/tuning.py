@@ -139,7 +139,7 @@ class Tuning:
     settled: float = _told(
         1e-3, "of the tolerance, to which a multistep method's beginning is found"
     )
-    apart: float = _told(1e-9, "of what lies between samples, to which they lie evenly")
+    evenly: float = _told(1e-9, "of what lies between samples, to which they lie evenly")
     first_small: float = _told(1e-5, "states or rates so small in tolerances tell no first step")
     first_step: float = _told(1e-6, "s, the first step then")
     first_part: float = _told(1e-2, "of what moves a state by itself: a first try; of a tolerance")

@@ -9,7 +9,7 @@ static double lanes_even_gap(int samples, const double *times)
 {
     const double gap = (times[samples - 1] - times[0]) / (samples - 1);
     for (int i = 1; i < samples; i++)
-        if (!(fabs(times[i] - times[0] - i * gap) <= BG_APART * gap))
+        if (!(fabs(times[i] - times[0] - i * gap) <= BG_EVENLY * gap))
             return 0.0;
     return gap;
 }
