@@ -152,7 +152,7 @@ int lanes_rows_run(bg_lanes *a, located_room *room, const double *parameters,
         asked->count = c->run.log.count;
         asked->time = c->run.at.t;
     }
-    if (status != BG_OK && status != BG_APARTTS && status != BG_UNTAKEN && !rows->handed)
+    if (status != BG_OK && status != BG_EVENTS && status != BG_UNTAKEN && !rows->handed)
         return bg_rows_run(c, room->model, parameters, signals, asked, rows);
     return status == BG_OK && rows->failed ? BG_UNTAKEN : status;
 }
