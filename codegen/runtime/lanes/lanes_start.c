@@ -7,7 +7,7 @@
 
 enum { START_TERMS = 24, START_TURNS = 12, MOST_PARTS = 64 };
 static const double LONGEST = 1.2,    /* step times the fastest rate */
-                    SHORTEST = 0.4,  /* below that explicit steps go over many samples */
+                    SHORTEST = 0.4,   /* below that explicit steps go over many samples */
                     BESIDE = 0.1;     /* of a step: no two instants are nearer than that */
 
 /* `times`: where the run is, and the instants after it; `x`: in steps of length h from there on;
@@ -17,6 +17,7 @@ typedef struct {
     double h, times[LANE_NODES], x[LANE_NODES], factor[LANE_NODES][LANE_NODES][LANE_NODES];
     bg_lane_functions functions;
     double columns[BG_SIZE][LANE_ROW], y[LANE_NODES][LANE_ROW], rest[LANE_NODES][LANE_ROW];
+    double watched[LANE_NODES][LANE_WATCHED];
 } lane_beginning;
 
 double bg_lanes_time(const bg_lanes *a, long place, long parts)
@@ -190,10 +191,10 @@ static void start_around(const lane_beginning *b, int i, const double *slope, bg
     }
 }
 
-/* Whether nothing can happen between the instants, of which the last is noted then. */
+/* Whether nothing can happen between the instants. */
 static int start_is_clear(lane_beginning *b, bg_lanes_points *points, const double *slope)
 {
-    double v[LANE_NODES][LANE_WATCHED];
+    double (*const v)[LANE_WATCHED] = b->watched;
     int closely = 0;
     for (int i = 0; i < LANE_NODES; i++)
         bg_lanes_watched(b->one, &points->own, i, (const bg_lane *)points->shot, v[i]);
@@ -210,11 +211,8 @@ static int start_is_clear(lane_beginning *b, bg_lanes_points *points, const doub
             return 0;
         }
     }
-    memcpy(b->one->was, v + LANE_NODES - 2, sizeof b->one->was);
-    bg_lanes_note(b->one, v[LANE_NODES - 1]);
     /* What the points showed is asked for again. */
-    return !closely || (bg_lanes_set(b->one, LANE_NODES, b->times)
-                        && start_see(b));
+    return !closely || (bg_lanes_set(b->one, LANE_NODES, b->times) && start_see(b));
 }
 
 /* The samples before the last instant. A status. */
@@ -253,12 +251,13 @@ int bg_lanes_start(bg_lanes *a, bg_lane_run *one)
     }
     if (start_keep(&b, a) != BG_OK)
         return 0;
+    memcpy(one->was, b.watched + LANE_NODES - LANE_PAIR, sizeof one->was);
+    bg_lanes_note(one, b.watched[LANE_PAST]);
     for (int i = 0; i < LANE_PAST; i++) {
         memcpy(start->y[i], b.y[LANE_PAST - i], sizeof start->y[i]);
         memcpy(start->rest[i], b.rest[LANE_PAST - i], sizeof start->rest[i]);
     }
     for (int i = 0; i < LANE_ROWS; i++)
         start->shot[i] = a->points.shot[i][LANE_PAST];
-    one->waits = 0;
     return 1;
 }
