@@ -54,15 +54,15 @@ class Way:
 
 
 class Timed(LocatedRuns):
-    """Runs that tell how long the call of C took, the inputs' tables and the events with it."""
+    """Runs that tell how long calls of C took."""
 
     def __init__(self, runs: LocatedRuns) -> None:
         super().__init__(runs.model, runs.library)
         self.seconds = [0.0]
 
-    def _called(self, *given: Any) -> Any:
+    def call(self, *given: Any) -> Any:
         start = time.process_time()
-        found = super()._called(*given)
+        found = super().call(*given)
         self.seconds[0] += time.process_time() - start
         return found
 
