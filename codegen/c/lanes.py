@@ -15,6 +15,9 @@ from codegen.program.records import Block, Corners, Program
 LANES = 8
 """So many runs go side by side: as many doubles as the widest vectors of today's processors hold."""
 
+FEW_STATES = 16
+"""So many go by exponential steps: the matrices of more would not be near at hand."""
+
 MOST_STATES, MOST_HELD = 40, 512
 """Beyond these sizes runs go one after the other: a lane's numbers would no longer be near at hand."""
 
@@ -166,7 +169,7 @@ def lanes_text(program: Program, code: Lanes) -> dict[str, str]:
                    _where(plain, program, begin)),
     ]  # fmt: skip
     rated = bool({*code.changes} & {*code.rates.arguments})
-    sizes = {"CONSTANTS": first, "HELD": len(code.held), "RATED": int(rated)}
+    sizes = {"FEW": FEW_STATES, "CONSTANTS": first, "HELD": len(code.held), "RATED": int(rated)}
     head = [
         "/* Sizes of runs side by side; written by bondgraph-toolkit. */",
         "#ifndef BG_LANES_CONFIG_H", "#define BG_LANES_CONFIG_H", "", f"#define BG_LANES {LANES}",

@@ -9,7 +9,7 @@ import numpy as np
 
 from bondgraph.errors import SimulationError
 from codegen.c.export import CALLING, texts
-from codegen.c.lanes import Lanes, lanes, lanes_text
+from codegen.c.lanes import FEW_STATES, Lanes, lanes, lanes_text
 from codegen.c.runtime import runtime_file, runtime_names
 from codegen.engine.build import FLAGS, check_tools, compiled, loaded
 from codegen.engine.fallback import Stopped
@@ -48,9 +48,6 @@ int lanes_rows_run(bg_lanes *a, located_room *room, const double *parameters,
                    const bg_signals *signals, bg_request *asked, bg_rows *rows);
 """
 """What is called of runs side by side."""
-
-FEW_STATES = 16
-"""As many as go by exponential steps, as ``lanes.h`` has it."""
 
 FEW, MANY = 256, 1 << 20
 """Events there is room for at first, and at most."""
@@ -194,14 +191,9 @@ class LocatedRuns:
 
     def call(self, asking: "Asking", rows: Any) -> int:
         """Call C once; the status."""
-        _, library = self.library.opened
+        ffi, library = self.library.opened
         room, lanes = self._rooms[:2]
-        given = (
-            _pointer(self.library.opened[0], self.parameters),
-            asking.inputs,
-            asking.record,
-            rows,
-        )
+        given = (_pointer(ffi, self.parameters), asking.inputs, asking.record, rows)
         status: int = (
             library.bg_rows_run(room.run, room.model, *given)
             if lanes is None

@@ -17,7 +17,6 @@ enum {
     LANE_CORNERS = BG_MAP_ROWS, LANE_ROWS = LANE_CORNERS + 2 * BG_CORNERS, /* of an instant */
     LANE_WATCHED = BG_ROOM(K + BG_CORNERS), /* ports, then corners of laws */
     LANE_WIDE = N + M + BG_OUTSIDE, /* factors of what holds a port */
-    LANE_FEW = 16, /* so many states at the most go by exponential steps: their matrices are near */
     /* explicit steps before others are tried again */
     LANE_FEW_STEPS = 3, LANE_PATIENCE = 8, LANE_NEVER = 1 << 30,
     LANE_RUNS = 2 * BG_LANES /* under way at a time, so that few lanes of either kind stand empty */
@@ -48,17 +47,17 @@ typedef struct {
 typedef enum { LANE_NONE, LANE_EXPLICIT, LANE_EXPONENTIAL } bg_lane_steps;
 
 /* Of a run what is done by itself. `run`: which one; `tries`: how often the present explicit step
- * was tried; `taken`: whether it was good; `reach` [s]: how far from its middle the series of
- * inputs is one; `turns`: so many have come to no breakpoint. Before exponential steps it takes so
- * many explicit ones: `waits`, and those up to the time `after`, where something may happen; the
- * next time that they are too coarse `patience`. They are so many times `finer` than rates ask.
- * `was`: what is watched at the latest two instants of these. */
+ * was tried; `reach` [s]: how far from its middle the series of inputs is one; `turns`: so many have
+ * come to no breakpoint. Before exponential steps it takes so many explicit ones: `waits`, and those
+ * up to the time `after`, where something may happen; the next time that they are too coarse
+ * `patience`. They are so many times `finer` than rates ask. `was`: what is watched at the latest
+ * two instants of these. */
 typedef struct {
     struct bg_lanes *all;
     bg_together together;
     located_room *room;
     bg_lane_steps by;
-    int seated, run, tries, taken;
+    int seated, run, tries;
     long waits, patience, finer;
     double reach, grow, turns, after, constants[BG_ROOM(BG_LANE_CONSTANTS)];
     bg_request own;

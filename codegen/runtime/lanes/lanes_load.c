@@ -103,5 +103,5 @@ bg_lane_steps bg_lanes_kind(const bg_lane_run *one)
     const int even = one->all->exponential.gap > 0.0;
     const int asked = c->asked->method == BG_AUTO && !c->asked->smooth && even;
     const int waits = one->waits || c->run.at.t < one->after;
-    return asked && !waits && (int)BG_SIZE <= LANE_FEW ? LANE_EXPONENTIAL : LANE_EXPLICIT;
+    return asked && !waits && BG_SIZE <= BG_LANE_FEW ? LANE_EXPONENTIAL : LANE_EXPLICIT;
 }
