@@ -69,8 +69,7 @@ static int lanes_seated(const bg_lanes_group *group)
     return count;
 }
 
-static void lanes_ready(bg_lanes *a, located_room *rooms, int samples, const double *times,
-                        double rtol, double atol)
+static void lanes_ready(bg_lanes *a, int samples, const double *times, double rtol, double atol)
 {
     memset(a, 0, sizeof *a);
     a->samples = samples;
@@ -79,10 +78,8 @@ static void lanes_ready(bg_lanes *a, located_room *rooms, int samples, const dou
     a->explicit_steps.atol = a->exponential.atol = atol;
     a->exponential.gap = lanes_even_gap(samples, times);
     bg_lanes_ahead(a->exponential.ahead);
-    for (int k = 0; k < LANE_RUNS; k++) {
+    for (int k = 0; k < LANE_RUNS; k++)
         a->run[k].all = a;
-        a->run[k].room = rooms + k;
-    }
 }
 
 static void lanes_go(bg_lanes *a)
@@ -128,7 +125,9 @@ static void lanes_go_alone(bg_lanes *a, bg_lane_run *one)
 
 void lanes_batch(bg_lanes *a, located_room *rooms, const batch_job *job, const located_runs *runs)
 {
-    lanes_ready(a, rooms, job->samples, job->times, rooms->rtol, rooms->atol);
+    lanes_ready(a, job->samples, job->times, rooms->rtol, rooms->atol);
+    for (int k = 0; k < LANE_RUNS; k++)
+        a->run[k].room = rooms + k;
     a->job = job;
     a->runs = runs;
     a->count = runs->runs;
@@ -140,10 +139,11 @@ int lanes_rows_run(bg_lanes *a, located_room *room, const double *parameters,
 {
     bg_lane_run *const one = a->run;
     bg_located *const c = room->run;
-    int status = bg_model_init(room->model, parameters);
     if (asked->method != BG_AUTO)
         return bg_rows_run(c, room->model, parameters, signals, asked, rows);
-    lanes_ready(a, room, asked->samples, asked->times, asked->rtol, asked->atol);
+    int status = bg_model_init(room->model, parameters);
+    lanes_ready(a, asked->samples, asked->times, asked->rtol, asked->atol);
+    one->room = room;
     bg_rows_ask(asked, rows);
     if (status == BG_OK) {
         bg_lanes_begin_alone(one, signals, asked);

@@ -71,8 +71,8 @@ static int turn_once(bg_lane_run *one, int *status, int *done)
     double stop;
     /* Breakpoints lie ahead one after the other: a turn that ends at one gets somewhere. */
     one->turns += c->run.at.t < c->run.at.following;
-    const double most = 16.0 * c->run.log.capacity + 1000.0;
-    *status = one->turns < most ? bg_located_turn(c, &stop) : BG_EVENTS;
+    const int more = one->turns < bg_most_turns(&c->run.log);
+    *status = more ? bg_located_turn(c, &stop) : BG_EVENTS;
     *done = *status == BG_OK && c->run.at.t >= c->run.end;
     if (*status == BG_OK && !*done && BG_CORNERS)
         *status = bg_corners_set_off(c, stop);

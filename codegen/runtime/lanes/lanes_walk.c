@@ -44,14 +44,14 @@ static int walk_try_step(bg_lanes_explicit *a, int lane)
     return bg_lanes_follow(&a->of, lane, end);
 }
 
-/* Whether the step was good; if not, the next try is shorter. A status. */
-static int walk_judge(bg_lanes_explicit *a, int lane)
+/* Whether the step was good, `taken`; if not, the next try is shorter. A status. */
+static int walk_judge(bg_lanes_explicit *a, int lane, int *taken)
 {
     bg_lane_run *const one = a->of.run[lane];
     bg_solver *const s = &one->room->run->solver;
     const double h = a->h[lane], error = bg_explicit_judge(s, a->fifth[lane], a->third[lane], h);
-    one->taken = error < 1.0;
-    if (one->taken) {
+    *taken = error < 1.0;
+    if (*taken) {
         bg_explicit_take(s, a->t[lane], h, error, one->grow);
         one->tries = 0;
         for (int k = 0; k < BG_SIZE; k++)
@@ -143,21 +143,20 @@ static void walk_unload(const bg_lanes_explicit *a, int lane)
     s->dense = 1;
 }
 
-/* Whether a run whose step has passed stays in its lane. */
-static int walk_stays(bg_lanes_explicit *e, int lane)
+/* A run whose step has passed stays in its lane, if it goes on by explicit steps. */
+static void walk_stay(bg_lanes_explicit *e, int lane)
 {
     bg_lane_run *const one = e->of.run[lane];
     bg_solver *const s = &one->room->run->solver;
     one->waits -= one->waits > 0;
     one->by = bg_lanes_kind(one);
     if (one->by == LANE_EXPLICIT)
-        return 1;
+        return;
     for (int k = 0; k < BG_SIZE; k++) {
         s->y[k] = e->y[k][lane];
         s->f[k] = e->f[k][lane];
     }
     (void)walk_out(e, lane);
-    return 0;
 }
 
 /* After a step, of whose samples there is a status: where its run is, and how it goes on; in the
@@ -181,7 +180,7 @@ static void walk_pass(bg_lanes_explicit *e, int lane, int plain, int status)
         status = bg_located_go_on(c);
     if (!ended && status == BG_OK && c->stretch.method == BG_DOP853
         && c->run.at.t < c->stretch.stop) {
-        (void)walk_stays(e, lane);
+        walk_stay(e, lane);
         return;
     }
     bg_lanes_take_on(walk_out(e, lane), ended, status);
@@ -201,10 +200,8 @@ static int walk_judge_all(bg_lanes_explicit *e, int *taken)
     int any = 0;
     for (int l = 0; l < BG_LANES; l++) {
         taken[l] = 0;
-        if (e->of.run[l] && walk_judge(e, l) != BG_OK)
+        if (e->of.run[l] && walk_judge(e, l, taken + l) != BG_OK)
             bg_lanes_leave(walk_out(e, l), BG_STEPS);
-        else if (e->of.run[l])
-            taken[l] = e->of.run[l]->taken;
         any |= taken[l];
     }
     return any;

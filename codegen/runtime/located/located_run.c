@@ -302,7 +302,7 @@ int bg_located_go(bg_located *c)
 }
 
 /* The vector and the switches at the start. */
-static int set_up(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
+int bg_located_begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
 {
     double w[BG_ROOM(BG_EXTERNAL)], dw[BG_ROOM(BG_EXTERNAL)];
     int first[BG_MOST_PORTS] = {0};
@@ -328,11 +328,6 @@ static int set_up(bg_located *c, bg_model *m, const bg_signals *signals, bg_requ
     return status;
 }
 
-int bg_located_begin(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
-{
-    return set_up(c, m, signals, asked);
-}
-
 int bg_located_turn(bg_located *c, double *stop)
 {
     const bg_engine engine = engine_of(c);
@@ -354,7 +349,7 @@ int bg_located_end(bg_located *c)
 
 int bg_model_run(bg_located *c, bg_model *m, const bg_signals *signals, bg_request *asked)
 {
-    int status = set_up(c, m, signals, asked);
+    int status = bg_located_begin(c, m, signals, asked);
     if (status == BG_OK)
         status = bg_located_arrive(c);
     if (status == BG_OK)

@@ -220,8 +220,7 @@ static int decide_here(const bg_engine *e, bg_course *c)
     return status;
 }
 
-/* How often a run may go on: events are followed as long as there may be more. */
-static double most_turns(const bg_log *log)
+double bg_most_turns(const bg_log *log)
 {
     return 16.0 * (log->emptied ? INT_MAX : log->capacity) + 1000.0;
 }
@@ -230,7 +229,7 @@ int bg_arrive(const bg_engine *e, bg_course *c)
 {
     int status = BG_OK, undecided;
     /* Breakpoints lie ahead one after the other: a turn that ends at one gets somewhere. */
-    for (double turns = 0.0; turns < most_turns(&c->log); turns += c->at.t < c->at.following) {
+    for (double turns = 0.0; turns < bg_most_turns(&c->log); turns += c->at.t < c->at.following) {
         status = e->pass(e->self, c->at.t, &c->span);
         c->at.following = fmin(c->span.following, next_tick(e, c));
         if (status || c->at.t >= c->end)

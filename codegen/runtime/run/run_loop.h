@@ -49,4 +49,7 @@ int bg_arrive(const bg_engine *engine, bg_course *c);
 int bg_finish(const bg_engine *engine, bg_course *c);
 int bg_run(const bg_engine *engine, bg_course *c);
 
+/* How often a run may go on: events are followed as long as there may be more. */
+double bg_most_turns(const bg_log *log);
+
 #endif
